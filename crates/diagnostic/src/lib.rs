@@ -1,0 +1,83 @@
+//! What went wrong, and where.
+//!
+//! One type for every message of the product. A diagnostic knows a byte range of the text it speaks
+//! of, never a file name, line or column: those are found where the message is printed (`vpost`).
+//! The list of codes with cause and remedy is `docs/diagnostics.md`.
+
+use std::fmt;
+use std::ops::Range;
+
+/// The number in `error[VP0203]`.
+///
+/// Hundreds name the room: 00 command and files, 01 nc-syntax, 02 nc-program, 03 machine-profile,
+/// 04 machine-model, 05 correction, 06 nc-emit, 07 check, 08 grammar, 09 point and measurement files,
+/// 10 diagnosis, 11 calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Code(pub u16);
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "VP{:04}", self.0)
+    }
+}
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The work goes on.
+    Warning,
+    /// Nothing is written.
+    Error,
+}
+
+/// One message about one place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// The number to look up.
+    pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong, in one line, with numbers.
+    pub message: String,
+    /// Bytes of the source text the message is about, from its start.
+    pub span: Option<Range<u64>>,
+    /// What stands under the caret: what was found there, what was expected.
+    pub label: String,
+    /// What to type.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error.
+    #[must_use]
+    pub fn error(code: Code, message: impl Into<String>) -> Self {
+        Self { code, severity: Severity::Error, message: message.into(), span: None, label: String::new(), help: None }
+    }
+    /// A warning.
+    #[must_use]
+    pub fn warning(code: Code, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, message) }
+    }
+    /// Says where.
+    #[must_use]
+    pub fn at(mut self, span: Range<u64>, label: impl Into<String>) -> Self {
+        self.span = Some(span);
+        self.label = label.into();
+        self
+    }
+    /// Says what to do.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = if self.severity == Severity::Error { "error" } else { "warning" };
+        write!(f, "{word}[{}]: {}", self.code, self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}

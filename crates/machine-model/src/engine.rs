@@ -1,0 +1,174 @@
+//! What a correction engine must answer.
+
+use nalgebra::Vector3;
+
+/// A vector in the machine frame, mm.
+pub type Vector = Vector3<f64>;
+
+/// What the axes are told, with everything the error depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command {
+    /// X, Y, Z, machine coordinates, mm.
+    pub linear_mm: Vector,
+    /// A, B, C, rad.
+    pub rotary_rad: Vector,
+    /// From the gauge point to the tool tip, mm.
+    pub tool_mm: Vector,
+    /// Direction in which each linear axis last moved: -1, +1, or 0 where unknown (mean of both).
+    pub direction: [i8; 3],
+}
+
+/// Closed interval of an axis command, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Range {
+    /// True where `v` lies inside or on an end. False for NaN.
+    #[must_use]
+    pub fn contains(&self, v: f64) -> bool {
+        self.low <= v && v <= self.high
+    }
+}
+
+/// Where the model knows the machine: the box of axis commands that every table covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Volume(pub [Range; 3]);
+
+impl Volume {
+    /// True where all axes lie inside.
+    #[must_use]
+    pub fn contains(&self, linear_mm: &Vector) -> bool {
+        (0..3).all(|i| self.0[i].contains(linear_mm[i]))
+    }
+    /// The nearest point of the volume.
+    #[must_use]
+    pub fn nearest(&self, linear_mm: &Vector) -> Vector {
+        Vector::from_fn(|i, _| linear_mm[i].clamp(self.0[i].low, self.0[i].high))
+    }
+}
+
+/// A stretch of a path `q(s)`, 0 ≤ s ≤ 1, of axis commands, as far as bounds need it.
+#[derive(Clone, Copy, Debug)]
+pub struct Move {
+    /// Box that contains every `q(s)`, mm.
+    pub range_mm: [Range; 3],
+    /// Upper bounds of |dq/ds| per axis, mm.
+    pub speed_mm: [f64; 3],
+    /// Upper bounds of |d²q/ds²| per axis, mm; zero for a line.
+    pub acceleration_mm: [f64; 3],
+    /// How often at most each axis passes one place: 1 on a line, 2 on an arc below half a turn.
+    pub passes: u8,
+    /// Tool vector and directions on this stretch; its `linear_mm` is not used.
+    pub state: Command,
+}
+
+/// What to command so that the tool goes to the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution {
+    /// Commands of the linear axes, mm.
+    pub linear_mm: Vector,
+    /// Evaluations of the model.
+    pub iterations: u32,
+    /// Distance between the target and where the engine's own model goes for this command, mm.
+    pub residual_mm: f64,
+}
+
+/// Why there is no solution.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// The target, or the command that would reach it, lies outside the calibrated volume.
+    #[error("axis {axis} at {value_mm:.3} mm lies outside the calibrated range {low_mm:.3} to {high_mm:.3} mm")]
+    OutsideVolume {
+        /// Name of the axis.
+        axis: char,
+        /// The command that was needed.
+        value_mm: f64,
+        /// Lower end of the range.
+        low_mm: f64,
+        /// Upper end of the range.
+        high_mm: f64,
+    },
+    /// The iteration does not settle: the model is not one-to-one here.
+    #[error("the inverse does not converge: {residual_mm:.3e} mm are left after {iterations} iterations")]
+    NotConverged {
+        /// Evaluations made.
+        iterations: u32,
+        /// Distance left, mm.
+        residual_mm: f64,
+    },
+    /// The engine is defined on a narrower domain than the volume (published variants).
+    #[error("{0}")]
+    Undefined(&'static str),
+}
+
+/// The engines by the names of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EngineId {
+    /// `rigid-body`
+    RigidBody,
+    /// `tracker`
+    Tracker,
+    /// `tangential-static`
+    TangentialStatic,
+    /// `tangential-interval`
+    TangentialInterval,
+    /// `tangential-quasi-differential`
+    TangentialQuasiDifferential,
+    /// `kmtpp`
+    Kmtpp,
+    /// `tangential-static-published`
+    TangentialStaticPublished,
+    /// `tangential-interval-published`
+    TangentialIntervalPublished,
+    /// `tangential-quasi-differential-published`
+    TangentialQuasiDifferentialPublished,
+    /// `kmtpp-published`
+    KmtppPublished,
+}
+
+/// A correction engine: solves single points; engines that can also correct paths say so.
+pub trait Engine: Send + Sync {
+    /// Its name.
+    fn id(&self) -> EngineId;
+
+    /// Where it knows the machine.
+    fn volume(&self) -> Volume;
+
+    /// What to command so that the tool tip comes to `target`.
+    ///
+    /// `target.linear_mm` is the *nominal* command: where a perfect machine with the same tool would be
+    /// told to go. All other fields are the state in which the answer is wanted.
+    ///
+    /// # Errors
+    /// [`SolveError`]; an unconverged point is never returned as a solution.
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError>;
+
+    /// The engine as a model of whole paths; `None` for variants that exist to reproduce a publication.
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        None
+    }
+}
+
+/// A model whose error is known along paths, with bounds that hold everywhere.
+pub trait PathModel: Engine {
+    /// Real tip minus nominal tip, mm, in the directions of the linear axes: the displacement the
+    /// linear axes would have to undo.
+    ///
+    /// The command must lie in [`Engine::volume`]; outside, the value at the volume's nearest point.
+    fn error_mm(&self, command: &Command) -> Vector;
+
+    /// Upper bound, mm, of `|e(s) - ((1-s)·e(0) + s·e(1))|` for all s in 0..=1, `e(s)` the error along
+    /// the stretch: how far the error can leave its chord between the ends. Infinite where the
+    /// model jumps inside the stretch.
+    fn chord_bound_mm(&self, stretch: &Move) -> f64;
+
+    /// True where the error depends on the direction of motion.
+    fn depends_on_direction(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,1 @@
+//! Grammar tables as values.

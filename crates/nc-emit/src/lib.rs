@@ -1,0 +1,10 @@
+//! Edits to NC text.
+//!
+//! `nc-emit` changes words of blocks and inserts blocks; what the numbers mean is not its business. It
+//! keeps every byte that no edit names, follows the file's own habits where it must write, and knows
+//! which motion code is in force in the *output*, so that a block that relied on a modal code still
+//! finds it.
+
+mod edit;
+
+pub use edit::{Piece, WordEdit};

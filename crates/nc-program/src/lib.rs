@@ -1,0 +1,1 @@
+//! Blocks to tool path motions.

@@ -1,0 +1,254 @@
+//! A dialect as a value: what `grammars/*.toml` say.
+
+/// A preparatory code in tenths: `G81` is 810, `G54.1` is 541.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GCode(pub u16);
+
+impl std::fmt::Display for GCode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 % 10 {
+            0 => write!(f, "G{}", self.0 / 10),
+            part => write!(f, "G{}.{part}", self.0 / 10),
+        }
+    }
+}
+
+/// What `( )` means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paren {
+    /// Not part of the dialect.
+    None,
+    /// A comment.
+    Comment {
+        /// `( ( ) )` is one comment.
+        nested: bool,
+    },
+    /// A command to the control (Balt-System).
+    Command,
+}
+
+/// What `;` means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Semicolon {
+    /// Not part of the dialect.
+    None,
+    /// The rest of the line is a comment.
+    Comment,
+    /// End of block; what follows on the line is a new block.
+    EndOfBlock,
+}
+
+/// What a number without a decimal point means for lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointFree {
+    /// `X100` is 100 mm (calculator type, LinuxCNC).
+    Unit,
+    /// `X100` is 100 least increments (conventional type, IS-B).
+    LeastIncrement,
+}
+
+/// How numbers are written and read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers {
+    /// Meaning of a length without a point.
+    pub point_free: PointFree,
+    /// Decimals of the least input increment in mm (3 for IS-B).
+    pub least_increment_decimals_mm: u8,
+    /// The same in inches (4 for IS-B).
+    pub least_increment_decimals_inch: u8,
+    /// `X 1 0 . 5` is 10.5.
+    pub spaces_inside: bool,
+}
+
+/// What a G code does, as far as `nc-program` must know.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// G0
+    Rapid,
+    /// G1
+    Line,
+    /// G2
+    ArcClockwise,
+    /// G3
+    ArcCounterClockwise,
+    /// G4: X, U or P are a time.
+    Dwell,
+    /// G17, G18, G19
+    Plane(PlaneCode),
+    /// G20
+    Inch,
+    /// G21
+    Millimetre,
+    /// G28, G30: the axes named go to a reference point by way of the point programmed.
+    Reference,
+    /// G53: this block's words are machine coordinates.
+    MachineCoordinates,
+    /// G40
+    CompensationOff,
+    /// G41, G42
+    CompensationOn,
+    /// G43
+    LengthOn,
+    /// G44
+    LengthOnNegative,
+    /// G49
+    LengthOff,
+    /// G54–G59: the name in the profile.
+    WorkOffset(String),
+    /// G73, G74, G76, G81–G89
+    Cycle(CycleCode),
+    /// G80
+    CycleCancel,
+    /// G98
+    ReturnInitial,
+    /// G99
+    ReturnR,
+    /// G90
+    Absolute,
+    /// G91
+    Incremental,
+    /// G90.1
+    ArcCentresAbsolute,
+    /// G91.1
+    ArcCentresIncremental,
+    /// G93
+    FeedInverseTime,
+    /// G94
+    FeedPerMinute,
+    /// G95
+    FeedPerRevolution,
+    /// No axis moves and no frame changes; with `words` its axis words are arguments, not positions.
+    Pass {
+        /// Axis words of the block belong to this code.
+        takes_words: bool,
+    },
+    /// Known, and refused.
+    Refuse {
+        /// Why.
+        reason: String,
+        /// The way out.
+        help: String,
+    },
+}
+
+/// G17, G18, G19; not `toolpath::Plane`, so that reading text needs no geometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneCode {
+    /// G17
+    Xy,
+    /// G18
+    Zx,
+    /// G19
+    Yz,
+}
+
+/// Which drilling cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleCode {
+    /// G81, G82
+    Drill,
+    /// G85, G89
+    Bore,
+    /// G83
+    PeckFull,
+    /// G73
+    PeckChip,
+    /// G74, G76, G84, G86, G87, G88
+    Synchronised,
+}
+
+/// One row of the dialect's code table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CodeEntry {
+    /// The code.
+    pub code: GCode,
+    /// Modal group (numbers of the LinuxCNC and Fanuc manuals); 0 is non-modal.
+    pub group: u8,
+    /// What it does.
+    pub action: Action,
+}
+
+/// An M code that is more than text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MCode {
+    /// Its number.
+    pub number: u16,
+    /// Executed after the motion of its block (M0, M1, M2, M5, M9, M30).
+    pub after_motion: bool,
+    /// Axes that may stand anywhere afterwards (M6: the tool change position).
+    pub loses_position: [bool; 3],
+    /// The program ends here.
+    pub ends_program: bool,
+    /// Refused, with the way out (M98, M99).
+    pub refuse: Option<(String, String)>,
+}
+
+/// How text is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Decimals of an inch word; those of a millimetre word come from the profile's resolution.
+    pub decimals_inch: u8,
+    /// Decimals of F when it must be computed (G93).
+    pub decimals_feed: u8,
+    /// Longest block, bytes without its end; 0 for no limit.
+    pub max_block_bytes: u32,
+    /// Inserted blocks get N numbers when the program has them.
+    pub number_inserted_blocks: bool,
+    /// Largest N.
+    pub max_block_number: u32,
+    /// The control takes I J K; where false only R.
+    pub centre_words: bool,
+    /// The control takes R.
+    pub radius_word: bool,
+    /// Largest difference between an arc's radius at its start and at its end that the control takes, mm.
+    pub arc_radius_tolerance_mm: f64,
+    /// Distance above the last depth where a G83 peck resumes feeding when written as moves, mm.
+    pub peck_clearance_mm: f64,
+    /// Retreat of a G73 peck when written as moves, mm.
+    pub chip_retreat_mm: f64,
+}
+
+/// Everything that differs between controls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dialect {
+    /// File name in `grammars/` without ending.
+    pub name: String,
+    /// What it is, for people.
+    pub title: String,
+    /// Assumptions made where no manual is public, shown by `grammar list`.
+    pub assumptions: Vec<String>,
+    /// What `( )` means.
+    pub paren: Paren,
+    /// What `;` means.
+    pub semicolon: Semicolon,
+    /// Character of block delete, if any.
+    pub skip: Option<u8>,
+    /// `:1234` is a program number or main block.
+    pub colon_number: bool,
+    /// Letters of words; others are invalid.
+    pub letters: Vec<u8>,
+    /// Numbers.
+    pub numbers: Numbers,
+    /// Known G codes, sorted by code.
+    pub codes: Vec<CodeEntry>,
+    /// M codes that matter, sorted by number; all others pass.
+    pub m_codes: Vec<MCode>,
+    /// State at the start of a program: codes as if they stood in a first block.
+    pub initial: Vec<GCode>,
+    /// Output.
+    pub output: Output,
+}
+
+impl Dialect {
+    /// The table's row for a code.
+    #[must_use]
+    pub fn code(&self, code: GCode) -> Option<&CodeEntry> {
+        self.codes.binary_search_by_key(&code, |entry| entry.code).ok().map(|at| &self.codes[at])
+    }
+
+    /// The table's row for an M number.
+    #[must_use]
+    pub fn m_code(&self, number: u16) -> Option<&MCode> {
+        self.m_codes.binary_search_by_key(&number, |entry| entry.number).ok().map(|at| &self.m_codes[at])
+    }
+}

@@ -1,0 +1,15 @@
+//! Bytes to blocks and words.
+//!
+//! A program is read block by block. A [`Block`] borrows its bytes and lists what stands in them;
+//! nothing is copied, nothing is lost: a block's bytes are the file's bytes, its items are spans of
+//! them. Reading never fails as a whole: what is not understood becomes [`ItemKind::Invalid`] in its
+//! place, and whoever needs that block decides what it means.
+//!
+//! How a dialect writes numbers, comments and codes is a [`Dialect`]: a value, filled from a table in
+//! `grammars/` by `nc-dialect`.
+
+mod block;
+pub mod dialect;
+
+pub use block::{Block, Invalid, Item, ItemKind, Number, Sign, Span, Value};
+pub use dialect::Dialect;

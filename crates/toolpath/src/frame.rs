@@ -1,0 +1,88 @@
+/// How program coordinates (millimetres) become axis commands: `axis = matrix · program + offset`.
+///
+/// Without G68, G51 or G51.1 the matrix is the identity and the frame a mere shift: work offset plus
+/// tool length. The matrix is invertible by construction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Rows of the matrix; the identity for a shift.
+    matrix: [[f64; 3]; 3],
+    inverse: [[f64; 3]; 3],
+    /// Axis commands of the program's zero.
+    offset_mm: [f64; 3],
+}
+
+const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self::shift([0.0; 3])
+    }
+}
+
+impl Frame {
+    /// A frame parallel to the machine's.
+    #[must_use]
+    pub const fn shift(offset_mm: [f64; 3]) -> Self {
+        Self { matrix: IDENTITY, inverse: IDENTITY, offset_mm }
+    }
+
+    /// A rotated, scaled or mirrored frame; `None` where the matrix has no inverse.
+    #[must_use]
+    pub fn affine(matrix: [[f64; 3]; 3], offset_mm: [f64; 3]) -> Option<Self> {
+        let m = &matrix;
+        let cofactor = |r: usize, c: usize| {
+            let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+            m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+        };
+        let determinant = m[0][0] * cofactor(0, 0) + m[0][1] * cofactor(0, 1) + m[0][2] * cofactor(0, 2);
+        if !determinant.is_finite() || determinant.abs() < 1e-12 {
+            return None;
+        }
+        let inverse = [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(c, r) / determinant));
+        Some(Self { matrix, inverse, offset_mm })
+    }
+
+    /// Axis commands of the program's zero, mm.
+    #[must_use]
+    pub const fn offset_mm(&self) -> [f64; 3] {
+        self.offset_mm
+    }
+
+    /// True where program axes are machine axes: each program word moves its own axis alone, by as much.
+    #[must_use]
+    pub fn is_shift(&self) -> bool {
+        self.matrix == IDENTITY
+    }
+
+    /// Axis command of a program point.
+    #[must_use]
+    pub fn to_machine(&self, program_mm: [f64; 3]) -> [f64; 3] {
+        let turned = if self.is_shift() { program_mm } else { product(&self.matrix, program_mm) };
+        [0, 1, 2].map(|i| turned[i] + self.offset_mm[i])
+    }
+
+    /// Program point of an axis command.
+    #[must_use]
+    pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
+        let shifted = [0, 1, 2].map(|i| machine_mm[i] - self.offset_mm[i]);
+        if self.is_shift() { shifted } else { product(&self.inverse, shifted) }
+    }
+}
+
+fn product(m: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|r| m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        let frame = Frame::affine([[0.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [5.0, 6.0, 7.0]).unwrap();
+        let p = [1.25, -2.5, 3.0];
+        assert_eq!(frame.to_machine(p), [7.5, 8.5, 10.0]);
+        assert_eq!(frame.to_program(frame.to_machine(p)), p);
+        assert!(Frame::affine([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]).is_none());
+    }
+}

@@ -1,0 +1,16 @@
+//! Motions as geometry.
+//!
+//! The one word that the text wing and the mathematics wing share. Everything here is in *axis
+//! commands*: what the control tells the axes, machine coordinates, millimetres and degrees, after
+//! work offset and tool length. No text, no matrices, no machine.
+
+mod frame;
+mod motion;
+mod plane;
+
+pub use frame::Frame;
+pub use motion::{Arc, Cycle, CycleKind, Feed, FeedRate, Hole, Motion, Partial, Position, Shape};
+pub use plane::Plane;
+
+/// Names of the linear and rotary axes, in the order of every array here.
+pub const AXIS_NAMES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];

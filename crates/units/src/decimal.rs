@@ -1,0 +1,131 @@
+//! Decimal numbers as integers of a step.
+
+/// A decimal number exactly as written: `mantissa × 10^-decimals`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decimal {
+    /// All digits as one signed integer.
+    pub mantissa: i64,
+    /// How many of them stand behind the point.
+    pub decimals: u8,
+}
+
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19,
+    1e20, 1e21, 1e22,
+];
+
+impl Decimal {
+    /// The nearest `f64`.
+    ///
+    /// Correctly rounded while the mantissa is below 2^53 and there are at most 22 decimals: both
+    /// operands of the division are exact then. `nc-syntax` refuses longer numbers.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        self.mantissa as f64 / POWERS[usize::from(self.decimals.min(22))]
+    }
+}
+
+/// How a number is spelt: the habits of the file it goes into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spelling {
+    /// Write all decimals of the step, or drop trailing zeros.
+    pub trailing_zeros: bool,
+    /// `10.` rather than `10` when no decimals remain.
+    pub trailing_point: bool,
+    /// `0.5` rather than `.5`.
+    pub leading_zero: bool,
+    /// `+0.5` rather than `0.5`.
+    pub plus: bool,
+}
+
+impl Spelling {
+    /// `0.500`, `-12.000`: what most posts write.
+    pub const FIXED: Self = Self { trailing_zeros: true, trailing_point: true, leading_zero: true, plus: false };
+}
+
+/// Nearest whole number of steps, ties away from zero.
+///
+/// `per_unit` is the number of steps in one unit (1000 for a step of 0.001 mm): a whole number, so
+/// that the only rounding is this one. `None` where the result does not fit 53 bits or is not a number.
+#[must_use]
+pub fn counts(value: f64, per_unit: f64) -> Option<i64> {
+    let scaled = (value * per_unit).round();
+    (scaled.abs() < 9.007_199_254_740_992e15).then_some(scaled as i64)
+}
+
+/// Appends `counts × 10^-decimals` as text. Never writes an exponent or a negative zero.
+pub fn write(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
+    let mut digits = [b'0'; 40];
+    let decimals = usize::from(decimals.min(18));
+    let mut left = counts.unsigned_abs();
+    let mut at = digits.len();
+    while left > 0 || digits.len() - at <= decimals {
+        at -= 1;
+        digits[at] = b'0' + (left % 10) as u8;
+        left /= 10;
+    }
+    let (whole, mut part) = digits[at..].split_at(digits.len() - at - decimals);
+    if !spelling.trailing_zeros {
+        while let [rest @ .., b'0'] = part {
+            part = rest;
+        }
+    }
+    if counts < 0 {
+        out.push(b'-');
+    } else if spelling.plus {
+        out.push(b'+');
+    }
+    if whole != b"0" || spelling.leading_zero || part.is_empty() {
+        out.extend_from_slice(whole);
+    }
+    if !part.is_empty() || (spelling.trailing_point && (decimals > 0 || !spelling.trailing_zeros)) {
+        out.push(b'.');
+    }
+    out.extend_from_slice(part);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn text(counts: i64, decimals: u8, spelling: Spelling) -> String {
+        let mut out = Vec::new();
+        write(&mut out, counts, decimals, spelling);
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn spellings() {
+        let fixed = Spelling::FIXED;
+        let short = Spelling { trailing_zeros: false, ..fixed };
+        assert_eq!(text(-12_500, 3, fixed), "-12.500");
+        assert_eq!(text(0, 3, fixed), "0.000");
+        assert_eq!(text(-5, 3, fixed), "-0.005");
+        assert_eq!(text(10_000, 3, short), "10.");
+        assert_eq!(text(10_000, 3, Spelling { trailing_point: false, ..short }), "10");
+        assert_eq!(text(500, 3, Spelling { leading_zero: false, ..short }), ".5");
+        assert_eq!(text(0, 3, Spelling { leading_zero: false, ..short }), "0.");
+        assert_eq!(text(7, 0, Spelling { plus: true, trailing_point: false, ..fixed }), "+7");
+        assert_eq!(text(i64::MIN, 18, fixed), "-9.223372036854775808");
+    }
+
+    #[test]
+    fn counts_refuses_what_does_not_fit() {
+        assert_eq!(counts(0.0005, 1000.0), Some(1));
+        assert_eq!(counts(-0.0005, 1000.0), Some(-1));
+        assert_eq!(counts(f64::NAN, 1000.0), None);
+        assert_eq!(counts(1e14, 1000.0), None);
+    }
+
+    proptest! {
+        #[test]
+        fn written_numbers_read_back(counts in -1_000_000_000_000i64..1_000_000_000_000, decimals in 0u8..9,
+                                     trailing_zeros: bool, trailing_point: bool, leading_zero: bool, plus: bool) {
+            let written = text(counts, decimals, Spelling { trailing_zeros, trailing_point, leading_zero, plus });
+            prop_assert!(!written.contains('e') && !written.starts_with("-0") || counts != 0);
+            let value: f64 = written.parse().unwrap();
+            prop_assert_eq!(value, Decimal { mantissa: counts, decimals }.to_f64());
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! Long checks: benchmarks, corpora, tables for the docs.
+fn main() {}
