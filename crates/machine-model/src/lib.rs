@@ -4,5 +4,7 @@
 //! No text, no files, no clock.
 
 mod engine;
+mod table;
 
-pub use engine::{Command, Engine, EngineId, Move, PathModel, Range, SolveError, Solution, Vector, Volume};
+pub use engine::{Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Vector, Volume};
+pub use table::{Bounds, Interpolation, Table, TableError};
