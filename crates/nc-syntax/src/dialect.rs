@@ -83,6 +83,8 @@ pub enum Action {
     Reference,
     /// G53: this block's words are machine coordinates.
     MachineCoordinates,
+    /// G31, G37, G38.x: moves until something is touched; the axes named end anywhere.
+    Probe,
     /// G40
     CompensationOff,
     /// G41, G42
@@ -155,6 +157,17 @@ pub enum CycleCode {
     PeckChip,
     /// G74, G76, G84, G86, G87, G88
     Synchronised,
+}
+
+/// What R and Z of a cycle mean for the blocks that repeat it without writing them again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleLevels {
+    /// They were turned into levels where they were written, and the levels hold (Fanuc).
+    Held,
+    /// Their numbers are read anew in each block: under G91 from where that block starts (LinuxCNC).
+    Reread,
+    /// Nobody said: refused where the two readings differ.
+    Unstated,
 }
 
 /// One row of the dialect's code table.
@@ -235,6 +248,10 @@ pub struct Dialect {
     pub m_codes: Vec<MCode>,
     /// State at the start of a program: codes as if they stood in a first block.
     pub initial: Vec<GCode>,
+    /// How cycles carry R and Z on.
+    pub cycle_levels: CycleLevels,
+    /// G43 without H takes the length of the tool in the spindle (LinuxCNC); where false it needs H.
+    pub length_of_loaded_tool: bool,
     /// Output.
     pub output: Output,
 }
