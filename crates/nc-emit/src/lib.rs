@@ -6,5 +6,15 @@
 //! finds it.
 
 mod edit;
+mod emitter;
+mod habits;
+mod numbers;
+mod provenance;
+mod splice;
 
 pub use edit::{Piece, WordEdit};
+pub use emitter::Emitter;
+pub use numbers::BlockNumbers;
+pub use provenance::{
+    find_provenance, insert_provenance, line_ending, provenance_comment, provenance_position,
+};

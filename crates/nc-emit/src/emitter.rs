@@ -1,0 +1,315 @@
+//! Blocks out: passed as they are, or rewritten.
+
+use diagnostic::{Code, Diagnostic};
+use nc_syntax::dialect::{GCode, Semicolon};
+use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
+
+use crate::edit::{Piece, WordEdit};
+use crate::habits::{Habits, Increments, MOTION_GROUP, Modes, line_end};
+use crate::numbers::BlockNumbers;
+use crate::splice::{Splices, Style};
+
+/// A block longer than the control takes.
+const BLOCK_TOO_LONG: Code = Code(601);
+/// A word that cannot be edited: missing, doubled, or not a plain number.
+const WORD_NOT_EDITABLE: Code = Code(603);
+/// G9: exact stop, at the end of this block's motion only.
+const EXACT_STOP: GCode = GCode(90);
+
+/// Writes blocks one after the other, in the order of the program.
+///
+/// Knows what the output's text looks like so far and which motion code is in force *in the output*;
+/// nothing else is carried from block to block.
+#[derive(Clone, Debug)]
+pub struct Emitter<'d> {
+    dialect: &'d Dialect,
+    numbers: Option<&'d BlockNumbers>,
+    habits: Habits,
+    modes: Modes,
+}
+
+impl<'d> Emitter<'d> {
+    /// At the start of a program, with the codes in force that the dialect says.
+    #[must_use]
+    pub fn new(dialect: &'d Dialect) -> Self {
+        Self { dialect, numbers: None, habits: Habits::new(), modes: Modes::initial(dialect) }
+    }
+
+    /// Gives inserted blocks N numbers that `numbers` shows to be free, if the dialect wants them;
+    /// without this, or where the gap is too small, inserted blocks have no number.
+    #[must_use]
+    pub fn with_numbers(mut self, numbers: &'d BlockNumbers) -> Self {
+        self.numbers = Some(numbers).filter(|_| self.dialect.output.number_inserted_blocks);
+        self
+    }
+
+    /// Motion code in force in the output.
+    #[must_use]
+    pub fn motion(&self) -> Option<GCode> {
+        self.modes.motion
+    }
+
+    /// Copies a block that no edit touches.
+    pub fn pass(&mut self, block: &Block<'_>, out: &mut Vec<u8>) {
+        self.habits.learn(block);
+        self.modes.read(self.dialect, block);
+        out.extend_from_slice(block.bytes);
+    }
+
+    /// Writes one or more blocks in place of one.
+    ///
+    /// The first piece is the block itself with the words of `pieces[0]` edited; its comment and every
+    /// other word stay. Later pieces are new blocks: block delete copied, a number if there is a free
+    /// one, the words that the piece writes. What the control executes after the motion (M0, M5, M9, M30,
+    /// G9) moves to the last piece. A motion code is written where the one in force in the output differs.
+    /// Where nothing changes, the bytes come out as they are.
+    ///
+    /// # Errors
+    /// VP0601 where a block becomes longer than the control takes; VP0603 where a word to keep or replace
+    /// is missing, doubled, or not a plain number. `out` is then as it was.
+    pub fn rewrite(
+        &mut self,
+        block: &Block<'_>,
+        pieces: &[Piece],
+        out: &mut Vec<u8>,
+    ) -> Result<(), Diagnostic> {
+        let start = out.len();
+        let result = self.write_pieces(block, pieces, out);
+        if result.is_err() {
+            out.truncate(start);
+        }
+        result
+    }
+
+    fn write_pieces(
+        &mut self,
+        block: &Block<'_>,
+        pieces: &[Piece],
+        out: &mut Vec<u8>,
+    ) -> Result<(), Diagnostic> {
+        let Some((first, later)) = pieces.split_first() else {
+            return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a block was replaced by nothing")
+                .at(block.offset..block.offset + block.bytes.len() as u64, "this block")
+                .help("this is a fault of vpost; please report it with the program"));
+        };
+        self.habits.learn(block);
+        let in_force = self.modes.motion;
+        self.modes.read(self.dialect, block);
+        let style = Style {
+            habits: &self.habits.of_block(block),
+            increments: Increments::new(&self.dialect.numbers, self.modes.inch),
+        };
+        let (content, end) = self.split_end(block);
+        // A last line without an end needs one as soon as something follows it.
+        let end_between = if end.is_empty() { style.habits.line_end } else { end };
+
+        let mut from = out.len();
+        let splices = Splices::of_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
+        splices.write(block, content, &style, out);
+        if first.motion.is_some() {
+            self.modes.motion = first.motion;
+        }
+        self.check_length(block, &out[from..], content.len())?;
+
+        let mut number = self.free_number(block, later.len());
+        for (index, piece) in later.iter().enumerate() {
+            out.extend_from_slice(end_between);
+            from = out.len();
+            let last = index + 1 == later.len();
+            self.write_later_piece(block, piece, number, &style, last, out)?;
+            number = number.map(|number| number + 1);
+            if piece.motion.is_some() {
+                self.modes.motion = piece.motion;
+            }
+            self.check_length(block, &out[from..], 0)?;
+        }
+        out.extend_from_slice(end);
+        Ok(())
+    }
+
+    /// The block without what ends it, and what ends it.
+    fn split_end<'a>(&self, block: &Block<'a>) -> (&'a [u8], &'a [u8]) {
+        let mut at = block.bytes.len() - line_end(block.bytes).len();
+        if self.dialect.semicolon == Semicolon::EndOfBlock
+            && let Some(semicolon) = block.bytes[..at].trim_ascii_end().strip_suffix(b";")
+            && block.items.last().is_none_or(|item| item.span.end as usize <= semicolon.len())
+        {
+            at = semicolon.len();
+        }
+        block.bytes.split_at(at)
+    }
+
+    fn check_length(&self, block: &Block<'_>, text: &[u8], original: usize) -> Result<(), Diagnostic> {
+        let limit = self.dialect.output.max_block_bytes as usize;
+        if limit == 0 || text.len() <= limit.max(original) {
+            return Ok(());
+        }
+        Err(Diagnostic::error(
+            BLOCK_TOO_LONG,
+            format!("the corrected block has {} characters, the control takes {limit}", text.len()),
+        )
+        .at(
+            block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64,
+            format!("becomes `{}`", String::from_utf8_lossy(text)),
+        )
+        .help("move the comment to a line of its own, or raise `max_block_bytes` in the grammar if the control takes more"))
+    }
+
+    /// First of the numbers for `count` inserted blocks.
+    fn free_number(&self, block: &Block<'_>, count: usize) -> Option<u32> {
+        let own = block.items.iter().find_map(|item| match item.kind {
+            ItemKind::Word { letter: b'N', value: Value::Number(number) } if number.decimal.decimals == 0 => {
+                u32::try_from(number.decimal.mantissa).ok()
+            }
+            _ => None,
+        })?;
+        self.numbers?.free_after(own, u32::try_from(count).ok()?, self.dialect.output.max_block_number)
+    }
+
+    fn write_later_piece(
+        &self,
+        block: &Block<'_>,
+        piece: &Piece,
+        number: Option<u32>,
+        style: &Style<'_>,
+        last: bool,
+        out: &mut Vec<u8>,
+    ) -> Result<(), Diagnostic> {
+        let mut line = Line { out, separator: style.habits.separator, started: false };
+        for item in &block.items {
+            match item.kind {
+                ItemKind::Skip => line.add(block.text(item.span)),
+                ItemKind::Word { letter: b'N', .. } => {
+                    if let Some(number) = number {
+                        let width = block.text(item.span).iter().filter(|byte| byte.is_ascii_digit()).count();
+                        line.blank();
+                        style.write_letter(b'N', line.out);
+                        style.write_padded(number, width, line.out);
+                    }
+                }
+                _ => {}
+            }
+        }
+        if let Some(motion) = piece.motion.filter(|_| piece.motion != self.modes.motion) {
+            line.blank();
+            style.write_g(motion, line.out);
+        }
+        let mut words: smallvec::SmallVec<[(u8, WordEdit); 12]> = piece.words.iter().copied().collect();
+        words.sort_by_key(|(letter, _)| crate::splice::rank(*letter));
+        for (letter, edit) in words {
+            match edit {
+                WordEdit::Remove => {}
+                WordEdit::Keep => {
+                    let (span, _) = find_word(block, letter)?.ok_or_else(|| missing(block, letter))?;
+                    line.add(block.text(span));
+                }
+                WordEdit::Write { counts, decimals } => {
+                    let replaced = find_word(block, letter)?.and_then(|(_, value)| match value {
+                        Value::Number(number) => Some(number),
+                        Value::Expression | Value::Missing => None,
+                    });
+                    line.blank();
+                    style.write_letter(letter, line.out);
+                    style.write_number(letter, replaced, counts, decimals, line.out);
+                }
+            }
+        }
+        if last {
+            for item in &block.items {
+                if is_after_motion(self.dialect, item.kind) {
+                    line.add(block.text(item.span));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A new block being written: words with the file's separator between them.
+struct Line<'o> {
+    out: &'o mut Vec<u8>,
+    separator: &'static [u8],
+    started: bool,
+}
+
+impl Line<'_> {
+    fn blank(&mut self) {
+        if self.started {
+            self.out.extend_from_slice(self.separator);
+        }
+        self.started = true;
+    }
+
+    fn add(&mut self, text: &[u8]) {
+        self.blank();
+        self.out.extend_from_slice(text);
+    }
+}
+
+/// The only word of that letter, or `None`.
+pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, Value)>, Diagnostic> {
+    let mut found = None;
+    for item in &block.items {
+        let ItemKind::Word { letter, value } = item.kind else { continue };
+        if letter != wanted {
+            continue;
+        }
+        if found.is_some() {
+            let letter = char::from(wanted);
+            return Err(Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has two {letter} words"))
+                .at(block.file_span(item.span), format!("second {letter}"))
+                .help("leave one of them"));
+        }
+        found = Some((item.span, value));
+    }
+    Ok(found)
+}
+
+/// A word that should be there is not.
+pub(crate) fn missing(block: &Block<'_>, letter: u8) -> Diagnostic {
+    Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has no {} word to keep", char::from(letter)))
+        .at(block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64, "this block")
+        .help("this is a fault of vpost; please report it with the program")
+}
+
+/// A word whose value is no plain number cannot be replaced by one.
+pub(crate) fn not_a_number(block: &Block<'_>, letter: u8, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        WORD_NOT_EDITABLE,
+        format!("{} has no plain number, so it cannot be corrected", char::from(letter)),
+    )
+    .at(block.file_span(span), "expected a number such as 10.5")
+    .help("write the value as a number")
+}
+
+/// The code of a G word.
+pub(crate) fn g_code(kind: ItemKind) -> Option<GCode> {
+    let ItemKind::Word { letter: b'G', value: Value::Number(number) } = kind else { return None };
+    let (mantissa, decimals) = (number.decimal.mantissa, u32::from(number.decimal.decimals));
+    let tenths = match decimals {
+        0 => mantissa.checked_mul(10)?,
+        _ => {
+            let scale = 10_i64.checked_pow(decimals - 1)?;
+            (mantissa % scale == 0).then_some(mantissa / scale)?
+        }
+    };
+    u16::try_from(tenths).ok().map(GCode)
+}
+
+/// The code of a G word of the motion group.
+pub(crate) fn motion_code(dialect: &Dialect, kind: ItemKind) -> Option<GCode> {
+    g_code(kind).filter(|code| dialect.code(*code).is_some_and(|entry| entry.group == MOTION_GROUP))
+}
+
+/// Executed after the block's motion: belongs on the last piece.
+pub(crate) fn is_after_motion(dialect: &Dialect, kind: ItemKind) -> bool {
+    match kind {
+        ItemKind::Word { letter: b'M', value: Value::Number(number) } if number.decimal.decimals == 0 => {
+            u16::try_from(number.decimal.mantissa)
+                .ok()
+                .and_then(|number| dialect.m_code(number))
+                .is_some_and(|code| code.after_motion)
+        }
+        _ => g_code(kind) == Some(EXACT_STOP),
+    }
+}

@@ -1,0 +1,324 @@
+//! What the file's own text looks like.
+
+use nc_syntax::dialect::{Action, CodeEntry, GCode, Numbers, PointFree};
+use nc_syntax::{Block, Dialect, ItemKind, Number, Sign, Span, Value};
+use units::decimal::Spelling;
+
+/// Letters whose number is a length or an angle: without a point it may count least increments.
+///
+/// F, S, T, M, N, G, O, P, L, D, H follow rules of their own; a number without a point is a unit there.
+const LENGTH_LETTERS: &[u8] = b"XYZABCUVWIJKRQ";
+
+/// Letters whose spelling says how the file writes coordinates.
+const COORDINATE_LETTERS: &[u8] = b"XYZABCUVWIJKR";
+
+/// How the words seen so far are written: what an inserted word should look like.
+///
+/// Each habit is the one seen last; a word that says nothing about a habit (`X119.191` does not tell
+/// whether `X10` would be `X10.000`) leaves it as it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Habits {
+    spelling: Spelling,
+    /// Coordinates carry a point even where they are whole; `None` before the first that tells.
+    point: Option<bool>,
+    /// Most decimals of a coordinate so far: fewer in a later one mean that zeros are dropped.
+    most_decimals: u8,
+    /// What stands between two words.
+    pub(crate) separator: &'static [u8],
+    /// `G01` rather than `G1`.
+    pub(crate) two_digit_g: bool,
+    /// `x10` rather than `X10`.
+    pub(crate) lower_case: bool,
+    /// What ends a line.
+    pub(crate) line_end: &'static [u8],
+}
+
+impl Habits {
+    /// What most posts write, until the file says otherwise.
+    pub(crate) const fn new() -> Self {
+        Self {
+            spelling: Spelling::FIXED,
+            point: None,
+            most_decimals: 0,
+            separator: b" ",
+            two_digit_g: false,
+            lower_case: false,
+            line_end: b"\n",
+        }
+    }
+
+    /// Learns from the words of one block.
+    pub(crate) fn learn(&mut self, block: &Block<'_>) {
+        let mut before: Option<(Span, bool)> = None;
+        for item in &block.items {
+            let ItemKind::Word { letter, value } = item.kind else {
+                before = None;
+                continue;
+            };
+            let text = block.text(item.span);
+            if let Some(first) = text.first() {
+                self.lower_case = first.is_ascii_lowercase();
+            }
+            if let Value::Number(number) = value {
+                if letter == b'G' {
+                    self.learn_g(number, text);
+                } else if COORDINATE_LETTERS.contains(&letter) {
+                    self.learn_coordinate(number);
+                }
+            }
+            // The gap after N says little: `N10 G1X5Y5` is written without blanks.
+            if let Some((span, is_number)) = before {
+                let gap = &block.bytes[span.end as usize..item.span.start as usize];
+                let known = separator(gap);
+                if !is_number || known.is_empty() {
+                    self.separator = known;
+                }
+            }
+            before = Some((item.span, letter == b'N'));
+        }
+        let end = line_end(block.bytes);
+        if !end.is_empty() {
+            self.line_end = end;
+        }
+    }
+
+    /// These habits, with the block's own separator and case where it has any.
+    pub(crate) fn of_block(&self, block: &Block<'_>) -> Self {
+        let mut own = *self;
+        let mut before: Option<Span> = None;
+        for item in &block.items {
+            let word = matches!(item.kind, ItemKind::Word { .. }).then_some(item.span);
+            if let (Some(before), Some(word)) = (before, word) {
+                own.separator = separator(&block.bytes[before.end as usize..word.start as usize]);
+            }
+            before = word;
+        }
+        own
+    }
+
+    fn learn_g(&mut self, number: Number, text: &[u8]) {
+        let small = number.decimal.decimals == 0 && number.decimal.mantissa < 10;
+        if small && !number.has_point {
+            self.two_digit_g = text.iter().filter(|byte| byte.is_ascii_digit()).count() >= 2;
+        }
+    }
+
+    fn learn_coordinate(&mut self, number: Number) {
+        self.spelling = self.overlay(self.spelling, number, self.most_decimals);
+        if number.has_point {
+            self.point = Some(true);
+            self.most_decimals = self.most_decimals.max(number.decimal.decimals);
+        } else if number.decimal.mantissa != 0 {
+            // A zero without a point is the same number in every dialect and tells nothing.
+            self.point = Some(false);
+        }
+    }
+
+    /// `habit` with what one number shows, `decimals` being how many it would have with its zeros.
+    fn overlay(&self, habit: Spelling, number: Number, decimals: u8) -> Spelling {
+        let Number { decimal, sign, has_point, leading_digit } = number;
+        let mut spelling = habit;
+        match sign {
+            Sign::Plus => spelling.plus = true,
+            Sign::None if decimal.mantissa != 0 => spelling.plus = false,
+            Sign::None | Sign::Minus => {}
+        }
+        if has_point && decimal.decimals > 0 {
+            let one = 10_i64.checked_pow(u32::from(decimal.decimals)).unwrap_or(i64::MAX);
+            if decimal.mantissa.abs() < one {
+                spelling.leading_zero = leading_digit;
+            }
+            if decimal.mantissa % 10 == 0 {
+                spelling.trailing_zeros = true;
+            } else if decimal.decimals < decimals {
+                spelling.trailing_zeros = false;
+            }
+        } else if has_point {
+            spelling.trailing_zeros = false;
+            spelling.trailing_point = true;
+        } else if decimal.mantissa != 0 {
+            spelling.trailing_zeros = false;
+            spelling.trailing_point = false;
+        }
+        spelling
+    }
+
+    /// How to write `counts × 10^-decimals` after `letter`: the counts and decimals to print, and the
+    /// spelling.
+    ///
+    /// The word replaced, if there is one, goes before the file's habit. Where a length without a point
+    /// counts least increments, the text is a whole number of them only if the word (or the habit) has no
+    /// point and the step is not finer; else it has a point: its meaning never flips.
+    pub(crate) fn spell(
+        &self,
+        letter: u8,
+        replaced: Option<Number>,
+        value: Step,
+        numbers: &Increments,
+    ) -> Written {
+        let Step { counts, decimals } = value;
+        let mut spelling = match replaced {
+            Some(number) => self.overlay(self.spelling, number, decimals),
+            None => self.spelling,
+        };
+        if !LENGTH_LETTERS.contains(&letter) {
+            // F and its like: a point where the replaced word had one, and for a fraction.
+            let point = replaced.is_some_and(|number| number.has_point);
+            spelling.trailing_point = point;
+            spelling.trailing_zeros = point && spelling.trailing_zeros;
+            spelling.plus = replaced.is_some_and(|number| number.sign == Sign::Plus);
+            return Written { counts, decimals, spelling };
+        }
+        let Some(least_decimals) = numbers.of(letter) else {
+            return Written { counts, decimals, spelling };
+        };
+        let point = match replaced {
+            Some(number) if number.has_point => true,
+            Some(number) if number.decimal.mantissa != 0 => false,
+            _ => self.point.unwrap_or(true),
+        };
+        if !point && decimals <= least_decimals {
+            let scale = 10_i64.checked_pow(u32::from(least_decimals - decimals));
+            if let Some(increments) = scale.and_then(|scale| counts.checked_mul(scale)) {
+                let spelling = Spelling { trailing_zeros: false, trailing_point: false, ..spelling };
+                return Written { counts: increments, decimals: 0, spelling };
+            }
+        }
+        spelling.trailing_point = true;
+        spelling.trailing_zeros &= decimals > 0 && point;
+        Written { counts, decimals, spelling }
+    }
+}
+
+/// A value as a whole number of steps of `10^-decimals`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    pub(crate) counts: i64,
+    pub(crate) decimals: u8,
+}
+
+/// A number and how it is to be printed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Written {
+    counts: i64,
+    decimals: u8,
+    spelling: Spelling,
+}
+
+impl Written {
+    /// Appends the number's text.
+    pub(crate) fn write(self, out: &mut Vec<u8>) {
+        units::decimal::write(out, self.counts, self.decimals, self.spelling);
+    }
+}
+
+/// What a length without a point counts, in the units in force.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Increments {
+    /// Decimals of a length's least increment; `None` where a number without a point is a unit.
+    length: Option<u8>,
+    /// The same for an angle, which knows no inches.
+    angle: Option<u8>,
+}
+
+impl Increments {
+    pub(crate) fn new(numbers: &Numbers, inch: bool) -> Self {
+        match numbers.point_free {
+            PointFree::Unit => Self { length: None, angle: None },
+            PointFree::LeastIncrement => Self {
+                length: Some(if inch {
+                    numbers.least_increment_decimals_inch
+                } else {
+                    numbers.least_increment_decimals_mm
+                }),
+                angle: Some(numbers.least_increment_decimals_mm),
+            },
+        }
+    }
+
+    /// What a number means after `letter`, as steps of the unit in force.
+    pub(crate) fn value(self, letter: u8, number: Number) -> Step {
+        let counts = number.decimal.mantissa;
+        match self.of(letter) {
+            Some(decimals) if !number.has_point => Step { counts, decimals },
+            _ => Step { counts, decimals: number.decimal.decimals },
+        }
+    }
+
+    fn of(self, letter: u8) -> Option<u8> {
+        if !LENGTH_LETTERS.contains(&letter) {
+            return None;
+        }
+        if matches!(letter, b'A' | b'B' | b'C') { self.angle } else { self.length }
+    }
+}
+
+/// The modal facts about the output that writing needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Modes {
+    /// Motion code in force (modal group 1).
+    pub(crate) motion: Option<GCode>,
+    /// G20 in force.
+    pub(crate) inch: bool,
+}
+
+impl Modes {
+    /// As a program starts in this dialect.
+    pub(crate) fn initial(dialect: &Dialect) -> Self {
+        let mut modes = Self { motion: None, inch: false };
+        for &code in &dialect.initial {
+            if let Some(entry) = dialect.code(code) {
+                modes.step(entry);
+            }
+        }
+        modes
+    }
+
+    /// After a block as it stands.
+    pub(crate) fn read(&mut self, dialect: &Dialect, block: &Block<'_>) {
+        let mut moves = false;
+        for item in &block.items {
+            let Some(code) = crate::emitter::g_code(item.kind) else { continue };
+            let Some(entry) = dialect.code(code) else { continue };
+            // `G0 G80 Z50`: the cycle ends, and the motion is G0.
+            if entry.action != Action::CycleCancel || !moves {
+                self.step(entry);
+            }
+            moves |= entry.group == MOTION_GROUP;
+        }
+    }
+
+    fn step(&mut self, entry: &CodeEntry) {
+        match entry.action {
+            Action::Inch => self.inch = true,
+            Action::Millimetre => self.inch = false,
+            _ => {}
+        }
+        if entry.group == MOTION_GROUP {
+            self.motion = Some(entry.code);
+        }
+    }
+}
+
+/// Modal group of G0 to G3 and of the cycles.
+pub(crate) const MOTION_GROUP: u8 = 1;
+
+/// The gap between two words as something that can be repeated: one blank, one tab, or nothing.
+pub(crate) fn separator(gap: &[u8]) -> &'static [u8] {
+    match gap {
+        [] => b"",
+        [b'\t', ..] => b"\t",
+        _ => b" ",
+    }
+}
+
+/// The line ending at the end of `bytes`: `\n`, `\r\n`, `\r`, `\r\r\n`, or nothing.
+pub(crate) fn line_end(bytes: &[u8]) -> &'static [u8] {
+    match bytes {
+        [.., b'\r', b'\r', b'\n'] => b"\r\r\n",
+        [.., b'\r', b'\n'] => b"\r\n",
+        [.., b'\n'] => b"\n",
+        [.., b'\r'] => b"\r",
+        _ => b"",
+    }
+}

@@ -1,0 +1,126 @@
+//! The one comment that says a program was corrected.
+
+use std::ops::Range;
+
+use nc_syntax::dialect::{Paren, Semicolon};
+use nc_syntax::{Block, Dialect, ItemKind};
+
+/// What the comment begins with, and what is looked for, in any case.
+const MARKER: &[u8] = b"CORRECTED BY VPOST";
+
+/// The comment that marks a program as corrected: `(CORRECTED BY VPOST text)` or `; CORRECTED …`.
+///
+/// Upper case without brackets, `%`, `:` or anything beyond ASCII, which some controls take for the end
+/// of the comment, the start of a program or an alarm; cut at the dialect's longest block. Empty where
+/// the dialect has no comments. No line end.
+#[must_use]
+pub fn provenance_comment(dialect: &Dialect, text: &str) -> Vec<u8> {
+    let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
+        (b"(", b")")
+    } else if dialect.semicolon == Semicolon::Comment {
+        (b"; ", b"")
+    } else {
+        return Vec::new();
+    };
+    let mut comment = [open, MARKER].concat();
+    if !text.is_empty() {
+        comment.push(b' ');
+    }
+    comment.extend(text.chars().map(|character| match character {
+        '(' | '[' | '{' => b'[',
+        ')' | ']' | '}' => b']',
+        '%' | ':' | ';' => b'-',
+        ' '..='~' => character.to_ascii_uppercase() as u8,
+        _ => b'_',
+    }));
+    let limit = dialect.output.max_block_bytes as usize;
+    if limit > 0 {
+        comment.truncate(limit.max(open.len() + MARKER.len() + close.len()) - close.len());
+    }
+    comment.extend_from_slice(close);
+    comment
+}
+
+/// The comment of an earlier correction: its bytes from the mark that opens it to the end of its line.
+#[must_use]
+pub fn find_provenance(text: &[u8]) -> Option<Range<u64>> {
+    let name = MARKER.len() - b"VPOST".len();
+    memchr::memchr2_iter(b'V', b'v', text).find_map(|at| {
+        let from = at.checked_sub(name)?;
+        let marker = text.get(from..from + MARKER.len())?;
+        if !marker.eq_ignore_ascii_case(MARKER) {
+            return None;
+        }
+        let line =
+            text[..from].iter().rposition(|byte| matches!(byte, b'\n' | b'\r')).map_or(0, |end| end + 1);
+        let open = line + text[line..from].iter().rposition(|byte| matches!(byte, b'(' | b';'))?;
+        let end = text[from..]
+            .iter()
+            .position(|byte| matches!(byte, b'\n' | b'\r'))
+            .map_or(text.len(), |end| from + end);
+        Some(open as u64..end as u64)
+    })
+}
+
+/// Where the comment goes: bytes of the file before it.
+///
+/// After the first `%`, a leader before it, the program's name and its `O` or `:` word, where these
+/// open the program; before everything else.
+#[must_use]
+pub fn provenance_position<'b, 't: 'b>(blocks: impl IntoIterator<Item = &'b Block<'t>>) -> u64 {
+    let mut position = 0;
+    let mut percent_seen = false;
+    for block in blocks {
+        let mut opens = false;
+        for item in &block.items {
+            match item.kind {
+                ItemKind::Percent if percent_seen => return position,
+                ItemKind::Percent => {
+                    percent_seen = true;
+                    opens = true;
+                }
+                ItemKind::Name => opens = true,
+                ItemKind::Word { letter: b'O' | b':', .. } => opens = true,
+                ItemKind::Comment => {}
+                _ => {
+                    if !opens {
+                        return position;
+                    }
+                }
+            }
+        }
+        if opens {
+            position = block.offset + block.bytes.len() as u64;
+        }
+    }
+    position
+}
+
+/// The line ending a text uses, by its first: `\n`, `\r\n`, `\r`, `\r\r\n`; `\n` where it has none.
+#[must_use]
+pub fn line_ending(text: &[u8]) -> &'static [u8] {
+    let Some(first) = memchr::memchr2(b'\n', b'\r', text) else { return b"\n" };
+    match text[first..] {
+        [b'\r', b'\r', b'\n', ..] => b"\r\r\n",
+        [b'\r', b'\n', ..] => b"\r\n",
+        [b'\r', ..] => b"\r",
+        _ => b"\n",
+    }
+}
+
+/// Puts the comment on a line of its own at `position` (of [`provenance_position`]), with the text's line
+/// ending; nothing where `comment` is empty.
+pub fn insert_provenance(text: &mut Vec<u8>, position: u64, comment: &[u8]) {
+    if comment.is_empty() {
+        return;
+    }
+    let end = line_ending(text);
+    let at = usize::try_from(position).unwrap_or(text.len()).min(text.len());
+    let mut line = Vec::with_capacity(comment.len() + 2 * end.len());
+    if at > 0 && !matches!(text[at - 1], b'\n' | b'\r') {
+        line.extend_from_slice(end);
+    }
+    line.extend_from_slice(comment);
+    line.extend_from_slice(end);
+    text.splice(at..at, line);
+}

@@ -1,0 +1,320 @@
+//! Changes to the text of one block.
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, GCode};
+use nc_syntax::{Block, Dialect, ItemKind, Number, Span, Value};
+use smallvec::SmallVec;
+
+use crate::edit::{Piece, WordEdit};
+use crate::emitter::{find_word, is_after_motion, missing, motion_code, not_a_number};
+use crate::habits::{Habits, Increments, Step};
+
+/// Order in which words are written: G, then coordinates and arc centres, then the rest.
+const ORDER: &[u8] = b"GXYZABCUVWIJKRPQLFSTM";
+
+/// Last letter of [`ORDER`] that counts as a coordinate when a place for another is looked for.
+const LAST_COORDINATE: u8 = b'R';
+
+/// Place of a letter in the order of words; unknown letters come last.
+pub(crate) fn rank(letter: u8) -> usize {
+    ORDER.iter().position(|known| *known == letter).unwrap_or(ORDER.len())
+}
+
+/// How words are written into this block.
+#[derive(Clone, Copy)]
+pub(crate) struct Style<'h> {
+    pub(crate) habits: &'h Habits,
+    pub(crate) increments: Increments,
+}
+
+impl Style<'_> {
+    pub(crate) fn write_letter(&self, letter: u8, out: &mut Vec<u8>) {
+        out.push(if self.habits.lower_case { letter.to_ascii_lowercase() } else { letter });
+    }
+
+    pub(crate) fn write_number(
+        &self,
+        letter: u8,
+        replaced: Option<Number>,
+        counts: i64,
+        decimals: u8,
+        out: &mut Vec<u8>,
+    ) {
+        self.habits.spell(letter, replaced, Step { counts, decimals }, &self.increments).write(out);
+    }
+
+    /// The word already says `counts × 10^-decimals`: its text may stay.
+    fn same_value(&self, letter: u8, number: Number, counts: i64, decimals: u8) -> bool {
+        let written = self.increments.value(letter, number);
+        let shift = |value: i64, by: u8| {
+            10_i128.checked_pow(u32::from(by)).and_then(|by| i128::from(value).checked_mul(by))
+        };
+        let most = written.decimals.max(decimals);
+        let (one, other) = (shift(written.counts, most - written.decimals), shift(counts, most - decimals));
+        one.is_some() && one == other
+    }
+
+    pub(crate) fn write_g(&self, code: GCode, out: &mut Vec<u8>) {
+        self.write_letter(b'G', out);
+        write_code(code, self.habits.two_digit_g, out);
+    }
+
+    /// A number with leading zeros up to `width` digits.
+    pub(crate) fn write_padded(&self, number: u32, width: usize, out: &mut Vec<u8>) {
+        let mut digits = [b'0'; 10];
+        let mut at = digits.len();
+        let mut left = number;
+        while left > 0 {
+            at -= 1;
+            digits[at] = b'0' + (left % 10) as u8;
+            left /= 10;
+        }
+        out.extend_from_slice(&digits[at.min(digits.len() - width.clamp(1, digits.len()))..]);
+    }
+}
+
+fn write_code(code: GCode, two_digits: bool, out: &mut Vec<u8>) {
+    let (whole, part) = (code.0 / 10, code.0 % 10);
+    if two_digits && whole < 10 {
+        out.push(b'0');
+    }
+    let plain = units::decimal::Spelling { trailing_point: false, ..units::decimal::Spelling::FIXED };
+    units::decimal::write(out, i64::from(whole), 0, plain);
+    if part > 0 {
+        out.extend_from_slice(&[b'.', b'0' + part as u8]);
+    }
+}
+
+/// What stands in place of a stretch of the block.
+#[derive(Clone, Copy, Debug)]
+enum Text {
+    Nothing,
+    /// The number alone: letter and blanks of the word stay.
+    Number {
+        letter: u8,
+        replaced: Number,
+        counts: i64,
+        decimals: u8,
+    },
+    /// The code's digits alone.
+    Code {
+        code: GCode,
+        two_digits: bool,
+    },
+    /// A new word.
+    Word {
+        letter: u8,
+        counts: i64,
+        decimals: u8,
+        place: Place,
+    },
+    /// A new G word.
+    Motion {
+        code: GCode,
+        place: Place,
+    },
+}
+
+/// On which side of its place an inserted word has a neighbour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Before,
+    After,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Splice {
+    span: Span,
+    /// Order among insertions at one place.
+    rank: usize,
+    text: Text,
+}
+
+/// All changes to one block, in the order of its bytes.
+pub(crate) struct Splices {
+    list: SmallVec<[Splice; 12]>,
+}
+
+impl Splices {
+    /// What turns `block` into its first piece; `several` where more pieces follow it.
+    pub(crate) fn of_first_piece(
+        dialect: &Dialect,
+        block: &Block<'_>,
+        piece: &Piece,
+        in_force: Option<GCode>,
+        several: bool,
+    ) -> Result<Self, Diagnostic> {
+        let mut this = Self { list: SmallVec::new() };
+        let survives = |kind: ItemKind| {
+            let ItemKind::Word { letter, .. } = kind else { return false };
+            let removed = piece.words.contains(&(letter, WordEdit::Remove));
+            !(removed || several && is_after_motion(dialect, kind))
+        };
+        this.motion(dialect, block, piece, in_force, &survives);
+        for &(letter, edit) in &piece.words {
+            let word = find_word(block, letter)?;
+            match (edit, word) {
+                (WordEdit::Keep, None) => return Err(missing(block, letter)),
+                (WordEdit::Keep, Some(_)) | (WordEdit::Remove, None) => {}
+                (WordEdit::Remove, Some((span, _))) => this.remove(block, span),
+                (WordEdit::Write { counts, decimals }, Some((span, value))) => {
+                    let Value::Number(replaced) = value else {
+                        return Err(not_a_number(block, letter, span));
+                    };
+                    let text = Text::Number { letter, replaced, counts, decimals };
+                    this.add(number_span(block, span), 0, text);
+                }
+                (WordEdit::Write { counts, decimals }, None) => {
+                    let (at, place) = place_of(block, letter, &survives);
+                    let text = Text::Word { letter, counts, decimals, place };
+                    this.add(Span { start: at, end: at }, 1 + rank(letter), text);
+                }
+            }
+        }
+        if several {
+            for item in &block.items {
+                if is_after_motion(dialect, item.kind) {
+                    this.remove(block, item.span);
+                }
+            }
+        }
+        // Insertions go before a removal that starts at the same byte.
+        this.list.sort_by_key(|splice| (splice.span.start, splice.span.end > splice.span.start, splice.rank));
+        Ok(this)
+    }
+
+    /// The block's own motion code if it has one, else an inserted one where the output needs it.
+    fn motion(
+        &mut self,
+        dialect: &Dialect,
+        block: &Block<'_>,
+        piece: &Piece,
+        in_force: Option<GCode>,
+        survives: &dyn Fn(ItemKind) -> bool,
+    ) {
+        let Some(wanted) = piece.motion else { return };
+        let mut own: Option<(Span, GCode)> = None;
+        for item in &block.items {
+            let Some(code) = motion_code(dialect, item.kind) else { continue };
+            // `G80 G0 X10`: the motion is G0.
+            if own.is_none() || !is_cancel(dialect, code) {
+                own = Some((item.span, code));
+            }
+        }
+        match own {
+            Some((_, code)) if code == wanted => {}
+            Some((span, _)) => {
+                let span = number_span(block, span);
+                let two_digits = block.text(span).iter().filter(|byte| byte.is_ascii_digit()).count() >= 2
+                    && block.text(span).first() == Some(&b'0');
+                self.add(span, 0, Text::Code { code: wanted, two_digits });
+            }
+            None if in_force == Some(wanted) => {}
+            None => {
+                let (at, place) = place_of(block, b'G', survives);
+                self.add(Span { start: at, end: at }, 0, Text::Motion { code: wanted, place });
+            }
+        }
+    }
+
+    fn add(&mut self, span: Span, rank: usize, text: Text) {
+        self.list.push(Splice { span, rank, text });
+    }
+
+    /// The word with the blanks before it; at the start of a block, with the blanks after it.
+    fn remove(&mut self, block: &Block<'_>, word: Span) {
+        let before = block.bytes[..word.start as usize].trim_ascii_end().len() as u32;
+        let span = if before > 0 {
+            Span { start: before, end: word.end }
+        } else {
+            let rest = &block.bytes[word.end as usize..];
+            let blanks = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count() as u32;
+            Span { start: word.start, end: word.end + blanks }
+        };
+        self.add(span, 0, Text::Nothing);
+    }
+
+    /// Appends the changed block, `content` being its bytes without the end of line.
+    pub(crate) fn write(&self, block: &Block<'_>, content: &[u8], style: &Style<'_>, out: &mut Vec<u8>) {
+        let mut done = 0;
+        for splice in &self.list {
+            let start = (splice.span.start as usize).min(content.len());
+            if start > done {
+                out.extend_from_slice(&content[done..start]);
+            }
+            done = done.max(splice.span.end as usize).max(start);
+            let separator = style.habits.separator;
+            match splice.text {
+                Text::Nothing => {}
+                Text::Number { letter, replaced, counts, decimals } => {
+                    if style.same_value(letter, replaced, counts, decimals) {
+                        out.extend_from_slice(block.text(splice.span));
+                    } else {
+                        style.write_number(letter, Some(replaced), counts, decimals, out);
+                    }
+                }
+                Text::Code { code, two_digits } => write_code(code, two_digits, out),
+                Text::Word { letter, counts, decimals, place } => {
+                    put(place, separator, out, |out| {
+                        style.write_letter(letter, out);
+                        style.write_number(letter, None, counts, decimals, out);
+                    });
+                }
+                Text::Motion { code, place } => put(place, separator, out, |out| style.write_g(code, out)),
+            }
+        }
+        out.extend_from_slice(&content[done.min(content.len())..]);
+    }
+}
+
+fn put(place: Place, separator: &[u8], out: &mut Vec<u8>, word: impl FnOnce(&mut Vec<u8>)) {
+    if place == Place::After {
+        out.extend_from_slice(separator);
+    }
+    word(out);
+    if place == Place::Before {
+        out.extend_from_slice(separator);
+    }
+}
+
+fn is_cancel(dialect: &Dialect, code: GCode) -> bool {
+    dialect.code(code).is_some_and(|entry| entry.action == Action::CycleCancel)
+}
+
+/// The number of a word: what follows the letter and the blanks after it.
+fn number_span(block: &Block<'_>, word: Span) -> Span {
+    let blanks = block.text(word)[1..].iter().take_while(|byte| byte.is_ascii_whitespace()).count() as u32;
+    Span { start: word.start + 1 + blanks, end: word.end }
+}
+
+/// Where a new word goes: before the first later coordinate, else after the last earlier one, else after
+/// the last G or N word, else before everything that is not block delete.
+fn place_of(block: &Block<'_>, letter: u8, survives: &dyn Fn(ItemKind) -> bool) -> (u32, Place) {
+    let words = || {
+        block.items.iter().filter(|item| survives(item.kind)).filter_map(|item| match item.kind {
+            ItemKind::Word { letter, .. } => Some((letter, item.span)),
+            _ => None,
+        })
+    };
+    let coordinate = |other: u8| other != b'G' && rank(other) <= rank(LAST_COORDINATE);
+    if letter == b'G' {
+        if let Some((_, span)) = words().find(|(other, _)| !matches!(other, b'N' | b'O')) {
+            return (span.start, Place::Before);
+        }
+    } else if let Some((_, span)) =
+        words().find(|(other, _)| coordinate(*other) && rank(*other) > rank(letter))
+    {
+        return (span.start, Place::Before);
+    } else if let Some((_, span)) =
+        words().filter(|(other, _)| coordinate(*other) && rank(*other) < rank(letter)).last()
+    {
+        return (span.end, Place::After);
+    }
+    if let Some((_, span)) = words().filter(|(other, _)| matches!(other, b'G' | b'N')).last() {
+        return (span.end, Place::After);
+    }
+    match block.items.iter().find(|item| item.kind != ItemKind::Skip) {
+        Some(item) => (item.span.start, Place::Before),
+        None => (block.items.last().map_or(0, |item| item.span.end), Place::After),
+    }
+}
