@@ -1,5 +1,9 @@
 //! A dialect as a value: what `grammars/*.toml` say.
 
+use units::decimal::Decimal;
+
+use crate::Number;
+
 /// A preparatory code in tenths: `G81` is 810, `G54.1` is 541.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GCode(pub u16);
@@ -164,7 +168,8 @@ pub enum CycleCode {
 pub enum CycleLevels {
     /// They were turned into levels where they were written, and the levels hold (Fanuc).
     Held,
-    /// Their numbers are read anew in each block: under G91 from where that block starts (LinuxCNC).
+    /// Their numbers are read anew in each block, absolute or incremental as that block is (LinuxCNC:
+    /// under G91 R counts from the initial level and Z from R).
     Reread,
     /// Nobody said: refused where the two readings differ.
     Unstated,
@@ -193,6 +198,17 @@ pub struct MCode {
     /// The program ends here.
     pub ends_program: bool,
     /// Refused, with the way out (M98, M99).
+    pub refuse: Option<(String, String)>,
+}
+
+/// A command by name: a word of letters (Sinumerik `TRANS`) or the first word in brackets (Balt-System `(UAO,1)`).
+///
+/// A command that is not in the table is refused: it may move the frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Command {
+    /// Upper case.
+    pub name: String,
+    /// `None`: moves no axis and no frame, passes. Else why it is refused, and the way out.
     pub refuse: Option<(String, String)>,
 }
 
@@ -238,7 +254,9 @@ pub struct Dialect {
     pub skip: Option<u8>,
     /// `:1234` is a program number or main block.
     pub colon_number: bool,
-    /// Letters of words; others are invalid.
+    /// `X=10.5` and `X=R1+2` are words too; a value other than a number runs to the next white space.
+    pub equals_words: bool,
+    /// Letters of words, upper case; others are invalid.
     pub letters: Vec<u8>,
     /// Numbers.
     pub numbers: Numbers,
@@ -246,6 +264,8 @@ pub struct Dialect {
     pub codes: Vec<CodeEntry>,
     /// M codes that matter, sorted by number; all others pass.
     pub m_codes: Vec<MCode>,
+    /// Commands by name, sorted by name.
+    pub commands: Vec<Command>,
     /// State at the start of a program: codes as if they stood in a first block.
     pub initial: Vec<GCode>,
     /// How cycles carry R and Z on.
@@ -267,5 +287,34 @@ impl Dialect {
     #[must_use]
     pub fn m_code(&self, number: u16) -> Option<&MCode> {
         self.m_codes.binary_search_by_key(&number, |entry| entry.number).ok().map(|at| &self.m_codes[at])
+    }
+
+    /// The table's row for a command: `text` is a [`crate::ItemKind::BracketCommand`]'s bytes, brackets included.
+    #[must_use]
+    pub fn command(&self, text: &[u8]) -> Option<&Command> {
+        let start = text.iter().position(u8::is_ascii_alphabetic)?;
+        let length =
+            text[start..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count();
+        let name = text[start..start + length].to_ascii_uppercase();
+        self.commands
+            .binary_search_by(|entry| entry.name.as_bytes().cmp(&name))
+            .ok()
+            .map(|at| &self.commands[at])
+    }
+}
+
+impl Numbers {
+    /// A length word's value in the unit in force, exact.
+    ///
+    /// A number without a point counts least increments where [`PointFree::LeastIncrement`] says so. For
+    /// lengths only (X Y Z I J K R Q…): F, S, P, H, A, B, C follow their own rules.
+    #[must_use]
+    pub fn length(&self, number: Number, inch: bool) -> Decimal {
+        let Decimal { mantissa, decimals } = number.decimal;
+        if number.has_point || self.point_free == PointFree::Unit {
+            return number.decimal;
+        }
+        let step = if inch { self.least_increment_decimals_inch } else { self.least_increment_decimals_mm };
+        Decimal { mantissa, decimals: decimals + step }
     }
 }
