@@ -1,5 +1,7 @@
 use units::decimal::Decimal;
 
+use crate::dialect::GCode;
+
 /// Bytes of a block, counted from its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
@@ -57,6 +59,8 @@ pub enum Invalid {
     UnclosedBracket,
     /// Bytes that start no word, comment or command.
     Text,
+    /// More bytes in one block than [`MAX_BLOCK_BYTES`]: the item covers it and nothing in it was read.
+    TooLong,
 }
 
 /// What a stretch of a block is.
@@ -64,6 +68,13 @@ pub enum Invalid {
 pub enum ItemKind {
     /// Letter (upper case) and value. `N`, `G`, `X`, `O`… all are words.
     Word {
+        /// Upper-case ASCII letter, or `:` for the main block or program number of `:1234`.
+        letter: u8,
+        /// What follows it.
+        value: Value,
+    },
+    /// A word behind a comma: `,R5.`, `,C2.`, `,A30.`. Never the word of the letter alone.
+    CommaWord {
         /// Upper-case ASCII letter.
         letter: u8,
         /// What follows it.
@@ -77,9 +88,10 @@ pub enum ItemKind {
     Percent,
     /// Program name in a form that is not an `O` or `:` word, or a text line in the leader.
     Name,
-    /// A command in brackets (Balt-System style).
+    /// A command by name: in round brackets where the dialect has such ([`crate::dialect::Paren::Command`]),
+    /// or from a word of the dialect's command table to the end of the block. See [`crate::Dialect::command`].
     BracketCommand,
-    /// Flow and variables: `#1=…`, `IF`, `WHILE`, `GOTO`, `O100 sub`.
+    /// Flow and variables: `#1=…`, `IF`, `WHILE`, `GOTO`, `O100 sub`; to the next comment or the end of the block.
     Flow,
     /// What could not be read.
     Invalid(Invalid),
@@ -107,10 +119,71 @@ pub struct Block<'a> {
     pub items: Vec<Item>,
 }
 
-impl Block<'_> {
+/// Longest block that is read, bytes with its end. A longer one is one [`Invalid::TooLong`] item.
+///
+/// The longest block a control takes is a few hundred bytes; the limit keeps the memory of a block bounded
+/// whatever the file holds.
+pub const MAX_BLOCK_BYTES: usize = 1 << 16;
+
+/// A letter with its value, as [`Block::words`] yields them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// Upper-case ASCII letter, or `:`.
+    pub letter: u8,
+    /// What follows it.
+    pub value: Value,
+    /// Where it stands in the block.
+    pub span: Span,
+}
+
+impl Word {
+    /// The number, where the value is one.
+    #[must_use]
+    pub fn number(&self) -> Option<Number> {
+        if let Value::Number(number) = self.value { Some(number) } else { None }
+    }
+
+    /// The code of a G word; `None` where the value is no number or finer than a tenth (`G1.23`).
+    #[must_use]
+    pub fn g_code(&self) -> Option<GCode> {
+        (self.letter == b'G').then(|| self.number()?.tenths().map(GCode))?
+    }
+}
+
+impl Number {
+    /// The nearest `f64`, sign included.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        self.decimal.to_f64()
+    }
+
+    /// The value where it is whole (`M06`, `N10`, `P2.0`).
+    #[must_use]
+    pub fn integer(self) -> Option<i64> {
+        let scale = 10_i64.checked_pow(u32::from(self.decimal.decimals))?;
+        (self.decimal.mantissa % scale == 0).then(|| self.decimal.mantissa / scale)
+    }
+
+    /// The value in tenths where that is whole, not negative and below 6553.6 (`G54.1` is 541).
+    #[must_use]
+    pub fn tenths(self) -> Option<u16> {
+        let Decimal { mantissa, decimals } = self.decimal;
+        let tenths = match decimals {
+            0 => mantissa.checked_mul(10)?,
+            1 => mantissa,
+            more => {
+                let scale = 10_i64.checked_pow(u32::from(more - 1))?;
+                (mantissa % scale == 0).then(|| mantissa / scale)?
+            }
+        };
+        u16::try_from(tenths).ok()
+    }
+}
+
+impl<'a> Block<'a> {
     /// The item's bytes.
     #[must_use]
-    pub fn text(&self, span: Span) -> &[u8] {
+    pub fn text(&self, span: Span) -> &'a [u8] {
         &self.bytes[span.start as usize..span.end as usize]
     }
 
@@ -118,5 +191,35 @@ impl Block<'_> {
     #[must_use]
     pub fn file_span(&self, span: Span) -> std::ops::Range<u64> {
         self.offset + u64::from(span.start)..self.offset + u64::from(span.end)
+    }
+
+    /// The words in order; comma words are not among them.
+    pub fn words(&self) -> impl Iterator<Item = Word> + '_ {
+        self.items.iter().filter_map(|item| match item.kind {
+            ItemKind::Word { letter, value } => Some(Word { letter, value, span: item.span }),
+            _ => None,
+        })
+    }
+
+    /// The last word of a letter: where a control takes a letter twice, the last one counts.
+    ///
+    /// Whether twice is allowed is for the caller to say ([`Block::words`]).
+    #[must_use]
+    pub fn word(&self, letter: u8) -> Option<Word> {
+        self.items.iter().rev().find_map(|item| match item.kind {
+            ItemKind::Word { letter: found, value } if found == letter => {
+                Some(Word { letter, value, span: item.span })
+            }
+            _ => None,
+        })
+    }
+
+    /// The first item that could not be read.
+    #[must_use]
+    pub fn first_invalid(&self) -> Option<(Invalid, Span)> {
+        self.items.iter().find_map(|item| match item.kind {
+            ItemKind::Invalid(why) => Some((why, item.span)),
+            _ => None,
+        })
     }
 }

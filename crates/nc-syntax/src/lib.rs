@@ -9,7 +9,16 @@
 //! `grammars/` by `nc-dialect`.
 
 mod block;
+mod content;
 pub mod dialect;
+mod envelope;
+mod invalid;
+mod lexer;
+mod number;
+mod reader;
+mod value;
 
-pub use block::{Block, Invalid, Item, ItemKind, Number, Sign, Span, Value};
+pub use block::{Block, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Number, Sign, Span, Value, Word};
+pub use content::looks_like_program;
 pub use dialect::Dialect;
+pub use reader::Reader;

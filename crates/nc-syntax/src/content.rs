@@ -1,0 +1,114 @@
+//! Is this a part program at all?
+
+use diagnostic::{Code, Diagnostic};
+
+use crate::lexer::is_blank;
+
+/// First bytes of files that people hand over by mistake, and what to do about it.
+const MAGIC: [(&[u8], &str, &str); 13] = [
+    (b"\x7FELF", "a program for Linux (ELF)", "give the part program, not a program of the computer"),
+    (b"MZ\x90", "a program for Windows (EXE)", "give the part program, not a program of the computer"),
+    (b"\x89PNG", "a picture (PNG)", "give the part program, not a picture of it"),
+    (b"\xFF\xD8\xFF", "a picture (JPEG)", "give the part program, not a picture of it"),
+    (b"GIF8", "a picture (GIF)", "give the part program, not a picture of it"),
+    (b"PK\x03\x04", "a ZIP archive or an office document", "unpack it and give the part program inside"),
+    (b"\x1F\x8B", "a gzip archive", "unpack it (`gunzip`) and give the part program inside"),
+    (b"7z\xBC\xAF", "a 7-Zip archive", "unpack it and give the part program inside"),
+    (b"Rar!", "a RAR archive", "unpack it and give the part program inside"),
+    (b"%PDF-", "a PDF document", "give the part program itself"),
+    (b"\xD0\xCF\x11\xE0", "an old office document", "save it as plain text"),
+    (b"\xFF\xFE", "text in UTF-16", "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`"),
+    (b"\xFE\xFF", "text in UTF-16", "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`"),
+];
+
+/// How much of a file is looked at.
+const SAMPLE: usize = 1 << 16;
+
+/// Says whether the bytes can be a part program, before anything is read from them.
+///
+/// Looks at the first bytes only. Padding (NUL, tape leader) at either end is part of programs.
+///
+/// # Errors
+/// VP0110 where nothing but blanks is there, VP0111 where the bytes are no text.
+pub fn looks_like_program(bytes: &[u8]) -> Result<(), Diagnostic> {
+    let padding = |byte: &u8| is_blank(*byte) || matches!(byte, b'\r' | b'\n');
+    let Some(start) = bytes.iter().position(|byte| !padding(byte)) else {
+        let found = if bytes.is_empty() { "the file is empty" } else { "the file holds nothing but blanks" };
+        return Err(Diagnostic::error(Code(110), format!("{found}: nothing to correct"))
+            .help("check that the post processor wrote the program and that the name is right"));
+    };
+    let binary = |what: &str, help: &str| {
+        Err(Diagnostic::error(Code(111), format!("this is {what}, not a part program"))
+            .at(start as u64..start as u64 + 1, "no text from here on")
+            .help(help))
+    };
+    for (magic, what, help) in MAGIC {
+        // ELF starts with DEL, which is a blank elsewhere.
+        if bytes.starts_with(magic) || bytes[start..].starts_with(magic) {
+            return binary(what, help);
+        }
+    }
+    let end = bytes.iter().rposition(|byte| !padding(byte)).map_or(bytes.len(), |at| at + 1);
+    let sample = &bytes[start..end.min(start + SAMPLE)];
+    let nul = sample.iter().filter(|byte| **byte == 0).count();
+    let alternate = sample.chunks_exact(2).filter(|pair| (pair[0] == 0) != (pair[1] == 0)).count();
+    if nul > 0 && alternate * 10 > sample.len() / 2 * 9 {
+        return binary("text in UTF-16", "save it as plain text: `iconv -f UTF-16LE -t UTF-8 IN > OUT`");
+    }
+    let control = sample.iter().filter(|byte| **byte < 0x20 && !padding(byte)).count();
+    if (control + nul) * 20 > sample.len() {
+        return binary("binary data", "give the part program itself: plain text, one block per line");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn code(bytes: &[u8]) -> Option<u16> {
+        looks_like_program(bytes).err().map(|diagnostic| diagnostic.code.0)
+    }
+
+    #[test]
+    fn programs_pass_whatever_pads_them() {
+        let mut padded = vec![0; 400];
+        padded.extend_from_slice(b"%\r\nG1 X1\r\n%\r\n\x1A");
+        padded.extend_from_slice(&[0; 400]);
+        for bytes in [
+            &b"G1 X1\n"[..],
+            b"%\nM2\n%",
+            b"\xEF\xBB\xBFG1 X1",
+            &padded,
+            b"(\xCF\xF0\xE8\xE2\xE5\xF2)\nG0",
+            b"M30",
+        ] {
+            assert_eq!(code(bytes), None);
+        }
+    }
+
+    #[test]
+    fn nothing_is_named_as_nothing() {
+        for bytes in [&b""[..], b"\n\r\n  \t", &[0; 100]] {
+            assert_eq!(code(bytes), Some(110));
+        }
+    }
+
+    #[test]
+    fn other_files_are_named() {
+        let utf16: Vec<u8> = b"G1 X10.5 Y20.25\r\n".iter().flat_map(|byte| [*byte, 0]).collect();
+        let random: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        for bytes in [
+            &b"\x7FELF\x02\x01\x01"[..],
+            b"\x89PNG\r\n\x1A\n",
+            b"PK\x03\x04\x14",
+            b"\xFF\xFEG\0",
+            &utf16,
+            &random,
+        ] {
+            assert_eq!(code(bytes), Some(111));
+        }
+        let message = looks_like_program(b"PK\x03\x04").unwrap_err();
+        assert_eq!(message.message, "this is a ZIP archive or an office document, not a part program");
+    }
+}

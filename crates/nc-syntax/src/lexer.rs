@@ -1,0 +1,347 @@
+//! Items inside one block.
+
+use crate::dialect::{Command, Paren, Semicolon};
+use crate::number::{end_of_garbage, number, skip_spaces};
+use crate::value::{
+    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, nested_comment,
+    o_statement,
+};
+use crate::{Dialect, Invalid, Item, ItemKind, Span, Value};
+
+/// The facts of a dialect that reading a block needs, ready to be asked a million times a second.
+pub(crate) struct Lexer<'d> {
+    paren: Paren,
+    semicolon: Semicolon,
+    skip: Option<u8>,
+    colon_number: bool,
+    equals_words: bool,
+    spaces_inside: bool,
+    /// Bit n is set where the n-th letter of the alphabet is a word's letter.
+    letters: u32,
+    commands: &'d [Command],
+}
+
+/// What may stand between items: white space, and what punches, serial lines and DOS left in files.
+///
+/// NUL padding, DC1–DC4 (reader control), 0x1A (end of file of CP/M), DEL (a rubbed-out row of tape).
+pub(crate) const fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | 0 | 0x0B | 0x0C | 0x11..=0x14 | 0x1A | 0x7F)
+}
+
+/// First byte at or after `at` that is not blank.
+pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+    while bytes.get(at).is_some_and(|byte| is_blank(*byte)) {
+        at += 1;
+    }
+    at
+}
+
+/// Bytes of the line without trailing blanks.
+pub(crate) fn trim_end(bytes: &[u8]) -> usize {
+    bytes.iter().rposition(|byte| !is_blank(*byte)).map_or(0, |at| at + 1)
+}
+
+impl<'d> Lexer<'d> {
+    pub(crate) fn new(dialect: &'d Dialect) -> Self {
+        let mut letters = 0;
+        for letter in &dialect.letters {
+            let letter = letter.to_ascii_uppercase();
+            if letter.is_ascii_uppercase() {
+                letters |= 1 << (letter - b'A');
+            }
+        }
+        Self {
+            paren: dialect.paren,
+            semicolon: dialect.semicolon,
+            skip: dialect.skip,
+            colon_number: dialect.colon_number,
+            equals_words: dialect.equals_words,
+            spaces_inside: dialect.numbers.spaces_inside,
+            letters,
+            commands: &dialect.commands,
+        }
+    }
+
+    /// Reads the items of `line` (without its end) from `at` on; returns where the block ends.
+    ///
+    /// That is the line's end, or one past the `;` that ends the block. With `name_line` a first item that
+    /// reads as prose is the program's name.
+    pub(crate) fn block(&self, line: &[u8], mut at: usize, name_line: bool, items: &mut Vec<Item>) -> usize {
+        let first = skip_blanks(line, at);
+        if line.get(first) == Some(&b'%') {
+            push(items, ItemKind::Percent, first, first + 1);
+            at = skip_blanks(line, first + 1);
+            if line.get(at).is_some_and(|byte| !self.starts_comment(*byte)) {
+                at = self.push_name(line, at, items);
+            }
+        } else if name_line && self.reads_as_prose(&line[first..]) {
+            at = self.push_name(line, first, items);
+        }
+        loop {
+            at = skip_blanks(line, at);
+            let Some(&byte) = line.get(at) else {
+                return line.len();
+            };
+            if byte == b';' && self.semicolon == Semicolon::EndOfBlock {
+                return at + 1;
+            }
+            let (kind, end) =
+                if byte.is_ascii_alphabetic() { self.letter(line, at) } else { self.other(line, at) };
+            push(items, kind, at, end);
+            at = end;
+        }
+    }
+
+    const fn starts_comment(&self, byte: u8) -> bool {
+        (byte == b'(' && !matches!(self.paren, Paren::None))
+            || (byte == b';' && !matches!(self.semicolon, Semicolon::None))
+    }
+
+    const fn has_letter(&self, letter: u8) -> bool {
+        letter.is_ascii_uppercase() && self.letters & 1 << (letter - b'A') != 0
+    }
+
+    /// A line that starts with a whole word of prose or with a digit is no block.
+    fn reads_as_prose(&self, text: &[u8]) -> bool {
+        let run = letters(text);
+        match run {
+            0 => text.first().is_some_and(u8::is_ascii_digit),
+            1 => false,
+            _ => !is_flow_word(&text[..run]) && !(text.get(run) == Some(&b'[') && is_function(&text[1..run])),
+        }
+    }
+
+    fn push_name(&self, line: &[u8], at: usize, items: &mut Vec<Item>) -> usize {
+        let stop = self.before_comment(line, at);
+        push(items, ItemKind::Name, at, at + trim_end(&line[at..stop]));
+        stop
+    }
+
+    /// Where the next comment or the `;` of the block's end stands, else the end of the line.
+    fn before_comment(&self, line: &[u8], at: usize) -> usize {
+        line[at..].iter().position(|byte| self.starts_comment(*byte)).map_or(line.len(), |length| at + length)
+    }
+
+    /// An item that starts with a letter.
+    #[inline]
+    fn letter(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
+        let letter = line[at].to_ascii_uppercase();
+        if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
+            if let Some(found) = self.letters(line, at) {
+                return found;
+            }
+        } else if letter == b'O' {
+            if let Ok((left, _)) = o_statement(&line[at..]) {
+                return self.flow(line, at, line.len() - left.len());
+            }
+            if let Ok((_, name)) = angle_name(&line[at + 1..]) {
+                return (ItemKind::Name, at + 1 + name.len());
+            }
+        }
+        if !self.has_letter(letter) {
+            return (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at));
+        }
+        match self.value(line, at + 1) {
+            (Ok(value), end) => (ItemKind::Word { letter, value }, end),
+            (Err(why), end) => (ItemKind::Invalid(why), end),
+        }
+    }
+
+    /// Several letters in a row: a statement, a command, a function as value, or nothing a control reads.
+    ///
+    /// `None` where the first letter is a word's letter and a function follows it.
+    #[cold]
+    fn letters(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
+        let run = letters(&line[at..]);
+        let name = &line[at..at + run];
+        if is_flow_word(name) {
+            return Some(self.flow(line, at, at + run));
+        }
+        if self.commands.iter().any(|command| names(command, &line[at..])) {
+            return Some((ItemKind::BracketCommand, self.end_of_command(line, at)));
+        }
+        if is_function(&name[1..]) && line.get(skip_spaces(line, at + run)) == Some(&b'[') {
+            return None;
+        }
+        let why = if matches!(&name[1..].to_ascii_lowercase()[..], b"nan" | b"inf" | b"infinity") {
+            Invalid::Number
+        } else {
+            Invalid::Text
+        };
+        Some((ItemKind::Invalid(why), end_of_garbage(line, at)))
+    }
+
+    /// What follows a word's letter, which stands just before `at`.
+    #[inline]
+    fn value(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
+        let mut start = skip_spaces(line, at);
+        if self.equals_words && line.get(start) == Some(&b'=') {
+            return self.assigned(line, skip_spaces(line, start + 1));
+        }
+        match line.get(start) {
+            Some(b'0'..=b'9' | b'.') => {}
+            Some(b'+' | b'-') => {
+                let after = skip_spaces(line, start + 1);
+                if line
+                    .get(after)
+                    .is_some_and(|byte| matches!(byte, b'#' | b'[') || byte.is_ascii_alphabetic())
+                {
+                    return self.expression(line, start);
+                }
+            }
+            Some(b'#' | b'[') => return self.expression(line, start),
+            // Only reached with a letter where `letters` saw a function glued to this word's letter.
+            Some(byte) if start == at && byte.is_ascii_alphabetic() => return self.expression(line, start),
+            _ => {
+                start = at;
+                return (Ok(Value::Missing), start);
+            }
+        }
+        let (found, end) = number(line, start, self.spaces_inside);
+        (found.map(Value::Number), end)
+    }
+
+    fn expression(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
+        if let Ok((left, _)) = expression(&line[at..]) {
+            return (Ok(Value::Expression), line.len() - left.len());
+        }
+        let stop = self.before_comment(line, at);
+        let text = &line[at..stop];
+        let open = text.iter().any(|byte| matches!(byte, b'[' | b'<'));
+        let why = if open { Invalid::UnclosedBracket } else { Invalid::Number };
+        let end = if open { at + trim_end(text) } else { self.end_of_text(line, at) };
+        (Err(why), end)
+    }
+
+    fn assigned(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
+        let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
+        let Ok((left, found)) = assigned(&line[at..stop]) else {
+            return (Err(Invalid::UnclosedBracket), stop);
+        };
+        let end = stop - left.len();
+        if found.is_empty() {
+            return if left.is_empty() {
+                (Ok(Value::Missing), at)
+            } else {
+                (Err(Invalid::UnclosedBracket), stop)
+            };
+        }
+        // `X=10.5Y=3` glues the next word on; a plain number ends by itself.
+        if let (Ok(plain), after) = number(line, at, false)
+            && (after >= end || line[after].is_ascii_alphabetic())
+        {
+            return (Ok(Value::Number(plain)), after);
+        }
+        (Ok(Value::Expression), end)
+    }
+
+    /// An item that does not start with a letter.
+    fn other(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
+        let byte = line[at];
+        match byte {
+            b'(' => self.round_bracket(line, at),
+            b';' if self.semicolon == Semicolon::Comment => (ItemKind::Comment, line.len()),
+            b':' if self.colon_number => match number(line, skip_spaces(line, at + 1), false) {
+                (Ok(plain), end) => (ItemKind::Word { letter: b':', value: Value::Number(plain) }, end),
+                (Err(_), _) => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
+            },
+            b'#' => self.flow(line, at, at + 1),
+            b',' => self.comma_word(line, at),
+            b'<' => match angle_name(&line[at..]) {
+                Ok((_, name)) => (ItemKind::Name, at + name.len()),
+                Err(_) => (ItemKind::Invalid(Invalid::UnclosedBracket), self.end_of_text(line, at)),
+            },
+            b'[' => match brackets(&line[at..]) {
+                Ok((_, found)) => (ItemKind::Invalid(Invalid::Text), at + found.len()),
+                Err(_) => (ItemKind::Invalid(Invalid::UnclosedBracket), self.before_comment(line, at)),
+            },
+            b']' | b')' => (ItemKind::Invalid(Invalid::UnclosedBracket), at + 1),
+            _ if self.skip == Some(byte) => {
+                let level = line.get(at + 1).is_some_and(u8::is_ascii_digit);
+                (ItemKind::Skip, at + 1 + usize::from(level))
+            }
+            _ => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
+        }
+    }
+
+    fn round_bracket(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
+        let (found, kind, why) = match self.paren {
+            Paren::None => return (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
+            Paren::Comment { nested: false } => {
+                (flat_comment(&line[at..]), ItemKind::Comment, Invalid::UnclosedComment)
+            }
+            Paren::Comment { nested: true } => {
+                (nested_comment(&line[at..]), ItemKind::Comment, Invalid::UnclosedComment)
+            }
+            Paren::Command => {
+                (nested_comment(&line[at..]), ItemKind::BracketCommand, Invalid::UnclosedBracket)
+            }
+        };
+        match found {
+            Ok((_, found)) => (kind, at + found.len()),
+            Err(_) => (ItemKind::Invalid(why), at + trim_end(&line[at..])),
+        }
+    }
+
+    /// `,R5.`: the comma stands just before the letter, or blanks do between.
+    fn comma_word(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
+        let start = skip_spaces(line, at + 1);
+        let letter = line.get(start).map_or(0, u8::to_ascii_uppercase);
+        let alone = !line.get(start + 1).is_some_and(u8::is_ascii_alphabetic);
+        if letter.is_ascii_uppercase() && alone {
+            return match self.value(line, start + 1) {
+                (Ok(value), end) => (ItemKind::CommaWord { letter, value }, end),
+                (Err(why), end) => (ItemKind::Invalid(why), end),
+            };
+        }
+        (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))
+    }
+
+    /// A statement to the next comment; brackets must close within it.
+    fn flow(&self, line: &[u8], at: usize, least: usize) -> (ItemKind, usize) {
+        let stop = self.before_comment(line, least);
+        let text = &line[at..stop];
+        let end = at + trim_end(text).max(least - at);
+        let mut depth = 0_i64;
+        for byte in text {
+            depth += i64::from(*byte == b'[') - i64::from(*byte == b']');
+            if depth < 0 {
+                break;
+            }
+        }
+        if depth == 0 { (ItemKind::Flow, end) } else { (ItemKind::Invalid(Invalid::UnclosedBracket), end) }
+    }
+
+    /// A command by name takes the rest of the block, `( )` in it included; `;` ends it.
+    fn end_of_command(&self, line: &[u8], at: usize) -> usize {
+        let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
+        at + trim_end(&line[at..stop])
+    }
+
+    /// Where bytes that mean nothing end: at a blank or a comment.
+    fn end_of_text(&self, line: &[u8], at: usize) -> usize {
+        let rest = &line[at + 1..];
+        let length = rest.iter().take_while(|byte| !is_blank(**byte) && !self.starts_comment(**byte)).count();
+        at + 1 + length
+    }
+}
+
+/// How many ASCII letters stand at the start.
+fn letters(text: &[u8]) -> usize {
+    text.iter().take_while(|byte| byte.is_ascii_alphabetic()).count()
+}
+
+/// True where `text` starts with the command's name as a whole word.
+fn names(command: &Command, text: &[u8]) -> bool {
+    let name = command.name.as_bytes();
+    let whole = |next: &u8| !next.is_ascii_alphanumeric() && *next != b'_';
+    text.len() >= name.len()
+        && text[..name.len()].eq_ignore_ascii_case(name)
+        && text.get(name.len()).is_none_or(whole)
+}
+
+#[inline]
+fn push(items: &mut Vec<Item>, kind: ItemKind, start: usize, end: usize) {
+    // A block is at most MAX_BLOCK_BYTES long.
+    items.push(Item { kind, span: Span { start: start as u32, end: end as u32 } });
+}

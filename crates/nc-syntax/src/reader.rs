@@ -1,0 +1,128 @@
+//! Bytes to blocks.
+
+use memchr::memchr2;
+
+use crate::envelope::Envelope;
+use crate::lexer::{Lexer, skip_blanks, trim_end};
+use crate::{Block, Dialect, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Span};
+
+/// UTF-8's mark at the start of a file; not text.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+/// Reads a program block by block.
+///
+/// A block is a line with its end (LF, CRLF, CR or `\r\r\n`), or in dialects where `;` ends a block, the part
+/// of a line up to and with the `;`; blanks behind the last `;` of a line and the line's end belong to the
+/// block before them. Put together, the blocks' bytes are the file's bytes, whatever they are.
+///
+/// Before the `%` that opens the program and behind the `%` that closes it every line is a
+/// [`ItemKind::Name`]: text that nobody executes. A file with one `%` above its blocks, or with none, is
+/// a program as a whole. A `%` between the first and the last is shown where it stands.
+pub struct Reader<'a> {
+    text: &'a [u8],
+    lexer: Lexer<'a>,
+    envelope: Envelope,
+    at: usize,
+    line: u64,
+    /// End of the line `at` is on: without and with its line end.
+    line_end: (usize, usize),
+    /// True between the opening `%` and the first thing that is executed or is a name.
+    name_line: bool,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader at the start of `text`.
+    #[must_use]
+    pub fn new(text: &'a [u8], dialect: &'a Dialect) -> Self {
+        let lexer = Lexer::new(dialect);
+        let envelope = Envelope::find(text, &lexer);
+        Self { text, lexer, envelope, at: 0, line: 1, line_end: (0, 0), name_line: false }
+    }
+
+    /// Replaces `block` by the next block; false at the end of the text, where `block` is left empty.
+    ///
+    /// Nothing is allocated once `block.items` has grown to the longest block.
+    #[expect(clippy::should_implement_trait, reason = "lends its result into a block that is used again")]
+    pub fn next(&mut self, block: &mut Block<'a>) -> bool {
+        block.items.clear();
+        block.offset = self.at as u64;
+        block.line = self.line;
+        if self.at >= self.text.len() {
+            block.bytes = &[];
+            return false;
+        }
+        if self.at >= self.line_end.1 {
+            self.line_end = line_end(self.text, self.at);
+        }
+        let start = self.at;
+        let (content_end, next_line) = self.line_end;
+        let line = &self.text[start..content_end];
+        let end = self.items(line, &mut block.items);
+        // What follows a `;` on its line is a block of its own unless it is blank.
+        let end = start + end;
+        self.at = if skip_blanks(&self.text[..content_end], end) == content_end { next_line } else { end };
+        if self.at == next_line {
+            self.line += 1;
+        }
+        block.bytes = &self.text[start..self.at];
+        true
+    }
+
+    /// Reads the items of the rest of a line; returns how much of it the block takes.
+    fn items(&mut self, line: &[u8], items: &mut Vec<Item>) -> usize {
+        let in_leader = self.at + line.len() < self.envelope.leader;
+        if in_leader || self.at >= self.envelope.trailer {
+            let start = skip_blanks(line, if self.at == 0 { mark_length(line) } else { 0 });
+            let end = trim_end(line);
+            if start < end {
+                let kind = if line.len() > MAX_BLOCK_BYTES {
+                    ItemKind::Invalid(Invalid::TooLong)
+                } else {
+                    ItemKind::Name
+                };
+                items.push(Item { kind, span: clamped(start, end) });
+            }
+            return line.len();
+        }
+        let start = if self.at == 0 { mark_length(line) } else { 0 };
+        let window = &line[..line.len().min(MAX_BLOCK_BYTES)];
+        let end = self.lexer.block(window, start, self.name_line, items);
+        if end == window.len() && window.len() < line.len() {
+            items.clear();
+            items.push(Item { kind: ItemKind::Invalid(Invalid::TooLong), span: clamped(0, line.len()) });
+            return line.len();
+        }
+        match items.first().map(|item| item.kind) {
+            None | Some(ItemKind::Comment) => {}
+            // A name on the `%` line leaves room for the bare name line below it.
+            Some(ItemKind::Percent) => self.name_line = true,
+            Some(_) => self.name_line = false,
+        }
+        end
+    }
+}
+
+/// Length of a byte order mark with blanks before it (NUL padding), else 0.
+fn mark_length(line: &[u8]) -> usize {
+    let at = skip_blanks(line, 0);
+    if line[at..].starts_with(BYTE_ORDER_MARK) { at + BYTE_ORDER_MARK.len() } else { 0 }
+}
+
+/// End of the line that starts at `at`: without and with its line end.
+fn line_end(text: &[u8], at: usize) -> (usize, usize) {
+    let Some(length) = memchr2(b'\n', b'\r', &text[at..]) else {
+        return (text.len(), text.len());
+    };
+    let end = at + length;
+    let marks = match &text[end..] {
+        [b'\r', b'\r', b'\n', ..] => 3,
+        [b'\r', b'\n', ..] => 2,
+        _ => 1,
+    };
+    (end, end + marks)
+}
+
+/// A span of a line that may be longer than a span can say.
+fn clamped(start: usize, end: usize) -> Span {
+    Span { start: u32::try_from(start).unwrap_or(u32::MAX), end: u32::try_from(end).unwrap_or(u32::MAX) }
+}
