@@ -82,7 +82,9 @@ pub struct Solution {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
     /// The target, or the command that would reach it, lies outside the calibrated volume.
-    #[error("axis {axis} at {value_mm:.3} mm lies outside the calibrated range {low_mm:.3} to {high_mm:.3} mm")]
+    #[error(
+        "axis {axis} at {value_mm:.3} mm lies outside the calibrated range {low_mm:.3} to {high_mm:.3} mm"
+    )]
     OutsideVolume {
         /// Name of the axis.
         axis: char,
@@ -92,6 +94,18 @@ pub enum SolveError {
         low_mm: f64,
         /// Upper end of the range.
         high_mm: f64,
+    },
+    /// A rotary axis is commanded outside its travel or its tables.
+    #[error("axis {axis} at {value_deg:.4}° lies outside its range {low_deg:.4}° to {high_deg:.4}°")]
+    OutsideRotaryRange {
+        /// Name of the axis.
+        axis: char,
+        /// Its command, degrees.
+        value_deg: f64,
+        /// Lower end of the range.
+        low_deg: f64,
+        /// Upper end of the range.
+        high_deg: f64,
     },
     /// The iteration does not settle: the model is not one-to-one here.
     #[error("the inverse does not converge: {residual_mm:.3e} mm are left after {iterations} iterations")]

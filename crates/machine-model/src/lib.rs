@@ -3,8 +3,25 @@
 //! Millimetres and radians throughout; `docs/equations.md` numbers the equations and names sources.
 //! No text, no files, no clock.
 
+mod axis_tables;
+mod chain;
+mod chord_bound;
+mod description;
+pub mod effects;
 mod engine;
+mod first_order;
+mod rigid_body;
+pub mod rotation;
+mod solve;
 mod table;
+mod traverse;
 
+pub use axis_tables::{AxisTables, Six, SixBounds};
+pub use chain::{Axis, Chain, ChainError};
+pub use description::{Description, LinearAxis, RotaryAxis, Squareness};
 pub use engine::{Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Vector, Volume};
+pub use first_order::first_order_error_mm;
+pub use rigid_body::{Prediction, RigidBody, Unusable};
+pub use solve::{TOLERANCE_MM, solve};
 pub use table::{Bounds, Interpolation, Table, TableError};
+pub use traverse::Traverse;

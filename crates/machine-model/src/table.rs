@@ -240,7 +240,7 @@ impl Table {
     /// Bounds that hold everywhere in `range`, parts outside the nodes included.
     #[must_use]
     pub fn bounds(&self, range: Range) -> Bounds {
-        bounds_over(&self.grid, range, |cell| &self.cells[cell])
+        bounds_over(&self.grid, range, |cell| self.cells[cell])
     }
 
     /// The cubic of the cell that holds `q`, written from `q` on: exact, for tables with other nodes.
@@ -253,7 +253,7 @@ impl Table {
 }
 
 /// Bounds of a piecewise cubic over `range`; constant beyond the ends of the grid.
-pub(crate) fn bounds_over<'c>(grid: &Grid, range: Range, cubic: impl Fn(usize) -> &'c Cubic) -> Bounds {
+pub(crate) fn bounds_over(grid: &Grid, range: Range, cubic: impl Fn(usize) -> Cubic) -> Bounds {
     let nodes = grid.nodes();
     let low = range.low.clamp(grid.low(), grid.high());
     let high = range.high.clamp(grid.low(), grid.high());
@@ -262,18 +262,18 @@ pub(crate) fn bounds_over<'c>(grid: &Grid, range: Range, cubic: impl Fn(usize) -
         last -= 1; // the interval ends on the node: what follows is not inside
     }
     let end = |k: usize| high.min(nodes[k + 1]) - nodes[k];
-    let mut all = bounds_of(cubic(first), low - nodes[first], end(first));
+    let mut all = bounds_of(&cubic(first), low - nodes[first], end(first));
     for k in first + 1..=last {
-        let jump = slope_of(cubic(k), 0.0) - slope_of(cubic(k - 1), nodes[k] - nodes[k - 1]);
-        join(&mut all, &bounds_of(cubic(k), 0.0, end(k)), real_jump(jump, cubic(k), cubic(k - 1)));
+        let jump = slope_of(&cubic(k), 0.0) - slope_of(&cubic(k - 1), nodes[k] - nodes[k - 1]);
+        join(&mut all, &bounds_of(&cubic(k), 0.0, end(k)), real_jump(jump, &cubic(k), &cubic(k - 1)));
     }
     // Beyond the ends the function is constant: a kink where the interval reaches over an end.
     if range.low < grid.low() && range.high > grid.low() {
-        all.kinks += slope_of(cubic(0), 0.0).abs();
+        all.kinks += slope_of(&cubic(0), 0.0).abs();
     }
     if range.high > grid.high() && range.low < grid.high() {
         let k = nodes.len() - 2;
-        all.kinks += slope_of(cubic(k), nodes[k + 1] - nodes[k]).abs();
+        all.kinks += slope_of(&cubic(k), nodes[k + 1] - nodes[k]).abs();
     }
     all
 }

@@ -1,0 +1,263 @@
+//! The six error functions of one axis, looked up together.
+
+use crate::table::{self, Cubic, Grid};
+use crate::{Bounds, Range, Table};
+
+/// What one axis does wrong at one command: `EX EY EZ` in mm, `EA EB EC` in rad.
+pub type Six = [f64; 6];
+
+/// The six error functions of one axis on common nodes, so that the cell is found once.
+///
+/// Tables on different nodes are written on the union of their nodes over the range that all of them
+/// cover. That is exact: a cubic stays itself when its cell is cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisTables {
+    grid: Grid,
+    /// Per cell the coefficients of t⁰, t¹ for all six functions.
+    straight: Box<[[Six; 2]]>,
+    /// Per cell the coefficients of t², t³; empty where all functions are piecewise linear.
+    curved: Box<[[Six; 2]]>,
+}
+
+/// Bounds of the six functions over one interval.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct SixBounds {
+    /// Upper bounds of |f|.
+    pub value: Six,
+    /// Upper bounds of |f'|.
+    pub slope: Six,
+    /// Upper bounds of |f''| between kinks.
+    pub curvature: Six,
+    /// Sums of |jumps of f'| inside the interval.
+    pub kinks: Six,
+}
+
+impl AxisTables {
+    /// Puts up to six functions together, in the order `EX EY EZ EA EB EC`; absent ones are zero.
+    ///
+    /// `None` where no function is given, or where the given ones have no interval in common.
+    #[must_use]
+    pub fn new(functions: &[Option<Table>; 6]) -> Option<Self> {
+        let given = || functions.iter().flatten();
+        let low = given().map(|t| t.range().low).reduce(f64::max)?;
+        let high = given().map(|t| t.range().high).reduce(f64::min)?;
+        let mut nodes: Vec<f64> =
+            given().flat_map(Table::nodes).copied().filter(|&q| low <= q && q <= high).collect();
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        if nodes.len() < 2 {
+            return None;
+        }
+        let mut straight = Vec::with_capacity(nodes.len() - 1);
+        let mut curved = Vec::with_capacity(nodes.len() - 1);
+        for &node in &nodes[..nodes.len() - 1] {
+            let mut rows = [[0.0; 6]; 4];
+            for (function, table) in functions.iter().enumerate() {
+                let cubic = table.as_ref().map_or([0.0; 4], |t| t.cubic_from(node));
+                for (row, coefficient) in rows.iter_mut().zip(cubic) {
+                    row[function] = coefficient;
+                }
+            }
+            straight.push([rows[0], rows[1]]);
+            curved.push([rows[2], rows[3]]);
+        }
+        if curved.iter().flatten().flatten().all(|&c| c == 0.0) {
+            curved.clear();
+        }
+        Some(Self { grid: Grid::new(nodes.into()), straight: straight.into(), curved: curved.into() })
+    }
+
+    /// Half the sum of two sets: what is expected where the direction of approach is unknown.
+    ///
+    /// `None` where they have no interval in common.
+    #[must_use]
+    pub fn mean(a: &Self, b: &Self) -> Option<Self> {
+        let (low, high) = (a.grid.low().max(b.grid.low()), a.grid.high().min(b.grid.high()));
+        let inside = |q: &f64| low <= *q && *q <= high;
+        let mut nodes: Vec<f64> =
+            a.grid.nodes().iter().chain(b.grid.nodes()).copied().filter(inside).collect();
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        if nodes.len() < 2 {
+            return None;
+        }
+        let rows: Vec<[Six; 4]> = nodes[..nodes.len() - 1]
+            .iter()
+            .map(|&node| {
+                let (from_a, from_b) = (a.rows_from(node), b.rows_from(node));
+                std::array::from_fn(|r| std::array::from_fn(|f| 0.5 * (from_a[r][f] + from_b[r][f])))
+            })
+            .collect();
+        let straight = rows.iter().map(|r| [r[0], r[1]]).collect();
+        let straight_only = a.curved.is_empty() && b.curved.is_empty();
+        let curved = if straight_only { Box::default() } else { rows.iter().map(|r| [r[2], r[3]]).collect() };
+        Some(Self { grid: Grid::new(nodes.into()), straight, curved })
+    }
+
+    /// The same functions, all values of one of them moved by a constant.
+    #[must_use]
+    pub fn shifted(mut self, function: usize, by: f64) -> Self {
+        for cell in &mut self.straight {
+            cell[0][function] += by;
+        }
+        self
+    }
+
+    /// The same constants over the whole of `range`: errors that do not depend on the place.
+    #[must_use]
+    pub fn constant(range: Range, values: Six) -> Self {
+        let nodes = [range.low, range.high.max(range.low.next_up())];
+        Self {
+            grid: Grid::new(nodes.into()),
+            straight: Box::new([[values, [0.0; 6]]]),
+            curved: Box::default(),
+        }
+    }
+
+    /// The interval all functions cover.
+    #[must_use]
+    pub fn range(&self) -> Range {
+        Range { low: self.grid.low(), high: self.grid.high() }
+    }
+
+    /// Coefficients of the cubics of the cell that holds `q`, written from `q` on.
+    fn rows_from(&self, q: f64) -> [Six; 4] {
+        let cell = self.grid.cell(q);
+        let t = q - self.grid.nodes()[cell];
+        let [c0, c1] = self.straight[cell];
+        let [c2, c3] = self.curved.get(cell).copied().unwrap_or_default();
+        let by = |f: &dyn Fn(usize) -> f64| std::array::from_fn(f);
+        [
+            by(&|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
+            by(&|i| c1[i] + t * (2.0 * c2[i] + t * 3.0 * c3[i])),
+            by(&|i| c2[i] + 3.0 * c3[i] * t),
+            c3,
+        ]
+    }
+
+    fn cubic(&self, cell: usize, function: usize) -> Cubic {
+        let [c0, c1] = &self.straight[cell];
+        let [c2, c3] = self.curved.get(cell).copied().unwrap_or_default();
+        [c0[function], c1[function], c2[function], c3[function]]
+    }
+
+    /// All six at `q`; outside the range the values of the nearer end.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, q: f64) -> Six {
+        let q = q.clamp(self.grid.low(), self.grid.high());
+        let cell = self.grid.cell(q);
+        let t = q - self.grid.nodes()[cell];
+        let [c0, c1] = &self.straight[cell];
+        match self.curved.get(cell) {
+            None => std::array::from_fn(|i| c0[i] + t * c1[i]),
+            Some([c2, c3]) => std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
+        }
+    }
+
+    /// Bounds of all six that hold everywhere in `range`.
+    #[must_use]
+    #[inline]
+    pub fn bounds(&self, range: Range) -> SixBounds {
+        if self.curved.is_empty() && self.grid.low() <= range.low && range.high <= self.grid.high() {
+            let cell = self.grid.cell(range.low);
+            let (node, next) = (self.grid.nodes()[cell], self.grid.nodes()[cell + 1]);
+            if range.high <= next {
+                // The common case: a short piece inside one cell of straight lines.
+                let (low, high) = (range.low - node, range.high - node);
+                let [c0, c1] = &self.straight[cell];
+                return SixBounds {
+                    value: std::array::from_fn(|i| {
+                        (c0[i] + low * c1[i]).abs().max((c0[i] + high * c1[i]).abs())
+                    }),
+                    slope: std::array::from_fn(|i| c1[i].abs()),
+                    ..SixBounds::default()
+                };
+            }
+        }
+        self.bounds_across_cells(range)
+    }
+
+    fn bounds_across_cells(&self, range: Range) -> SixBounds {
+        let mut all = SixBounds::default();
+        for function in 0..6 {
+            let one: Bounds = table::bounds_over(&self.grid, range, |cell| self.cubic(cell, function));
+            all.value[function] = one.value;
+            all.slope[function] = one.slope;
+            all.curvature[function] = one.curvature;
+            all.kinks[function] = one.kinks;
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Interpolation;
+
+    fn table(nodes: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Table> {
+        Some(Table::new(nodes.to_vec(), values.to_vec(), interpolation).unwrap())
+    }
+
+    #[test]
+    fn tables_on_different_nodes_keep_their_values() {
+        let a = table(&[0.0, 10.0, 20.0, 30.0], &[0.0, 1.0, -1.0, 5.0], Interpolation::Linear);
+        let b = table(&[-5.0, 3.0, 21.0, 28.0], &[1.0, 4.0, 2.0, 2.5], Interpolation::Monotone);
+        let six = AxisTables::new(&[a.clone(), None, None, b.clone(), None, None]).unwrap();
+        assert_eq!(six.range(), Range { low: 0.0, high: 28.0 });
+        for i in 0..=280 {
+            let q = f64::from(i) * 0.1;
+            let at = six.at(q);
+            assert!((at[0] - a.as_ref().unwrap().value(q)).abs() < 1e-14);
+            assert!((at[3] - b.as_ref().unwrap().value(q)).abs() < 1e-14);
+            assert_eq!(at[1], 0.0);
+        }
+        let range = Range { low: 2.0, high: 25.0 };
+        let bounds = six.bounds(range);
+        assert!((bounds.kinks[0] - a.unwrap().bounds(range).kinks).abs() < 1e-12);
+        assert!(bounds.kinks[3] < 1e-9, "{}", bounds.kinks[3]);
+    }
+
+    #[test]
+    fn the_mean_lies_in_the_middle() {
+        let a = AxisTables::new(&[
+            table(&[0.0, 10.0], &[0.0, 1.0], Interpolation::Linear),
+            None,
+            None,
+            None,
+            None,
+            None,
+        ])
+        .unwrap();
+        let b = AxisTables::new(&[
+            table(&[0.0, 5.0, 10.0], &[2.0, 2.0, 3.0], Interpolation::Linear),
+            None,
+            None,
+            None,
+            None,
+            None,
+        ])
+        .unwrap();
+        let mean = AxisTables::mean(&a, &b).unwrap();
+        assert_eq!(mean.at(5.0)[0], 1.25);
+        assert_eq!(mean.at(10.0)[0], 2.0);
+        assert_eq!(mean.shifted(0, 0.5).at(0.0)[0], 1.5);
+    }
+
+    #[test]
+    fn the_short_way_to_bounds_agrees_with_the_long_one() {
+        let a = table(&[0.0, 10.0, 20.0], &[0.3, 1.0, -1.0], Interpolation::Linear);
+        let six = AxisTables::new(&[None, a, None, None, None, None]).unwrap();
+        let range = Range { low: 11.0, high: 20.0 };
+        assert_eq!(six.bounds(range), six.bounds_across_cells(range));
+    }
+
+    #[test]
+    fn tables_without_common_ground_are_no_set() {
+        let a = table(&[0.0, 1.0], &[0.0, 0.0], Interpolation::Linear);
+        let b = table(&[2.0, 3.0], &[0.0, 0.0], Interpolation::Linear);
+        assert!(AxisTables::new(&[a, b, None, None, None, None]).is_none());
+        assert!(AxisTables::new(&[None, None, None, None, None, None]).is_none());
+    }
+}

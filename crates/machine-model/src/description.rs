@@ -1,0 +1,117 @@
+//! What is known of a machine's geometry: the input of the rigid-body model.
+
+use crate::axis_tables::AxisTables;
+use crate::{Chain, Range, Vector};
+
+/// One linear axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearAxis {
+    /// Commands the axis can take, mm.
+    pub travel_mm: Range,
+    /// Error functions, mm and rad, of the tool side against the workpiece side, on the line they were
+    /// measured along. With `errors_negative`: for motion in the positive direction only. With
+    /// `backlash_mm` alone: the mean of both directions.
+    pub errors: Option<AxisTables>,
+    /// Error functions for motion in the negative direction.
+    pub errors_negative: Option<AxisTables>,
+    /// Reversal value B, mm: how much further the axis stands after coming from above than from below.
+    pub backlash_mm: f64,
+    /// Where the other linear axes stood on the measuring line, mm; the entry of the axis itself is not used.
+    pub measured_at_mm: Vector,
+    /// Tool vector to the point whose motion was measured, mm.
+    pub measured_tool_mm: Vector,
+}
+
+impl LinearAxis {
+    /// An axis without errors.
+    #[must_use]
+    pub fn perfect(travel_mm: Range) -> Self {
+        Self {
+            travel_mm,
+            errors: None,
+            errors_negative: None,
+            backlash_mm: 0.0,
+            measured_at_mm: Vector::zeros(),
+            measured_tool_mm: Vector::zeros(),
+        }
+    }
+
+    /// Where the axis may be commanded and every table given for it holds.
+    #[must_use]
+    pub fn calibrated_mm(&self) -> Range {
+        [&self.errors, &self.errors_negative].into_iter().flatten().fold(self.travel_mm, |range, tables| {
+            let own = tables.range();
+            Range { low: range.low.max(own.low), high: range.high.min(own.high) }
+        })
+    }
+}
+
+/// One rotary axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RotaryAxis {
+    /// Commands the axis can take, rad.
+    pub travel_rad: Range,
+    /// A point of the ideal axis of rotation, machine frame with all axes at 0, mm.
+    pub centre_mm: Vector,
+    /// Location: the real axis' displacement (`EX0C EY0C` …) and tilt (`EA0C EB0C` …).
+    pub shift_mm: Vector,
+    /// Tilt of the axis, rad.
+    pub tilt_rad: Vector,
+    /// Error motions of what turns against what carries it, mm and rad, over the angle in rad.
+    pub errors: Option<AxisTables>,
+}
+
+impl RotaryAxis {
+    /// An axis without errors, turning without limit.
+    #[must_use]
+    pub fn perfect(centre_mm: Vector) -> Self {
+        Self {
+            travel_rad: Range { low: f64::NEG_INFINITY, high: f64::INFINITY },
+            centre_mm,
+            shift_mm: Vector::zeros(),
+            tilt_rad: Vector::zeros(),
+            errors: None,
+        }
+    }
+    /// True where it moves exactly as an ideal axis does.
+    #[must_use]
+    pub fn is_perfect(&self) -> bool {
+        self.shift_mm == Vector::zeros() && self.tilt_rad == Vector::zeros() && self.errors.is_none()
+    }
+}
+
+/// Squareness errors of the linear axes, ISO 230-1 signs, rad: equation (5).
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Squareness {
+    /// Y to X: positive where the angle between +X and +Y exceeds 90°.
+    pub ec0y_rad: f64,
+    /// Z to X: positive where the angle between +X and +Z is below 90°.
+    pub eb0z_rad: f64,
+    /// Z to Y: positive where the angle between +Y and +Z exceeds 90°.
+    pub ea0z_rad: f64,
+}
+
+impl Squareness {
+    /// Real minus ideal direction of each linear axis, per mm of travel, first order: equation (5).
+    #[must_use]
+    pub fn tilts(&self) -> [Vector; 3] {
+        [
+            Vector::zeros(),
+            Vector::new(-self.ec0y_rad, 0.0, 0.0),
+            Vector::new(self.eb0z_rad, -self.ea0z_rad, 0.0),
+        ]
+    }
+}
+
+/// All geometry of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// Order of the axes.
+    pub chain: Chain,
+    /// X, Y, Z.
+    pub linear: [LinearAxis; 3],
+    /// A, B, C; only those in the chain are used.
+    pub rotary: [RotaryAxis; 3],
+    /// Between the linear axes.
+    pub squareness: Squareness,
+}

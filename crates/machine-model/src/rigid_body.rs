@@ -1,0 +1,307 @@
+//! The reference model: rigid bodies along the chain. Equations (5) to (9) of `docs/equations.md`.
+
+use std::cmp::Ordering;
+
+use nalgebra::Matrix3;
+
+use crate::axis_tables::{AxisTables, Six};
+use crate::rotation::{around, small, turned_by};
+use crate::solve::solve;
+use crate::{
+    Axis, Command, Description, Engine, EngineId, Move, PathModel, Range, RotaryAxis, Solution, SolveError,
+    Vector, Volume, chord_bound,
+};
+
+/// One linear axis, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    /// 0 X, 1 Y, 2 Z.
+    pub(crate) axis: usize,
+    /// Real minus ideal direction of the axis, per mm.
+    pub(crate) tilt: Vector,
+    /// Tables for motion in the negative, unknown and positive direction; empty where the axis has none.
+    pub(crate) by_direction: Vec<AxisTables>,
+    /// From this axis to the measured point, mm: where the lever arms begin. Equation (7).
+    pub(crate) measured_lever_mm: Vector,
+}
+
+impl Link {
+    /// Tables for a direction of motion, `None` where the axis has no errors.
+    #[inline]
+    pub(crate) fn tables(&self, direction: i8) -> Option<&AxisTables> {
+        // One set holds for all directions, or there are three.
+        match self.by_direction.len() {
+            0 => None,
+            1 => self.by_direction.first(),
+            _ => self.by_direction.get((direction.signum() + 1) as usize),
+        }
+    }
+}
+
+/// Why a description is no machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("axis {axis}: its tables and its travel have no interval in common")]
+pub struct Unusable {
+    /// The axis.
+    pub axis: char,
+}
+
+/// Where the tool is, seen from the workpiece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// Real position of the tool tip, mm, workpiece frame.
+    pub position_mm: Vector,
+    /// Real minus nominal position, mm, workpiece frame.
+    pub error_mm: Vector,
+}
+
+/// The machine as a chain of rigid bodies.
+#[derive(Clone, Debug)]
+pub struct RigidBody {
+    description: Description,
+    /// Workpiece to tool.
+    pub(crate) links: [Link; 3],
+    volume: Volume,
+    /// A rotary axis at the workpiece has errors.
+    table_has_errors: bool,
+    depends_on_direction: bool,
+}
+
+impl RigidBody {
+    /// Prepares the model.
+    ///
+    /// # Errors
+    /// [`Unusable`] where the tables of an axis and its travel have no interval in common.
+    pub fn new(description: Description) -> Result<Self, Unusable> {
+        let order = description.chain.linear();
+        let tilts = description.squareness.tilts();
+        let links = std::array::from_fn(|place| {
+            let axis = order[place].direction();
+            let data = &description.linear[axis];
+            let mut lever = data.measured_tool_mm;
+            for later in &order[place + 1..] {
+                lever[later.direction()] += data.measured_at_mm[later.direction()];
+            }
+            Link { axis, tilt: tilts[axis], by_direction: by_direction(data, axis), measured_lever_mm: lever }
+        });
+        let volume = Volume(std::array::from_fn(|axis| description.linear[axis].calibrated_mm()));
+        if let Some(axis) =
+            (0..3).find(|&axis| volume.0[axis].low.partial_cmp(&volume.0[axis].high) != Some(Ordering::Less))
+        {
+            return Err(Unusable { axis: Axis::ALL[axis].letter() });
+        }
+        let table_has_errors =
+            description.chain.table().iter().any(|axis| !description.rotary[axis.direction()].is_perfect());
+        let depends_on_direction =
+            description.linear.iter().any(|axis| axis.errors_negative.is_some() || axis.backlash_mm != 0.0);
+        Ok(Self { description, links, volume, table_has_errors, depends_on_direction })
+    }
+
+    /// What it was made from.
+    #[must_use]
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// Where the tool tip really goes: equation (9).
+    ///
+    /// The command of the linear axes is taken to the nearest point of the volume for the error, not for
+    /// the nominal position.
+    #[must_use]
+    pub fn predict(&self, command: &Command) -> Prediction {
+        let (turn, shift) = self.table_transform(command, false);
+        let inner = command.linear_mm + self.nominal_tool(command);
+        let error_mm = turn * self.error_mm(command);
+        Prediction { position_mm: turn * inner + shift + error_mm, error_mm }
+    }
+
+    /// Tool vector in the directions of the linear axes, ideal head.
+    fn nominal_tool(&self, command: &Command) -> Vector {
+        if self.description.chain.head().is_empty() {
+            return command.tool_mm;
+        }
+        self.head(command, false)
+    }
+
+    /// Tool vector turned by the rotary axes that carry the tool.
+    fn head(&self, command: &Command, real: bool) -> Vector {
+        self.description.chain.head().iter().rev().fold(command.tool_mm, |tool, axis| {
+            let (turn, shift) =
+                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, real);
+            turn * tool + shift
+        })
+    }
+
+    /// From the frame of the linear axes to the workpiece's: the inverse of what the table's axes do.
+    fn table_transform(&self, command: &Command, real: bool) -> (Matrix3<f64>, Vector) {
+        self.description.chain.table().iter().rev().fold(
+            (Matrix3::identity(), Vector::zeros()),
+            |(turn, shift), axis| {
+                let rotary = &self.description.rotary[axis.direction()];
+                let (own, offset) = moved(rotary, *axis, &command.rotary_rad, real);
+                let back = own.transpose();
+                (back * turn, back * (shift - offset))
+            },
+        )
+    }
+
+    /// Error of the three linear axes and the head, in the directions of the linear axes: equation (8).
+    #[inline]
+    fn linear_error(&self, q: &Vector, command: &Command) -> Vector {
+        let mut nominal = command.tool_mm;
+        let mut error = Vector::zeros();
+        if !self.description.chain.head().is_empty() {
+            nominal = self.head(command, false);
+            error = self.head(command, true) - nominal;
+        }
+        for link in self.links.iter().rev() {
+            let at = q[link.axis];
+            if let Some(tables) = link.tables(command.direction[link.axis]) {
+                let [x, y, z, a, b, c]: Six = tables.at(at);
+                let beyond = nominal + error - link.measured_lever_mm;
+                error += Vector::new(x, y, z) + turned_by(&Vector::new(a, b, c), &beyond);
+            }
+            error += link.tilt * at;
+            nominal[link.axis] += at;
+        }
+        error
+    }
+
+    /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
+    fn table_error(&self, command: &Command) -> (Matrix3<f64>, Vector) {
+        let (real, real_shift) = self.table_transform(command, true);
+        let (ideal, ideal_shift) = self.table_transform(command, false);
+        let back = ideal.transpose();
+        (back * real, back * (real_shift - ideal_shift))
+    }
+
+    /// [`SolveError::OutsideVolume`] for a rotary axis outside its tables or travel.
+    fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
+        for axis in self.description.chain.axes().filter(|axis| !axis.is_linear()) {
+            let data = &self.description.rotary[axis.direction()];
+            let mut range = data.travel_rad;
+            if let Some(tables) = &data.errors {
+                let own = tables.range();
+                range = Range { low: range.low.max(own.low), high: range.high.min(own.high) };
+            }
+            let value = command.rotary_rad[axis.direction()];
+            // Angles come from degrees and cannot be exact.
+            let slack = 1e-9;
+            if !(range.low - slack <= value && value <= range.high + slack) {
+                let degrees = |rad: f64| rad * (180.0 / std::f64::consts::PI);
+                return Err(SolveError::OutsideRotaryRange {
+                    axis: axis.letter(),
+                    value_deg: degrees(value),
+                    low_deg: degrees(range.low),
+                    high_deg: degrees(range.high),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Motion of what a rotary axis carries, seen from what carries the axis: turn and shift, equation (9).
+fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (Matrix3<f64>, Vector) {
+    let angle = rotary_rad[axis.direction()];
+    let mut turn = around(axis.direction(), angle);
+    let mut centre = rotary.centre_mm;
+    if real {
+        if let Some(tables) = &rotary.errors {
+            let [x, y, z, a, b, c] = tables.at(angle);
+            turn = small(&Vector::new(a, b, c)) * turn;
+            centre += Vector::new(x, y, z);
+        }
+        turn = small(&rotary.tilt_rad) * turn;
+        centre += rotary.shift_mm;
+    }
+    (turn, centre - turn * rotary.centre_mm)
+}
+
+/// Tables per direction: one set for all, or negative, mean, positive.
+fn by_direction(data: &crate::LinearAxis, axis: usize) -> Vec<AxisTables> {
+    let half = 0.5 * data.backlash_mm;
+    let Some(positive) = data.errors.clone() else {
+        if half == 0.0 {
+            return Vec::new();
+        }
+        let only = |by: f64| AxisTables::constant(data.travel_mm, [0.0; 6]).shifted(axis, by);
+        return vec![only(half), only(0.0), only(-half)];
+    };
+    if let Some(negative) = data.errors_negative.clone()
+        && let Some(mean) = AxisTables::mean(&positive, &negative)
+    {
+        return vec![negative.shifted(axis, half), mean, positive.shifted(axis, -half)];
+    }
+    if half == 0.0 {
+        return vec![positive];
+    }
+    vec![positive.clone().shifted(axis, half), positive.clone(), positive.shifted(axis, -half)]
+}
+
+impl Engine for RigidBody {
+    fn id(&self) -> EngineId {
+        EngineId::RigidBody
+    }
+
+    fn volume(&self) -> Volume {
+        self.volume
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.rotary_inside(target)?;
+        if self.table_has_errors {
+            let (turn, shift) = self.table_error(target);
+            let tool = self.nominal_tool(target);
+            return solve(&target.linear_mm, &self.volume, |q| {
+                self.with_table(&turn, &shift, &(q + tool), &self.linear_error(q, target))
+            });
+        }
+        solve(&target.linear_mm, &self.volume, |q| self.linear_error(q, target))
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl RigidBody {
+    /// Equation (9): the error with the table's own, in the directions of the linear axes.
+    fn with_table(&self, turn: &Matrix3<f64>, shift: &Vector, nominal: &Vector, linear: &Vector) -> Vector {
+        turn * (nominal + linear) + shift - nominal
+    }
+
+    /// Largest stretching of `D - I`, `D` the table's rotation error: how far it bends straight motion's speed.
+    pub(crate) fn table_gain(&self, command: &Command) -> f64 {
+        if self.table_has_errors { (self.table_error(command).0 - Matrix3::identity()).norm() } else { 0.0 }
+    }
+
+    /// Tool vector as the bounds need it, ideal and its error by the head.
+    pub(crate) fn tool_for_bounds(&self, command: &Command) -> (Vector, Vector) {
+        let nominal = self.nominal_tool(command);
+        if self.description.chain.head().is_empty() {
+            return (nominal, Vector::zeros());
+        }
+        (nominal, self.head(command, true) - nominal)
+    }
+}
+
+impl PathModel for RigidBody {
+    fn error_mm(&self, command: &Command) -> Vector {
+        let q = self.volume.nearest(&command.linear_mm);
+        let linear = self.linear_error(&q, command);
+        if !self.table_has_errors {
+            return linear;
+        }
+        let (turn, shift) = self.table_error(command);
+        self.with_table(&turn, &shift, &(q + self.nominal_tool(command)), &linear)
+    }
+
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        chord_bound::chord_bound_mm(self, stretch)
+    }
+
+    fn depends_on_direction(&self) -> bool {
+        self.depends_on_direction
+    }
+}
