@@ -9,6 +9,8 @@ mod chord_bound;
 mod description;
 pub mod effects;
 mod engine;
+pub mod engines;
+pub mod finite_rotations;
 mod first_order;
 mod rigid_body;
 pub mod rotation;

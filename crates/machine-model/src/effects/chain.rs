@@ -1,0 +1,219 @@
+//! Which axis carries which: lever arms and rotary joints.
+
+use nalgebra::Rotation3;
+
+use crate::{Chain, Command, Vector};
+
+/// One joint of the chain, workpiece to tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// X, Y or Z.
+    Linear(usize),
+    /// A, B or C on the workpiece side of the bed: turns the workpiece.
+    Table(usize),
+    /// A, B or C on the tool side of the bed: turns the tool.
+    Head(usize),
+}
+
+/// What the effects must know of the machine: the order of its axes, where its rotary axes lie, at which
+/// temperature it was calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectGeometry {
+    joints: Vec<Joint>,
+    /// A point on each of the axes A, B, C, machine coordinates, mm.
+    pub rotary_centre_mm: [Vector; 3],
+    /// Temperature at which the machine is as its tables say, °C.
+    pub reference_temp_c: f64,
+}
+
+impl Default for EffectGeometry {
+    /// Chain `[w X Y b Z t]`, 20 °C.
+    fn default() -> Self {
+        Self {
+            joints: vec![Joint::Linear(0), Joint::Linear(1), Joint::Linear(2)],
+            rotary_centre_mm: [Vector::zeros(); 3],
+            reference_temp_c: 20.0,
+        }
+    }
+}
+
+impl EffectGeometry {
+    /// The geometry of a machine with this chain, rotary axes through the origin, 20 °C.
+    #[must_use]
+    pub fn from_chain(chain: &Chain) -> Self {
+        let axes = |axes: &[crate::Axis], joint: fn(usize) -> Joint| {
+            axes.iter().map(|axis| joint(axis.direction())).collect::<Vec<_>>()
+        };
+        let mut joints = axes(chain.table(), Joint::Table);
+        joints.extend(axes(&chain.linear(), Joint::Linear));
+        joints.extend(axes(chain.head(), Joint::Head));
+        Self { joints, ..Self::default() }
+    }
+
+    /// The joints, workpiece to tool.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// True where the chain has this rotary axis.
+    #[must_use]
+    pub fn has_rotary(&self, axis: usize) -> bool {
+        self.joints.contains(&Joint::Table(axis)) || self.joints.contains(&Joint::Head(axis))
+    }
+
+    /// Lever arm of the rotation errors of a linear axis: commands of the linear axes beyond it plus the
+    /// tool vector, mm (first-order sum of methods §2; rotary joints at zero).
+    #[must_use]
+    pub fn lever_mm(&self, axis: usize, command: &Command) -> Vector {
+        let mut lever = command.tool_mm;
+        let beyond = self.joints.iter().skip_while(|j| **j != Joint::Linear(axis)).skip(1);
+        for joint in beyond {
+            if let Joint::Linear(other) = *joint {
+                lever[other] += command.linear_mm[other];
+            }
+        }
+        lever
+    }
+
+    /// Rotation of everything on the tool side of a rotary joint as the workpiece side sees it.
+    fn rotation(joint: Joint, command: &Command) -> Option<(usize, Rotation3<f64>)> {
+        let (axis, angle_rad) = match joint {
+            Joint::Linear(_) => return None,
+            Joint::Table(axis) => (axis, -command.rotary_rad[axis]),
+            Joint::Head(axis) => (axis, command.rotary_rad[axis]),
+        };
+        let (sin, cos) = units::math::sin_cos(angle_rad);
+        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut matrix = nalgebra::Matrix3::identity();
+        matrix[(a, a)] = cos;
+        matrix[(b, b)] = cos;
+        matrix[(a, b)] = -sin;
+        matrix[(b, a)] = sin;
+        Some((axis, Rotation3::from_matrix_unchecked(matrix)))
+    }
+
+    /// Where an ideal machine puts the tool tip, workpiece frame (equal to the machine frame with all
+    /// rotary axes at zero), mm.
+    #[must_use]
+    pub fn nominal_tip_mm(&self, command: &Command) -> Vector {
+        let mut point = command.linear_mm + command.tool_mm;
+        for joint in self.joints.iter().rev() {
+            if let Some((axis, turn)) = Self::rotation(*joint, command) {
+                let centre = self.centre_mm(*joint, axis, command);
+                point = centre + turn * (point - centre);
+            }
+        }
+        point
+    }
+
+    /// Displacement of the tip, workpiece frame, mm, by a small motion of a rotary axis' line: `offset_mm`
+    /// and `tilt_rad` act as a conjugation, so nothing is displaced while the axis stands at zero.
+    #[must_use]
+    pub fn rotary_location_mm(
+        &self,
+        axis: usize,
+        offset_mm: Vector,
+        tilt_rad: Vector,
+        command: &Command,
+    ) -> Vector {
+        self.through(axis, command, |turn, arm| {
+            let turned = turn * arm;
+            (offset_mm - turn * offset_mm) + (tilt_rad.cross(&turned) - turn * tilt_rad.cross(&arm))
+        })
+    }
+
+    /// Displacement of the tip, workpiece frame, mm, where a rotary axis turns by `error_rad` too much and
+    /// its centre has moved by `radial_mm`.
+    #[must_use]
+    pub fn rotary_motion_mm(
+        &self,
+        axis: usize,
+        error_rad: f64,
+        radial_mm: Vector,
+        command: &Command,
+    ) -> Vector {
+        let mut direction = Vector::zeros();
+        direction[axis] = error_rad;
+        let sign = if self.joints.contains(&Joint::Table(axis)) { -1.0 } else { 1.0 };
+        self.through(axis, command, |turn, arm| direction.cross(&(turn * arm)) * sign + radial_mm)
+    }
+
+    /// Carries a small displacement that arises at one rotary joint through the joints on its workpiece side.
+    fn through(
+        &self,
+        axis: usize,
+        command: &Command,
+        arises: impl Fn(&Rotation3<f64>, Vector) -> Vector,
+    ) -> Vector {
+        let mut point = command.linear_mm + command.tool_mm;
+        let mut displacement = Vector::zeros();
+        for joint in self.joints.iter().rev() {
+            if let Some((this, turn)) = Self::rotation(*joint, command) {
+                let centre = self.centre_mm(*joint, this, command);
+                let arm = point - centre;
+                displacement = turn * displacement;
+                if this == axis {
+                    displacement += arises(&turn, arm);
+                }
+                point = centre + turn * arm;
+            }
+        }
+        displacement
+    }
+
+    /// A head travels with the linear axes that carry it; a table stands.
+    fn centre_mm(&self, joint: Joint, axis: usize, command: &Command) -> Vector {
+        let mut centre = self.rotary_centre_mm[axis];
+        if let Joint::Head(_) = joint {
+            for other in self.joints.iter().take_while(|j| **j != joint) {
+                if let Joint::Linear(i) = *other {
+                    centre[i] += command.linear_mm[i];
+                }
+            }
+        }
+        centre
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(rotary_rad: Vector) -> Command {
+        Command {
+            linear_mm: Vector::new(100.0, -40.0, 30.0),
+            rotary_rad,
+            tool_mm: Vector::new(0.0, 0.0, -50.0),
+            direction: [0; 3],
+        }
+    }
+
+    #[test]
+    fn lever_holds_the_axes_beyond_and_the_tool() {
+        let geometry = EffectGeometry::from_chain(&Chain::parse("[w X Y b Z t]").unwrap());
+        let q = command(Vector::zeros());
+        assert_eq!(geometry.lever_mm(0, &q), Vector::new(0.0, -40.0, -20.0));
+        assert_eq!(geometry.lever_mm(2, &q), Vector::new(0.0, 0.0, -50.0));
+    }
+
+    #[test]
+    fn a_moved_table_axis_is_the_difference_of_two_machines() {
+        let mut geometry = EffectGeometry::from_chain(&Chain::parse("[w C A Y X b Z t]").unwrap());
+        geometry.rotary_centre_mm =
+            [Vector::new(0.0, 3.0, -20.0), Vector::zeros(), Vector::new(7.0, 3.0, 0.0)];
+        let q = command(Vector::new(0.3, 0.0, 1.1));
+        let offset = Vector::new(1e-4, -2e-4, 0.0);
+        let mut moved = geometry.clone();
+        moved.rotary_centre_mm[2] += offset;
+        let expected = moved.nominal_tip_mm(&q) - geometry.nominal_tip_mm(&q);
+        let found = geometry.rotary_location_mm(2, offset, Vector::zeros(), &q);
+        assert!((found - expected).norm() < 1e-12, "{found} {expected}");
+        // An angle too large is the same as another command.
+        let mut further = q;
+        further.rotary_rad[0] += 1e-6;
+        let expected = geometry.nominal_tip_mm(&further) - geometry.nominal_tip_mm(&q);
+        let found = geometry.rotary_motion_mm(0, 1e-6, Vector::zeros(), &q);
+        assert!((found - expected).norm() < 1e-9, "{found} {expected}");
+    }
+}

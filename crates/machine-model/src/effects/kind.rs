@@ -1,0 +1,240 @@
+//! The catalogue of effects by name.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Index of a linear axis in every array of three: X, Y, Z.
+pub type AxisIndex = usize;
+
+const LINEAR: [char; 3] = ['X', 'Y', 'Z'];
+const ROTARY: [char; 3] = ['A', 'B', 'C'];
+/// Right-handed pairs whose squareness is defined: Y to X, Z to X, Z to Y.
+const PAIRS: [(AxisIndex, AxisIndex); 3] = [(0, 1), (0, 2), (1, 2)];
+
+/// One effect that can make a machine miss; the ids are fixed by the contract.
+///
+/// Axes are indices into X, Y, Z (linear) or A, B, C (rotary).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EffectKind {
+    /// `scale.X`: error proportional to the command.
+    Scale(AxisIndex),
+    /// `thermal.X`: expansion with the temperature.
+    Thermal(AxisIndex),
+    /// `warmup.X`: drift that saturates with time.
+    Warmup(AxisIndex),
+    /// `backlash.X`: lost motion along the axis.
+    Backlash(AxisIndex),
+    /// `lost-motion.EYX`: sideways shift when the axis reverses.
+    LostMotion {
+        /// Where the shift is seen.
+        direction: AxisIndex,
+        /// The axis that reverses.
+        axis: AxisIndex,
+    },
+    /// `squareness.XY`, `.XZ`, `.YZ`: first and second axis of the pair.
+    Squareness(AxisIndex, AxisIndex),
+    /// `positioning.EXX`: curve of the positioning error, without constant and slope.
+    Positioning(AxisIndex),
+    /// `straightness.EYX`: curve sideways, without constant and slope.
+    Straightness {
+        /// Where the curve is seen.
+        direction: AxisIndex,
+        /// The axis that moves.
+        axis: AxisIndex,
+    },
+    /// `pitch.X`: periodic with the screw.
+    Pitch(AxisIndex),
+    /// `angular.EAX`: the carriage turns as it travels.
+    Angular {
+        /// Axis of the rotation: 0 for A about X, and so on.
+        about: AxisIndex,
+        /// The axis that moves.
+        axis: AxisIndex,
+    },
+    /// `sag.Y`: droop with the overhang of an axis.
+    Sag(AxisIndex),
+    /// `load.Z`: deflection with the load.
+    Load(AxisIndex),
+    /// `servo-lag.X`: following error.
+    ServoLag(AxisIndex),
+    /// `servo-mismatch.XY`: difference of two following errors where both axes move.
+    ServoMismatch(AxisIndex, AxisIndex),
+    /// `rotary.EX0C` and so on: where a rotary axis lies.
+    Rotary {
+        /// 0..=2 for X, Y, Z (offset), 3..=5 for A, B, C (tilt).
+        component: usize,
+        /// Index into A, B, C.
+        axis: AxisIndex,
+    },
+    /// `eccentricity.C`: error once per turn.
+    Eccentricity(AxisIndex),
+    /// `probe-lobing`: the probe's trigger depends on the direction.
+    ProbeLobing,
+    /// `instrument-drift`: slow drift common to everything the instrument sees.
+    InstrumentDrift,
+    /// `step.X`: a knock at a time.
+    Step(AxisIndex),
+    /// `local.X`: damage at a place.
+    Local(AxisIndex),
+}
+
+impl EffectKind {
+    /// Every effect of the catalogue, in a fixed order.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let axes = [0usize, 1, 2];
+        let others = |axis: usize| axes.into_iter().filter(move |d| *d != axis);
+        let mut kinds = Vec::new();
+        kinds.extend(axes.map(Self::Scale));
+        kinds.extend(PAIRS.map(|(a, b)| Self::Squareness(a, b)));
+        kinds.extend(axes.map(Self::Backlash));
+        kinds.extend(axes.map(Self::Thermal));
+        kinds.extend(axes.map(Self::Warmup));
+        kinds.extend(axes.map(Self::Positioning));
+        for axis in axes {
+            kinds.extend(others(axis).map(|direction| Self::Straightness { direction, axis }));
+        }
+        for axis in axes {
+            kinds.extend(axes.map(|about| Self::Angular { about, axis }));
+        }
+        kinds.extend(axes.map(Self::Pitch));
+        for axis in axes {
+            kinds.extend(others(axis).map(|direction| Self::LostMotion { direction, axis }));
+        }
+        kinds.extend([0, 1].map(Self::Sag));
+        kinds.extend(axes.map(Self::Load));
+        kinds.extend(axes.map(Self::ServoLag));
+        kinds.extend(PAIRS.map(|(a, b)| Self::ServoMismatch(a, b)));
+        for axis in axes {
+            kinds.extend(others(axis).map(|component| Self::Rotary { component, axis }));
+            kinds.extend(others(axis).map(|tilt| Self::Rotary { component: 3 + tilt, axis }));
+        }
+        kinds.extend(axes.map(Self::Eccentricity));
+        kinds.push(Self::ProbeLobing);
+        kinds.push(Self::InstrumentDrift);
+        kinds.extend(axes.map(Self::Step));
+        kinds.extend(axes.map(Self::Local));
+        kinds
+    }
+
+    /// The name without the axis: `backlash` of `backlash.X`.
+    #[must_use]
+    pub const fn family(&self) -> &'static str {
+        match self {
+            Self::Scale(_) => "scale",
+            Self::Thermal(_) => "thermal",
+            Self::Warmup(_) => "warmup",
+            Self::Backlash(_) => "backlash",
+            Self::LostMotion { .. } => "lost-motion",
+            Self::Squareness(..) => "squareness",
+            Self::Positioning(_) => "positioning",
+            Self::Straightness { .. } => "straightness",
+            Self::Pitch(_) => "pitch",
+            Self::Angular { .. } => "angular",
+            Self::Sag(_) => "sag",
+            Self::Load(_) => "load",
+            Self::ServoLag(_) => "servo-lag",
+            Self::ServoMismatch(..) => "servo-mismatch",
+            Self::Rotary { .. } => "rotary",
+            Self::Eccentricity(_) => "eccentricity",
+            Self::ProbeLobing => "probe-lobing",
+            Self::InstrumentDrift => "instrument-drift",
+            Self::Step(_) => "step",
+            Self::Local(_) => "local",
+        }
+    }
+
+    /// True where the effect is a fault of the measuring instrument, not of the machine.
+    #[must_use]
+    pub const fn is_instrument(&self) -> bool {
+        matches!(self, Self::ProbeLobing | Self::InstrumentDrift)
+    }
+
+    /// True where the error depends on the direction of motion.
+    #[must_use]
+    pub const fn depends_on_direction(&self) -> bool {
+        matches!(
+            self,
+            Self::Backlash(_)
+                | Self::LostMotion { .. }
+                | Self::ServoLag(_)
+                | Self::ServoMismatch(..)
+                | Self::ProbeLobing
+        )
+    }
+}
+
+impl fmt::Display for EffectKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let family = self.family();
+        match *self {
+            Self::Scale(a)
+            | Self::Thermal(a)
+            | Self::Warmup(a)
+            | Self::Backlash(a)
+            | Self::Pitch(a)
+            | Self::Sag(a)
+            | Self::Load(a)
+            | Self::ServoLag(a)
+            | Self::Step(a)
+            | Self::Local(a) => write!(f, "{family}.{}", LINEAR[a]),
+            Self::Squareness(a, b) | Self::ServoMismatch(a, b) => {
+                write!(f, "{family}.{}{}", LINEAR[a], LINEAR[b])
+            }
+            Self::Positioning(a) => write!(f, "{family}.E{}{}", LINEAR[a], LINEAR[a]),
+            Self::LostMotion { direction, axis } | Self::Straightness { direction, axis } => {
+                write!(f, "{family}.E{}{}", LINEAR[direction], LINEAR[axis])
+            }
+            Self::Angular { about, axis } => write!(f, "{family}.E{}{}", ROTARY[about], LINEAR[axis]),
+            Self::Rotary { component, axis } => {
+                let symbol = if component < 3 { LINEAR[component] } else { ROTARY[component - 3] };
+                write!(f, "{family}.E{symbol}0{}", ROTARY[axis])
+            }
+            Self::Eccentricity(a) => write!(f, "{family}.{}", ROTARY[a]),
+            Self::ProbeLobing | Self::InstrumentDrift => f.write_str(family),
+        }
+    }
+}
+
+/// The id is not in the catalogue.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "unknown effect '{0}'; known are for example scale.X, backlash.Y, squareness.XZ, straightness.EYX, angular.EAX"
+)]
+pub struct UnknownEffect(pub String);
+
+impl FromStr for EffectKind {
+    type Err = UnknownEffect;
+    fn from_str(id: &str) -> Result<Self, Self::Err> {
+        Self::all()
+            .into_iter()
+            .find(|kind| kind.to_string() == id)
+            .ok_or_else(|| UnknownEffect(id.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_reads_back_and_is_unique() {
+        let all = EffectKind::all();
+        for kind in &all {
+            assert_eq!(kind.to_string().parse::<EffectKind>().as_ref(), Ok(kind));
+        }
+        assert_eq!(all.len(), 3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3);
+        for id in [
+            "lost-motion.EYX",
+            "straightness.EZY",
+            "angular.EAX",
+            "rotary.EX0C",
+            "rotary.EB0A",
+            "servo-mismatch.XY",
+        ] {
+            assert!(id.parse::<EffectKind>().is_ok(), "{id}");
+        }
+        assert!("scale.W".parse::<EffectKind>().is_err());
+        assert!("sag.Z".parse::<EffectKind>().is_err(), "droop along the droop is a positioning error");
+    }
+}
