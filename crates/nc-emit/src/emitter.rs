@@ -158,11 +158,10 @@ impl<'d> Emitter<'d> {
     /// First of the numbers for `count` inserted blocks.
     fn free_number(&self, block: &Block<'_>, count: usize) -> Option<u32> {
         let own = block.items.iter().find_map(|item| match item.kind {
-            ItemKind::Word { letter: b'N', value: Value::Number(number) } if number.decimal.decimals == 0 => {
-                u32::try_from(number.decimal.mantissa).ok()
-            }
+            ItemKind::Word { letter: b'N', value: Value::Number(number) } => number.integer(),
             _ => None,
         })?;
+        let own = u32::try_from(own).ok()?;
         self.numbers?.free_after(own, u32::try_from(count).ok()?, self.dialect.output.max_block_number)
     }
 
@@ -285,15 +284,7 @@ pub(crate) fn not_a_number(block: &Block<'_>, letter: u8, span: Span) -> Diagnos
 /// The code of a G word.
 pub(crate) fn g_code(kind: ItemKind) -> Option<GCode> {
     let ItemKind::Word { letter: b'G', value: Value::Number(number) } = kind else { return None };
-    let (mantissa, decimals) = (number.decimal.mantissa, u32::from(number.decimal.decimals));
-    let tenths = match decimals {
-        0 => mantissa.checked_mul(10)?,
-        _ => {
-            let scale = 10_i64.checked_pow(decimals - 1)?;
-            (mantissa % scale == 0).then_some(mantissa / scale)?
-        }
-    };
-    u16::try_from(tenths).ok().map(GCode)
+    number.tenths().map(GCode)
 }
 
 /// The code of a G word of the motion group.
@@ -304,12 +295,10 @@ pub(crate) fn motion_code(dialect: &Dialect, kind: ItemKind) -> Option<GCode> {
 /// Executed after the block's motion: belongs on the last piece.
 pub(crate) fn is_after_motion(dialect: &Dialect, kind: ItemKind) -> bool {
     match kind {
-        ItemKind::Word { letter: b'M', value: Value::Number(number) } if number.decimal.decimals == 0 => {
-            u16::try_from(number.decimal.mantissa)
-                .ok()
-                .and_then(|number| dialect.m_code(number))
-                .is_some_and(|code| code.after_motion)
-        }
+        ItemKind::Word { letter: b'M', value: Value::Number(number) } => number
+            .integer()
+            .and_then(|number| dialect.m_code(u16::try_from(number).ok()?))
+            .is_some_and(|code| code.after_motion),
         _ => g_code(kind) == Some(EXACT_STOP),
     }
 }

@@ -19,6 +19,8 @@ const COORDINATE_LETTERS: &[u8] = b"XYZABCUVWIJKR";
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Habits {
     spelling: Spelling,
+    /// A coordinate has shown whether zeros at the end are written; else the spelling's is a guess.
+    zeros_known: bool,
     /// Coordinates carry a point even where they are whole; `None` before the first that tells.
     point: Option<bool>,
     /// Most decimals of a coordinate so far: fewer in a later one mean that zeros are dropped.
@@ -38,6 +40,7 @@ impl Habits {
     pub(crate) const fn new() -> Self {
         Self {
             spelling: Spelling::FIXED,
+            zeros_known: false,
             point: None,
             most_decimals: 0,
             separator: b" ",
@@ -104,7 +107,10 @@ impl Habits {
     }
 
     fn learn_coordinate(&mut self, number: Number) {
-        self.spelling = self.overlay(self.spelling, number, self.most_decimals);
+        let decimals = number.decimal.decimals;
+        self.zeros_known |= (decimals == 0 && (number.has_point || number.decimal.mantissa != 0))
+            || (decimals > 0 && (number.decimal.mantissa % 10 == 0 || decimals < self.most_decimals));
+        self.spelling = Self::overlay(self.spelling, number, self.most_decimals);
         if number.has_point {
             self.point = Some(true);
             self.most_decimals = self.most_decimals.max(number.decimal.decimals);
@@ -115,7 +121,7 @@ impl Habits {
     }
 
     /// `habit` with what one number shows, `decimals` being how many it would have with its zeros.
-    fn overlay(&self, habit: Spelling, number: Number, decimals: u8) -> Spelling {
+    fn overlay(habit: Spelling, number: Number, decimals: u8) -> Spelling {
         let Number { decimal, sign, has_point, leading_digit } = number;
         let mut spelling = habit;
         match sign {
@@ -157,10 +163,14 @@ impl Habits {
         numbers: &Increments,
     ) -> Written {
         let Step { counts, decimals } = value;
-        let mut spelling = match replaced {
-            Some(number) => self.overlay(self.spelling, number, decimals),
-            None => self.spelling,
-        };
+        let mut spelling = self.spelling;
+        if !self.zeros_known {
+            // All that was seen is `X10.5`: where the step is finer, zeros were dropped.
+            spelling.trailing_zeros = self.most_decimals == 0 || self.most_decimals >= decimals;
+        }
+        if let Some(number) = replaced {
+            spelling = Self::overlay(spelling, number, decimals);
+        }
         if !LENGTH_LETTERS.contains(&letter) {
             // F and its like: a point where the replaced word had one, and for a fraction.
             let point = replaced.is_some_and(|number| number.has_point);

@@ -1,6 +1,6 @@
 //! Which block numbers a program uses.
 
-use nc_syntax::{Block, ItemKind, Value};
+use nc_syntax::Block;
 
 /// Largest N that is kept track of: one bit each, 12.5 MB at most.
 const LARGEST_TRACKED: u32 = 99_999_999;
@@ -28,14 +28,8 @@ impl BlockNumbers {
 
     /// Notes the block's N word, if it has one.
     pub fn see(&mut self, block: &Block<'_>) {
-        for item in &block.items {
-            let ItemKind::Word { letter: b'N', value } = item.kind else { continue };
-            let whole = match value {
-                Value::Number(number) if number.decimal.decimals == 0 => {
-                    u32::try_from(number.decimal.mantissa).ok()
-                }
-                _ => None,
-            };
+        for word in block.words().filter(|word| word.letter == b'N') {
+            let whole = word.number().and_then(|number| u32::try_from(number.integer()?).ok());
             match whole.filter(|number| *number <= LARGEST_TRACKED) {
                 Some(number) => self.set(number),
                 None => self.irregular = true,

@@ -281,9 +281,10 @@ fn is_cancel(dialect: &Dialect, code: GCode) -> bool {
     dialect.code(code).is_some_and(|entry| entry.action == Action::CycleCancel)
 }
 
-/// The number of a word: what follows the letter and the blanks after it.
+/// The number of a word: what follows the letter, blanks, and the `=` of `X=10.5`.
 fn number_span(block: &Block<'_>, word: Span) -> Span {
-    let blanks = block.text(word)[1..].iter().take_while(|byte| byte.is_ascii_whitespace()).count() as u32;
+    let blanks =
+        block.text(word)[1..].iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'=')).count() as u32;
     Span { start: word.start + 1 + blanks, end: word.end }
 }
 
