@@ -1,0 +1,274 @@
+//! Following an arc with arcs, or with lines where no arc serves.
+
+use std::f64::consts::TAU;
+
+use machine_model::Vector;
+
+use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::curve::Curve;
+use crate::deviation::{Pair, Verdict};
+use crate::grid::{AxisWord, Block};
+use crate::{Centre, Piece, PieceKind};
+
+/// Below this chord, in output steps, rounding decides where an arc's centre lies: lines serve better.
+const SHORTEST_CHORD_STEPS: f64 = 30.0;
+/// Two ends nearer than this are one place: far below every output step, far above rounding of `f64`.
+const SAME_PLACE_MM: f64 = 1e-9;
+
+/// A centre to try: the words and what the control makes of them.
+struct Candidate {
+    words: Centre,
+    curve: Curve,
+    /// Difference of the radii at start and end, mm.
+    radii_apart: f64,
+}
+
+impl Corrector<'_> {
+    /// Commands arcs from where the axes stand to the end of `part`, as few as hold the tolerance.
+    pub(crate) fn follow_arc(
+        &mut self,
+        follow: &mut Follow<'_, '_>,
+        part: &Curve,
+    ) -> Result<(), CorrectionError> {
+        let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else { return self.follow_line(follow, part) };
+        let nominal_end = part.at(1.0);
+        let wanted = self.solve(&follow.machine, nominal_end)?;
+        let before = self.standing;
+        let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
+        let own_end = follow.own_end(part, &from);
+        let axes = self.go(follow.block, &own_end, &wanted, follow.alone);
+        let mut to: Vector = self.standing.map(|x| x.unwrap_or(f64::NAN)).into();
+        let full = sweep.abs() > TAU - 1e-6;
+        if full && (to[u] - from[u]).abs() < SAME_PLACE_MM && (to[v] - from[v]).abs() < SAME_PLACE_MM {
+            // Through frame and back a place can change its last bit; it is the same place.
+            (to[u], to[v]) = (from[u], from[v]);
+        }
+        let mut nearest = f64::INFINITY;
+        for candidate in self.candidates(follow, part, from, to)? {
+            let pair = Pair { wanted: part, commanded: &candidate.curve };
+            match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
+                Verdict::Within(bound) => {
+                    let kind = PieceKind::Arc { clockwise: sweep < 0.0, centre: candidate.words };
+                    let piece = Piece { kind, axes, share: follow.share(part) };
+                    follow.finish(piece, bound, (wanted - nominal_end).norm());
+                    self.note_end(&follow.machine, nominal_end, wanted);
+                    return Ok(());
+                }
+                Verdict::Beyond { distance_mm, .. } => nearest = nearest.min(distance_mm),
+            }
+        }
+        if !follow.may_split {
+            return Err(CorrectionError::MustNotSplit { distance_um: nearest * 1e3 });
+        }
+        self.standing = before;
+        follow.alone = false;
+        let step = follow.block.step_mm(u).max(follow.block.step_mm(v));
+        if part.length_mm() < SHORTEST_CHORD_STEPS * step
+            || part.length_mm() < 2.0 * self.options.minimum_segment_mm
+        {
+            return self.follow_line(follow, part);
+        }
+        self.follow_arc(follow, &part.part(0.0, 0.5))?;
+        self.follow_arc(follow, &part.part(0.5, 1.0))
+    }
+
+    /// The centres worth trying, best first.
+    fn candidates(
+        &self,
+        follow: &Follow<'_, '_>,
+        part: &Curve,
+        from: Vector,
+        to: Vector,
+    ) -> Result<Vec<Candidate>, CorrectionError> {
+        let Curve::Arc { axes, centre, sweep, radius, .. } = *part else { return Ok(Vec::new()) };
+        let [u, v, _] = axes;
+        let block = follow.block;
+        let clockwise = sweep < 0.0;
+        let full = from[u] == to[u] && from[v] == to[v];
+        if full && sweep.abs() < 1.0 {
+            return Ok(Vec::new());
+        }
+        let letters = [u, v].map(|axis| b"IJK"[axis]);
+        let has_centre = letters.map(|letter| block.letters.contains(letter));
+        let by_radius = if has_centre.contains(&true) {
+            false
+        } else {
+            block.letters.contains(b'R') || !block.centre_words
+        };
+        let step = block.step_mm(u).max(block.step_mm(v));
+        // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
+        // words may bring more of their own.
+        let allowed =
+            (2.0 * step + (radius[1] - radius[0]).abs()).min(block.arc_radius_tolerance_mm.max(2.0 * step));
+        let mut found = Vec::new();
+        let mut push = |words: Centre, at: [f64; 2]| {
+            let curve = Curve::from_centre(from, to, axes, at, clockwise);
+            let Curve::Arc { radius: [r0, r1], sweep: turned, .. } = curve else { return };
+            // A centre that makes the short way the long way is another arc altogether.
+            let radii_apart = (r1 - r0).abs();
+            if radii_apart <= allowed && (turned - sweep).abs() < 0.5 * sweep.abs().min(1.0) {
+                found.push(Candidate { words, curve, radii_apart });
+            }
+        };
+        if follow.alone && !by_radius {
+            let kept = has_centre.map(|has| if has { AxisWord::Keep } else { AxisWord::Omit });
+            // Relative centre words are measured from where the axes really stand.
+            let start = part.at(0.0);
+            let own = if block.arc_centres_absolute {
+                centre
+            } else {
+                [centre[0] + from[u] - start[u], centre[1] + from[v] - start[v]]
+            };
+            push(Centre::Offsets(kept), own);
+        }
+        let fitted = self.fit_centre(follow, part, from, to)?;
+        if by_radius {
+            let own = (radius[0], follow.alone && block.letters.contains(b'R'));
+            self.radius_candidates(block, axes, from, to, sweep, fitted, own, &mut push);
+        }
+        if block.centre_words {
+            self.offset_candidates(block, axes, from, fitted, has_centre, &mut push);
+        }
+        // The programmed words first, then by how well the two radii agree: a control that is strict
+        // about them alarms, one that is not makes a small step at the end of the arc.
+        let first = usize::from(
+            matches!(found.first(), Some(c) if matches!(c.words, Centre::Offsets(w) if follow.alone && w.iter().all(|x| !matches!(x, AxisWord::Write(_))))),
+        );
+        found[first..].sort_by(|a, b| a.radii_apart.total_cmp(&b.radii_apart));
+        Ok(found)
+    }
+
+    /// Rounded centres around the fitted one, as words of the plane.
+    fn offset_candidates(
+        &self,
+        block: &Block,
+        [u, v, _]: [usize; 3],
+        from: Vector,
+        fitted: [f64; 2],
+        has_centre: [bool; 2],
+        push: &mut impl FnMut(Centre, [f64; 2]),
+    ) {
+        let mut centre = from;
+        (centre[u], centre[v]) = (fitted[0], fitted[1]);
+        let (centre_program, from_program) = (block.program(&centre), block.program(&from));
+        let origin = |axis: usize| if block.arc_centres_absolute { 0.0 } else { from_program[axis] };
+        let counts = [u, v].map(|axis| block.to_counts(axis, centre_program[axis] - origin(axis)));
+        for du in [0, -1, 1] {
+            for dv in [0, -1, 1] {
+                let chosen = [counts[0] + du, counts[1] + dv];
+                let mut at = from_program;
+                at[u] = origin(u) + block.from_counts(u, chosen[0]);
+                at[v] = origin(v) + block.from_counts(v, chosen[1]);
+                let machine = block.machine(at);
+                let words = [0, 1].map(|i| {
+                    // A missing centre word is zero in every dialect, but two missing ones are no arc.
+                    let needless =
+                        chosen[i] == 0 && !has_centre[i] && !block.arc_centres_absolute && chosen[1 - i] != 0;
+                    if needless { AxisWord::Omit } else { AxisWord::Write(chosen[i]) }
+                });
+                push(Centre::Offsets(words), [machine[u], machine[v]]);
+            }
+        }
+    }
+
+    /// R words around the fitted radius.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one arc's geometry; a struct would be made for this call alone"
+    )]
+    fn radius_candidates(
+        &self,
+        block: &Block,
+        [u, v, _]: [usize; 3],
+        from: Vector,
+        to: Vector,
+        sweep: f64,
+        fitted: [f64; 2],
+        (own_radius, may_keep): (f64, bool),
+        push: &mut impl FnMut(Centre, [f64; 2]),
+    ) {
+        // Near a half turn the centre runs away with the last digit of R, near a full one R says nothing.
+        let chord = [to[u] - from[u], to[v] - from[v]];
+        let length = (chord[0] * chord[0] + chord[1] * chord[1]).sqrt();
+        if length < SAME_PLACE_MM {
+            return;
+        }
+        let major = sweep.abs() > TAU / 2.0;
+        let centre_of = |radius: f64| {
+            let height2 = radius * radius - 0.25 * length * length;
+            if height2 < 0.0 {
+                return None;
+            }
+            // Left of the chord for a counter-clockwise minor arc.
+            let side = if (sweep > 0.0) == major { -1.0 } else { 1.0 };
+            let k = side * height2.sqrt() / length;
+            Some([0.5 * (from[u] + to[u]) - chord[1] * k, 0.5 * (from[v] + to[v]) + chord[0] * k])
+        };
+        let (ru, rv) = (from[u] - fitted[0], from[v] - fitted[1]);
+        let counts = block.to_counts(u, (ru * ru + rv * rv).sqrt());
+        if may_keep && let Some(centre) = centre_of(own_radius) {
+            push(Centre::Radius(AxisWord::Keep), centre);
+        }
+        for d in [0, 1, -1] {
+            if let Some(centre) = centre_of(block.from_counts(u, counts + d)) {
+                let signed = if major { -(counts + d) } else { counts + d };
+                push(Centre::Radius(AxisWord::Write(signed)), centre);
+            }
+        }
+    }
+
+    /// The centre of the circle through both ends that is nearest to the corrected path between them.
+    ///
+    /// With `|q - C|² = |A - C|²` linear in C: least squares over three places in between, along the
+    /// bisector of the ends, or in both directions where the ends nearly coincide.
+    fn fit_centre(
+        &self,
+        follow: &Follow<'_, '_>,
+        part: &Curve,
+        from: Vector,
+        to: Vector,
+    ) -> Result<[f64; 2], CorrectionError> {
+        let Curve::Arc { axes: [u, v, _], sweep, centre, .. } = *part else { return Ok([0.0; 2]) };
+        let mut places = [[0.0; 2]; 3];
+        for (k, place) in places.iter_mut().enumerate() {
+            let q = self.solve(&follow.machine, part.at(0.25 * (k + 1) as f64))?;
+            *place = [q[u] - from[u], q[v] - from[v]];
+        }
+        let end = [to[u] - from[u], to[v] - from[v]];
+        // Relative to the start: 2 C·q = |q|².
+        if sweep.abs() < 0.9 * TAU {
+            let length2 = end[0] * end[0] + end[1] * end[1];
+            let normal = [-end[1], end[0]];
+            let (mut above, mut below) = (0.0, 0.0);
+            for q in &places {
+                // C = end/2 + λ·normal.
+                let weight = 2.0 * (q[0] * normal[0] + q[1] * normal[1]);
+                let rest = q[0] * q[0] + q[1] * q[1] - (q[0] * end[0] + q[1] * end[1]);
+                above += weight * rest;
+                below += weight * weight;
+            }
+            if below <= 0.0 || length2 <= 0.0 {
+                return Ok(centre);
+            }
+            let lambda = above / below;
+            return Ok([
+                from[u] + 0.5 * end[0] + lambda * normal[0],
+                from[v] + 0.5 * end[1] + lambda * normal[1],
+            ]);
+        }
+        let (mut a, mut b, mut d, mut p, mut r) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for q in places.iter().chain([&end]) {
+            let square = 0.5 * (q[0] * q[0] + q[1] * q[1]);
+            a += q[0] * q[0];
+            b += q[0] * q[1];
+            d += q[1] * q[1];
+            p += q[0] * square;
+            r += q[1] * square;
+        }
+        let determinant = a * d - b * b;
+        if determinant <= 0.0 {
+            return Ok(centre);
+        }
+        Ok([from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant])
+    }
+}

@@ -1,0 +1,398 @@
+//! The state that runs through a program, and one motion at a time.
+
+use machine_model::{Command, PathModel, SolveError, Vector};
+use smallvec::SmallVec;
+use toolpath::{Feed, Motion, Partial, Shape};
+
+use crate::curve::Curve;
+use crate::deviation::Machine;
+use crate::grid::{AxisWord, Block};
+use crate::{Piece, PieceKind};
+
+/// What happens to feed motion outside the calibrated volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// It is an error.
+    Refuse,
+    /// It takes the correction of the volume's nearest point.
+    Clamp,
+}
+
+/// What the user may choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Largest distance of the real path from the programmed one, rounding apart, mm.
+    pub tolerance_mm: f64,
+    /// Feed motion outside the calibrated volume.
+    pub outside: Outside,
+    /// No piece is made shorter than this, mm; 0 for no limit.
+    pub minimum_segment_mm: f64,
+}
+
+/// Why a motion cannot be corrected.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CorrectionError {
+    /// The model has no answer.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The motion would have to be split and must not be.
+    #[error("the path would be {distance_um:.2} um off and this motion must stay one block")]
+    MustNotSplit {
+        /// What one block would miss by, µm.
+        distance_um: f64,
+    },
+    /// Splitting does not help: a jump of the model, or the shortest piece allowed.
+    #[error(
+        "the path would be {distance_um:.2} um off however short its pieces; the tolerance is {tolerance_um} um"
+    )]
+    NotWithinTolerance {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+}
+
+/// One motion, corrected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    /// Blocks of output in order; empty where the block stays as it is.
+    pub pieces: SmallVec<[Piece; 2]>,
+    /// What was done, for the summary.
+    pub correction: Correction,
+}
+
+/// Figures of one motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// Largest distance between programmed and corrected command at an end of a piece, mm.
+    pub largest_mm: f64,
+    /// Proven bound of the path deviation without correction, mm; 0 for rapids.
+    pub before_mm: f64,
+    /// Proven bound of the path deviation, mm; 0 for rapids.
+    pub after_mm: f64,
+    /// A rapid ended outside the volume and took the nearest point's correction.
+    pub clamped: bool,
+    /// A short move to the corrected start was put before the motion.
+    pub approach: bool,
+    /// A cycle left to the control leans by this much over its depth, mm, more than the tolerance.
+    pub leaning_mm: Option<f64>,
+}
+
+/// Corrects motions in the order of the program.
+pub struct Corrector<'m> {
+    pub(crate) model: &'m dyn PathModel,
+    pub(crate) options: Options,
+    /// Where the axes really are commanded to be in the output, mm.
+    pub(crate) standing: [Option<f64>; 3],
+    /// Direction of each axis' last motion.
+    direction: [i8; 3],
+    /// The last end point solved: nominal command, state and answer. The next motion starts there.
+    last: Option<(Command, Vector)>,
+    /// Cycles are being written as moves since one could not stay.
+    pub(crate) expanding: bool,
+    /// Bottom and R as the control remembers them, program mm, and the initial level, mm.
+    pub(crate) remembered: Option<crate::hole::Remembered>,
+}
+
+/// A proof leaves this much room for what other judges compute differently (order of small rotations,
+/// last bits), mm.
+const GUARD_MM: f64 = 2e-5;
+
+impl<'m> Corrector<'m> {
+    /// Nothing is known of where the axes stand.
+    #[must_use]
+    pub fn new(model: &'m dyn PathModel, options: Options) -> Self {
+        Self {
+            model,
+            options,
+            standing: [None; 3],
+            direction: [0; 3],
+            last: None,
+            expanding: false,
+            remembered: None,
+        }
+    }
+
+    /// Corrects one motion of a block.
+    ///
+    /// # Errors
+    /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
+    pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
+        if !matches!(motion, Motion::Hole(_)) {
+            self.expanding = false;
+            self.remembered = None;
+        }
+        match motion {
+            Motion::Rapid { start, end } => self.rapid(start, end, block),
+            Motion::Feed(feed) => self.feed(feed, block),
+            Motion::Hole(hole) => self.hole(hole, block),
+            Motion::Uncorrected { end } => {
+                self.standing = end.linear_mm;
+                self.direction = [0; 3];
+                self.last = None;
+                Ok(Corrected { pieces: SmallVec::new(), correction: Correction::default() })
+            }
+        }
+    }
+
+    /// The machine in the state of a motion.
+    pub(crate) fn machine(&self, block: &Block, rotary_deg: [f64; 3]) -> Machine<'m> {
+        Machine {
+            model: self.model,
+            state: Command {
+                linear_mm: Vector::zeros(),
+                rotary_rad: Vector::from(rotary_deg.map(f64::to_radians)),
+                tool_mm: block.tool_mm.into(),
+                direction: self.direction,
+            },
+        }
+    }
+
+    /// Notes which way the axes go.
+    pub(crate) fn turn_towards(&mut self, from: &Vector, to: &Vector) {
+        for i in 0..3 {
+            if to[i] > from[i] {
+                self.direction[i] = 1;
+            } else if to[i] < from[i] {
+                self.direction[i] = -1;
+            }
+        }
+    }
+
+    /// The command that brings the tool to a nominal command's place.
+    pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
+        let target = Command { linear_mm: nominal, ..machine.state };
+        if let Some((same, answer)) = &self.last
+            && *same == target
+        {
+            return Ok(*answer);
+        }
+        match (self.model.solve(&target), self.options.outside) {
+            (Ok(solution), _) => Ok(solution.linear_mm),
+            (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(machine, nominal)),
+            (Err(error), _) => Err(error.into()),
+        }
+    }
+
+    /// The nominal command with the correction of the volume's nearest point.
+    fn nearest(&self, machine: &Machine<'_>, nominal: Vector) -> Vector {
+        let edge = self.model.volume().nearest(&nominal);
+        nominal - machine.error(edge)
+    }
+
+    pub(crate) fn standing_program(&self, block: &Block) -> [Option<f64>; 3] {
+        if let [Some(x), Some(y), Some(z)] = self.standing {
+            return block.program(&Vector::new(x, y, z)).map(Some);
+        }
+        // A turned frame mixes axes: nothing is known of any while one is unknown.
+        if !block.frame.is_shift() {
+            return [None; 3];
+        }
+        let offset = block.frame.offset_mm();
+        [0, 1, 2].map(|i| self.standing[i].map(|v| v - offset[i]))
+    }
+
+    /// Limit of a proof: tolerance and rounding.
+    pub(crate) fn limit_mm(&self, block: &Block) -> f64 {
+        self.options.tolerance_mm + block.rounding_mm() - GUARD_MM
+    }
+
+    fn rapid(&mut self, start: &Partial, end: &Partial, block: &Block) -> Result<Corrected, CorrectionError> {
+        let mut correction = Correction::default();
+        let Some(nominal) = end.complete() else {
+            // Some axis is not known yet, so the error is not: the words stay, and the first motion
+            // whose end is known in all axes brings the correction.
+            self.standing = end.linear_mm;
+            self.last = None;
+            return Ok(Corrected { pieces: SmallVec::new(), correction });
+        };
+        let end_mm = Vector::from(nominal.linear_mm);
+        let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
+        self.turn_towards(&from, &end_mm);
+        let machine = self.machine(block, nominal.rotary_deg);
+        let wanted = match self.solve(&machine, end_mm) {
+            Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
+                correction.clamped = true;
+                self.nearest(&machine, end_mm)
+            }
+            other => other?,
+        };
+        correction.largest_mm = (wanted - end_mm).norm();
+        let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
+        let axes = self.go(block, &own_end, &wanted, true);
+        self.last = Some((Command { linear_mm: end_mm, ..machine.state }, wanted));
+        Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
+    }
+
+    /// Chooses the words that bring the axes to `wanted` and takes note of where they then stand.
+    ///
+    /// `may_keep`: the block's own words may stay where they serve.
+    pub(crate) fn go(
+        &mut self,
+        block: &Block,
+        nominal: &Vector,
+        wanted: &Vector,
+        may_keep: bool,
+    ) -> [AxisWord; 3] {
+        let standing = self.standing_program(block);
+        let wanted = block.program(wanted);
+        let nominal = block.program(nominal);
+        let mut words = [AxisWord::Omit; 3];
+        let mut reached = [0.0; 3];
+        for i in 0..3 {
+            let own = block.has_axis(i) && may_keep;
+            // Under G91 the block's own word adds to where the output stands, not to where the program
+            // believes to be: the caller gives the nominal end relative to that.
+            let programmed = own.then_some(nominal[i]);
+            (words[i], reached[i]) = block.choose(i, wanted[i], programmed, standing[i]);
+        }
+        self.standing = Into::<[f64; 3]>::into(block.machine(reached)).map(Some);
+        words
+    }
+
+    /// Where the axes stand, or the nominal place for an axis that is not known.
+    pub(crate) fn standing_or(&self, nominal: &Vector) -> Vector {
+        [0, 1, 2].map(|i| self.standing[i].unwrap_or(nominal[i])).into()
+    }
+
+    fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
+        let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
+        let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
+        let parts = self.monotone_parts(&whole);
+        let alone = parts.len() == 1;
+        for &(s0, s1) in &parts {
+            let part = if alone { whole } else { whole.part(s0, s1) };
+            self.turn_towards(&part.at(0.0), &part.at(1.0));
+            let machine = self.machine(block, feed.end.rotary_deg);
+            self.approach(&machine, &part, block, &mut corrected)?;
+            let mut follow = Follow {
+                machine,
+                block,
+                alone: alone && corrected.pieces.is_empty(),
+                may_split: feed.may_split,
+                length_mm: whole.length_mm(),
+                nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
+                corrected: &mut corrected,
+            };
+            match feed.shape {
+                Shape::Line => self.follow_line(&mut follow, &part)?,
+                Shape::Arc(_) if block.frame.is_shift() => self.follow_arc(&mut follow, &part)?,
+                Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
+            }
+        }
+        self.note_before(&whole, block, feed, &mut corrected.correction);
+        Ok(corrected)
+    }
+
+    /// Bound of the deviation that the program would have had uncorrected.
+    fn note_before(&self, whole: &Curve, block: &Block, feed: &Feed, correction: &mut Correction) {
+        let machine = self.machine(block, feed.end.rotary_deg);
+        let extent = whole.extent(0.0, 1.0);
+        let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
+        let between = self.model.chord_bound_mm(&machine_model::Move {
+            range_mm: extent.range,
+            speed_mm: extent.speed,
+            acceleration_mm: extent.acceleration,
+            passes: 4,
+            state: machine.state,
+        });
+        correction.before_mm = if between.is_finite() { ends + between } else { ends };
+    }
+
+    /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every
+    /// axis one way only.
+    fn monotone_parts(&self, whole: &Curve) -> SmallVec<[(f64, f64); 2]> {
+        let mut parts = SmallVec::new();
+        if let (Curve::Arc { angle, sweep, .. }, true) = (whole, self.model.depends_on_direction()) {
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let (from, to) = (angle / quarter, (angle + sweep) / quarter);
+            let (low, high) = (from.min(to), from.max(to));
+            let mut cuts: SmallVec<[f64; 8]> = SmallVec::new();
+            let mut k = low.ceil();
+            while k <= high {
+                let s = (k - from) / (to - from);
+                // A quadrant nearer to an end than 1e-9 of the sweep is that end.
+                if s > 1e-9 && s < 1.0 - 1e-9 {
+                    cuts.push(s);
+                }
+                k += 1.0;
+            }
+            if to < from {
+                cuts.reverse();
+            }
+            let mut s0 = 0.0;
+            for s1 in cuts.into_iter().chain([1.0]) {
+                parts.push((s0, s1));
+                s0 = s1;
+            }
+        } else {
+            parts.push((0.0, 1.0));
+        }
+        parts
+    }
+
+    /// Brings the axes to the corrected start where they do not stand there: after a reversal of an
+    /// axis with lost motion, after motion that is never corrected, after a change of tool length.
+    fn approach(
+        &mut self,
+        machine: &Machine<'_>,
+        part: &Curve,
+        block: &Block,
+        corrected: &mut Corrected,
+    ) -> Result<(), CorrectionError> {
+        let start = part.at(0.0);
+        let wanted = self.solve(machine, start)?;
+        let standing = self.standing_program(block);
+        let to = block.program(&wanted);
+        // Standing within rounding of the corrected start is standing there; the last block chose so.
+        let away = (0..3).any(|i| standing[i].is_none_or(|v| (v - to[i]).abs() > 0.51 * block.step_mm(i)));
+        corrected.correction.largest_mm = corrected.correction.largest_mm.max((wanted - start).norm());
+        if away {
+            let before = self.standing;
+            let axes = self.go(block, &start, &wanted, false);
+            if axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing {
+                corrected.pieces.push(Piece { kind: PieceKind::Line, axes, share: 0.0 });
+                corrected.correction.approach = true;
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn note_end(&mut self, machine: &Machine<'_>, nominal: Vector, answer: Vector) {
+        self.last = Some((Command { linear_mm: nominal, ..machine.state }, answer));
+    }
+}
+
+/// What following a curve needs besides the corrector.
+pub(crate) struct Follow<'a, 'm> {
+    pub(crate) machine: Machine<'m>,
+    pub(crate) block: &'a Block,
+    /// The part is the whole motion, and nothing was put before it: the block's own words may stay.
+    pub(crate) alone: bool,
+    pub(crate) may_split: bool,
+    /// Length of the whole motion, mm: shares are parts of it.
+    pub(crate) length_mm: f64,
+    /// Nominal end minus nominal start of the whole motion, mm.
+    pub(crate) nominal_step: Vector,
+    pub(crate) corrected: &'a mut Corrected,
+}
+
+impl Follow<'_, '_> {
+    /// Where the block's own words would bring the axes, as an axis command.
+    ///
+    /// Absolute words bring them to the nominal end; incremental ones add the nominal step to where they stand.
+    pub(crate) fn own_end(&self, part: &Curve, standing: &Vector) -> Vector {
+        if self.block.incremental { standing + self.nominal_step } else { part.at(1.0) }
+    }
+
+    pub(crate) fn share(&self, part: &Curve) -> f64 {
+        if self.length_mm > 0.0 { part.length_mm() / self.length_mm } else { 1.0 }
+    }
+}
+
+fn one(piece: Piece, correction: Correction) -> Corrected {
+    let untouched = piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit));
+    let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
+    Corrected { pieces, correction }
+}

@@ -1,0 +1,354 @@
+//! A motion's geometry as a function of s in 0..=1.
+
+use std::f64::consts::TAU;
+
+use machine_model::{Range, Vector};
+use toolpath::Shape;
+use units::math::{atan2, sin_cos};
+
+/// A line, or an arc whose radius and normal axis run linearly with the angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Curve {
+    /// From, to.
+    Line(Vector, Vector),
+    /// See the fields.
+    Arc {
+        /// First, second and normal axis.
+        axes: [usize; 3],
+        /// Centre in the first two, mm.
+        centre: [f64; 2],
+        /// Angle at s = 0, rad.
+        angle: f64,
+        /// Angle turned, rad.
+        sweep: f64,
+        /// Radius at s = 0 and s = 1, mm.
+        radius: [f64; 2],
+        /// Normal axis at s = 0 and s = 1, mm.
+        normal: [f64; 2],
+    },
+}
+
+/// The turn from `from` to `to` in the sense of `clockwise`, in (0, 2π], as an angle with sign.
+///
+/// Ends that coincide to the last bit make a full circle; that is how controls read it.
+fn turn(from: f64, to: f64, clockwise: bool) -> f64 {
+    let mut sweep = if clockwise { from - to } else { to - from } % TAU;
+    if sweep <= 0.0 {
+        sweep += TAU;
+    }
+    if clockwise { -sweep } else { sweep }
+}
+
+impl Curve {
+    /// The geometry of a motion between two axis commands.
+    #[must_use]
+    pub fn new(start: Vector, end: Vector, shape: &Shape) -> Self {
+        match shape {
+            Shape::Line => Self::Line(start, end),
+            Shape::Arc(arc) => {
+                let axes = arc.plane.axes();
+                let [u, v, n] = axes;
+                let [cu, cv] = arc.centre_mm;
+                let (su, sv) = (start[u] - cu, start[v] - cv);
+                let (eu, ev) = (end[u] - cu, end[v] - cv);
+                Self::Arc {
+                    axes,
+                    centre: arc.centre_mm,
+                    angle: atan2(sv, su),
+                    sweep: arc.sweep_rad,
+                    radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
+                    normal: [start[n], end[n]],
+                }
+            }
+        }
+    }
+
+    /// The arc a control makes of two ends and a centre.
+    pub fn from_centre(
+        start: Vector,
+        end: Vector,
+        axes: [usize; 3],
+        centre: [f64; 2],
+        clockwise: bool,
+    ) -> Self {
+        let [u, v, n] = axes;
+        let (su, sv) = (start[u] - centre[0], start[v] - centre[1]);
+        let (eu, ev) = (end[u] - centre[0], end[v] - centre[1]);
+        let angle = atan2(sv, su);
+        let sweep = if start[u] == end[u] && start[v] == end[v] {
+            turn(0.0, 0.0, clockwise)
+        } else {
+            turn(angle, atan2(ev, eu), clockwise)
+        };
+        Self::Arc {
+            axes,
+            centre,
+            angle,
+            sweep,
+            radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
+            normal: [start[n], end[n]],
+        }
+    }
+
+    /// The place at s.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Vector {
+        match self {
+            Self::Line(a, b) => a + (b - a) * s,
+            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
+                let (sin, cos) = sin_cos(angle + sweep * s);
+                let r = radius[0] + (radius[1] - radius[0]) * s;
+                let mut p = Vector::zeros();
+                p[*u] = centre[0] + r * cos;
+                p[*v] = centre[1] + r * sin;
+                p[*n] = normal[0] + (normal[1] - normal[0]) * s;
+                p
+            }
+        }
+    }
+
+    /// Unit tangent at s; zero where the curve does not move.
+    pub fn tangent(&self, s: f64) -> Vector {
+        let t = match self {
+            Self::Line(a, b) => b - a,
+            Self::Arc { axes: [u, v, n], angle, sweep, radius, normal, .. } => {
+                let (sin, cos) = sin_cos(angle + sweep * s);
+                let r = radius[0] + (radius[1] - radius[0]) * s;
+                let dr = radius[1] - radius[0];
+                let mut t = Vector::zeros();
+                t[*u] = dr * cos - r * sweep * sin;
+                t[*v] = dr * sin + r * sweep * cos;
+                t[*n] = normal[1] - normal[0];
+                t
+            }
+        };
+        let length = t.norm();
+        if length > 0.0 { t / length } else { Vector::zeros() }
+    }
+
+    /// The part from s0 to s1, as a curve of its own.
+    #[must_use]
+    pub fn part(&self, s0: f64, s1: f64) -> Self {
+        let between = |pair: &[f64; 2]| [s0, s1].map(|s| pair[0] + (pair[1] - pair[0]) * s);
+        match self {
+            Self::Line(..) => Self::Line(self.at(s0), self.at(s1)),
+            Self::Arc { axes, centre, angle, sweep, radius, normal } => Self::Arc {
+                axes: *axes,
+                centre: *centre,
+                angle: angle + sweep * s0,
+                sweep: sweep * (s1 - s0),
+                radius: between(radius),
+                normal: between(normal),
+            },
+        }
+    }
+
+    /// Length, mm (an arc's mean radius stands for its small change of radius).
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        match self {
+            Self::Line(a, b) => (b - a).norm(),
+            Self::Arc { sweep, radius, normal, .. } => {
+                let along = 0.5 * (radius[0] + radius[1]) * sweep;
+                let rise = normal[1] - normal[0];
+                (along * along + rise * rise).sqrt()
+            }
+        }
+    }
+
+    /// How far the tangent turns in all, rad (an upper bound).
+    pub fn turning_rad(&self) -> f64 {
+        match self {
+            Self::Line(..) => 0.0,
+            // A spiral's tangent leans by (dr/ds)/r, which changes by less than its square per radian.
+            Self::Arc { sweep, .. } => sweep.abs() * 1.01,
+        }
+    }
+
+    /// Largest radius of curvature's inverse, 1/mm; zero for a line.
+    pub fn curvature(&self) -> f64 {
+        match self {
+            Self::Line(..) => 0.0,
+            Self::Arc { radius, .. } => 1.01 / radius[0].min(radius[1]).max(1e-9),
+        }
+    }
+
+    /// Box of the part from s0 to s1, and upper bounds of first and second derivative per axis on it,
+    /// with s running 0..=1 over that part.
+    pub fn extent(&self, s0: f64, s1: f64) -> Extent {
+        let h = s1 - s0;
+        match self {
+            Self::Line(a, b) => {
+                let (p, q) = (self.at(s0), self.at(s1));
+                let speed = (b - a) * h;
+                Extent {
+                    range: [0, 1, 2].map(|i| Range { low: p[i].min(q[i]), high: p[i].max(q[i]) }),
+                    speed: [0, 1, 2].map(|i| speed[i].abs()),
+                    acceleration: [0.0; 3],
+                }
+            }
+            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
+                let r = radius[0].max(radius[1]);
+                let dr = (radius[1] - radius[0]).abs() * h;
+                let turn = sweep.abs() * h;
+                let (from, to) = (angle + sweep * s0, angle + sweep * s1);
+                let (first, second) =
+                    (cosine_range(from, to), cosine_range(from - TAU / 4.0, to - TAU / 4.0));
+                let spread = (radius[1] - radius[0]).abs();
+                let in_plane = |c: f64, (low, high): (f64, f64)| Range {
+                    low: c + r * low - spread,
+                    high: c + r * high + spread,
+                };
+                let (a, b) =
+                    (normal[0] + (normal[1] - normal[0]) * s0, normal[0] + (normal[1] - normal[0]) * s1);
+                let mut extent = Extent {
+                    range: [Range { low: 0.0, high: 0.0 }; 3],
+                    speed: [0.0; 3],
+                    acceleration: [0.0; 3],
+                };
+                extent.range[*u] = in_plane(centre[0], first);
+                extent.range[*v] = in_plane(centre[1], second);
+                extent.range[*n] = Range { low: a.min(b), high: a.max(b) };
+                // d/ds (r cos θ) = r' cos θ - r θ' sin θ: the largest |cos| and |sin| on the part bound it.
+                let largest = |(low, high): (f64, f64)| low.abs().max(high.abs());
+                let (cos, sin) = (largest(first), largest(second));
+                extent.speed[*u] = dr * cos + r * turn * sin;
+                extent.speed[*v] = dr * sin + r * turn * cos;
+                extent.speed[*n] = (b - a).abs();
+                extent.acceleration[*u] = r * turn * turn * cos + 2.0 * dr * turn * sin;
+                extent.acceleration[*v] = r * turn * turn * sin + 2.0 * dr * turn * cos;
+                extent
+            }
+        }
+    }
+
+    /// Upper bound of how far the difference of two curves leaves its chord on the part s0..s1, mm.
+    ///
+    /// |f − chord| ≤ sup|f''|/8 on a unit interval, with f the difference.
+    pub fn difference_bound(&self, other: &Self, s0: f64, s1: f64) -> f64 {
+        let h2 = (s1 - s0) * (s1 - s0);
+        match (self, other) {
+            (Self::Line(..), Self::Line(..)) => 0.0,
+            (Self::Line(..), Self::Arc { sweep, radius, .. })
+            | (Self::Arc { sweep, radius, .. }, Self::Line(..)) => {
+                let (r, dr) = (radius[0].max(radius[1]), (radius[1] - radius[0]).abs());
+                h2 / 8.0 * (r * sweep * sweep + 2.0 * dr * sweep.abs())
+            }
+            (
+                Self::Arc { angle: a0, sweep: w, radius: r, axes, .. },
+                Self::Arc { angle: b0, sweep: v, radius: q, axes: other_axes, .. },
+            ) if axes == other_axes => {
+                // r e(θ)·w² against q e(φ)·v², plus the radial growth terms.
+                let apart = wrapped((a0 - b0).abs()).max(wrapped((a0 + w - b0 - v).abs()));
+                let (rm, qm) = (r[0].max(r[1]), q[0].max(q[1]));
+                let spread = (r[1] - r[0]).abs().max((q[1] - q[0]).abs());
+                let size = (rm * w * w - qm * v * v).abs() + spread * w * w;
+                h2 / 8.0
+                    * (size
+                        + rm * w * w * apart
+                        + 2.0 * (r[1] - r[0]).abs() * w.abs()
+                        + 2.0 * (q[1] - q[0]).abs() * v.abs())
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// Distance of an angle from the nearest whole turn.
+fn wrapped(angle: f64) -> f64 {
+    let rest = angle % TAU;
+    rest.min(TAU - rest).abs()
+}
+
+/// Smallest and largest cosine between two angles.
+fn cosine_range(from: f64, to: f64) -> (f64, f64) {
+    let (low, high) = (from.min(to), from.max(to));
+    let (a, b) = (units::math::cos(low), units::math::cos(high));
+    let holds = |phase: f64| ((high - phase) / TAU).floor() >= ((low - phase) / TAU).ceil();
+    (if holds(TAU / 2.0) { -1.0 } else { a.min(b) }, if holds(0.0) { 1.0 } else { a.max(b) })
+}
+
+/// What bounds need to know of a part of a curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Box of all places.
+    pub range: [Range; 3],
+    /// Upper bounds of the first derivative per axis.
+    pub speed: [f64; 3],
+    /// Upper bounds of the second derivative per axis.
+    pub acceleration: [f64; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use toolpath::{Arc, Plane};
+
+    fn arc(angle: f64, sweep: f64, r0: f64, r1: f64, rise: f64) -> Curve {
+        Curve::Arc {
+            axes: Plane::Xy.axes(),
+            centre: [10.0, -5.0],
+            angle,
+            sweep,
+            radius: [r0, r1],
+            normal: [1.0, 1.0 + rise],
+        }
+    }
+
+    #[test]
+    fn a_quarter_turn() {
+        let shape = Shape::Arc(Arc { plane: Plane::Xy, centre_mm: [0.0, 0.0], sweep_rad: TAU / 4.0 });
+        let curve = Curve::new(Vector::new(10.0, 0.0, 0.0), Vector::new(0.0, 10.0, 4.0), &shape);
+        let mid = curve.at(0.5);
+        assert!((mid - Vector::new(50f64.sqrt(), 50f64.sqrt(), 2.0)).norm() < 1e-12);
+        assert!((curve.tangent(0.0).y - 0.968_9).abs() < 1e-3);
+    }
+
+    #[test]
+    fn coinciding_ends_are_a_full_circle() {
+        let p = Vector::new(5.0, 0.0, 0.0);
+        for clockwise in [true, false] {
+            let Curve::Arc { sweep, .. } = Curve::from_centre(p, p, Plane::Xy.axes(), [0.0, 0.0], clockwise)
+            else {
+                panic!()
+            };
+            assert_eq!(sweep, if clockwise { -TAU } else { TAU });
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn extents_and_difference_bounds_hold(
+            angle in -4.0f64..4.0, sweep in -6.3f64..6.3, r in 0.5f64..200.0, dr in -0.01f64..0.01,
+            turned in -0.01f64..0.01, grown in -0.05f64..0.05, s0 in 0.0f64..0.9, h in 0.01f64..1.0, rise in -3.0f64..3.0,
+        ) {
+            let s1 = (s0 + h).min(1.0);
+            let curve = arc(angle, sweep, r, r + dr, rise);
+            let near = arc(angle + turned, sweep + turned, r + grown, r + grown, rise);
+            let extent = curve.extent(s0, s1);
+            let f = |s: f64| curve.at(s) - near.at(s);
+            let (f0, f1) = (f(s0), f(s1));
+            let bound = curve.difference_bound(&near, s0, s1);
+            let part = curve.part(s0, s1);
+            for k in 0..=64 {
+                let x = f64::from(k) / 64.0;
+                let s = s0 + (s1 - s0) * x;
+                let p = curve.at(s);
+                prop_assert!((part.at(x) - p).norm() < 1e-9);
+                for i in 0..3 {
+                    prop_assert!(extent.range[i].low - 1e-9 <= p[i] && p[i] <= extent.range[i].high + 1e-9);
+                }
+                let e = 1e-5;
+                let slope = (part.at(x + e) - part.at(x - e)) / (2.0 * e);
+                let bend = (part.at(x + e) - 2.0 * p + part.at(x - e)) / (e * e);
+                for i in 0..3 {
+                    prop_assert!(slope[i].abs() <= extent.speed[i] + 1e-4 * (1.0 + extent.speed[i]));
+                    prop_assert!(bend[i].abs() <= extent.acceleration[i] + 1e-2 * (1.0 + r));
+                }
+                let off = (f(s) - (f0 * (1.0 - x) + f1 * x)).norm();
+                prop_assert!(off <= bound + 1e-9, "{} > {}", off, bound);
+            }
+        }
+    }
+}

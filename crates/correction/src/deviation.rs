@@ -1,0 +1,162 @@
+//! How far the real tool leaves the programmed path: computed at places, bounded between them.
+
+use machine_model::{Command, Move, PathModel, Vector};
+
+use crate::curve::Curve;
+
+/// How often a stretch may be halved before it counts as not provable: 2^-20 of any motion is below
+/// every machine's resolution.
+const DEEPEST: u32 = 20;
+
+/// The model in the state of one motion.
+#[derive(Clone, Copy)]
+pub(crate) struct Machine<'m> {
+    /// Where the tool really goes.
+    pub(crate) model: &'m dyn PathModel,
+    /// Tool vector, rotary axes and directions; its linear position is not used.
+    pub(crate) state: Command,
+}
+
+impl Machine<'_> {
+    /// Real tip minus nominal tip for an axis command, mm.
+    pub(crate) fn error(&self, linear_mm: Vector) -> Vector {
+        self.model.error_mm(&Command { linear_mm, ..self.state })
+    }
+}
+
+/// A motion as programmed and a motion that shall stand for it.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair<'c> {
+    /// The programmed path.
+    pub(crate) wanted: &'c Curve,
+    /// The path commanded instead.
+    pub(crate) commanded: &'c Curve,
+}
+
+/// Result of comparing two motions on the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// The real path stays this near the programmed one, everywhere; mm.
+    Within(f64),
+    /// It is further away than allowed at this s, by this many mm in all.
+    Beyond {
+        /// Where.
+        s: f64,
+        /// How far.
+        distance_mm: f64,
+    },
+}
+
+/// A place where the deviation is known.
+#[derive(Clone, Copy)]
+struct Place {
+    s: f64,
+    /// Real tip minus programmed tip at the same s, mm.
+    difference: Vector,
+    /// The part of it square to the programmed path, mm.
+    square: f64,
+    /// Upper bound of the distance from the programmed path, mm.
+    distance: f64,
+}
+
+impl Pair<'_> {
+    /// Real tip minus programmed tip at the same s, mm.
+    pub(crate) fn difference(&self, machine: &Machine<'_>, s: f64) -> Vector {
+        let commanded = self.commanded.at(s);
+        commanded - self.wanted.at(s) + machine.error(commanded)
+    }
+
+    /// The deviation at s.
+    ///
+    /// Moving along the path is no deviation from it: only the part of the difference square to the
+    /// tangent counts, plus what the path curves away over the part along it, t²/2ρ.
+    fn place(&self, machine: &Machine<'_>, s: f64) -> Place {
+        let difference = self.difference(machine, s);
+        let tangent = self.wanted.tangent(s);
+        let along = difference.dot(&tangent);
+        let square = (difference - tangent * along).norm();
+        Place { s, difference, square, distance: square + 0.5 * along * along * self.wanted.curvature() }
+    }
+
+    /// Upper bound of the distance between two places where it is known, mm.
+    fn bound(&self, machine: &Machine<'_>, a: &Place, b: &Place) -> f64 {
+        let extent = self.commanded.extent(a.s, b.s);
+        let leaves_chord = machine.model.chord_bound_mm(&Move {
+            range_mm: extent.range,
+            speed_mm: extent.speed,
+            acceleration_mm: extent.acceleration,
+            passes: if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 },
+            state: machine.state,
+        }) + self.commanded.difference_bound(self.wanted, a.s, b.s);
+        // The chord itself, seen square to a tangent that turns by θ: P(s)·chord(s) has a second
+        // derivative of at most 4θ²·|chord| + 2θ·|b - a|.
+        let turning = self.wanted.turning_rad() * (b.s - a.s);
+        let largest = a.difference.norm().max(b.difference.norm());
+        let turned = turning * (4.0 * turning * largest + 2.0 * (b.difference - a.difference).norm()) / 8.0;
+        let along = largest + leaves_chord;
+        a.square.max(b.square) + leaves_chord + turned + 0.5 * along * along * self.wanted.curvature()
+    }
+
+    /// Proves that the real path stays within `limit_mm` of the programmed one, or shows where it does not.
+    pub(crate) fn verdict(&self, machine: &Machine<'_>, limit_mm: f64) -> Verdict {
+        let (first, last) = (self.place(machine, 0.0), self.place(machine, 1.0));
+        self.verdict_between(machine, limit_mm, first, last)
+    }
+
+    fn verdict_between(&self, machine: &Machine<'_>, limit_mm: f64, first: Place, last: Place) -> Verdict {
+        for end in [&first, &last] {
+            if !(end.distance <= limit_mm) {
+                return Verdict::Beyond { s: end.s, distance_mm: end.distance };
+            }
+        }
+        // An arc passes a place at most twice only while it is below half a turn.
+        let halve_first = self.commanded.turning_rad() > 3.0;
+        if !halve_first {
+            let bound = self.bound(machine, &first, &last);
+            if bound <= limit_mm {
+                return Verdict::Within(bound);
+            }
+        }
+        let mut worst_proven: f64 = 0.0;
+        // Depth first, left to right, on a stack of right halves: no recursion, no allocation.
+        let mut stack = [first; DEEPEST as usize + 3];
+        stack[0] = last;
+        let mut height = 1;
+        let mut left = first;
+        while height > 0 {
+            let right = stack[height - 1];
+            let wide = self.commanded.turning_rad() * (right.s - left.s) > 3.0;
+            let bound = if wide { f64::INFINITY } else { self.bound(machine, &left, &right) };
+            if bound <= limit_mm {
+                worst_proven = worst_proven.max(bound);
+                left = right;
+                height -= 1;
+                continue;
+            }
+            let middle = self.place(machine, 0.5 * (left.s + right.s));
+            if !(middle.distance <= limit_mm) {
+                return Verdict::Beyond { s: middle.s, distance_mm: middle.distance };
+            }
+            if height > DEEPEST as usize {
+                return Verdict::Beyond { s: middle.s, distance_mm: bound };
+            }
+            stack[height] = middle;
+            height += 1;
+        }
+        Verdict::Within(worst_proven)
+    }
+
+    /// The place inside, of a few looked at, where the real path is furthest away.
+    pub(crate) fn worst_place(&self, machine: &Machine<'_>) -> f64 {
+        const LOOKS: u32 = 24;
+        let mut worst = (0.5, -1.0);
+        for k in 1..LOOKS {
+            let s = f64::from(k) / f64::from(LOOKS);
+            let distance = self.place(machine, s).distance;
+            if distance > worst.1 {
+                worst = (s, distance);
+            }
+        }
+        worst.0
+    }
+}

@@ -1,0 +1,144 @@
+//! Whole output steps: the one place where numbers are rounded.
+
+use machine_model::Vector;
+use toolpath::Frame;
+
+/// Which letters a block holds, one bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Letters(u32);
+
+impl Letters {
+    /// Adds an upper-case letter.
+    pub fn insert(&mut self, letter: u8) {
+        debug_assert!(letter.is_ascii_uppercase());
+        self.0 |= 1 << (letter - b'A');
+    }
+
+    /// True where the block holds the letter.
+    #[must_use]
+    pub fn contains(self, letter: u8) -> bool {
+        letter.is_ascii_uppercase() && self.0 & (1 << (letter - b'A')) != 0
+    }
+}
+
+/// What is written for one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisWord {
+    /// Nothing; a word that stood there goes.
+    Omit,
+    /// What stood there stays.
+    Keep,
+    /// This many output steps.
+    Write(i64),
+}
+
+/// What correction must know of the block a motion came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Program millimetres to axis commands.
+    pub frame: Frame,
+    /// Millimetres in one program unit: 1 or 25.4.
+    pub unit_mm: f64,
+    /// Decimals of the output step of X, Y, Z in program units.
+    pub decimals: [u8; 3],
+    /// G91.
+    pub incremental: bool,
+    /// G90.1.
+    pub arc_centres_absolute: bool,
+    /// Words of the block.
+    pub letters: Letters,
+    /// From the gauge point to the tool tip, mm.
+    pub tool_mm: [f64; 3],
+    /// The dialect writes arcs by centre words; else by R.
+    pub centre_words: bool,
+    /// Largest difference of an arc's two radii that the control takes, mm.
+    pub arc_radius_tolerance_mm: f64,
+    /// A G83 peck written as moves resumes feeding this far above the last depth, mm.
+    pub peck_clearance_mm: f64,
+    /// Retreat of a G73 peck written as moves, mm.
+    pub chip_retreat_mm: f64,
+}
+
+const AXES: [u8; 3] = *b"XYZ";
+
+impl Block {
+    /// Steps in one program unit of an axis.
+    fn per_unit(&self, axis: usize) -> f64 {
+        // Powers of ten up to 10^9 are exact in an f64.
+        f64::from(10u32.pow(u32::from(self.decimals[axis].min(9))))
+    }
+
+    /// The output step of an axis, mm.
+    pub fn step_mm(&self, axis: usize) -> f64 {
+        self.unit_mm / self.per_unit(axis)
+    }
+
+    /// Length of the vector of half output steps, mm: the rounding that the path promise allows.
+    pub fn rounding_mm(&self) -> f64 {
+        let half = [0, 1, 2].map(|i| 0.5 * self.step_mm(i));
+        (half[0] * half[0] + half[1] * half[1] + half[2] * half[2]).sqrt()
+    }
+
+    /// Chooses the word of one axis and says where the axis then stands, in program mm.
+    ///
+    /// * `wanted_mm` – where it should stand
+    /// * `programmed_mm` – where the word that stands in the block would bring it; `None` without a word
+    /// * `standing_mm` – where it stands before the block; `None` where unknown
+    ///
+    /// A word is left alone, or left out, where that is as near as rounding would bring it: within half
+    /// a step.
+    pub fn choose(
+        &self,
+        axis: usize,
+        wanted_mm: f64,
+        programmed_mm: Option<f64>,
+        standing_mm: Option<f64>,
+    ) -> (AxisWord, f64) {
+        let half = 0.5 * self.step_mm(axis) * (1.0 + 1e-9);
+        if let Some(programmed) = programmed_mm
+            && (wanted_mm - programmed).abs() <= half
+        {
+            return (AxisWord::Keep, programmed);
+        }
+        // A word that stands in the block is rewritten even where the axis need not move: a motion
+        // block without any axis word would be another kind of block.
+        if let (Some(standing), None) = (standing_mm, programmed_mm)
+            && (wanted_mm - standing).abs() <= half
+        {
+            return (AxisWord::Omit, standing);
+        }
+        self.write(axis, wanted_mm, standing_mm)
+    }
+
+    /// The word that brings an axis nearest to `wanted_mm`.
+    pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (AxisWord, f64) {
+        let origin = if self.incremental { standing_mm.unwrap_or(0.0) } else { 0.0 };
+        let counts = ((wanted_mm - origin) / self.unit_mm * self.per_unit(axis)).round();
+        (AxisWord::Write(counts as i64), origin + self.from_counts(axis, counts as i64))
+    }
+
+    /// Program millimetres of a count of steps.
+    pub fn from_counts(&self, axis: usize, counts: i64) -> f64 {
+        counts as f64 / self.per_unit(axis) * self.unit_mm
+    }
+
+    /// Nearest count of steps for a length in mm.
+    pub fn to_counts(&self, axis: usize, mm: f64) -> i64 {
+        (mm / self.unit_mm * self.per_unit(axis)).round() as i64
+    }
+
+    /// True where the block has a word for the axis.
+    pub fn has_axis(&self, axis: usize) -> bool {
+        self.letters.contains(AXES[axis])
+    }
+
+    /// Program coordinates of an axis command.
+    pub fn program(&self, machine_mm: &Vector) -> [f64; 3] {
+        self.frame.to_program((*machine_mm).into())
+    }
+
+    /// Axis command of program coordinates.
+    pub fn machine(&self, program_mm: [f64; 3]) -> Vector {
+        self.frame.to_machine(program_mm).into()
+    }
+}

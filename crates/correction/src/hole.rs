@@ -1,0 +1,253 @@
+//! Drilling cycles, hole by hole.
+
+use machine_model::Vector;
+use smallvec::SmallVec;
+use toolpath::{CycleKind, Hole};
+
+use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow};
+use crate::curve::Curve;
+use crate::deviation::{Machine, Pair, Verdict};
+use crate::grid::{AxisWord, Block};
+use crate::{Piece, PieceKind};
+
+/// Bottom and R words as the control remembers them, program mm (increments under G91), and the level
+/// the control returns to under G98, axis command, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Remembered {
+    bottom: f64,
+    r: f64,
+    initial_mm: f64,
+}
+
+impl Corrector<'_> {
+    /// One hole: position, R level and depth move with the machine's error there.
+    ///
+    /// A cycle drills along one axis. Where the machine leans, the hole's middle is put in place; if its
+    /// ends are then out of tolerance and the cycle is nothing but moves, it is written as moves.
+    pub(crate) fn hole(&mut self, hole: &Hole, block: &Block) -> Result<Corrected, CorrectionError> {
+        let normal = hole.plane.axes()[2];
+        let at_r = Vector::from(hole.at_r.linear_mm);
+        let mut at_bottom = at_r;
+        at_bottom[normal] = hole.bottom_mm;
+        let start = Vector::from(hole.start.linear_mm);
+        self.turn_towards(&start, &at_r);
+        let mut machine = self.machine(block, hole.at_r.rotary_deg);
+        // The depth is fed one way, whatever way the axis went before.
+        machine.state.direction[normal] = if hole.bottom_mm < at_r[normal] { -1 } else { 1 };
+        let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
+        let mut correction = Correction {
+            largest_mm: (top - at_r).norm().max((bottom - at_bottom).norm()),
+            before_mm: machine.error(at_r).norm().max(machine.error(at_bottom).norm()),
+            ..Correction::default()
+        };
+        let expandable = hole.cycle.kind != CycleKind::Synchronised;
+        if !(self.expanding && expandable) {
+            let before = (self.standing, self.remembered);
+            let (piece, untouched, verdict) = self.keep_cycle(hole, block, &machine, (top, bottom));
+            match verdict {
+                Verdict::Within(bound) => {
+                    correction.after_mm = bound;
+                    return Ok(kept(piece, untouched, correction));
+                }
+                Verdict::Beyond { distance_mm, .. } if !expandable => {
+                    correction.after_mm = distance_mm;
+                    correction.leaning_mm = Some(distance_mm);
+                    return Ok(kept(piece, untouched, correction));
+                }
+                Verdict::Beyond { .. } => {
+                    (self.standing, self.remembered) = before;
+                    self.expanding = true;
+                }
+            }
+        }
+        let mut corrected = Corrected { pieces: SmallVec::new(), correction };
+        self.expand(hole, block, &machine, &mut corrected)?;
+        Ok(corrected)
+    }
+
+    /// The cycle block with its words moved, and how far its hole is then from the programmed one.
+    fn keep_cycle(
+        &mut self,
+        hole: &Hole,
+        block: &Block,
+        machine: &Machine<'_>,
+        (top, bottom): (Vector, Vector),
+    ) -> (Piece, bool, Verdict) {
+        let [first, second, normal] = hole.plane.axes();
+        let at_r = Vector::from(hole.at_r.linear_mm);
+        let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
+        let initial_mm = match self.remembered {
+            Some(remembered) => remembered.initial_mm,
+            None => standing[normal],
+        };
+        let standing_program = self.standing_program(block);
+        // In the plane: half way between what the top and what the bottom need.
+        let middle = block.program(&(0.5 * (top + bottom)));
+        let step = at_r - Vector::from(hole.start.linear_mm);
+        let own = block.program(&if block.incremental { standing + step } else { at_r });
+        let mut axes = [AxisWord::Omit; 3];
+        let mut reached = block.program(&standing);
+        for i in [first, second] {
+            let programmed = block.has_axis(i).then_some(own[i]);
+            (axes[i], reached[i]) = block.choose(i, middle[i], programmed, standing_program[i]);
+        }
+        // Along the hole: R from the initial level and the bottom from R under G91.
+        let level = |mm: f64| {
+            let mut p = at_r;
+            p[normal] = mm;
+            block.program(&p)[normal]
+        };
+        let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
+        let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
+        let (r_origin, own_r_origin) =
+            if block.incremental { (level(initial_mm), level(hole.initial_mm)) } else { (0.0, 0.0) };
+        let remembered = self.remembered;
+        let (r, r_value) = word(
+            block,
+            normal,
+            r_wanted - r_origin,
+            block.letters.contains(b'R').then_some(r_own - own_r_origin),
+            remembered.map(|m| m.r),
+        );
+        let r_reached = r_origin + r_value;
+        let (b_origin, own_b_origin) = if block.incremental { (r_reached, r_own) } else { (0.0, 0.0) };
+        let (b, b_value) = word(
+            block,
+            normal,
+            b_wanted - b_origin,
+            block.has_axis(normal).then_some(b_own - own_b_origin),
+            remembered.map(|m| m.bottom),
+        );
+        axes[normal] = b;
+        let untouched =
+            [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, AxisWord::Keep | AxisWord::Omit));
+        self.remembered = Some(Remembered { bottom: b_value, r: r_value, initial_mm });
+        let mut place = reached;
+        place[normal] = r_reached;
+        let from = block.machine(place);
+        place[normal] = b_origin + b_value;
+        let to = block.machine(place);
+        let mut end_bottom = at_r;
+        end_bottom[normal] = hole.bottom_mm;
+        let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
+        let verdict = Pair { wanted: &wanted, commanded: &commanded }.verdict(machine, self.limit_mm(block));
+        let mut end = from;
+        if hole.cycle.return_to_initial {
+            end[normal] = initial_mm;
+        }
+        self.standing = Into::<[f64; 3]>::into(end).map(Some);
+        (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict)
+    }
+
+    /// The cycle as the moves it is made of.
+    fn expand(
+        &mut self,
+        hole: &Hole,
+        block: &Block,
+        machine: &Machine<'_>,
+        corrected: &mut Corrected,
+    ) -> Result<(), CorrectionError> {
+        let normal = hole.plane.axes()[2];
+        let at_r = Vector::from(hole.at_r.linear_mm);
+        let place = |mm: f64| {
+            let mut p = at_r;
+            p[normal] = mm;
+            p
+        };
+        let initial_mm = hole.initial_mm;
+        let (r_mm, bottom_mm) = (at_r[normal], hole.bottom_mm);
+        let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
+        let rapid =
+            |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
+                let wanted = corrector.solve(machine, to)?;
+                let axes = corrector.go(block, &to, &wanted, false);
+                if axes.iter().any(|word| *word != AxisWord::Omit) {
+                    corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
+                }
+                corrector.note_end(machine, to, wanted);
+                Ok(())
+            };
+        let feed = |corrector: &mut Self,
+                    from: f64,
+                    to: f64,
+                    corrected: &mut Corrected|
+         -> Result<(), CorrectionError> {
+            let part = Curve::Line(place(from), place(to));
+            let mut follow = Follow {
+                machine: *machine,
+                block,
+                alone: false,
+                may_split: true,
+                length_mm: (bottom_mm - r_mm).abs(),
+                nominal_step: Vector::zeros(),
+                corrected,
+            };
+            corrector.follow_line(&mut follow, &part)
+        };
+        // A start below R rises first, as the cycle does.
+        let start = Vector::from(hole.start.linear_mm);
+        let above = if down < 0.0 { start[normal].max(r_mm) } else { start[normal].min(r_mm) };
+        if above != start[normal] {
+            let mut rise = start;
+            rise[normal] = above;
+            rapid(self, rise, corrected)?;
+        }
+        rapid(self, place(above), corrected)?;
+        rapid(self, place(r_mm), corrected)?;
+        match (hole.cycle.kind, hole.cycle.peck_mm) {
+            (CycleKind::PeckFull | CycleKind::PeckChip, Some(peck)) if peck > 0.0 => {
+                let mut depth = r_mm;
+                let mut from = r_mm;
+                while (bottom_mm - depth) * down > 1e-9 {
+                    let next = if (bottom_mm - depth) * down <= peck + 1e-9 {
+                        bottom_mm
+                    } else {
+                        depth + down * peck
+                    };
+                    feed(self, from, next, corrected)?;
+                    depth = next;
+                    if depth == bottom_mm {
+                        break;
+                    }
+                    if hole.cycle.kind == CycleKind::PeckFull {
+                        rapid(self, place(r_mm), corrected)?;
+                        from = depth - down * block.peck_clearance_mm.min((depth - r_mm).abs());
+                    } else {
+                        from = depth - down * block.chip_retreat_mm.min((depth - r_mm).abs());
+                    }
+                    rapid(self, place(from), corrected)?;
+                }
+            }
+            _ => feed(self, r_mm, bottom_mm, corrected)?,
+        }
+        if hole.cycle.dwell {
+            corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
+        }
+        if hole.cycle.kind == CycleKind::Bore {
+            feed(self, bottom_mm, r_mm, corrected)?;
+        } else {
+            rapid(self, place(r_mm), corrected)?;
+        }
+        if hole.cycle.return_to_initial {
+            rapid(self, place(initial_mm), corrected)?;
+        }
+        Ok(())
+    }
+}
+
+/// A word that the control remembers between blocks.
+fn word(
+    block: &Block,
+    axis: usize,
+    wanted: f64,
+    own: Option<f64>,
+    remembered: Option<f64>,
+) -> (AxisWord, f64) {
+    let absolute = Block { incremental: false, ..*block };
+    absolute.choose(axis, wanted, own, remembered)
+}
+
+fn kept(piece: Piece, untouched: bool, correction: Correction) -> Corrected {
+    let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
+    Corrected { pieces, correction }
+}
