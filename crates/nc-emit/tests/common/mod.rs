@@ -8,7 +8,7 @@ use nc_syntax::dialect::{
 use nc_syntax::{Block, Dialect, Reader};
 
 /// Codes enough for the tests; calculator-type numbers.
-pub fn dialect() -> Dialect {
+pub(crate) fn dialect() -> Dialect {
     let entry = |tenths, group, action| CodeEntry { code: GCode(tenths), group, action };
     let m_code = |number, after_motion| MCode {
         number,
@@ -66,14 +66,14 @@ pub fn dialect() -> Dialect {
 }
 
 /// The same control with conventional numbers: `X100` is 0.1 mm.
-pub fn least_increment() -> Dialect {
+pub(crate) fn least_increment() -> Dialect {
     let mut dialect = dialect();
     dialect.numbers.point_free = PointFree::LeastIncrement;
     dialect
 }
 
 /// Blocks of a text.
-pub fn read<'t>(dialect: &'t Dialect, text: &'t str) -> Vec<Block<'t>> {
+pub(crate) fn read<'t>(dialect: &'t Dialect, text: &'t str) -> Vec<Block<'t>> {
     let mut reader = Reader::new(text.as_bytes(), dialect);
     let mut blocks = Vec::new();
     let mut block = Block::default();
@@ -84,7 +84,7 @@ pub fn read<'t>(dialect: &'t Dialect, text: &'t str) -> Vec<Block<'t>> {
 }
 
 /// `"G1 X10.012 Y- F="`: motion, words with three decimals or as many as given, removed (`-`), kept (`=`).
-pub fn piece(text: &str) -> Piece {
+pub(crate) fn piece(text: &str) -> Piece {
     let mut motion = None;
     let mut words = Vec::new();
     for word in text.split_whitespace() {
@@ -104,7 +104,7 @@ pub fn piece(text: &str) -> Piece {
 }
 
 /// The text after passing every block but the last and rewriting that one.
-pub fn rewritten(dialect: &Dialect, text: &str, pieces: &[&str]) -> String {
+pub(crate) fn rewritten(dialect: &Dialect, text: &str, pieces: &[&str]) -> String {
     let blocks = read(dialect, text);
     let mut numbers = nc_emit::BlockNumbers::new();
     blocks.iter().for_each(|block| numbers.see(block));
