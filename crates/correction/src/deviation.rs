@@ -75,7 +75,13 @@ impl Pair<'_> {
         let tangent = self.wanted.tangent(s);
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
-        Place { s, difference, square, distance: square + 0.5 * along * along * self.wanted.curvature() }
+        // An end has to be reached, not only its neighbourhood: there all of the difference counts.
+        let distance = if s <= 0.0 || s >= 1.0 {
+            difference.norm()
+        } else {
+            square + 0.5 * along * along * self.wanted.curvature()
+        };
+        Place { s, difference, square, distance }
     }
 
     /// Upper bound of the distance between two places where it is known, mm.
@@ -94,7 +100,9 @@ impl Pair<'_> {
         let largest = a.difference.norm().max(b.difference.norm());
         let turned = turning * (4.0 * turning * largest + 2.0 * (b.difference - a.difference).norm()) / 8.0;
         let along = largest + leaves_chord;
-        a.square.max(b.square) + leaves_chord + turned + 0.5 * along * along * self.wanted.curvature()
+        let between =
+            a.square.max(b.square) + leaves_chord + turned + 0.5 * along * along * self.wanted.curvature();
+        between.max(a.distance).max(b.distance)
     }
 
     /// Proves that the real path stays within `limit_mm` of the programmed one, or shows where it does not.

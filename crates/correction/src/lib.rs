@@ -18,7 +18,7 @@ mod grid;
 mod hole;
 mod line;
 
-pub use compare::{Comparison, Deviation, Mismatch, Program, Step, compare};
+pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};
