@@ -125,13 +125,13 @@ pub fn build(id: EngineId, inputs: EngineInputs) -> Result<Box<dyn Engine>, Buil
             Box::new(kmtpp(&inputs.tables.ok_or_else(tables)?, &given)?)
         }
         EngineId::TangentialStaticPublished => {
-            published(inputs.traverses.ok_or_else(traverses)?, Method::Static)?
+            published(&inputs.traverses.ok_or_else(traverses)?, Method::Static)?
         }
         EngineId::TangentialIntervalPublished => {
-            published(inputs.traverses.ok_or_else(traverses)?, Method::Interval)?
+            published(&inputs.traverses.ok_or_else(traverses)?, Method::Interval)?
         }
         EngineId::TangentialQuasiDifferentialPublished => {
-            published(inputs.traverses.ok_or_else(traverses)?, Method::QuasiDifferential)?
+            published(&inputs.traverses.ok_or_else(traverses)?, Method::QuasiDifferential)?
         }
         EngineId::KmtppPublished => Box::new(KmtppPublished::new(
             inputs.tables.ok_or_else(tables)?,
@@ -142,8 +142,8 @@ pub fn build(id: EngineId, inputs: EngineInputs) -> Result<Box<dyn Engine>, Buil
     })
 }
 
-fn published(traverses: [Traverse; 3], method: Method) -> Result<Box<dyn Engine>, BuildError> {
-    Ok(Box::new(TangentialPublished::new(&traverses, method)?))
+fn published(traverses: &[Traverse; 3], method: Method) -> Result<Box<dyn Engine>, BuildError> {
+    Ok(Box::new(TangentialPublished::new(traverses, method)?))
 }
 
 /// The consistent KMTPP from interferometer rows and the directions of the traverses.

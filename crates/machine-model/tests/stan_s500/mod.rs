@@ -1,0 +1,100 @@
+//! Measurements of the STAN S500 and the printed tables, read from the shipped files.
+//!
+//! Also used by `xtask`, which prints the tables of the documentation from the same data.
+
+#![allow(dead_code, unreachable_pub, reason = "each user of this module takes a part of it")]
+
+use std::path::{Path, PathBuf};
+
+use machine_model::engines::{EngineInputs, ParametricTable};
+use machine_model::{AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis};
+use machine_model::{Squareness, Traverse, Vector};
+
+fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let up = here.ancestors().find(|path| path.join("machine-profiles").is_dir());
+    up.expect("the project's root holds machine-profiles").to_path_buf()
+}
+
+/// Numbers of a CSV file; a cell that is no number stands as NaN.
+pub fn numbers(path: &str) -> Vec<Vec<f64>> {
+    let path = root().join(path);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let row = |line: &str| line.split(',').map(|cell| cell.trim().parse().unwrap_or(f64::NAN)).collect();
+    text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(row).collect()
+}
+
+/// A printed table of `samples/published`.
+pub fn published(name: &str) -> Vec<Vec<f64>> {
+    numbers(&format!("samples/published/{name}.csv"))
+}
+
+/// Interferometer tables of X, Y, Z.
+pub fn tables() -> [ParametricTable; 3] {
+    ["x", "y", "z"].map(|axis| {
+        let rows = numbers(&format!("machine-profiles/stan_s500/interferometer_{axis}.csv"));
+        let positions = rows.iter().map(|row| row[0]).collect();
+        // µm and µm/mm, which is 1e-3 rad: both are thousandths.
+        let values = rows.iter().map(|row| std::array::from_fn(|f| row[f + 1] * 1e-3)).collect();
+        ParametricTable::new(positions, values).expect("shipped tables are tables")
+    })
+}
+
+/// Tracker traverses of one cube (48, 240 or 315 mm).
+pub fn traverses(cube: u32) -> [Traverse; 3] {
+    [(0, "x"), (1, "y"), (2, "z")].map(|(axis, name)| {
+        let rows = numbers(&format!("machine-profiles/stan_s500/tracker_{cube}_{name}.csv"));
+        Traverse {
+            axis,
+            nodes_mm: rows.iter().map(|row| row[axis]).collect(),
+            start_mm: std::array::from_fn(|c| rows[0][c]),
+            measured_mm: rows.iter().map(|row| std::array::from_fn(|c| row[3 + c])).collect(),
+            published_cosines: Some(rows.iter().map(|row| std::array::from_fn(|c| row[6 + c])).collect()),
+        }
+    })
+}
+
+/// Slope of component `c` along a traverse, least squares, mm/mm.
+pub fn slope(traverse: &Traverse, c: usize) -> f64 {
+    let n = traverse.nodes_mm.len() as f64;
+    let mean_q = traverse.nodes_mm.iter().sum::<f64>() / n;
+    let mean_p = traverse.measured_mm.iter().map(|p| p[c]).sum::<f64>() / n;
+    let (mut covariance, mut variance) = (0.0, 0.0);
+    for (q, p) in traverse.nodes_mm.iter().zip(&traverse.measured_mm) {
+        covariance += (q - mean_q) * (p[c] - mean_p);
+        variance += (q - mean_q) * (q - mean_q);
+    }
+    covariance / variance
+}
+
+/// Squareness from the directions of three traverses, ISO 230-1 signs: equation (5) read backwards.
+pub fn squareness([x, y, z]: &[Traverse; 3]) -> Squareness {
+    Squareness {
+        ec0y_rad: -(slope(y, 0) + slope(x, 1)),
+        eb0z_rad: slope(z, 0) + slope(x, 2),
+        ea0z_rad: -(slope(z, 1) + slope(y, 2)),
+    }
+}
+
+/// The rigid-body model `[w X Y b Z t]` of some tables.
+pub fn rigid_body(tables: &[ParametricTable; 3], squareness: Squareness) -> RigidBody {
+    let linear = [0, 1, 2].map(|i| {
+        let positions = tables[i].positions_mm();
+        let travel = Range { low: positions[0], high: positions[positions.len() - 1] };
+        let functions: [_; 6] = std::array::from_fn(|which| Some(tables[i].linear_table(which)));
+        LinearAxis { errors: AxisTables::new(&functions), ..LinearAxis::perfect(travel) }
+    });
+    let rotary = [0, 1, 2].map(|_| RotaryAxis::perfect(Vector::zeros()));
+    let chain = Chain::parse("[w X Y b Z t]").expect("a chain");
+    RigidBody::new(Description { chain, linear, rotary, squareness }).expect("shipped tables make a machine")
+}
+
+/// Everything the engines can be built from.
+pub fn inputs(tables: &[ParametricTable; 3], traverses: &[Traverse; 3], squareness: Squareness) -> EngineInputs {
+    EngineInputs {
+        rigid: Some(Box::new(rigid_body(tables, squareness))),
+        traverses: Some(traverses.clone()),
+        traverse_interpolation: Interpolation::Monotone,
+        tables: Some(tables.clone()),
+    }
+}
