@@ -1,1 +1,18 @@
 //! Grammar tables as values.
+//!
+//! A dialect is a file in `grammars/`: how numbers and comments are written, what each code does, what the
+//! control takes back. [`load`] reads such a text and checks it; [`builtin`] gives those that are shipped.
+//! `docs/dialects.md` explains every field and lists every code of every shipped dialect
+//! ([`describe`] writes that list).
+
+mod action;
+mod checks;
+mod describe;
+mod load;
+mod shipped;
+mod table;
+
+pub use action::{ACTION_NAMES, action_name, action_named};
+pub use describe::{Treatment, describe, treatment};
+pub use load::load;
+pub use shipped::{builtin, builtin_names};

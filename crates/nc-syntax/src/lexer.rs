@@ -107,7 +107,7 @@ impl<'d> Lexer<'d> {
         match run {
             0 => text.first().is_some_and(u8::is_ascii_digit),
             1 => false,
-            _ => !is_flow_word(&text[..run]) && !(text.get(run) == Some(&b'[') && is_function(&text[1..run])),
+            _ => !(is_flow_word(&text[..run]) || text.get(run) == Some(&b'[') && is_function(&text[1..run])),
         }
     }
 

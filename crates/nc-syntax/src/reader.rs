@@ -42,7 +42,6 @@ impl<'a> Reader<'a> {
     /// Replaces `block` by the next block; false at the end of the text, where `block` is left empty.
     ///
     /// Nothing is allocated once `block.items` has grown to the longest block.
-    #[expect(clippy::should_implement_trait, reason = "lends its result into a block that is used again")]
     pub fn next(&mut self, block: &mut Block<'a>) -> bool {
         block.items.clear();
         block.offset = self.at as u64;

@@ -1,0 +1,145 @@
+//! What the words of a grammar's `does` mean.
+
+use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
+
+/// Every word that `does` takes, in the order of the manual.
+pub const ACTION_NAMES: [&str; 36] = [
+    "rapid",
+    "line",
+    "arc-clockwise",
+    "arc-counterclockwise",
+    "dwell",
+    "plane-xy",
+    "plane-zx",
+    "plane-yz",
+    "inch",
+    "millimetre",
+    "reference",
+    "machine-coordinates",
+    "probe",
+    "compensation-off",
+    "compensation-on",
+    "length-on",
+    "length-on-negative",
+    "length-off",
+    "work-offset",
+    "drill",
+    "bore",
+    "peck-full",
+    "peck-chip",
+    "synchronised-cycle",
+    "cycle-cancel",
+    "return-initial",
+    "return-r",
+    "absolute",
+    "incremental",
+    "arc-centres-absolute",
+    "arc-centres-incremental",
+    "feed-inverse-time",
+    "feed-per-minute",
+    "feed-per-revolution",
+    "pass",
+    "pass-with-words",
+];
+
+/// The action of a name, for a code: a work offset is called what its code is called.
+#[must_use]
+pub fn action_named(name: &str, code: GCode) -> Option<Action> {
+    Some(match name {
+        "rapid" => Action::Rapid,
+        "line" => Action::Line,
+        "arc-clockwise" => Action::ArcClockwise,
+        "arc-counterclockwise" => Action::ArcCounterClockwise,
+        "dwell" => Action::Dwell,
+        "plane-xy" => Action::Plane(PlaneCode::Xy),
+        "plane-zx" => Action::Plane(PlaneCode::Zx),
+        "plane-yz" => Action::Plane(PlaneCode::Yz),
+        "inch" => Action::Inch,
+        "millimetre" => Action::Millimetre,
+        "reference" => Action::Reference,
+        "machine-coordinates" => Action::MachineCoordinates,
+        "probe" => Action::Probe,
+        "compensation-off" => Action::CompensationOff,
+        "compensation-on" => Action::CompensationOn,
+        "length-on" => Action::LengthOn,
+        "length-on-negative" => Action::LengthOnNegative,
+        "length-off" => Action::LengthOff,
+        "work-offset" => Action::WorkOffset(code.to_string()),
+        "drill" => Action::Cycle(CycleCode::Drill),
+        "bore" => Action::Cycle(CycleCode::Bore),
+        "peck-full" => Action::Cycle(CycleCode::PeckFull),
+        "peck-chip" => Action::Cycle(CycleCode::PeckChip),
+        "synchronised-cycle" => Action::Cycle(CycleCode::Synchronised),
+        "cycle-cancel" => Action::CycleCancel,
+        "return-initial" => Action::ReturnInitial,
+        "return-r" => Action::ReturnR,
+        "absolute" => Action::Absolute,
+        "incremental" => Action::Incremental,
+        "arc-centres-absolute" => Action::ArcCentresAbsolute,
+        "arc-centres-incremental" => Action::ArcCentresIncremental,
+        "feed-inverse-time" => Action::FeedInverseTime,
+        "feed-per-minute" => Action::FeedPerMinute,
+        "feed-per-revolution" => Action::FeedPerRevolution,
+        "pass" => Action::Pass { takes_words: false },
+        "pass-with-words" => Action::Pass { takes_words: true },
+        _ => return None,
+    })
+}
+
+/// The word of a grammar for an action; `refuse` for a refused one.
+#[must_use]
+pub fn action_name(action: &Action) -> &'static str {
+    match action {
+        Action::Refuse { .. } => "refuse",
+        Action::WorkOffset(_) => "work-offset",
+        // Every other action has one name whatever the code; `names_and_actions_agree` proves that one is found.
+        other => ACTION_NAMES
+            .into_iter()
+            .find(|name| action_named(name, GCode(0)).as_ref() == Some(other))
+            .unwrap_or("pass"),
+    }
+}
+
+/// The known name nearest to a misspelt one, where one is near.
+pub(crate) fn nearest(found: &str) -> Option<&'static str> {
+    let found = found.to_ascii_lowercase().replace(['_', ' '], "-");
+    let (distance, name) = ACTION_NAMES.into_iter().map(|name| (edits(&found, name), name)).min()?;
+    (distance <= 1 + name.len() / 4).then_some(name)
+}
+
+/// Number of letters to add, remove or change (Levenshtein 1966).
+fn edits(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, b) in to.iter().enumerate() {
+            let change = diagonal + usize::from(a != *b);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[to.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_actions_agree() {
+        for name in ACTION_NAMES {
+            let action = action_named(name, GCode(540)).unwrap();
+            assert_eq!(action_name(&action), name);
+        }
+    }
+
+    #[test]
+    fn a_misspelt_name_finds_its_neighbour() {
+        assert_eq!(nearest("millimeter"), Some("millimetre"));
+        assert_eq!(nearest("Arc_Clockwise"), Some("arc-clockwise"));
+        assert_eq!(nearest("peck"), None);
+        assert_eq!(edits("kitten", "sitting"), 3);
+    }
+}

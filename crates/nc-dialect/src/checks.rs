@@ -1,0 +1,119 @@
+//! What must hold in a grammar beyond its shape.
+
+use diagnostic::{Code, Diagnostic};
+use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use toml::Spanned;
+
+use crate::load::wide;
+use crate::table::Grammar;
+
+/// The start codes as codes of the table, one per modal group.
+pub(crate) fn start_codes(
+    written: &[Spanned<String>],
+    codes: &[CodeEntry],
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<GCode> {
+    let mut found: Vec<&CodeEntry> = Vec::new();
+    for code in written {
+        let name = code.get_ref();
+        let problem = match codes.iter().find(|entry| entry.code.to_string() == *name) {
+            None => format!("`{name}` has no row in [codes]"),
+            Some(entry) if matches!(entry.action, Action::Refuse { .. }) => {
+                format!("`{name}` is a refused code")
+            }
+            Some(entry) if entry.group == 0 => format!("`{name}` holds for one block only (group 0)"),
+            Some(entry) => match found.iter().find(|other| other.group == entry.group) {
+                Some(other) => format!("`{name}` excludes {}, of the same group", other.code),
+                None => {
+                    found.push(entry);
+                    continue;
+                }
+            },
+        };
+        wrong.push(
+            Diagnostic::error(Code(807), format!("{problem}: it cannot hold at the start"))
+                .at(wide(code.span()), "expected a modal code of the table")
+                .help("write codes as the table writes them: `G17`, not `G017`"),
+        );
+    }
+    found.into_iter().map(|entry| entry.code).collect()
+}
+
+/// Letters are capitals, each once, and the ones nothing works without are there.
+pub(crate) fn letters(written: &Spanned<String>, wrong: &mut Vec<Diagnostic>) {
+    let text = written.get_ref();
+    let problem = if let Some(bad) = text.chars().find(|c| !c.is_ascii_uppercase()) {
+        Some(format!("`{bad}` is not a capital letter"))
+    } else if let Some((_, twice)) = text.char_indices().find(|(at, c)| text[..*at].contains(*c)) {
+        Some(format!("`{twice}` stands twice"))
+    } else {
+        "GMNXYZF".chars().find(|c| !text.contains(*c)).map(|missing| format!("`{missing}` is missing"))
+    };
+    if let Some(problem) = problem {
+        wrong.push(
+            Diagnostic::error(Code(808), format!("these cannot be the letters of words: {problem}"))
+                .at(wide(written.span()), "expected each letter of a word once")
+                .help("letters = \"ABCDEFGHIJKLMNOPQRSTUVWXYZ\" takes all"),
+        );
+    }
+}
+
+/// Numbers within what a control or this program can mean.
+pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
+    let (numbers, cycles, output) = (&grammar.numbers, &grammar.cycles, &grammar.output);
+    let mut report = |span: std::ops::Range<usize>, message: String, expected: &str| {
+        wrong.push(Diagnostic::error(Code(806), message).at(wide(span), expected));
+    };
+    for (what, decimals) in [
+        ("least_increment_decimals_mm", &numbers.least_increment_decimals_mm),
+        ("least_increment_decimals_inch", &numbers.least_increment_decimals_inch),
+        ("decimals_inch", &output.decimals_inch),
+        ("decimals_feed", &output.decimals_feed),
+    ] {
+        if *decimals.get_ref() > 9 {
+            report(
+                decimals.span(),
+                format!("{what} = {} is no control's resolution", decimals.get_ref()),
+                "expected 0 to 9",
+            );
+        }
+    }
+    for (what, length, most) in [
+        ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
+        ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
+        ("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0),
+    ] {
+        let found = *length.get_ref();
+        // Written so that NaN is refused too.
+        if !(found > 0.0 && found <= most) {
+            report(
+                length.span(),
+                format!("{what} = {found} is out of range"),
+                &format!("expected above 0, up to {most} mm"),
+            );
+        }
+    }
+    if *output.max_block_number.get_ref() == 0 {
+        report(
+            output.max_block_number.span(),
+            "max_block_number = 0 leaves no number".to_owned(),
+            "expected 9999 or more",
+        );
+    }
+    if !output.centre_words.get_ref() && !output.radius_word {
+        report(
+            output.centre_words.span(),
+            "no form of arc is left".to_owned(),
+            "expected centre_words or radius_word",
+        );
+    }
+    if let Some(mark) = &grammar.text.block_delete
+        && !mark.get_ref().is_ascii_punctuation()
+    {
+        report(
+            mark.span(),
+            format!("`{}` cannot mark a deleted block", mark.get_ref()),
+            "expected a mark like \"/\"",
+        );
+    }
+}

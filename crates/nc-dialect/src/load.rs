@@ -1,0 +1,274 @@
+//! TOML text to a dialect.
+
+use std::ops::Range;
+
+use diagnostic::{Code, Diagnostic};
+use nc_syntax::Dialect;
+use nc_syntax::dialect::{
+    Action, CodeEntry, Command, CycleLevels, GCode, MCode, Numbers, Output, Paren, PointFree, Semicolon,
+};
+use toml::Spanned;
+
+use crate::action::{ACTION_NAMES, action_named, nearest};
+use crate::checks;
+use crate::table::{
+    CodeRow, CommandRow, Grammar, Levels, MRow, RoundBrackets, SemicolonRule, WithoutH, WithoutPoint,
+};
+
+/// Reads a grammar.
+///
+/// `name` is the dialect's name: the file's name without ending. Spans of the diagnostics are bytes of `text`.
+///
+/// # Errors
+/// All that is wrong, in the order of the file: VP0801 what TOML or the field list refuses (alone: the rest is
+/// not read then), VP0802 a key that is no code, VP0803 a code twice, VP0804 an unknown action, VP0805 a row
+/// that neither says what the code does nor why it is refused, VP0806 a number out of range, VP0807 start codes
+/// that the table lacks or that exclude each other, VP0808 letters that cannot be words.
+pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
+    let grammar: Grammar = toml::from_str(text).map_err(|error| vec![refused_by_toml(&error)])?;
+    let mut wrong = Vec::new();
+    let mut codes = Vec::new();
+    let mut m_codes = Vec::new();
+    let mut commands = Vec::new();
+    for (key, row) in &grammar.codes {
+        match number_behind(key.get_ref(), 'G').and_then(tenths) {
+            None => wrong.push(no_code(key, "G81 or \"G54.1\"")),
+            Some(code) => match action(GCode(code), key, row) {
+                Err(diagnostic) => wrong.push(diagnostic),
+                Ok(action) => {
+                    codes.push((key.span(), CodeEntry { code: GCode(code), group: row.group, action }))
+                }
+            },
+        }
+    }
+    for (key, row) in &grammar.m_codes {
+        match number_behind(key.get_ref(), 'M').and_then(|digits| digits.parse().ok()) {
+            None => wrong.push(no_code(key, "M6")),
+            Some(number) => match m_code(number, key, row) {
+                Err(diagnostic) => wrong.push(diagnostic),
+                Ok(code) => m_codes.push((key.span(), code)),
+            },
+        }
+    }
+    for (key, row) in &grammar.commands {
+        match command(key, row) {
+            Err(diagnostic) => wrong.push(diagnostic),
+            Ok(found) => commands.push((key.span(), found)),
+        }
+    }
+    let codes = unique(codes, |entry| entry.code, &mut wrong);
+    let m_codes = unique(m_codes, |entry| entry.number, &mut wrong);
+    let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
+    let initial = checks::start_codes(&grammar.start.codes, &codes, &mut wrong);
+    checks::letters(&grammar.text.letters, &mut wrong);
+    checks::numbers(&grammar, &mut wrong);
+    if !wrong.is_empty() {
+        wrong.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
+        return Err(wrong);
+    }
+    Ok(dialect(name, grammar, codes, m_codes, commands, initial))
+}
+
+/// The table as a value, once nothing in it is wrong.
+fn dialect(
+    name: &str,
+    grammar: Grammar,
+    codes: Vec<CodeEntry>,
+    m_codes: Vec<MCode>,
+    commands: Vec<Command>,
+    initial: Vec<GCode>,
+) -> Dialect {
+    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, .. } = grammar;
+    let mut letters = text.letters.into_inner().into_bytes();
+    letters.sort_unstable();
+    Dialect {
+        name: name.to_owned(),
+        title,
+        assumptions,
+        paren: match text.round_brackets {
+            RoundBrackets::None => Paren::None,
+            RoundBrackets::Comment => Paren::Comment { nested: false },
+            RoundBrackets::NestedComment => Paren::Comment { nested: true },
+            RoundBrackets::Command => Paren::Command,
+        },
+        semicolon: match text.semicolon {
+            SemicolonRule::None => Semicolon::None,
+            SemicolonRule::Comment => Semicolon::Comment,
+            SemicolonRule::EndOfBlock => Semicolon::EndOfBlock,
+        },
+        skip: text.block_delete.and_then(|mark| u8::try_from(mark.into_inner()).ok()),
+        colon_number: text.colon_number,
+        equals_words: text.equals_words,
+        letters,
+        numbers: Numbers {
+            point_free: match numbers.without_point {
+                WithoutPoint::Unit => PointFree::Unit,
+                WithoutPoint::LeastIncrement => PointFree::LeastIncrement,
+            },
+            least_increment_decimals_mm: numbers.least_increment_decimals_mm.into_inner(),
+            least_increment_decimals_inch: numbers.least_increment_decimals_inch.into_inner(),
+            spaces_inside: numbers.spaces_inside,
+        },
+        codes,
+        m_codes,
+        commands,
+        initial,
+        cycle_levels: match cycles.levels {
+            Levels::Held => CycleLevels::Held,
+            Levels::Reread => CycleLevels::Reread,
+            Levels::Unstated => CycleLevels::Unstated,
+        },
+        length_of_loaded_tool: tool_length.without_h == WithoutH::LoadedTool,
+        output: Output {
+            decimals_inch: output.decimals_inch.into_inner(),
+            decimals_feed: output.decimals_feed.into_inner(),
+            max_block_bytes: output.max_block_bytes,
+            number_inserted_blocks: output.number_inserted_blocks,
+            max_block_number: output.max_block_number.into_inner(),
+            centre_words: output.centre_words.into_inner(),
+            radius_word: output.radius_word,
+            arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
+            peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
+            chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
+        },
+    }
+}
+
+fn refused_by_toml(error: &toml::de::Error) -> Diagnostic {
+    let diagnostic =
+        Diagnostic::error(Code(801), format!("the grammar cannot be read: {}", error.message().trim()))
+            .help("docs/dialects.md lists every field of a grammar");
+    match error.span() {
+        Some(span) => diagnostic.at(wide(span), "here"),
+        None => diagnostic,
+    }
+}
+
+pub(crate) fn wide(span: Range<usize>) -> Range<u64> {
+    span.start as u64..span.end as u64
+}
+
+/// Digits (and point) behind the letter.
+fn number_behind(key: &str, letter: char) -> Option<&str> {
+    key.strip_prefix(letter).filter(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
+}
+
+/// `54.1` is 541.
+fn tenths(digits: &str) -> Option<u16> {
+    let (whole, tenth) = match digits.split_once('.') {
+        None => (digits, 0),
+        Some((whole, tenth)) if tenth.len() == 1 => (whole, tenth.parse().ok()?),
+        Some(_) => return None,
+    };
+    let whole: u16 = whole.parse().ok()?;
+    whole.checked_mul(10)?.checked_add(tenth)
+}
+
+fn no_code(key: &Spanned<String>, example: &str) -> Diagnostic {
+    Diagnostic::error(Code(802), format!("`{}` is not a code", key.get_ref()))
+        .at(wide(key.span()), format!("expected a key like {example}"))
+        .help("write the capital letter and the number; keys with a point stand in quotes")
+}
+
+fn action(code: GCode, key: &Spanned<String>, row: &CodeRow) -> Result<Action, Diagnostic> {
+    if let Some(refusal) = refusal(key, row.does.is_some(), row.refuse.as_deref(), row.help.as_deref())? {
+        return Ok(Action::Refuse { reason: refusal.0, help: refusal.1 });
+    }
+    let Some(does) = &row.does else {
+        return Err(Diagnostic::error(
+            Code(805),
+            format!("{code} says neither what it does nor why it is refused"),
+        )
+        .at(wide(key.span()), "expected `does`, or `refuse` with `help`")
+        .help(format!(
+            "write `{} = {{ group = {}, does = \"pass\" }}` if it moves nothing",
+            key.get_ref(),
+            row.group
+        )));
+    };
+    action_named(does.get_ref(), code).ok_or_else(|| {
+        let nearest =
+            nearest(does.get_ref()).map_or(String::new(), |name| format!("did you mean \"{name}\"? "));
+        Diagnostic::error(Code(804), format!("`{}` is not something a code does", does.get_ref()))
+            .at(wide(does.span()), format!("{code} cannot do this"))
+            .help(format!("{nearest}known are: {}", ACTION_NAMES.join(", ")))
+    })
+}
+
+/// Reason and way out, where a row refuses; both or neither must be there.
+fn refusal(
+    key: &Spanned<String>,
+    does: bool,
+    refuse: Option<&str>,
+    help: Option<&str>,
+) -> Result<Option<(String, String)>, Diagnostic> {
+    let name = key.get_ref();
+    let wrong =
+        |message: String, label: &str| Err(Diagnostic::error(Code(805), message).at(wide(key.span()), label));
+    match (refuse, help) {
+        (Some(_), _) if does => {
+            wrong(format!("{name} both does something and is refused"), "keep one of the two")
+        }
+        (Some(reason), Some(help)) => Ok(Some((reason.to_owned(), help.to_owned()))),
+        (Some(_), None) => {
+            wrong(format!("{name} is refused without a way out"), "add `help`: what the user can do")
+        }
+        (None, Some(_)) => {
+            wrong(format!("{name} has a way out but is not refused"), "add `refuse` or remove `help`")
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagnostic> {
+    let mut loses_position = [false; 3];
+    if let Some(axes) = &row.loses_position {
+        for axis in axes.get_ref().chars() {
+            let Some(index) = "XYZ".find(axis) else {
+                return Err(Diagnostic::error(Code(806), format!("`{axis}` is not a linear axis"))
+                    .at(wide(axes.span()), "expected some of X, Y, Z"));
+            };
+            loses_position[index] = true;
+        }
+    }
+    let refuse = refusal(key, false, row.refuse.as_deref(), row.help.as_deref())?;
+    Ok(MCode {
+        number,
+        after_motion: row.after_motion,
+        loses_position,
+        ends_program: row.ends_program,
+        refuse,
+    })
+}
+
+fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnostic> {
+    let name = key.get_ref();
+    let sound = name.len() > 1
+        && name.starts_with(|c: char| c.is_ascii_uppercase())
+        && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
+    if !sound {
+        return Err(Diagnostic::error(Code(802), format!("`{name}` is not a command's name"))
+            .at(wide(key.span()), "expected capital letters, at least two"));
+    }
+    let refuse = refusal(key, false, row.refuse.as_deref(), row.help.as_deref())?;
+    Ok(Command { name: name.clone(), refuse })
+}
+
+/// Sorted rows; a second row of the same code is reported at its key.
+fn unique<T, K: Ord>(
+    mut rows: Vec<(Range<usize>, T)>,
+    key: impl Fn(&T) -> K,
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<T> {
+    rows.sort_by(|(at, a), (bt, b)| key(a).cmp(&key(b)).then(at.start.cmp(&bt.start)));
+    for pair in rows.windows(2) {
+        if key(&pair[0].1) == key(&pair[1].1) {
+            wrong.push(
+                Diagnostic::error(Code(803), "a code stands twice in the table")
+                    .at(wide(pair[1].0.clone()), "the same code as in another row")
+                    .help("remove one of the rows: `G1` and `G01` are the same code"),
+            );
+        }
+    }
+    rows.into_iter().map(|(_, row)| row).collect()
+}

@@ -1,0 +1,158 @@
+//! The shape of a grammar file.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// The whole file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Grammar {
+    pub(crate) title: String,
+    #[serde(default)]
+    pub(crate) assumptions: Vec<String>,
+    pub(crate) text: Text,
+    pub(crate) numbers: NumberRules,
+    pub(crate) start: Start,
+    pub(crate) cycles: Cycles,
+    pub(crate) tool_length: ToolLength,
+    pub(crate) output: OutputRules,
+    pub(crate) codes: BTreeMap<Spanned<String>, CodeRow>,
+    #[serde(default)]
+    pub(crate) m_codes: BTreeMap<Spanned<String>, MRow>,
+    #[serde(default)]
+    pub(crate) commands: BTreeMap<Spanned<String>, CommandRow>,
+}
+
+/// How a block is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Text {
+    pub(crate) round_brackets: RoundBrackets,
+    pub(crate) semicolon: SemicolonRule,
+    pub(crate) block_delete: Option<Spanned<char>>,
+    #[serde(default)]
+    pub(crate) colon_number: bool,
+    #[serde(default)]
+    pub(crate) equals_words: bool,
+    pub(crate) letters: Spanned<String>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RoundBrackets {
+    None,
+    Comment,
+    NestedComment,
+    Command,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum SemicolonRule {
+    None,
+    Comment,
+    EndOfBlock,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum WithoutPoint {
+    Unit,
+    LeastIncrement,
+}
+
+/// How numbers are written and read.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NumberRules {
+    pub(crate) without_point: WithoutPoint,
+    pub(crate) least_increment_decimals_mm: Spanned<u8>,
+    pub(crate) least_increment_decimals_inch: Spanned<u8>,
+    #[serde(default)]
+    pub(crate) spaces_inside: bool,
+}
+
+/// State at the start of a program.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Start {
+    pub(crate) codes: Vec<Spanned<String>>,
+}
+
+/// Drilling cycles.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Cycles {
+    pub(crate) levels: Levels,
+    pub(crate) peck_clearance_mm: Spanned<f64>,
+    pub(crate) chip_retreat_mm: Spanned<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Levels {
+    Held,
+    Reread,
+    Unstated,
+}
+
+/// G43.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ToolLength {
+    pub(crate) without_h: WithoutH,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum WithoutH {
+    Refused,
+    LoadedTool,
+}
+
+/// What the control takes back.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OutputRules {
+    pub(crate) decimals_inch: Spanned<u8>,
+    pub(crate) decimals_feed: Spanned<u8>,
+    pub(crate) max_block_bytes: u32,
+    pub(crate) number_inserted_blocks: bool,
+    pub(crate) max_block_number: Spanned<u32>,
+    pub(crate) centre_words: Spanned<bool>,
+    pub(crate) radius_word: bool,
+    pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
+}
+
+/// One G code: `does`, or `refuse` with `help`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CodeRow {
+    pub(crate) group: u8,
+    pub(crate) does: Option<Spanned<String>>,
+    pub(crate) refuse: Option<String>,
+    pub(crate) help: Option<String>,
+}
+
+/// One M code that is more than text.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MRow {
+    #[serde(default)]
+    pub(crate) after_motion: bool,
+    pub(crate) loses_position: Option<Spanned<String>>,
+    #[serde(default)]
+    pub(crate) ends_program: bool,
+    pub(crate) refuse: Option<String>,
+    pub(crate) help: Option<String>,
+}
+
+/// One command by name; passes unless refused.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CommandRow {
+    pub(crate) refuse: Option<String>,
+    pub(crate) help: Option<String>,
+}
