@@ -81,12 +81,12 @@ fn program(text: &str, edits: &[(u64, &[&str])]) -> String {
         match edits.iter().find(|(line, _)| *line == block.line) {
             Some((_, pieces)) => {
                 let pieces: Vec<Piece> = pieces.iter().map(|text| piece(text)).collect();
-                emitter.rewrite(block, &pieces, &mut out).unwrap();
+                emitter.rewrite(block, &pieces, &mut out).expect("rewritten");
             }
             None => emitter.pass(block, &mut out),
         }
     }
-    String::from_utf8(out).unwrap()
+    String::from_utf8(out).expect("text")
 }
 
 #[test]
