@@ -104,7 +104,9 @@ pub fn build(id: EngineId, inputs: EngineInputs) -> Result<Box<dyn Engine>, Buil
     let tables = || lacks("the error tables of X, Y and Z", "[axis.X], [axis.Y] and [axis.Z] with errors");
     Ok(match id {
         EngineId::RigidBody => {
-            return inputs.rigid.ok_or_else(|| lacks("a kinematic chain", "chain and [axis.…]"));
+            return inputs
+                .rigid
+                .ok_or_else(|| lacks("a kinematic chain", "`chain` and [axis.X], [axis.Y], [axis.Z]"));
         }
         EngineId::Tracker => {
             let interpolation = inputs.traverse_interpolation;

@@ -7,7 +7,9 @@
 use std::path::{Path, PathBuf};
 
 use machine_model::engines::{EngineInputs, ParametricTable};
-use machine_model::{AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis};
+use machine_model::{
+    AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis,
+};
 use machine_model::{Squareness, Traverse, Vector};
 
 fn root() -> PathBuf {
@@ -90,7 +92,11 @@ pub fn rigid_body(tables: &[ParametricTable; 3], squareness: Squareness) -> Rigi
 }
 
 /// Everything the engines can be built from.
-pub fn inputs(tables: &[ParametricTable; 3], traverses: &[Traverse; 3], squareness: Squareness) -> EngineInputs {
+pub fn inputs(
+    tables: &[ParametricTable; 3],
+    traverses: &[Traverse; 3],
+    squareness: Squareness,
+) -> EngineInputs {
     EngineInputs {
         rigid: Some(Box::new(rigid_body(tables, squareness))),
         traverses: Some(traverses.clone()),
