@@ -1,0 +1,68 @@
+//! Numbers of this room's diagnostics, with cause and remedy; `docs/diagnostics.md` lists them.
+
+use diagnostic::Code;
+
+/// Bytes of the block are neither a word nor a comment. Cause: a damaged file, or another dialect.
+/// Remedy: correct the text or choose the dialect with `--dialect`.
+pub const UNREADABLE: Code = Code(201);
+/// A variable, an expression or program flow stands where a number is needed. Cause: a macro program.
+/// Remedy: post the program with plain numbers.
+pub const NOT_STATIC: Code = Code(202);
+/// The R of an arc is smaller than half the chord from start to end, by more than the dialect's
+/// tolerance. Remedy: I/J/K, or a larger R.
+pub const RADIUS_TOO_SMALL: Code = Code(203);
+/// An arc has neither centre words nor R. Cause: a post processor that drops unchanged I and J (FreeCAD's
+/// fanuc posts). Remedy: post again with the centre on each arc block.
+pub const ARC_WITHOUT_CENTRE: Code = Code(204);
+/// Start and end of an arc lie at different distances from its centre, by more than the dialect's
+/// tolerance. Remedy: correct the end or the centre; look for the wrong G90.1/G91.1 mode.
+pub const RADII_DIFFER: Code = Code(205);
+/// The words of an arc contradict each other: R and a centre, a centre word of another plane, a full
+/// circle by R, a start on the centre, several turns by P, half a centre under G90.1.
+pub const ARC_WORDS: Code = Code(206);
+/// The dialect's table has no such G code, and it may move an axis. Remedy: a row in a copy of the
+/// grammar, given with `--dialect`.
+pub const UNKNOWN_CODE: Code = Code(207);
+/// The dialect's table refuses this G or M code, and says why.
+pub const REFUSED_CODE: Code = Code(208);
+/// Two codes of one modal group stand in one block. Remedy: two blocks.
+pub const SAME_GROUP: Code = Code(209);
+/// A letter stands twice in one block. Remedy: remove one of the two words.
+pub const LETTER_TWICE: Code = Code(210);
+/// A word has no number, or not the whole number it needs.
+pub const BAD_NUMBER: Code = Code(211);
+/// Axis words without a motion code in force. Remedy: G0, G1, G2 or G3 in the block.
+pub const NO_MOTION_CODE: Code = Code(212);
+/// A motion needs the position of an axis that nobody knows here: at the start of the program, after a
+/// reference return, a tool change, a probe move or a skipped block. Remedy: a rapid that names the
+/// axis in absolute coordinates, or `--start-at`.
+pub const POSITION_UNKNOWN: Code = Code(213);
+/// The work offset in force is neither in the profile nor on the command line.
+/// Remedy: `--work-offset G54=X,Y,Z`.
+pub const WORK_OFFSET: Code = Code(214);
+/// The tool length in force is neither in the profile nor on the command line, or G43 does not say
+/// which one. Remedy: `--tool H1=120`, or an H word.
+pub const TOOL_LENGTH: Code = Code(215);
+/// A drilling cycle has no depth Z or no level R. Remedy: both on the block that starts the cycle.
+pub const CYCLE_INCOMPLETE: Code = Code(216);
+/// Words of a drilling cycle that cannot be honoured as they stand.
+pub const CYCLE_WORDS: Code = Code(217);
+/// Under G93 a feed motion has no F of its own, or not a positive one.
+pub const INVERSE_TIME: Code = Code(218);
+/// A rotary axis is programmed that the profile's chain does not have.
+pub const NO_SUCH_AXIS: Code = Code(219);
+/// Rotary and linear axes move together at feed rate: no path correction is available for that.
+pub const SIMULTANEOUS: Code = Code(220);
+/// U, V or W: increments on some controls, axes on others.
+pub const SECONDARY_AXIS: Code = Code(221);
+/// After a block with block delete the program may be in two states that cannot both be served.
+/// Remedy: repeat the setting in a block of its own that is always executed.
+pub const BLOCK_DELETE: Code = Code(222);
+/// The words of a block may belong to more than one of its codes. Remedy: two blocks.
+pub const WORDS_OF_TWO: Code = Code(223);
+/// A command in brackets; it may move the frame.
+pub const BRACKET_COMMAND: Code = Code(224);
+/// I, J, K or R in a block that is no arc and no cycle: a corner rounding on some controls.
+pub const STRAY_ARC_WORD: Code = Code(225);
+/// A rapid cannot be combined with what its block also does (tool change with motion, G53 in a cycle).
+pub const COMBINATION: Code = Code(226);

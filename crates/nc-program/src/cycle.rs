@@ -1,0 +1,240 @@
+//! Drilling cycles: which blocks make a hole, and where.
+
+use nc_syntax::dialect::{CycleCode, CycleLevels};
+use smallvec::SmallVec;
+use toolpath::{Cycle, CycleKind, Hole, Motion, Position};
+
+use crate::codes;
+use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
+use crate::motion::{Motions, rate};
+use crate::position::{end, increment_base, require_known, require_shift};
+use crate::settings::Environment;
+use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
+
+/// Levels that differ by less are the same.
+const SAME_LEVEL_MM: f64 = 1e-6;
+/// More holes than a control repeats in one block.
+const MOST_REPEATS: u32 = 9999;
+
+const K: Letters = Letters::of(b"K");
+const L: Letters = Letters::of(b"L");
+const Q: Letters = Letters::of(b"Q");
+const R: Letters = Letters::of(b"R");
+
+/// True where the block makes a hole: an axis word or R. F, S, M, P alone make none.
+pub(crate) fn makes_hole(words: &Words<'_, '_, '_>) -> bool {
+    words.has(AXIS_LETTERS.or(R))
+}
+
+/// How often the block is repeated: K or L, else once.
+pub(crate) fn repeats(words: &Words<'_, '_, '_>) -> Outcome<u32> {
+    let (k, l) = (words.whole(b'K')?, words.whole(b'L')?);
+    let both = K.or(L);
+    if k.is_some() && l.is_some() {
+        return Err(words
+            .refuse(codes::CYCLE_WORDS, "K and L both count repetitions", words.span(both), "which one?")
+            .help("remove one of the two"));
+    }
+    let count = k.or(l).unwrap_or(1);
+    if count > MOST_REPEATS {
+        let message = format!("{count} repetitions of a drilling cycle");
+        return Err(words
+            .refuse(codes::CYCLE_WORDS, message, words.span(both), format!("at most {MOST_REPEATS}"))
+            .help("split the block"));
+    }
+    Ok(count)
+}
+
+/// The holes of a block while `state.cycle` is in force.
+///
+/// The levels: R absolute, or under G91 from the initial level; the bottom absolute, or under G91 from R.
+/// With a count of zero the words are stored and nothing moves.
+pub(crate) fn holes(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    mut cycle: CycleState,
+    count: u32,
+) -> Outcome<Motions> {
+    if state.feed_mode == FeedMode::InverseTime {
+        return Err(words
+            .refuse(
+                codes::INVERSE_TIME,
+                "a drilling cycle under G93",
+                words.span(AXIS_LETTERS),
+                "no control feeds a cycle by inverse time",
+            )
+            .help("program G94 before it"));
+    }
+    let shift = require_shift(env, words, state)?;
+    let [first, second, normal] = state.plane.axes();
+    read_words(words, state, &mut cycle, normal, &shift)?;
+    state.cycle = Some(cycle);
+    if count == 0 {
+        return Ok(Motions::new());
+    }
+    let ends = end(words, state, &shift)?;
+    if words.has(ROTARY_LETTERS) && ends.rotary != state.axes.rotary {
+        return Err(words
+            .refuse(
+                codes::SIMULTANEOUS,
+                "a rotary axis turns in a drilling cycle",
+                words.span(ROTARY_LETTERS),
+                "turns here",
+            )
+            .help("turn the rotary axis in a block of its own before the cycle"));
+    }
+    let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
+    let mut at = require_known(words, &state.axes, "the drilling cycle")?;
+    // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
+    // first hole finds the axis known, the start of the series did.
+    let initial_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
+    // Controls end a cycle at the level further from the bottom.
+    let initial_mm = if r_mm >= bottom_mm { initial_mm.max(r_mm) } else { initial_mm.min(r_mm) };
+    let parameters = Cycle {
+        kind: kind(cycle.kind),
+        peck_mm: cycle.peck_mm,
+        dwell: cycle.dwell,
+        return_to_initial: state.return_level == ReturnLevel::Initial,
+    };
+    let mut motions: Motions = SmallVec::with_capacity(count as usize);
+    for _ in 0..count {
+        let mut at_r = at;
+        at_r.linear_mm[normal] = r_mm;
+        for axis in [first, second] {
+            at_r.linear_mm[axis] = next(words, state, axis, at.linear_mm[axis], &ends);
+        }
+        let hole = Hole {
+            plane: state.plane,
+            start: at,
+            at_r,
+            bottom_mm,
+            initial_mm,
+            cycle: parameters,
+            rate: rate(state, 0.0),
+        };
+        at = hole.end();
+        motions.push(Motion::Hole(hole));
+    }
+    state.axes = position(at);
+    Ok(motions)
+}
+
+/// Where an axis of the plane goes for the next hole: under G91 on from the last one.
+fn next(words: &Words<'_, '_, '_>, state: &Modal, axis: usize, from_mm: f64, ends: &Axes) -> f64 {
+    match (state.distance, words.coordinate(LINEAR[axis], state.units == Units::Inch)) {
+        (Distance::Incremental, Some(value)) => from_mm + value * state.units.mm(),
+        (_, _) => ends.linear[axis].known().unwrap_or(from_mm),
+    }
+}
+
+fn position(at: Position) -> Axes {
+    Axes { linear: at.linear_mm.map(Axis::At), rotary: at.rotary_deg.map(Axis::At) }
+}
+
+/// Takes R, the depth, Q and P into the cycle.
+fn read_words(
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    cycle: &mut CycleState,
+    normal: usize,
+    shift_mm: &[f64; 3],
+) -> Outcome<()> {
+    let inch = state.units == Units::Inch;
+    let unit_mm = state.units.mm();
+    let incremental = state.distance == Distance::Incremental;
+    if let Some(value) = words.coordinate(b'R', inch) {
+        let word_mm = value * unit_mm;
+        let level_mm = if incremental {
+            increment_base(words, cycle.initial, normal)? + word_mm
+        } else {
+            word_mm + shift_mm[normal]
+        };
+        cycle.retract = Some(Level { word_mm, incremental, level_mm });
+    }
+    if let Some(value) = words.coordinate(LINEAR[normal], inch) {
+        let word_mm = value * unit_mm;
+        let level_mm = if incremental {
+            let Some(retract) = cycle.retract else { return Err(incomplete(words, "R")) };
+            retract.level_mm + word_mm
+        } else {
+            word_mm + shift_mm[normal]
+        };
+        cycle.bottom = Some(Level { word_mm, incremental, level_mm });
+    }
+    if let Some(value) = words.coordinate(b'Q', inch) {
+        if value == 0.0 && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
+            return Err(words
+                .refuse(codes::CYCLE_WORDS, "a peck of depth zero", words.span(Q), "Q must not be 0")
+                .help("write the depth of one peck"));
+        }
+        cycle.peck_mm = Some((value * unit_mm).abs());
+    }
+    if let Some(value) = words.plain(b'P') {
+        cycle.dwell = value > 0.0;
+    }
+    Ok(())
+}
+
+/// R level and bottom, axis commands in mm, as the dialect carries them on.
+fn levels(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    cycle: &CycleState,
+    normal: usize,
+    shift_mm: &[f64; 3],
+) -> Outcome<(f64, f64)> {
+    let Some(retract) = cycle.retract else { return Err(incomplete(words, "R")) };
+    let Some(bottom) = cycle.bottom else {
+        return Err(incomplete(words, &(LINEAR[normal] as char).to_string()));
+    };
+    let held = (retract.level_mm, bottom.level_mm);
+    let reread = match state.distance {
+        Distance::Absolute => (retract.word_mm + shift_mm[normal], bottom.word_mm + shift_mm[normal]),
+        Distance::Incremental => {
+            let r_mm = increment_base(words, cycle.initial, normal)? + retract.word_mm;
+            (r_mm, r_mm + bottom.word_mm)
+        }
+    };
+    let same = (held.0 - reread.0).abs() < SAME_LEVEL_MM && (held.1 - reread.1).abs() < SAME_LEVEL_MM;
+    // A new R under G91 with the depth left out: does the bottom move with R? No manual says.
+    let depth_may_follow = words.has(R) && !words.has(Letters::of(&[LINEAR[normal]])) && bottom.incremental;
+    match env.dialect.cycle_levels {
+        _ if same => Ok(held),
+        CycleLevels::Reread => Ok(reread),
+        CycleLevels::Held if !depth_may_follow => Ok(held),
+        CycleLevels::Held | CycleLevels::Unstated => {
+            let depth = LINEAR[normal] as char;
+            let message = format!(
+                "R and {depth} were written under another of G90 and G91, and controls differ in what they mean now"
+            );
+            Err(words
+                .refuse(
+                    codes::CYCLE_WORDS,
+                    message,
+                    words.span(AXIS_LETTERS.or(R)),
+                    format!("R and {depth} are taken from an earlier block"),
+                )
+                .help(format!("write R and {depth} again in this block")))
+        }
+    }
+}
+
+fn incomplete(words: &Words<'_, '_, '_>, missing: &str) -> Box<diagnostic::Diagnostic> {
+    let message = format!("the drilling cycle has no {missing}");
+    let label = format!("{missing} was expected here or in an earlier block of this cycle");
+    words
+        .refuse(codes::CYCLE_INCOMPLETE, message, words.span(AXIS_LETTERS.or(R)), label)
+        .help(format!("write {missing} on the block that starts the cycle"))
+}
+
+const fn kind(code: CycleCode) -> CycleKind {
+    match code {
+        CycleCode::Drill => CycleKind::Drill,
+        CycleCode::Bore => CycleKind::Bore,
+        CycleCode::PeckFull => CycleKind::PeckFull,
+        CycleCode::PeckChip => CycleKind::PeckChip,
+        CycleCode::Synchronised => CycleKind::Synchronised,
+    }
+}

@@ -1,0 +1,128 @@
+//! Block delete: one text, two states.
+//!
+//! The switch on the panel decides whether a block with `/` is executed. What follows must be right in
+//! both cases: what differs afterwards is forgotten where forgetting is enough (a later block that needs
+//! it is refused, one that names all axes makes both states equal again), and refused where it is not.
+
+use crate::codes;
+use crate::modal::{
+    Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ToolLength, Units, Why,
+};
+use crate::words::{Letters, Outcome, Words};
+
+/// The state after a block that may be skipped.
+///
+/// * `skipped` – the state before the block
+/// * `executed` – the state after it
+/// * `moved` – the block moves an axis: even where both states then agree on the programmed position,
+///   the corrected one of an axis the block did not name may differ, so all are forgotten
+pub(crate) fn merge(
+    words: &Words<'_, '_, '_>,
+    skipped: &Modal,
+    executed: &Modal,
+    moved: bool,
+) -> Outcome<Modal> {
+    let line = words.block.line;
+    let mut both = *skipped;
+    if executed.motion != skipped.motion {
+        both.motion = MotionMode::Undecided { line };
+    }
+    if executed.tool_selected != skipped.tool_selected {
+        both.tool_selected = None;
+    }
+    if executed.tool_loaded != skipped.tool_loaded {
+        both.tool_loaded = None;
+    }
+    let lost = Axis::Unknown(Lost { why: Why::BlockDelete, line });
+    if moved {
+        both.axes.linear = [lost; 3];
+    }
+    for i in 0..3 {
+        if executed.axes.rotary[i] != skipped.axes.rotary[i] {
+            both.axes.rotary[i] = lost;
+        }
+    }
+    // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
+    both.progress = Progress::Running;
+    match difference(skipped, executed) {
+        None => Ok(both),
+        Some((with, without)) => {
+            let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"HXYZ")), |code| code.span);
+            let message = format!(
+                "after this block {with} or {without} is in force, depending on the block delete switch"
+            );
+            Err(words
+                .refuse(
+                    codes::BLOCK_DELETE,
+                    message,
+                    span,
+                    format!("{with} where executed, {without} where skipped"),
+                )
+                .help("write the code in a block without `/`, so that both ways lead to one state"))
+        }
+    }
+}
+
+/// What is in force after execution and after skipping, where the two cannot be served by one text.
+fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
+    fn pair<T: PartialEq>(with: &T, without: &T, name: impl Fn(&T) -> String) -> Option<(String, String)> {
+        (with != without).then(|| (name(with), name(without)))
+    }
+    let (with, without) = (executed, skipped);
+    pair(&with.distance, &without.distance, |v| {
+        match v {
+            Distance::Absolute => "G90",
+            Distance::Incremental => "G91",
+        }
+        .to_owned()
+    })
+    .or_else(|| {
+        pair(&with.units, &without.units, |v| {
+            match v {
+                Units::Inch => "inch",
+                Units::Millimetre => "millimetre",
+            }
+            .to_owned()
+        })
+    })
+    .or_else(|| pair(&with.plane, &without.plane, |v| format!("plane {v:?}")))
+    .or_else(|| {
+        pair(&with.feed_mode, &without.feed_mode, |v| {
+            match v {
+                FeedMode::InverseTime => "G93",
+                FeedMode::PerMinute => "G94",
+                FeedMode::PerRevolution => "G95",
+            }
+            .to_owned()
+        })
+    })
+    .or_else(|| {
+        pair(&with.arc_centres, &without.arc_centres, |v| format!("arc centres {v:?}").to_lowercase())
+    })
+    .or_else(|| {
+        pair(&with.compensation, &without.compensation, |v| {
+            match v {
+                Compensation::Off => "no cutter compensation",
+                Compensation::On => "cutter compensation",
+            }
+            .to_owned()
+        })
+    })
+    .or_else(|| pair(&with.return_level, &without.return_level, |v| format!("return to {v:?}")))
+    .or_else(|| {
+        pair(&with.tool_length, &without.tool_length, |v| match v {
+            ToolLength::Off => "no tool length".to_owned(),
+            ToolLength::On { number, .. } => format!("tool length H{number}"),
+        })
+    })
+    .or_else(|| {
+        pair(&with.work_offset, &without.work_offset, |v| {
+            v.code.map_or_else(|| "no work offset".to_owned(), |code| code.to_string())
+        })
+    })
+    .or_else(|| {
+        pair(&with.cycle, &without.cycle, |v| {
+            v.map_or_else(|| "no cycle".to_owned(), |cycle| format!("{} with its words", cycle.code))
+        })
+    })
+}

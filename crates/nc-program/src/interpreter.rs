@@ -1,0 +1,211 @@
+//! Block by block: check the whole block, then commit it.
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, GCode};
+use nc_syntax::{Block, Dialect};
+use smallvec::{SmallVec, smallvec};
+use toolpath::{Frame, Motion, Plane};
+
+use crate::codes;
+use crate::delete;
+use crate::modal::{
+    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ReturnLevel,
+    ToolLength, Units, Why, WorkOffset,
+};
+use crate::motion::{self, Moved};
+use crate::position;
+use crate::settings::{self, Environment};
+use crate::setup::Setup;
+use crate::words::{Outcome, Words};
+
+/// What a block means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What the axes do, in order: none, one, or one for each repetition of a cycle.
+    pub motions: SmallVec<[Motion; 1]>,
+    /// The state in which they are done.
+    pub context: Context,
+    /// The program has ended, with this block or before it.
+    pub ends_program: bool,
+}
+
+/// Everything correction and emission must know of a block's state, valid for its motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Context {
+    /// Program mm to axis commands mm: work offset plus tool length. A shift by zero where the block
+    /// moves nothing and the work offset is not given.
+    pub frame: Frame,
+    /// One unit of the program in mm: 1.0 or 25.4.
+    pub unit_mm: f64,
+    /// G91.
+    pub incremental: bool,
+    /// G90.1.
+    pub arc_centres_absolute: bool,
+    /// Working plane.
+    pub plane: Plane,
+    /// From the gauge point to the tool tip, mm.
+    pub tool_mm: [f64; 3],
+    /// Motion code in force, after modal resolution: G1, G83; `None` after G80 or before the first.
+    pub motion_code: Option<GCode>,
+    /// The block is an arc with R.
+    pub arc_by_radius: bool,
+    /// Cutter compensation is in force before or after the block.
+    pub compensation: bool,
+    /// The block may be skipped.
+    pub skip: bool,
+    /// K or L of a cycle; 1 otherwise.
+    pub repeats: u32,
+}
+
+/// Executes a program block by block.
+#[derive(Clone, Debug)]
+pub struct Interpreter<'d> {
+    env: Environment<'d>,
+    modal: Modal,
+}
+
+impl<'d> Interpreter<'d> {
+    /// At the start of a program: the dialect's initial codes, axes where the setup says or unknown.
+    ///
+    /// Rotary axes that the machine has are unknown until the program moves them.
+    #[must_use]
+    pub fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
+        let motion_group =
+            dialect.codes.iter().find(|entry| entry.action == Action::Line).map(|entry| entry.group);
+        let env = Environment { dialect, setup, motion_group };
+        let unknown = Axis::Unknown(Lost { why: Why::Start, line: 0 });
+        let mut modal = Modal {
+            motion: MotionMode::None,
+            cycle: None,
+            plane: Plane::Xy,
+            distance: Distance::Absolute,
+            units: Units::Millimetre,
+            feed_mode: FeedMode::PerMinute,
+            arc_centres: ArcCentres::Incremental,
+            compensation: Compensation::Off,
+            return_level: ReturnLevel::Initial,
+            tool_length: ToolLength::Off,
+            work_offset: WorkOffset { code: None, zero_mm: None },
+            axes: Axes {
+                linear: setup.start_mm.map_or([unknown; 3], |start| start.map(Axis::At)),
+                rotary: setup.has_rotary.map(|has| if has { unknown } else { Axis::At(0.0) }),
+            },
+            tool_selected: None,
+            tool_loaded: None,
+            progress: Progress::Leader,
+        };
+        settings::initial(&env, &mut modal);
+        Self { env, modal }
+    }
+
+    /// The state after the last block that was executed.
+    #[must_use]
+    pub const fn modal(&self) -> &Modal {
+        &self.modal
+    }
+
+    /// Executes one block. After the end of the program it does nothing.
+    ///
+    /// # Errors
+    /// What the block asks for cannot be told with certainty ([`crate::codes`]); the state is then as it
+    /// was before the block.
+    pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
+        match run(&self.env, &self.modal, block) {
+            Ok((modal, step)) => {
+                self.modal = modal;
+                Ok(step)
+            }
+            Err(diagnostic) => Err(vec![*diagnostic]),
+        }
+    }
+}
+
+/// The state after a block, and what the block does.
+fn run(env: &Environment<'_>, before: &Modal, block: &Block<'_>) -> Outcome<(Modal, Step)> {
+    let mut state = *before;
+    if before.progress == Progress::Ended {
+        return Ok((state, step(env, before, &state, Moved::default(), false)));
+    }
+    let words = Words::read(block, env.dialect)?;
+    if words.percent {
+        // The first `%` opens a tape, unless the program already runs; the next one closes it.
+        state.progress = match before.progress {
+            Progress::Leader => Progress::Running,
+            Progress::Running | Progress::Ended => Progress::Ended,
+        };
+    }
+    if words.is_idle() || state.progress == Progress::Ended {
+        return Ok((state, step(env, before, &state, Moved::default(), words.skip)));
+    }
+    state.progress = Progress::Running;
+    let demand = settings::apply(env, &words, &mut state)?;
+    let mut moved = motion::execute(env, &words, &demand, before, &mut state)?;
+    miscellaneous(env, &words, &mut state, &mut moved)?;
+    let done = if words.skip {
+        let merged = delete::merge(&words, before, &state, !moved.motions.is_empty())?;
+        let mut step = step(env, before, &state, moved, true);
+        step.ends_program = false;
+        (merged, step)
+    } else {
+        let step = step(env, before, &state, moved, false);
+        (state, step)
+    };
+    Ok(done)
+}
+
+/// M codes that the dialect's table names.
+fn miscellaneous(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    moved: &mut Moved,
+) -> Outcome<()> {
+    for &(number, span) in &words.m_codes {
+        let Some(row) = env.dialect.m_code(number) else { continue };
+        if row.loses_position.contains(&true) {
+            let own = matches!(moved.motions.as_slice(), [] | [Motion::Uncorrected { .. }]);
+            if !own {
+                let message =
+                    format!("{} moves the axes itself, in a block that moves them too", words.text(span));
+                return Err(words
+                    .refuse(codes::COMBINATION, message, span, "before or after the motion? controls differ")
+                    .help("write it in a block of its own"));
+            }
+            for i in 0..3 {
+                if row.loses_position[i] {
+                    state.axes.linear[i] = Axis::Unknown(Lost { why: Why::Machine, line: words.block.line });
+                }
+            }
+            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+        }
+        if row.ends_program {
+            state.progress = Progress::Ended;
+        }
+    }
+    Ok(())
+}
+
+fn step(env: &Environment<'_>, before: &Modal, state: &Modal, moved: Moved, skip: bool) -> Step {
+    let tool_mm = match state.tool_length {
+        ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
+        // Where G44 subtracts the vector, the tool points the other way.
+        ToolLength::On { applied_mm, .. } => applied_mm.map(|v| 0.0 - v),
+    };
+    Step {
+        motions: moved.motions,
+        context: Context {
+            frame: Frame::shift(position::shift_mm(state).unwrap_or([0.0; 3])),
+            unit_mm: state.units.mm(),
+            incremental: state.distance == Distance::Incremental,
+            arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
+            plane: state.plane,
+            tool_mm,
+            motion_code: state.motion_code(),
+            arc_by_radius: moved.arc_by_radius,
+            compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
+            skip,
+            repeats: moved.repeats,
+        },
+        ends_program: state.progress == Progress::Ended,
+    }
+}

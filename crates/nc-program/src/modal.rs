@@ -1,0 +1,299 @@
+//! The state of a program between two blocks: one enum per modal group.
+
+use nc_syntax::dialect::{CycleCode, GCode};
+use toolpath::{Partial, Plane};
+
+/// Sense of an arc, seen against the plane's normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// G2
+    Clockwise,
+    /// G3
+    CounterClockwise,
+}
+
+/// The motion code in force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionMode {
+    /// None yet, or cancelled by G80.
+    None,
+    /// One of two, depending on the block delete switch at this line.
+    Undecided {
+        /// Line of the block that may be skipped.
+        line: u64,
+    },
+    /// G0
+    Rapid(GCode),
+    /// G1
+    Line(GCode),
+    /// G2, G3
+    Arc(Turn, GCode),
+}
+
+impl MotionMode {
+    /// The code, where there is one.
+    #[must_use]
+    pub const fn code(self) -> Option<GCode> {
+        match self {
+            Self::None | Self::Undecided { .. } => None,
+            Self::Rapid(code) | Self::Line(code) | Self::Arc(_, code) => Some(code),
+        }
+    }
+}
+
+/// What axis words mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distance {
+    /// G90
+    Absolute,
+    /// G91
+    Incremental,
+}
+
+/// What length words are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Units {
+    /// G20
+    Inch,
+    /// G21
+    Millimetre,
+}
+
+impl Units {
+    /// One unit in mm.
+    #[must_use]
+    pub const fn mm(self) -> f64 {
+        match self {
+            Self::Inch => 25.4,
+            Self::Millimetre => 1.0,
+        }
+    }
+}
+
+/// What F means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeedMode {
+    /// G93
+    InverseTime,
+    /// G94
+    PerMinute,
+    /// G95
+    PerRevolution,
+}
+
+/// What I J K are measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArcCentres {
+    /// G90.1: the program's zero.
+    Absolute,
+    /// G91.1: the start of the arc.
+    Incremental,
+}
+
+/// Cutter compensation in the control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compensation {
+    /// G40
+    Off,
+    /// G41, G42
+    On,
+}
+
+/// Where a drilling cycle ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReturnLevel {
+    /// G98
+    Initial,
+    /// G99
+    R,
+}
+
+/// The tool length in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ToolLength {
+    /// G49: the tool vector is the setup's default.
+    Off,
+    /// G43, G44.
+    On {
+        /// H number.
+        number: u32,
+        /// G44.
+        negative: bool,
+        /// What is added to axis commands, mm: the setup's vector, its negative under G44.
+        applied_mm: [f64; 3],
+    },
+}
+
+impl ToolLength {
+    /// What is added to axis commands, mm.
+    #[must_use]
+    pub const fn applied_mm(&self) -> [f64; 3] {
+        match self {
+            Self::Off => [0.0; 3],
+            Self::On { applied_mm, .. } => *applied_mm,
+        }
+    }
+}
+
+/// The work offset in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkOffset {
+    /// The code that selected it; `None` where neither program nor dialect did.
+    pub code: Option<GCode>,
+    /// Machine coordinate of its zero, mm; `None` where the setup does not say.
+    pub zero_mm: Option<[f64; 3]>,
+}
+
+/// Since when, and why, nobody knows where an axis stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// What happened.
+    pub why: Why,
+    /// Line of the block in which it happened.
+    pub line: u64,
+}
+
+/// What makes the position of an axis unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// The program starts wherever the axes stand.
+    Start,
+    /// G28, G30: the reference point is the machine's affair.
+    Reference,
+    /// G53 under G91: some controls ignore it.
+    MachineCoordinates,
+    /// A probe move ends where it touches.
+    Probe,
+    /// M6 and the like.
+    Machine,
+    /// A motion that block delete may skip.
+    BlockDelete,
+}
+
+/// One axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axis {
+    /// Its command: mm, or degrees.
+    At(f64),
+    /// Nobody knows.
+    Unknown(Lost),
+}
+
+impl Axis {
+    /// The command, where known.
+    #[must_use]
+    pub const fn known(self) -> Option<f64> {
+        match self {
+            Self::At(value) => Some(value),
+            Self::Unknown(_) => None,
+        }
+    }
+}
+
+/// Where the axes are commanded to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axes {
+    /// X, Y, Z: axis commands, mm.
+    pub linear: [Axis; 3],
+    /// A, B, C: degrees; an axis that the machine does not have stands at 0.
+    pub rotary: [Axis; 3],
+}
+
+impl Axes {
+    /// As the toolpath says it; an unknown rotary axis counts as 0 there, and every motion that would
+    /// depend on one is refused before.
+    #[must_use]
+    pub fn partial(&self) -> Partial {
+        Partial {
+            linear_mm: self.linear.map(Axis::known),
+            rotary_deg: self.rotary.map(|axis| axis.known().unwrap_or(0.0)),
+        }
+    }
+}
+
+/// A level of a cycle as it was written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The word's number in mm.
+    pub word_mm: f64,
+    /// G91 was in force.
+    pub incremental: bool,
+    /// The level it meant when it was written: axis command, mm.
+    pub level_mm: f64,
+}
+
+/// A drilling cycle in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleState {
+    /// Its code.
+    pub code: GCode,
+    /// What it does.
+    pub kind: CycleCode,
+    /// The normal axis where the series of cycles was started.
+    pub initial: Axis,
+    /// R.
+    pub retract: Option<Level>,
+    /// Z, or whichever axis is normal to the plane.
+    pub bottom: Option<Level>,
+    /// Q, mm, without sign.
+    pub peck_mm: Option<f64>,
+    /// P above zero.
+    pub dwell: bool,
+}
+
+/// How far the program is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Nothing but names and comments so far.
+    Leader,
+    /// After the opening `%`, or after the first word.
+    Running,
+    /// After M2, M30 or the closing `%`: nothing that follows is executed.
+    Ended,
+}
+
+/// All of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modal {
+    /// G0 G1 G2 G3.
+    pub motion: MotionMode,
+    /// G73 G74 G76 G81–G89, until G80 or a motion code.
+    pub cycle: Option<CycleState>,
+    /// G17 G18 G19.
+    pub plane: Plane,
+    /// G90 G91.
+    pub distance: Distance,
+    /// G20 G21.
+    pub units: Units,
+    /// G93 G94 G95.
+    pub feed_mode: FeedMode,
+    /// G90.1 G91.1.
+    pub arc_centres: ArcCentres,
+    /// G40 G41 G42.
+    pub compensation: Compensation,
+    /// G98 G99.
+    pub return_level: ReturnLevel,
+    /// G43 G44 G49.
+    pub tool_length: ToolLength,
+    /// G54–G59.
+    pub work_offset: WorkOffset,
+    /// Where the axes are.
+    pub axes: Axes,
+    /// The last T.
+    pub tool_selected: Option<u32>,
+    /// The T that the last M6 brought into the spindle.
+    pub tool_loaded: Option<u32>,
+    /// How far the program is.
+    pub progress: Progress,
+}
+
+impl Modal {
+    /// The code that axis words alone would execute now.
+    #[must_use]
+    pub const fn motion_code(&self) -> Option<GCode> {
+        match self.cycle {
+            Some(cycle) => Some(cycle.code),
+            None => self.motion.code(),
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! What the axis words of a block make the axes do.
+
+use diagnostic::Diagnostic;
+use nc_syntax::Span;
+use smallvec::{SmallVec, smallvec};
+use toolpath::{Arc, Feed, FeedRate, Motion, Shape};
+
+use crate::arc::{self, Circle, Fault};
+use crate::codes;
+use crate::cycle;
+use crate::modal::{
+    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Turn, Units, Why,
+};
+use crate::position::{end, known_axes, require_known, require_rotary, require_shift};
+use crate::settings::{Demand, Environment, Owner};
+use crate::words::{
+    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY,
+    ROTARY_LETTERS, SECONDARY_LETTERS, Words,
+};
+
+/// Nearly always none or one.
+pub(crate) type Motions = SmallVec<[Motion; 1]>;
+
+/// What a block made of its words.
+#[derive(Debug, Default)]
+pub(crate) struct Moved {
+    pub(crate) motions: Motions,
+    pub(crate) arc_by_radius: bool,
+    pub(crate) repeats: u32,
+}
+
+/// Executes the words of a block whose codes are already applied to `state`.
+pub(crate) fn execute(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    demand: &Demand,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<Moved> {
+    let mut moved = Moved { repeats: 1, ..Moved::default() };
+    match demand.owner {
+        Owner::Motion => {
+            known_axes(env, words)?;
+            by_mode(env, words, before, state, &mut moved)?;
+        }
+        Owner::Dwell => dwell(words, demand)?,
+        Owner::Arguments => {
+            if let (Some(motion), true) = (demand.written_motion, words.has(AXIS_LETTERS.or(ARC_LETTERS))) {
+                return Err(whose(words, demand, motion));
+            }
+        }
+        Owner::Reference => {
+            known_axes(env, words)?;
+            no_cycle(words, state, demand)?;
+            lose(env, words, state, Why::Reference);
+            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+        }
+        Owner::Probe => {
+            known_axes(env, words)?;
+            no_cycle(words, state, demand)?;
+            lose(env, words, state, Why::Probe);
+            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+        }
+        Owner::MachineCoordinates => {
+            known_axes(env, words)?;
+            if words.has(AXIS_LETTERS) {
+                machine_coordinates(env, words, state, demand)?;
+                moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+            }
+        }
+    }
+    Ok(moved)
+}
+
+/// What F means for a motion; `value` is F where G93 is in force.
+pub(crate) const fn rate(state: &Modal, value: f64) -> FeedRate {
+    match state.feed_mode {
+        FeedMode::InverseTime => FeedRate::InverseTime(value),
+        FeedMode::PerMinute => FeedRate::PerMinute,
+        FeedMode::PerRevolution => FeedRate::PerRevolution,
+    }
+}
+
+fn by_mode(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+    moved: &mut Moved,
+) -> Outcome<()> {
+    if let Some(running) = state.cycle {
+        moved.repeats = cycle::repeats(words)?;
+        if cycle::makes_hole(words) {
+            moved.motions = cycle::holes(env, words, state, running, moved.repeats)?;
+        } else if words.has(Letters::of(b"Q")) {
+            let span = words.span(Letters::of(b"Q"));
+            return Err(words
+                .refuse(
+                    codes::CYCLE_WORDS,
+                    "Q without a hole",
+                    span,
+                    "does it hold for the next one? controls differ",
+                )
+                .help("write Q in a block that drills"));
+        }
+        return Ok(());
+    }
+    match state.motion {
+        MotionMode::Rapid(_) | MotionMode::Line(_) => {
+            if words.has(ARC_LETTERS) {
+                return Err(stray(words, "this block is no arc"));
+            }
+            if words.has(AXIS_LETTERS) {
+                let rapid = matches!(state.motion, MotionMode::Rapid(_));
+                moved.motions.push(straight(env, words, before, state, rapid)?);
+            }
+        }
+        MotionMode::Arc(turn, _) => {
+            if words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
+                moved.arc_by_radius = words.has(Letters::of(b"R"));
+                moved.motions.push(circular(env, words, before, state, turn)?);
+            }
+        }
+        MotionMode::None if words.has(AXIS_LETTERS) => {
+            let message = format!("{} without a motion code", words.names(AXIS_LETTERS));
+            return Err(words
+                .refuse(
+                    codes::NO_MOTION_CODE,
+                    message,
+                    words.span(AXIS_LETTERS),
+                    "no G0, G1, G2, G3 or cycle is in force",
+                )
+                .help("write the motion code in this block"));
+        }
+        MotionMode::Undecided { line } if words.has(AXIS_LETTERS.or(ARC_LETTERS)) => {
+            let message = "the motion code in force depends on the block delete switch";
+            let label = format!("line {line} changes the motion code and may be skipped");
+            return Err(words
+                .refuse(codes::BLOCK_DELETE, message, words.span(AXIS_LETTERS.or(ARC_LETTERS)), label)
+                .help("write the motion code in this block"));
+        }
+        MotionMode::None | MotionMode::Undecided { .. } => {
+            if words.has(ARC_LETTERS) {
+                return Err(stray(words, "no arc and no cycle is in force"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// G0 and G1.
+fn straight(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+    rapid: bool,
+) -> Outcome<Motion> {
+    let shift = require_shift(env, words, state)?;
+    let start = state.axes;
+    let end = end(words, state, &shift)?;
+    state.axes = end;
+    let turns = words.has(ROTARY_LETTERS);
+    if turns && (!words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary)) {
+        // Only rotary axes move: nothing to correct, and the linear axes stay where they are.
+        return Ok(Motion::Uncorrected { end: end.partial() });
+    }
+    require_rotary(words, &end)?;
+    if rapid {
+        return Ok(Motion::Rapid { start: start.partial(), end: end.partial() });
+    }
+    let what = "the feed move";
+    let from = require_known(words, &start, what)?;
+    let to = require_known(words, &end, what)?;
+    if from.rotary_deg != to.rotary_deg {
+        return Err(simultaneous(words));
+    }
+    let rate = feed_rate(words, state)?;
+    Ok(Motion::Feed(Feed {
+        start: from,
+        end: to,
+        shape: Shape::Line,
+        rate,
+        may_split: !compensated(before, state),
+    }))
+}
+
+/// G2 and G3.
+fn circular(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+    turn: Turn,
+) -> Outcome<Motion> {
+    let shift = require_shift(env, words, state)?;
+    let start = state.axes;
+    let end = end(words, state, &shift)?;
+    let what = "the arc";
+    let from = require_known(words, &start, what)?;
+    let to = require_known(words, &end, what)?;
+    if from.rotary_deg != to.rotary_deg {
+        return Err(simultaneous(words));
+    }
+    if let Some(turns) = words.plain(b'P')
+        && (turns - 1.0).abs() > 1e-9
+    {
+        let span = words.span(Letters::of(b"P"));
+        return Err(words
+            .refuse(codes::ARC_WORDS, "an arc of several turns by P", span, "more than one turn")
+            .help("write one block for each turn"));
+    }
+    let [first, second, _] = state.plane.axes();
+    let plane = |point: &[f64; 3]| [point[first], point[second]];
+    let (start_2d, end_2d) = (plane(&from.linear_mm), plane(&to.linear_mm));
+    let tolerance_mm = env.dialect.output.arc_radius_tolerance_mm;
+    let inch = state.units == Units::Inch;
+    let circle = match words.coordinate(b'R', inch) {
+        Some(_) if words.has(CENTRE_LETTERS) => {
+            let span = words.span(ARC_LETTERS);
+            return Err(words
+                .refuse(codes::ARC_WORDS, "R and a centre in one arc", span, "which one?")
+                .help(format!("remove R or {}", words.names(CENTRE_LETTERS))));
+        }
+        Some(radius) => arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance_mm),
+        None => {
+            let centre = centre(words, state, start_2d, plane(&shift))?;
+            arc::by_centre(start_2d, end_2d, centre, turn, tolerance_mm)
+        }
+    };
+    let Circle { centre_mm, sweep_rad } =
+        circle.map_err(|fault| no_circle(words, state, fault, tolerance_mm))?;
+    let rate = feed_rate(words, state)?;
+    state.axes = end;
+    Ok(Motion::Feed(Feed {
+        start: from,
+        end: to,
+        shape: Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad }),
+        rate,
+        may_split: !compensated(before, state),
+    }))
+}
+
+/// The centre by I J K, axis commands in mm.
+fn centre(
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    start_mm: [f64; 2],
+    shift_mm: [f64; 2],
+) -> Outcome<[f64; 2]> {
+    let letters = state.plane.centre_letters();
+    let [one, two] = letters.map(char::from);
+    let in_plane = Letters::of(&letters);
+    let across = CENTRE_LETTERS.without(in_plane);
+    let inch = state.units == Units::Inch;
+    if words.has(across) {
+        let letter = across.first();
+        // `K0` on a G17 arc is how some posts write nothing.
+        if words.coordinate(letter, inch) != Some(0.0) {
+            let message = format!("{} on an arc whose plane has {one} and {two}", letter as char);
+            return Err(words
+                .refuse(codes::ARC_WORDS, message, words.span(across), "not in this plane")
+                .help("select the arc's plane with G17, G18 or G19, or remove the word"));
+        }
+    }
+    if !words.has(in_plane) {
+        return Err(without_centre(words, one, two));
+    }
+    let values = letters.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm()));
+    match (state.arc_centres, values) {
+        (ArcCentres::Incremental, [i, j]) => {
+            Ok([start_mm[0] + i.unwrap_or(0.0), start_mm[1] + j.unwrap_or(0.0)])
+        }
+        (ArcCentres::Absolute, [Some(i), Some(j)]) => Ok([i + shift_mm[0], j + shift_mm[1]]),
+        (ArcCentres::Absolute, _) => Err(words
+            .refuse(
+                codes::ARC_WORDS,
+                "half a centre under absolute arc centres",
+                words.span(in_plane),
+                format!("{one} and {two} were expected"),
+            )
+            .help(format!("write both {one} and {two}, or G91.1 for centres from the start"))),
+    }
+}
+
+fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagnostic> {
+    words
+        .refuse(
+            codes::ARC_WITHOUT_CENTRE,
+            "arc without centre",
+            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+            format!("neither {one}/{two} nor R in this block, and neither is modal"),
+        )
+        .help(format!(
+            "post the program again so that each arc block has its {one} and {two} (some posts drop unchanged ones), or add R"
+        ))
+}
+
+fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_mm: f64) -> Box<Diagnostic> {
+    let [one, two] = state.plane.centre_letters().map(char::from);
+    let (unit_mm, unit) = match state.units {
+        Units::Millimetre => (1.0, "mm"),
+        Units::Inch => (25.4, "inch"),
+    };
+    let show = |mm: f64| shortest(mm / unit_mm);
+    let centre = words.span(ARC_LETTERS);
+    match fault {
+        Fault::NoRadius => words
+            .refuse(codes::ARC_WORDS, "an arc about its own start", centre, format!("{one} and {two} are 0"))
+            .help(format!("write the distance from the start to the centre as {one} and {two}")),
+        Fault::RadiiDiffer { start_mm, end_mm } => {
+            let message = "the ends of the arc lie at different distances from its centre";
+            let label = format!(
+                "radius {} at the start, {} {unit} at the end, {} allowed",
+                show(start_mm),
+                show(end_mm),
+                show(tolerance_mm)
+            );
+            let mode = match state.arc_centres {
+                ArcCentres::Incremental => "measured from the start (G91.1)",
+                ArcCentres::Absolute => "absolute (G90.1)",
+            };
+            words
+                .refuse(codes::RADII_DIFFER, message, centre, label)
+                .help(format!("correct the end or the centre; {one} and {two} are read as {mode}"))
+        }
+        Fault::RadiusTooSmall { radius_mm, chord_mm } => {
+            // Rounded up, so that the number can be typed as it stands.
+            let least = (chord_mm / unit_mm / 2.0 * 1e4 - 1e-6).ceil() / 1e4;
+            words
+                .refuse(
+                    codes::RADIUS_TOO_SMALL,
+                    "arc radius is smaller than half the chord",
+                    centre,
+                    format!("R{} {unit}, chord is {} {unit}", show(radius_mm), show(chord_mm)),
+                )
+                .help(format!("use {one}/{two} centre form, or R of at least {}", shortest(least)))
+        }
+        Fault::FullCircleByRadius => words
+            .refuse(
+                codes::ARC_WORDS,
+                "a full circle by R",
+                centre,
+                "start and end are the same point: R has no centre",
+            )
+            .help(format!("use {one}/{two} centre form")),
+    }
+}
+
+/// A number for people: at most four decimals, no trailing zeros.
+fn shortest(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// G41 and G42 are in force before or after the block: neither its start-up nor its end may be split.
+fn compensated(before: &Modal, state: &Modal) -> bool {
+    before.compensation == Compensation::On || state.compensation == Compensation::On
+}
+
+/// F of a feed motion: under G93 it must stand in the block itself.
+fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
+    if state.feed_mode != FeedMode::InverseTime {
+        return Ok(rate(state, 0.0));
+    }
+    const F: Letters = Letters::of(b"F");
+    match words.plain(b'F') {
+        Some(value) if value > 0.0 => Ok(rate(state, value)),
+        Some(_) => Err(words
+            .refuse(codes::INVERSE_TIME, "inverse time must be above zero", words.span(F), "1/F minutes")
+            .help("write F as one over the minutes of this motion")),
+        None => Err(words
+            .refuse(
+                codes::INVERSE_TIME,
+                "a feed motion under G93 without F",
+                words.span(AXIS_LETTERS),
+                "F was expected in this block",
+            )
+            .help("G93 needs F on each feed block; or program G94")),
+    }
+}
+
+/// G4: X, U, P (and whatever F or S the control reads there) are a time.
+fn dwell(words: &Words<'_, '_, '_>, demand: &Demand) -> Outcome<()> {
+    const TIME: Letters = Letters::of(b"XU");
+    let times = TIME.or(Letters::of(b"P"));
+    let others = AXIS_LETTERS.or(ARC_LETTERS).or(SECONDARY_LETTERS).without(TIME);
+    let unclear = words.has(others)
+        || (words.has(TIME) && (demand.written_motion.is_some() || words.letters.and(times).count() > 1));
+    if unclear {
+        let span = words.span(others.or(TIME));
+        return Err(words
+            .refuse(codes::WORDS_OF_TWO, "a dwell and a motion in one block", span, "time or coordinate?")
+            .help("write the dwell in a block of its own"));
+    }
+    Ok(())
+}
+
+/// G53 with axis words: they are axis commands, tool length included.
+fn machine_coordinates(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    demand: &Demand,
+) -> Outcome<()> {
+    if let Some(span) = demand.owner_span
+        && (state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..)))
+    {
+        return Err(words
+            .refuse(
+                codes::COMBINATION,
+                "machine coordinates with an arc or a cycle",
+                span,
+                "moves straight on every control",
+            )
+            .help("write G0 in this block"));
+    }
+    if words.has(ARC_LETTERS) {
+        return Err(stray(words, "this block is no arc"));
+    }
+    if state.distance == Distance::Incremental {
+        // Some controls ignore G53 under G91, some refuse it, some obey: the end is not known.
+        lose(env, words, state, Why::MachineCoordinates);
+        return Ok(());
+    }
+    let unit_mm = state.units.mm();
+    for i in 0..3 {
+        if let Some(value) = words.coordinate(LINEAR[i], state.units == Units::Inch) {
+            state.axes.linear[i] = Axis::At(value * unit_mm);
+        }
+        if let Some(value) = words.coordinate(ROTARY[i], false) {
+            state.axes.rotary[i] = Axis::At(value);
+        }
+    }
+    Ok(())
+}
+
+/// Forgets the axes that the block names; all that the machine has where it names none.
+fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why: Why) {
+    let lost = Axis::Unknown(Lost { why, line: words.block.line });
+    let all = !words.has(AXIS_LETTERS);
+    let Axes { linear, rotary } = &mut state.axes;
+    for i in 0..3 {
+        if all || words.has(Letters::of(&[LINEAR[i]])) {
+            linear[i] = lost;
+        }
+        if (all && env.setup.has_rotary[i]) || words.has(Letters::of(&[ROTARY[i]])) {
+            rotary[i] = lost;
+        }
+    }
+}
+
+fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand) -> Outcome<()> {
+    match demand.owner_span {
+        Some(span) if state.cycle.is_some() => Err(words
+            .refuse(
+                codes::COMBINATION,
+                "a reference return or probe move while a drilling cycle is in force",
+                span,
+                "a cycle is running here",
+            )
+            .help("cancel the cycle with G80 first")),
+        _ => Ok(()),
+    }
+}
+
+fn whose(words: &Words<'_, '_, '_>, demand: &Demand, motion: Span) -> Box<Diagnostic> {
+    let owner = demand.owner_span.map_or_else(String::new, |span| words.text(span));
+    let message = format!("{owner} and {} both take the axis words of this block", words.text(motion));
+    words
+        .refuse(codes::WORDS_OF_TWO, message, words.span(AXIS_LETTERS.or(ARC_LETTERS)), "whose are they?")
+        .help("write the two codes in two blocks")
+}
+
+fn stray(words: &Words<'_, '_, '_>, why: &str) -> Box<Diagnostic> {
+    let names = words.names(ARC_LETTERS);
+    words
+        .refuse(codes::STRAY_ARC_WORD, format!("{names} has no meaning here"), words.span(ARC_LETTERS), why)
+        .help("write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs")
+}
+
+fn simultaneous(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+    words
+        .refuse(
+            codes::SIMULTANEOUS,
+            "rotary and linear axes move together at feed rate",
+            words.span(AXIS_LETTERS),
+            "the path between the ends cannot be corrected",
+        )
+        .help("turn the rotary axis in a block of its own, then feed")
+}

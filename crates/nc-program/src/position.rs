@@ -1,0 +1,193 @@
+//! Where a block's axis words lead, and what is said where that cannot be known.
+
+use diagnostic::Diagnostic;
+use nc_syntax::Span;
+use nc_syntax::dialect::Action;
+use toolpath::{AXIS_NAMES, Position};
+
+use crate::codes;
+use crate::modal::{Axes, Axis, Distance, Lost, Modal, Units, Why};
+use crate::settings::{Environment, missing_offset};
+use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY, ROTARY_LETTERS, Words};
+
+/// From program coordinates to axis commands, mm: work offset plus tool length.
+///
+/// `None` where the work offset in force is not given.
+pub(crate) fn shift_mm(state: &Modal) -> Option<[f64; 3]> {
+    let zero = state.work_offset.zero_mm?;
+    let applied = state.tool_length.applied_mm();
+    Some([0, 1, 2].map(|i| zero[i] + applied[i]))
+}
+
+/// The same, refused where there is none.
+pub(crate) fn require_shift(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+) -> Outcome<[f64; 3]> {
+    if let Some(shift) = shift_mm(state) {
+        return Ok(shift);
+    }
+    let span = words.span(AXIS_LETTERS);
+    match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {
+        Some(Action::WorkOffset(name)) => Err(missing_offset(words, name, span)),
+        _ => Err(words
+            .refuse(codes::WORK_OFFSET, "no work offset is in force", span, "coordinates of which zero?")
+            .help("program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`")),
+    }
+}
+
+/// Refuses words for rotary axes that the machine does not have, and U V W.
+pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
+    if words.has(crate::words::SECONDARY_LETTERS) {
+        let letters = crate::words::SECONDARY_LETTERS;
+        let message = format!("{} cannot be resolved", words.names(letters));
+        return Err(words
+            .refuse(
+                codes::SECONDARY_AXIS,
+                message,
+                words.span(letters),
+                "an increment on some controls, an axis on others",
+            )
+            .help("program X, Y, Z instead (with G91 for increments)"));
+    }
+    if words.has(ROTARY_LETTERS) {
+        for (i, letter) in ROTARY.iter().enumerate() {
+            let bit = Letters::of(&[*letter]);
+            if words.has(bit) && !env.setup.has_rotary[i] {
+                let name = *letter as char;
+                let message = format!("the machine has no axis {name}");
+                let label = format!("rotary axes of the profile's chain: {}", env.setup.rotary_names());
+                return Err(words
+                    .refuse(codes::NO_SUCH_AXIS, message, words.span(bit), label)
+                    .help(format!("name {name} in `chain` of the profile, or remove the word")));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The axes after the words of the block, program coordinates, G90 or G91.
+///
+/// # Errors
+/// An increment from an unknown position.
+pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, shift_mm: &[f64; 3]) -> Outcome<Axes> {
+    let mut end = state.axes;
+    let inch = state.units == Units::Inch;
+    let unit_mm = state.units.mm();
+    for i in 0..3 {
+        if let Some(value) = words.coordinate(LINEAR[i], inch) {
+            let value_mm = value * unit_mm;
+            end.linear[i] = Axis::At(match state.distance {
+                Distance::Absolute => value_mm + shift_mm[i],
+                Distance::Incremental => increment_base(words, state.axes.linear[i], i)? + value_mm,
+            });
+        }
+    }
+    if words.has(ROTARY_LETTERS) {
+        for i in 0..3 {
+            if let Some(value) = words.coordinate(ROTARY[i], false) {
+                end.rotary[i] = Axis::At(match state.distance {
+                    Distance::Absolute => value,
+                    Distance::Incremental => increment_base(words, state.axes.rotary[i], 3 + i)? + value,
+                });
+            }
+        }
+    }
+    Ok(end)
+}
+
+/// Where an increment starts.
+pub(crate) fn increment_base(words: &Words<'_, '_, '_>, axis: Axis, index: usize) -> Outcome<f64> {
+    match axis {
+        Axis::At(value) => Ok(value),
+        Axis::Unknown(lost) => {
+            let name = AXIS_NAMES[index];
+            let span = words.span(Letters::of(&[name as u8]));
+            Err(unknown(words, "an increment from an unknown position", span, &[(name, lost)]))
+        }
+    }
+}
+
+/// The position of all axes, refused where one is unknown.
+///
+/// `what` names the motion: `the feed move`.
+pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Outcome<Position> {
+    let [x, y, z] = axes.linear;
+    let [a, b, c] = axes.rotary;
+    if let (Axis::At(x), Axis::At(y), Axis::At(z), Axis::At(a), Axis::At(b), Axis::At(c)) = (x, y, z, a, b, c)
+    {
+        return Ok(Position { linear_mm: [x, y, z], rotary_deg: [a, b, c] });
+    }
+    let lost: Vec<(char, Lost)> = [x, y, z, a, b, c]
+        .into_iter()
+        .zip(AXIS_NAMES)
+        .filter_map(|(axis, name)| match axis {
+            Axis::At(_) => None,
+            Axis::Unknown(lost) => Some((name, lost)),
+        })
+        .collect();
+    let message = format!("{what} starts from an unknown position");
+    Err(unknown(words, &message, words.span(AXIS_LETTERS), &lost))
+}
+
+/// Refuses unknown rotary axes: what a linear axis must be told depends on them.
+pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<()> {
+    let lost: Vec<(char, Lost)> = (0..3)
+        .filter_map(|i| match axes.rotary[i] {
+            Axis::At(_) => None,
+            Axis::Unknown(lost) => Some((AXIS_NAMES[3 + i], lost)),
+        })
+        .collect();
+    if lost.is_empty() {
+        return Ok(());
+    }
+    let message = "a motion of linear axes while a rotary axis is unknown";
+    Err(unknown(words, message, words.span(AXIS_LETTERS), &lost))
+}
+
+fn unknown(words: &Words<'_, '_, '_>, message: &str, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
+    let names: Vec<String> = lost.iter().map(|(name, _)| name.to_string()).collect();
+    let linear_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "XYZ".contains(*name);
+    let start_at = if lost.iter().any(linear_from_start) {
+        ", or say where the axes start with `--start-at X,Y,Z`"
+    } else {
+        ""
+    };
+    let help = format!(
+        "program a rapid in absolute coordinates (G90 G0) with {} before this block{start_at}",
+        names.join(" and ")
+    );
+    words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
+}
+
+/// `X, Y not known since the start of the program; Z not known since the reference return in line 12`.
+fn reasons(lost: &[(char, Lost)]) -> String {
+    let mut parts: Vec<(Lost, String)> = Vec::new();
+    for (name, lost) in lost {
+        match parts.iter_mut().find(|(known, _)| known == lost) {
+            Some((_, names)) => {
+                names.push_str(", ");
+                names.push(*name);
+            }
+            None => parts.push((*lost, name.to_string())),
+        }
+    }
+    let parts: Vec<String> =
+        parts.iter().map(|(lost, names)| format!("{names} not known since {}", since(*lost))).collect();
+    parts.join("; ")
+}
+
+fn since(lost: Lost) -> String {
+    let line = lost.line;
+    match lost.why {
+        Why::Start => "the start of the program".to_owned(),
+        Why::Reference => format!("the reference return in line {line}"),
+        Why::MachineCoordinates => format!("G53 under G91 in line {line}, which some controls ignore"),
+        Why::Probe => format!("the probe move in line {line}"),
+        Why::Machine => format!("the tool change in line {line}"),
+        Why::BlockDelete => {
+            format!("line {line}, which moves or not, depending on the block delete switch")
+        }
+    }
+}

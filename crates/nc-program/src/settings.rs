@@ -1,0 +1,312 @@
+//! What the codes of a block set before anything moves, whatever their order in the block.
+
+use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
+use nc_syntax::{Dialect, Span};
+use toolpath::Plane;
+
+use crate::codes;
+use crate::modal::{
+    ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, ToolLength,
+    Turn, Units, WorkOffset,
+};
+use crate::setup::Setup;
+use crate::words::{Letters, Outcome, Words};
+
+/// What a program is read against.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Environment<'d> {
+    pub(crate) dialect: &'d Dialect,
+    pub(crate) setup: &'d Setup,
+    /// Modal group of G1: a G80 of the same group cancels it too.
+    pub(crate) motion_group: Option<u8>,
+}
+
+/// Whose the axis words of the block are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Owner {
+    /// The motion code or cycle in force.
+    Motion,
+    /// G4: a time.
+    Dwell,
+    /// G28, G30.
+    Reference,
+    /// G53.
+    MachineCoordinates,
+    /// G31 and the like.
+    Probe,
+    /// A code that moves nothing.
+    Arguments,
+}
+
+/// What the block asks for beyond its settings.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand {
+    pub(crate) owner: Owner,
+    /// The code that owns the words, where it is not the motion.
+    pub(crate) owner_span: Option<Span>,
+    /// The motion or cycle code written in this block.
+    pub(crate) written_motion: Option<Span>,
+}
+
+/// How the tool length is asked to change.
+#[derive(Clone, Copy)]
+enum Length {
+    Off,
+    On { negative: bool },
+}
+
+/// Collected while the codes are read, applied afterwards in a fixed order.
+#[derive(Default)]
+struct Wanted<'d> {
+    motion: Option<MotionMode>,
+    cycle: Option<(CycleCode, GCode, u8)>,
+    cancel_group: Option<u8>,
+    offset: Option<(GCode, &'d str, Span)>,
+    length: Option<(Length, Span)>,
+}
+
+/// Applies the codes of a block to the state.
+pub(crate) fn apply(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<Demand> {
+    let before = *state;
+    let mut wanted = Wanted::default();
+    let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None };
+    for code in &words.codes {
+        let owner = set(&code.entry.action, code.entry.code, code.entry.group, code.span, state, &mut wanted);
+        match owner {
+            Owner::Motion => {
+                if wanted.motion.is_some() || wanted.cycle.is_some() {
+                    demand.written_motion.get_or_insert(code.span);
+                }
+            }
+            owner => {
+                if let Some(other) = demand.owner_span {
+                    let message = format!(
+                        "{} and {} both take the words of this block",
+                        words.text(other),
+                        words.text(code.span)
+                    );
+                    return Err(words
+                        .refuse(codes::WORDS_OF_TWO, message, code.span, "whose are the axis words?")
+                        .help("write the two codes in two blocks"));
+                }
+                demand.owner = owner;
+                demand.owner_span = Some(code.span);
+            }
+        }
+        if let Action::Refuse { reason, help } = &code.entry.action {
+            let message = format!("{} is refused: {reason}", words.text(code.span));
+            return Err(words
+                .refuse(codes::REFUSED_CODE, message, code.span, "not understood")
+                .help(help.as_str()));
+        }
+    }
+    tool(words, state);
+    if let Some((code, name, span)) = wanted.offset {
+        let zero_mm = env.setup.work_offset(name);
+        if zero_mm.is_none() {
+            return Err(missing_offset(words, name, span));
+        }
+        state.work_offset = WorkOffset { code: Some(code), zero_mm };
+    }
+    length(env, words, state, wanted.length)?;
+    motion(env, state, &wanted);
+    if before.cycle.is_some() && state.cycle.is_some() {
+        cycle_frame(words, &before, state)?;
+    }
+    Ok(demand)
+}
+
+/// Applies the dialect's state at the start of a program. A work offset that the setup lacks is
+/// remembered as lacking; codes that the table does not have are left out (`grammar check` refuses them).
+pub(crate) fn initial(env: &Environment<'_>, state: &mut Modal) {
+    let nowhere = Span { start: 0, end: 0 };
+    let mut wanted = Wanted::default();
+    for entry in env.dialect.initial.iter().filter_map(|&code| env.dialect.code(code)) {
+        set(&entry.action, entry.code, entry.group, nowhere, state, &mut wanted);
+    }
+    if let Some((code, name, _)) = wanted.offset {
+        state.work_offset = WorkOffset { code: Some(code), zero_mm: env.setup.work_offset(name) };
+    }
+    motion(env, state, &wanted);
+}
+
+/// One code: sets what it sets at once, or notes what must wait; says whose the axis words are.
+fn set<'d>(
+    action: &'d Action,
+    code: GCode,
+    group: u8,
+    span: Span,
+    state: &mut Modal,
+    wanted: &mut Wanted<'d>,
+) -> Owner {
+    match action {
+        Action::Rapid => wanted.motion = Some(MotionMode::Rapid(code)),
+        Action::Line => wanted.motion = Some(MotionMode::Line(code)),
+        Action::ArcClockwise => wanted.motion = Some(MotionMode::Arc(Turn::Clockwise, code)),
+        Action::ArcCounterClockwise => wanted.motion = Some(MotionMode::Arc(Turn::CounterClockwise, code)),
+        Action::Plane(PlaneCode::Xy) => state.plane = Plane::Xy,
+        Action::Plane(PlaneCode::Zx) => state.plane = Plane::Zx,
+        Action::Plane(PlaneCode::Yz) => state.plane = Plane::Yz,
+        Action::Inch => state.units = Units::Inch,
+        Action::Millimetre => state.units = Units::Millimetre,
+        Action::CompensationOff => state.compensation = Compensation::Off,
+        Action::CompensationOn => state.compensation = Compensation::On,
+        Action::LengthOn => wanted.length = Some((Length::On { negative: false }, span)),
+        Action::LengthOnNegative => wanted.length = Some((Length::On { negative: true }, span)),
+        Action::LengthOff => wanted.length = Some((Length::Off, span)),
+        Action::WorkOffset(name) => wanted.offset = Some((code, name, span)),
+        Action::Cycle(kind) => wanted.cycle = Some((*kind, code, group)),
+        Action::CycleCancel => wanted.cancel_group = Some(group),
+        Action::ReturnInitial => state.return_level = ReturnLevel::Initial,
+        Action::ReturnR => state.return_level = ReturnLevel::R,
+        Action::Absolute => state.distance = Distance::Absolute,
+        Action::Incremental => state.distance = Distance::Incremental,
+        Action::ArcCentresAbsolute => state.arc_centres = ArcCentres::Absolute,
+        Action::ArcCentresIncremental => state.arc_centres = ArcCentres::Incremental,
+        Action::FeedInverseTime => state.feed_mode = FeedMode::InverseTime,
+        Action::FeedPerMinute => state.feed_mode = FeedMode::PerMinute,
+        Action::FeedPerRevolution => state.feed_mode = FeedMode::PerRevolution,
+        Action::Pass { takes_words: false } | Action::Refuse { .. } => {}
+        Action::Pass { takes_words: true } => return Owner::Arguments,
+        Action::Dwell => return Owner::Dwell,
+        Action::Reference => return Owner::Reference,
+        Action::MachineCoordinates => return Owner::MachineCoordinates,
+        Action::Probe => return Owner::Probe,
+    }
+    Owner::Motion
+}
+
+/// T, and the M6 that brings it into the spindle. A T that is no whole number selects nothing known.
+fn tool(words: &Words<'_, '_, '_>, state: &mut Modal) {
+    const T: Letters = Letters::of(b"T");
+    if words.has(T) {
+        state.tool_selected = words.whole(b'T').ok().flatten();
+    }
+    if words.m_codes.iter().any(|(number, _)| *number == 6) {
+        state.tool_loaded = state.tool_selected;
+    }
+}
+
+/// G43, G44, G49 and H.
+///
+/// H alone changes the length while G43 or G44 is in force and means nothing otherwise; G43 without H
+/// takes the loaded tool where the dialect says so, else the H already in force.
+fn length(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    wanted: Option<(Length, Span)>,
+) -> Outcome<()> {
+    const H: Letters = Letters::of(b"H");
+    let (negative, span) = match (wanted, state.tool_length) {
+        (Some((Length::Off, _)), _) => {
+            state.tool_length = ToolLength::Off;
+            return Ok(());
+        }
+        (Some((Length::On { negative }, span)), _) => (negative, span),
+        (None, ToolLength::On { negative, .. }) if words.has(H) => (negative, words.span(H)),
+        (None, _) => return Ok(()),
+    };
+    let number = match (words.whole(b'H')?, state.tool_length) {
+        (Some(number), _) => number,
+        (None, _) if env.dialect.length_of_loaded_tool => match state.tool_loaded {
+            Some(number) => number,
+            None => {
+                let message = "tool length without H, and no tool was loaded before";
+                return Err(words
+                    .refuse(codes::TOOL_LENGTH, message, span, "takes the tool in the spindle: which one?")
+                    .help("program T and M6 before it, or H in this block"));
+            }
+        },
+        (None, ToolLength::On { number, .. }) => number,
+        (None, ToolLength::Off) => {
+            let message = "tool length without H";
+            return Err(words
+                .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")
+                .help("write the number of the length, e.g. H1; H0 is no length"));
+        }
+    };
+    let Some(vector) = env.setup.tool(number) else {
+        let message = format!("tool length H{number} is not given");
+        let at = if words.has(H) { words.span(H) } else { span };
+        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "neither in the profile nor on the command line").help(
+            format!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile"),
+        ));
+    };
+    let applied_mm = if negative { vector.map(|v| -v) } else { vector };
+    state.tool_length = ToolLength::On { number, negative, applied_mm };
+    Ok(())
+}
+
+/// Cancels, then starts: motion codes end a cycle, cycles start a series where none is running.
+fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
+    if let Some(group) = wanted.cancel_group {
+        state.cycle = None;
+        if Some(group) == env.motion_group {
+            state.motion = MotionMode::None;
+        }
+    }
+    if let Some(mode) = wanted.motion {
+        state.motion = mode;
+        state.cycle = None;
+    }
+    if let Some((kind, code, group)) = wanted.cycle {
+        if Some(group) == env.motion_group {
+            state.motion = MotionMode::None;
+        }
+        let initial = state.axes.linear[state.plane.axes()[2]];
+        let running = state.cycle.unwrap_or(CycleState {
+            code,
+            kind,
+            initial,
+            retract: None,
+            bottom: None,
+            peck_mm: None,
+            dwell: false,
+        });
+        state.cycle = Some(CycleState { code, kind, ..running });
+    }
+}
+
+/// Levels of a running cycle are axis commands of the frame they were written in: what another frame
+/// would make of them is told by no manual.
+fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
+    let what = if before.plane != after.plane {
+        "plane"
+    } else if before.units != after.units {
+        "unit"
+    } else if before.work_offset != after.work_offset {
+        "work offset"
+    } else if before.tool_length != after.tool_length {
+        "tool length"
+    } else {
+        return Ok(());
+    };
+    let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
+    Err(words
+        .refuse(
+            codes::CYCLE_WORDS,
+            format!("the {what} changes while a drilling cycle is in force"),
+            span,
+            "a cycle is running here",
+        )
+        .help("cancel the cycle with G80 before, and write it again with R and Z afterwards"))
+}
+
+/// The refusal of an offset nobody gave.
+pub(crate) fn missing_offset(
+    words: &Words<'_, '_, '_>,
+    name: &str,
+    span: Span,
+) -> Box<diagnostic::Diagnostic> {
+    words
+        .refuse(
+            codes::WORK_OFFSET,
+            format!("work offset {name} is not given"),
+            span,
+            "neither in the profile nor on the command line",
+        )
+        .help(format!(
+            "`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile"
+        ))
+}

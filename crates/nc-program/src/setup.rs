@@ -1,0 +1,39 @@
+use toolpath::AXIS_NAMES;
+
+/// What the program cannot say of itself: the profile's and the command line's part, plain numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setup {
+    /// Name (`G54`) and machine coordinate of that program zero, mm.
+    pub work_offsets: Vec<(String, [f64; 3])>,
+    /// H number and length vector, mm: the axis command is program + work offset + vector, and the tool
+    /// vector (gauge point to tip) is minus the vector. `H1 = 120` is `(1, [0, 0, 120])`.
+    pub tools: Vec<(u32, [f64; 3])>,
+    /// Tool vector without G43: from the gauge point to the tip, mm.
+    pub default_tool_mm: [f64; 3],
+    /// Which of A, B, C the machine has.
+    pub has_rotary: [bool; 3],
+    /// Axis commands at the start of the program, mm (`--start-at`); `None`: unknown.
+    pub start_mm: Option<[f64; 3]>,
+}
+
+impl Setup {
+    /// The machine coordinate of the work offset's zero, where it is given.
+    pub(crate) fn work_offset(&self, name: &str) -> Option<[f64; 3]> {
+        self.work_offsets.iter().find(|(known, _)| known == name).map(|(_, zero)| *zero)
+    }
+
+    /// The length vector of an H number; H0 is no length and needs no entry.
+    pub(crate) fn tool(&self, number: u32) -> Option<[f64; 3]> {
+        if number == 0 {
+            return Some([0.0; 3]);
+        }
+        self.tools.iter().find(|(known, _)| *known == number).map(|(_, vector)| *vector)
+    }
+
+    /// The rotary axes as text: `A, C`, or `none`.
+    pub(crate) fn rotary_names(&self) -> String {
+        let names: Vec<String> =
+            (0..3).filter(|&i| self.has_rotary[i]).map(|i| AXIS_NAMES[3 + i].to_string()).collect();
+        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    }
+}

@@ -1,0 +1,392 @@
+//! What stands in one block, by letter.
+
+use std::ops::Range;
+
+use diagnostic::{Code, Diagnostic};
+use nc_syntax::dialect::{Action, CodeEntry, GCode, PointFree};
+use nc_syntax::{Block, Dialect, Invalid, ItemKind, Number, Span, Value};
+use smallvec::SmallVec;
+use units::decimal::Decimal;
+
+use crate::codes;
+
+/// A refusal on its way out; boxed, so that the way of success stays small.
+pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
+
+/// Letters as bits: `A` is bit 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Letters(u32);
+
+impl Letters {
+    pub(crate) const NONE: Self = Self(0);
+
+    pub(crate) const fn of(letters: &[u8]) -> Self {
+        let (mut bits, mut at) = (0, 0);
+        while at < letters.len() {
+            bits |= 1 << (letters[at] - b'A');
+            at += 1;
+        }
+        Self(bits)
+    }
+    pub(crate) const fn any(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+    pub(crate) const fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+    pub(crate) const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+    pub(crate) const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+    /// The alphabetically first letter; `Z` where there is none.
+    pub(crate) const fn first(self) -> u8 {
+        let at = self.0.trailing_zeros();
+        if at < 26 { b'A' + at as u8 } else { b'Z' }
+    }
+    pub(crate) const fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+    pub(crate) const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// X, Y, Z and their index.
+pub(crate) const LINEAR: [u8; 3] = *b"XYZ";
+/// A, B, C.
+pub(crate) const ROTARY: [u8; 3] = *b"ABC";
+pub(crate) const LINEAR_LETTERS: Letters = Letters::of(&LINEAR);
+pub(crate) const ROTARY_LETTERS: Letters = Letters::of(&ROTARY);
+pub(crate) const AXIS_LETTERS: Letters = LINEAR_LETTERS.or(ROTARY_LETTERS);
+pub(crate) const SECONDARY_LETTERS: Letters = Letters::of(b"UVW");
+pub(crate) const CENTRE_LETTERS: Letters = Letters::of(b"IJK");
+pub(crate) const ARC_LETTERS: Letters = Letters::of(b"IJKR");
+
+/// A G code of the block with the row that explains it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Preparatory<'d> {
+    pub(crate) entry: &'d CodeEntry,
+    pub(crate) span: Span,
+}
+
+/// The words of a block; every letter but G and M at most once, every value a plain number.
+pub(crate) struct Words<'b, 'a, 'd> {
+    pub(crate) block: &'b Block<'a>,
+    pub(crate) codes: SmallVec<[Preparatory<'d>; 8]>,
+    pub(crate) m_codes: SmallVec<[(u16, Span); 4]>,
+    pub(crate) letters: Letters,
+    /// The block may be skipped.
+    pub(crate) skip: bool,
+    /// `%`
+    pub(crate) percent: bool,
+    dialect: &'d Dialect,
+    /// 1 + index of the item, by letter.
+    at: [u32; 26],
+}
+
+impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
+    /// Reads the items once; whether the codes agree with each other is not its business, except that
+    /// two codes of one modal group are refused here.
+    pub(crate) fn read(block: &'b Block<'a>, dialect: &'d Dialect) -> Outcome<Self> {
+        let mut words = Self {
+            block,
+            codes: SmallVec::new(),
+            m_codes: SmallVec::new(),
+            letters: Letters::NONE,
+            skip: false,
+            percent: false,
+            dialect,
+            at: [0; 26],
+        };
+        for (index, item) in block.items.iter().enumerate() {
+            match item.kind {
+                ItemKind::Word { letter, .. } if !letter.is_ascii_uppercase() => {
+                    return Err(words.unreadable(item.span, Invalid::Text));
+                }
+                ItemKind::Word { letter, value: Value::Number(number) } => match letter {
+                    b'G' => words.preparatory(number, item.span)?,
+                    b'M' => words.miscellaneous(number, item.span)?,
+                    _ => words.letter(letter, index, item.span)?,
+                },
+                ItemKind::Word { letter, value: Value::Expression } => {
+                    return Err(words.not_static(item.span, &format!("the value of {}", letter as char)));
+                }
+                ItemKind::Word { letter, value: Value::Missing } => {
+                    let message = format!("{} has no number", letter as char);
+                    return Err(words
+                        .refuse(codes::BAD_NUMBER, message, item.span, "a number was expected after it")
+                        .help("write the number, or remove the letter"));
+                }
+                ItemKind::Comment | ItemKind::Name => {}
+                ItemKind::Skip => {
+                    if !words.codes.is_empty()
+                        || !words.m_codes.is_empty()
+                        || !words.letters.without(Letters::of(b"NO")).is_empty()
+                    {
+                        let message = "block delete stands in the middle of a block";
+                        return Err(words
+                            .refuse(codes::BLOCK_DELETE, message, item.span, "only the rest may be skipped")
+                            .help("write the words after `/` in a block of their own that starts with `/`"));
+                    }
+                    words.skip = true;
+                }
+                ItemKind::Percent => words.percent = true,
+                ItemKind::BracketCommand => {
+                    let message = "a command in brackets is not understood";
+                    return Err(words
+                        .refuse(codes::BRACKET_COMMAND, message, item.span, "it may move the frame or an axis")
+                        .help("remove it, or post the program without it; comments of this dialect start with `;`"));
+                }
+                ItemKind::Flow => {
+                    return Err(words.not_static(item.span, "this"));
+                }
+                ItemKind::Invalid(reason) => return Err(words.unreadable(item.span, reason)),
+            }
+        }
+        Ok(words)
+    }
+
+    /// True where nothing is executed: names, comments, `%`, N and O alone.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.codes.is_empty()
+            && self.m_codes.is_empty()
+            && self.letters.without(Letters::of(b"NO")).is_empty()
+    }
+
+    pub(crate) const fn has(&self, letters: Letters) -> bool {
+        self.letters.any(letters)
+    }
+
+    /// The number of a letter with its place.
+    pub(crate) fn number(&self, letter: u8) -> Option<(Number, Span)> {
+        let at = self.at[usize::from(letter - b'A')];
+        if at == 0 {
+            return None;
+        }
+        match self.block.items[at as usize - 1] {
+            nc_syntax::Item { kind: ItemKind::Word { value: Value::Number(number), .. }, span } => {
+                Some((number, span))
+            }
+            _ => None,
+        }
+    }
+
+    /// Value of a length or angle word in the unit it is written in.
+    ///
+    /// A number without a point counts least increments where the dialect says so. Angles have the
+    /// increment of millimetre words (0.001 degree at IS-B).
+    pub(crate) fn coordinate(&self, letter: u8, inch: bool) -> Option<f64> {
+        let (number, _) = self.number(letter)?;
+        let numbers = &self.dialect.numbers;
+        let decimal = if number.has_point || numbers.point_free == PointFree::Unit {
+            number.decimal
+        } else {
+            let decimals = if inch {
+                numbers.least_increment_decimals_inch
+            } else {
+                numbers.least_increment_decimals_mm
+            };
+            Decimal {
+                mantissa: number.decimal.mantissa,
+                decimals: number.decimal.decimals.saturating_add(decimals),
+            }
+        };
+        Some(decimal.to_f64())
+    }
+
+    /// Value as written: F, P, L.
+    pub(crate) fn plain(&self, letter: u8) -> Option<f64> {
+        self.number(letter).map(|(number, _)| number.decimal.to_f64())
+    }
+
+    /// A whole number that is not negative: H, L, K.
+    pub(crate) fn whole(&self, letter: u8) -> Outcome<Option<u32>> {
+        let Some((number, span)) = self.number(letter) else { return Ok(None) };
+        match whole(number).and_then(|value| u32::try_from(value).ok()) {
+            Some(value) => Ok(Some(value)),
+            None => {
+                let message = format!("{} is not a whole number from 0 to {}", self.text(span), u32::MAX);
+                let label = format!("{} takes a whole number", letter as char);
+                Err(self
+                    .refuse(codes::BAD_NUMBER, message, span, label)
+                    .help("write a whole number without sign"))
+            }
+        }
+    }
+
+    /// From the first to the last of these letters.
+    pub(crate) fn span(&self, letters: Letters) -> Span {
+        let mut span: Option<Span> = None;
+        for (index, at) in self.at.iter().enumerate() {
+            if *at != 0 && letters.0 >> index & 1 == 1 {
+                let here = self.block.items[*at as usize - 1].span;
+                span = Some(
+                    span.map_or(here, |s| Span { start: s.start.min(here.start), end: s.end.max(here.end) }),
+                );
+            }
+        }
+        span.unwrap_or(Span { start: 0, end: self.block.bytes.len() as u32 })
+    }
+
+    /// The letters of a set that stand in the block, as text: `X, Z`.
+    pub(crate) fn names(&self, letters: Letters) -> String {
+        let present = self.letters.and(letters);
+        let names: Vec<String> = (b'A'..=b'Z')
+            .filter(|letter| present.any(Letters::of(&[*letter])))
+            .map(|letter| (letter as char).to_string())
+            .collect();
+        names.join(", ")
+    }
+
+    pub(crate) fn text(&self, span: Span) -> String {
+        String::from_utf8_lossy(self.block.text(span)).into_owned()
+    }
+
+    pub(crate) fn refuse(
+        &self,
+        code: Code,
+        message: impl Into<String>,
+        span: Span,
+        label: impl Into<String>,
+    ) -> Refusal {
+        Refusal(Box::new(Diagnostic::error(code, message).at(self.file_span(span), label)))
+    }
+
+    fn file_span(&self, span: Span) -> Range<u64> {
+        self.block.file_span(span)
+    }
+
+    fn letter(&mut self, letter: u8, index: usize, span: Span) -> Outcome<()> {
+        let bit = Letters::of(&[letter]);
+        if self.letters.any(bit) {
+            let first = self.number(letter).map_or_else(String::new, |(_, first)| self.text(first));
+            let message =
+                format!("{} stands twice in this block: {first} and {}", letter as char, self.text(span));
+            return Err(self
+                .refuse(codes::LETTER_TWICE, message, span, format!("{first} stands before it"))
+                .help("remove one of the two"));
+        }
+        self.letters = self.letters.or(bit);
+        self.at[usize::from(letter - b'A')] = index as u32 + 1;
+        Ok(())
+    }
+
+    fn preparatory(&mut self, number: Number, span: Span) -> Outcome<()> {
+        let entry = tenths(number).and_then(|tenths| self.dialect.code(GCode(tenths)));
+        let Some(entry) = entry else {
+            let message = format!("{} is not in the table of dialect {}", self.text(span), self.dialect.name);
+            return Err(self.refuse(codes::UNKNOWN_CODE, message, span, "it may move an axis or the frame").help(
+                "if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`",
+            ));
+        };
+        if let Some(other) = self.codes.iter().find(|other| conflict(other.entry, entry)) {
+            let (first, second) = (self.text(other.span), self.text(span));
+            let message = if other.entry.code == entry.code {
+                format!("{second} stands twice in this block")
+            } else {
+                format!("{first} and {second} stand in one block and exclude each other")
+            };
+            return Err(self
+                .refuse(codes::SAME_GROUP, message, span, format!("{first} stands before it"))
+                .help("write them in two blocks, or remove one"));
+        }
+        self.codes.push(Preparatory { entry, span });
+        Ok(())
+    }
+
+    fn miscellaneous(&mut self, number: Number, span: Span) -> Outcome<()> {
+        // An M code with decimals or beyond 65535 is no code of any table; it passes like every unknown one.
+        if let Some(value) = whole(number).and_then(|value| u16::try_from(value).ok()) {
+            if let Some((reason, help)) = self.dialect.m_code(value).and_then(|row| row.refuse.as_ref()) {
+                let message = format!("{} is refused: {reason}", self.text(span));
+                return Err(self
+                    .refuse(codes::REFUSED_CODE, message, span, "not understood")
+                    .help(help.as_str()));
+            }
+            self.m_codes.push((value, span));
+        }
+        Ok(())
+    }
+
+    fn not_static(&self, span: Span, what: &str) -> Box<Diagnostic> {
+        let message = format!("{what} is known only while the program runs");
+        self.refuse(codes::NOT_STATIC, message, span, "a plain number was expected")
+            .help("post the program without variables and flow; values must be static")
+    }
+
+    fn unreadable(&self, span: Span, reason: Invalid) -> Box<Diagnostic> {
+        let (message, help) = match reason {
+            Invalid::Number => ("a number cannot be read", "write it as digits with at most one point"),
+            Invalid::TooManyDigits => {
+                ("a number has more than 15 digits", "round it to what the control can move")
+            }
+            Invalid::UnclosedComment => ("a comment has no end", "close it in the same block"),
+            Invalid::UnclosedBracket => ("a bracket has no partner", "close it in the same block"),
+            Invalid::Text => (
+                "this is neither a word nor a comment",
+                "is it another dialect (`--dialect`)? else correct or remove it",
+            ),
+        };
+        self.refuse(codes::UNREADABLE, message, span, "not understood").help(help)
+    }
+}
+
+/// Two codes that may not stand in one block.
+fn conflict(a: &CodeEntry, b: &CodeEntry) -> bool {
+    if a.group == 0 || b.group == 0 {
+        return a.code == b.code;
+    }
+    let cycle_against_motion = |a: &Action, b: &Action| matches!(a, Action::Cycle(_)) && is_motion(b);
+    if cycle_against_motion(&a.action, &b.action) || cycle_against_motion(&b.action, &a.action) {
+        return true;
+    }
+    // G80 beside a motion or a cycle ends the old cycle first; LinuxCNC and Fanuc agree.
+    let cancels = |a: &Action, b: &Action| *a == Action::CycleCancel && *b != Action::CycleCancel;
+    a.group == b.group && !cancels(&a.action, &b.action) && !cancels(&b.action, &a.action)
+}
+
+/// G0 to G3.
+pub(crate) const fn is_motion(action: &Action) -> bool {
+    matches!(action, Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise)
+}
+
+/// The value where it is a whole number that is not negative.
+fn whole(number: Number) -> Option<u64> {
+    let Decimal { mut mantissa, decimals } = number.decimal;
+    for _ in 0..decimals {
+        if mantissa % 10 != 0 {
+            return None;
+        }
+        mantissa /= 10;
+    }
+    u64::try_from(mantissa).ok()
+}
+
+/// A code number in tenths: 54.1 is 541.
+fn tenths(number: Number) -> Option<u16> {
+    let Decimal { mantissa, decimals } = number.decimal;
+    let tenths = match decimals {
+        0 => mantissa.checked_mul(10)?,
+        1 => mantissa,
+        more => {
+            let divisor = 10i64.checked_pow(u32::from(more) - 1)?;
+            if mantissa % divisor != 0 {
+                return None;
+            }
+            mantissa / divisor
+        }
+    };
+    u16::try_from(tenths).ok()
+}
+
+/// A refusal that has still to say the way out.
+pub(crate) struct Refusal(Box<Diagnostic>);
+
+impl Refusal {
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Box<Diagnostic> {
+        self.0.help = Some(help.into());
+        self.0
+    }
+}
