@@ -128,7 +128,7 @@ impl Chain {
             }
         }
         for (end, letter) in [(links.first(), 'w'), (links.last(), 't')] {
-            if end.is_none_or(|link| link.chars().next() != Some(letter)) {
+            if end.is_none_or(|link| !link.starts_with(letter)) {
                 return Err(ChainError::Lacks(letter));
             }
         }

@@ -175,6 +175,10 @@ impl Table {
     ///
     /// # Errors
     /// [`TableError`] unless there are at least two rows, all finite, positions strictly increasing.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "nodes are kept; values stand beside them in every call"
+    )]
     pub fn new(nodes: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Self, TableError> {
         check(&nodes, &values)?;
         let slopes = match interpolation {

@@ -1,1 +1,19 @@
-//! Machine descriptions as values.
+//! Machine descriptions as values: TOML and CSV in, [`machine_model`] inputs out.
+//!
+//! The format is the contract's `format = 1`. Files are read by a function the caller gives; errors know
+//! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
+
+mod columns;
+mod error;
+mod format;
+mod load;
+mod profile;
+mod show;
+mod tables;
+mod toml_error;
+
+pub use error::ProfileError;
+pub use load::{Read, load};
+pub use profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
+pub use show::schema;
+pub use tables::ErrorRows;

@@ -1,0 +1,275 @@
+//! The profile as it is written: TOML, `format = 1`. Nothing here knows what the values mean.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+/// A number that is neither infinite nor NaN: TOML knows both, machines neither.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(transparent)]
+pub(crate) struct Finite(pub(crate) f64);
+
+impl<'de> Deserialize<'de> for Finite {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)?;
+        if value.is_finite() {
+            Ok(Self(value))
+        } else {
+            Err(serde::de::Error::custom(format!("{value} is not a finite number")))
+        }
+    }
+}
+
+/// Three numbers X, Y, Z.
+pub(crate) type Triple = [Finite; 3];
+
+/// A length along Z, or a vector.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected a length along Z in mm, or three numbers [x, y, z]")]
+pub(crate) enum Length {
+    Number(Finite),
+    Vector(Triple),
+}
+
+/// A machine profile of vpost.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Document {
+    /// Version of this format: 1.
+    #[schemars(with = "i64")]
+    pub(crate) format: Spanned<i64>,
+    /// Name of the machine.
+    pub(crate) name: String,
+    /// The control's dialect: a file in grammars/.
+    pub(crate) control: Option<String>,
+    /// Axes from workpiece to tool, like "[w X Y b Z t]".
+    #[schemars(with = "String")]
+    pub(crate) chain: Spanned<String>,
+    /// Between table nodes: "linear" (default) or "monotone" (shape-preserving cubic).
+    #[serde(default)]
+    pub(crate) interpolation: InterpolationName,
+    /// When, how warm and with what it was measured.
+    pub(crate) calibrated: Option<Calibrated>,
+    /// The linear axes.
+    #[serde(default)]
+    pub(crate) axis: Axes,
+    /// Squareness errors, ISO 230-1 signs.
+    #[serde(default)]
+    pub(crate) squareness: Squareness,
+    /// Laser-tracker traverses, one per axis.
+    pub(crate) tracker: Option<Tracker>,
+    /// The rotary axes.
+    #[serde(default)]
+    pub(crate) rotary: Rotary,
+    /// Tool vectors.
+    #[serde(default)]
+    pub(crate) tool: Tool,
+    /// Machine coordinate of each program zero, mm.
+    #[serde(default)]
+    pub(crate) work_offsets_mm: BTreeMap<String, Triple>,
+    /// How programs are corrected.
+    #[serde(default)]
+    pub(crate) correction: Correction,
+    /// Effects beyond the tables: `id` and numeric parameters.
+    #[serde(default)]
+    #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
+    pub(crate) effect: Vec<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+    /// The measuring frame against the machine frame.
+    #[serde(default)]
+    pub(crate) setup: Setup,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum InterpolationName {
+    #[default]
+    Linear,
+    Monotone,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Calibrated {
+    /// Year-month-day.
+    #[schemars(with = "Option<String>")]
+    pub(crate) date: Option<Spanned<String>>,
+    pub(crate) temperature_c: Option<Finite>,
+    pub(crate) instrument: Option<String>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "the standard's letters")]
+pub(crate) struct Axes {
+    #[schemars(with = "Option<LinearAxis>")]
+    pub(crate) X: Option<Spanned<LinearAxis>>,
+    #[schemars(with = "Option<LinearAxis>")]
+    pub(crate) Y: Option<Spanned<LinearAxis>>,
+    #[schemars(with = "Option<LinearAxis>")]
+    pub(crate) Z: Option<Spanned<LinearAxis>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LinearAxis {
+    /// Lower and upper end of the commands, mm; may be left out where `errors` is given.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub(crate) travel_mm: Option<Spanned<[Finite; 2]>>,
+    /// Step of the output, mm; 0.001 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) resolution_mm: Option<Spanned<Finite>>,
+    /// CSV file of error functions: position_mm, EXX_um, … ECX_urad.
+    #[schemars(with = "Option<String>")]
+    pub(crate) errors: Option<Spanned<String>>,
+    /// The same for motion in the negative direction; `errors` is then the positive one.
+    #[schemars(with = "Option<String>")]
+    pub(crate) errors_negative: Option<Spanned<String>>,
+    /// The line the tables were measured along.
+    #[schemars(with = "Option<MeasuredAt>")]
+    pub(crate) measured_at_mm: Option<Spanned<MeasuredAt>>,
+    /// Full reversal value; `errors` is then the mean of both directions.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) backlash_um: Option<Spanned<Finite>>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "the standard's letters")]
+pub(crate) struct MeasuredAt {
+    pub(crate) X: Option<Finite>,
+    pub(crate) Y: Option<Finite>,
+    pub(crate) Z: Option<Finite>,
+    pub(crate) tool: Option<Triple>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "the standard's symbols")]
+pub(crate) struct Squareness {
+    /// Y to X; positive: angle between +X and +Y above 90°.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) EC0Y_urad: Option<Spanned<Finite>>,
+    /// Z to X; positive: angle between +X and +Z below 90°.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) EB0Z_urad: Option<Spanned<Finite>>,
+    /// Z to Y; positive: angle between +Y and +Z above 90°.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) EA0Z_urad: Option<Spanned<Finite>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Tracker {
+    #[schemars(with = "String")]
+    pub(crate) x: Spanned<String>,
+    #[schemars(with = "String")]
+    pub(crate) y: Spanned<String>,
+    #[schemars(with = "String")]
+    pub(crate) z: Spanned<String>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "the standard's letters")]
+pub(crate) struct Rotary {
+    #[schemars(with = "Option<RotaryA>")]
+    pub(crate) A: Option<Spanned<RotaryA>>,
+    #[schemars(with = "Option<RotaryB>")]
+    pub(crate) B: Option<Spanned<RotaryB>>,
+    #[schemars(with = "Option<RotaryC>")]
+    pub(crate) C: Option<Spanned<RotaryC>>,
+}
+
+/// What the three rotary axes have in common, with the location errors by direction.
+pub(crate) struct RotaryAxis<'d> {
+    pub(crate) centre_mm: Option<Triple>,
+    pub(crate) travel_deg: Option<&'d Spanned<[Finite; 2]>>,
+    pub(crate) errors: Option<&'d Spanned<String>>,
+    pub(crate) shift_um: [Option<Finite>; 3],
+    pub(crate) tilt_urad: [Option<Finite>; 3],
+}
+
+macro_rules! rotary {
+    ($name:ident, $shifts:ident $tilts:ident, $($shift:ident $at:literal)*, $($tilt:ident $around:literal)*) => {
+        #[derive(Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        #[allow(non_snake_case, reason = "the standard's symbols")]
+        pub(crate) struct $name {
+            /// A point of the ideal axis, machine frame with all axes at 0; in a head: from the gauge point.
+            centre_mm: Option<Triple>,
+            /// Lower and upper end of the commands; no limit where left out.
+            #[schemars(with = "Option<[f64; 2]>")]
+            travel_deg: Option<Spanned<[Finite; 2]>>,
+            /// CSV file of error functions over position_deg.
+            #[schemars(with = "Option<String>")]
+            errors: Option<Spanned<String>>,
+            $($shift: Option<Finite>,)*
+            $($tilt: Option<Finite>,)*
+        }
+        impl $name {
+            pub(crate) fn parts(&self) -> RotaryAxis<'_> {
+                let mut $shifts = [None; 3];
+                $($shifts[$at] = self.$shift;)*
+                let mut $tilts = [None; 3];
+                $($tilts[$around] = self.$tilt;)*
+                RotaryAxis {
+                    centre_mm: self.centre_mm,
+                    travel_deg: self.travel_deg.as_ref(),
+                    errors: self.errors.as_ref(),
+                    shift_um: $shifts,
+                    tilt_urad: $tilts,
+                }
+            }
+        }
+    };
+}
+rotary!(RotaryA, shifts tilts, EY0A_um 1 EZ0A_um 2, EB0A_urad 1 EC0A_urad 2);
+rotary!(RotaryB, shifts tilts, EX0B_um 0 EZ0B_um 2, EA0B_urad 0 EC0B_urad 2);
+rotary!(RotaryC, shifts tilts, EX0C_um 0 EY0C_um 1, EA0C_urad 0 EB0C_urad 1);
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Tool {
+    /// Without G43: from the point the tables were measured at to the tip.
+    pub(crate) default_mm: Option<Triple>,
+    /// H number → length along Z, or vector.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Length>")]
+    pub(crate) lengths_mm: BTreeMap<String, Spanned<Length>>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Correction {
+    /// Engine; "rigid-body" where left out.
+    #[schemars(with = "Option<String>")]
+    pub(crate) engine: Option<Spanned<String>>,
+    /// Largest distance of the real path from the programmed one; 1 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) tolerance_um: Option<Spanned<Finite>>,
+    /// Feed motion outside the calibrated volume: "refuse" (default) or "clamp".
+    #[serde(default)]
+    pub(crate) outside: OutsideName,
+    /// No piece is made shorter than this; 0 for no limit.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) minimum_segment_mm: Option<Spanned<Finite>>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum OutsideName {
+    #[default]
+    Refuse,
+    Clamp,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Setup {
+    /// Shift of the measuring frame.
+    pub(crate) shift_mm: Option<Triple>,
+    /// Rotation of the measuring frame.
+    pub(crate) rotation_urad: Option<Triple>,
+}

@@ -1,0 +1,474 @@
+//! From TOML text to a checked [`Profile`].
+
+use diagnostic::Diagnostic;
+use machine_model::effects::EffectTerm;
+use machine_model::{
+    Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
+    Traverse, Vector,
+};
+use toml::Spanned;
+use units::{Angle, Length};
+
+use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, closest, span};
+use crate::format::{self, Document, Finite, InterpolationName, OutsideName};
+use crate::profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
+use crate::tables::{ErrorRows, error_rows, traverse};
+use crate::toml_error;
+
+/// Gives the bytes of a file by the path the profile uses.
+pub type Read<'r> = &'r dyn Fn(&str) -> std::io::Result<Vec<u8>>;
+
+/// Reads a profile. Paths of tables are handed to `read` as they are written: it resolves them against
+/// the profile's place.
+///
+/// # Errors
+/// Everything found wrong, VP0301 to VP0311, with spans into the profile or the table named.
+pub fn load(text: &str, read: Read<'_>) -> Result<Profile, Vec<ProfileError>> {
+    let document: Document =
+        toml::from_str(text).map_err(|e| vec![ProfileError::profile(toml_error::diagnostic(text, &e))])?;
+    let mut loader = Loader { read, errors: Vec::new() };
+    let profile = loader.profile(document);
+    match profile {
+        Some(profile) if loader.errors.is_empty() => Ok(profile),
+        _ => Err(loader.errors),
+    }
+}
+
+struct Loader<'r> {
+    read: Read<'r>,
+    errors: Vec<ProfileError>,
+}
+
+fn triple(values: Option<[Finite; 3]>) -> [f64; 3] {
+    values.map_or([0.0; 3], |v| v.map(|Finite(v)| v))
+}
+
+fn vector(values: Option<[Finite; 3]>) -> Vector {
+    triple(values).into()
+}
+
+impl Loader<'_> {
+    fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
+        self.errors.push(ProfileError::profile(diagnostic.at(span(&at.span()), label)));
+    }
+
+    fn profile(&mut self, document: Document) -> Option<Profile> {
+        if *document.format.get_ref() != 1 {
+            let message = format!("format {} of the profile is not known", document.format.get_ref());
+            let diagnostic =
+                Diagnostic::error(FORMAT, message).help("write format = 1, or use a newer vpost");
+            self.refuse(&document.format, diagnostic, "expected 1");
+            return None;
+        }
+        let chain = match Chain::parse(document.chain.get_ref()) {
+            Ok(chain) => Some(chain),
+            Err(e) => {
+                let diagnostic = Diagnostic::error(CHAIN, e.to_string()).help(
+                    "write the axes from workpiece (w) to tool (t), b for the bed, like \"[w X Y b Z t]\"",
+                );
+                self.refuse(&document.chain, diagnostic, "this chain");
+                None
+            }
+        };
+        let interpolation = match document.interpolation {
+            InterpolationName::Linear => Interpolation::Linear,
+            InterpolationName::Monotone => Interpolation::Monotone,
+        };
+        let calibrated = document.calibrated.as_ref().map(|c| self.calibrated(c));
+        let mut rows: [Option<ErrorRows>; 3] = [None, None, None];
+        let mut resolution_mm = [0.001; 3];
+        let axes = &document.axis;
+        let mut linear = Vec::new();
+        for (axis, written) in Axis::ALL.into_iter().zip([&axes.X, &axes.Y, &axes.Z]) {
+            linear.push(self.linear(axis, written.as_ref(), interpolation, &mut rows, &mut resolution_mm));
+        }
+        let rotary = self.rotary(&document, chain.as_ref(), interpolation);
+        let squareness = self.squareness(&document.squareness);
+        let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
+        let tools = self.tools(&document.tool);
+        let work_offsets = self.work_offsets(&document);
+        let correction = self.correction(&document.correction);
+        let effects = self.effects(&document.effect);
+        let setup = MeasuringFrame {
+            shift_mm: triple(document.setup.shift_mm),
+            rotation_rad: triple(document.setup.rotation_urad).map(|v| Angle::from_urad(v).rad()),
+        };
+        let linear: [LinearAxis; 3] = linear.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()?;
+        let description = Description { chain: chain?, linear, rotary, squareness };
+        let rigid_body = match RigidBody::new(description.clone()) {
+            Ok(model) => model,
+            Err(e) => {
+                let at = [&axes.X, &axes.Y, &axes.Z][Axis::from_letter(e.axis)?.direction()].as_ref()?;
+                let diagnostic = Diagnostic::error(CONFLICT, e.to_string())
+                    .help("travel_mm and the tables' position_mm are both machine coordinates");
+                self.refuse(at, diagnostic, "this axis");
+                return None;
+            }
+        };
+        Some(Profile {
+            name: document.name,
+            control: document.control,
+            calibrated,
+            description,
+            resolution_mm,
+            interpolation,
+            rows,
+            traverses,
+            default_tool_mm: triple(document.tool.default_mm),
+            tools,
+            work_offsets,
+            correction,
+            effects,
+            setup,
+            rigid_body,
+        })
+    }
+
+    fn calibrated(&mut self, written: &format::Calibrated) -> Calibrated {
+        if let Some(date) = &written.date
+            && !is_date(date.get_ref())
+        {
+            let diagnostic = Diagnostic::error(VALUE, format!("`{}` is not a date", date.get_ref()))
+                .help("write year-month-day, like \"2023-05-15\"");
+            self.refuse(date, diagnostic, "expected year-month-day");
+        }
+        Calibrated {
+            date: written.date.as_ref().map(|d| d.get_ref().clone()),
+            temperature_c: written.temperature_c.map(|Finite(t)| t),
+            instrument: written.instrument.clone(),
+        }
+    }
+
+    /// The bytes of a table; an error where it cannot be read.
+    fn file(&mut self, name: &Spanned<String>) -> Option<Vec<u8>> {
+        match (self.read)(name.get_ref()) {
+            Ok(bytes) => Some(bytes),
+            Err(e) => {
+                let diagnostic =
+                    Diagnostic::error(FILE, format!("cannot read the table {}: {e}", name.get_ref()))
+                        .help("paths are relative to the profile's own folder");
+                self.refuse(name, diagnostic, "named here");
+                None
+            }
+        }
+    }
+
+    /// The result, or its error put on the list.
+    fn keep<T>(&mut self, result: Result<T, Box<ProfileError>>) -> Option<T> {
+        result.map_err(|e| self.errors.push(*e)).ok()
+    }
+
+    fn table(&mut self, name: Option<&Spanned<String>>, axis: Axis) -> Option<ErrorRows> {
+        let name = name?;
+        let bytes = self.file(name)?;
+        self.keep(error_rows(name.get_ref(), &bytes, axis))
+    }
+
+    /// Lower and upper end, in order.
+    fn range(&mut self, written: &Spanned<[Finite; 2]>, what: &str) -> Option<Range> {
+        let [Finite(low), Finite(high)] = *written.get_ref();
+        if low < high {
+            return Some(Range { low, high });
+        }
+        let diagnostic = Diagnostic::error(VALUE, format!("{what} runs from {low} to {high}"))
+            .help(format!("write the lower end first: [{high}, {low}]"));
+        self.refuse(written, diagnostic, "the lower end must lie below the upper");
+        None
+    }
+
+    fn linear(
+        &mut self,
+        axis: Axis,
+        written: Option<&Spanned<format::LinearAxis>>,
+        interpolation: Interpolation,
+        rows: &mut [Option<ErrorRows>; 3],
+        resolution_mm: &mut [f64; 3],
+    ) -> Option<LinearAxis> {
+        let Some(spanned) = written else {
+            let diagnostic = Diagnostic::error(KEY, format!("the profile lacks [axis.{axis}]"))
+                .help(format!("add [axis.{axis}] with travel_mm = [lowest, highest]"));
+            self.errors.push(ProfileError::profile(diagnostic));
+            return None;
+        };
+        let index = axis.direction();
+        let data = spanned.get_ref();
+        if let Some(step) = &data.resolution_mm {
+            let Finite(value) = *step.get_ref();
+            resolution_mm[index] = value;
+            if value <= 0.0 {
+                let diagnostic = Diagnostic::error(VALUE, format!("resolution_mm of {axis} is {value}"))
+                    .help("write the smallest step the control takes, like 0.001");
+                self.refuse(step, diagnostic, "expected a number above 0");
+            }
+        }
+        let before = self.errors.len();
+        let own = self.table(data.errors.as_ref(), axis);
+        let negative = self.table(data.errors_negative.as_ref(), axis);
+        let travel =
+            data.travel_mm.as_ref().and_then(|travel| self.range(travel, &format!("travel_mm of {axis}")));
+        if let (Some(name), None) = (&data.errors_negative, &data.errors) {
+            let diagnostic = Diagnostic::error(
+                CONFLICT,
+                format!("axis {axis} has errors_negative, but no errors"),
+            )
+            .help(
+                "errors is the table of the positive direction; a table for both directions is errors alone",
+            );
+            self.refuse(name, diagnostic, "the other direction is missing");
+        }
+        if let (Some(backlash), Some(_)) = (&data.backlash_um, &data.errors_negative) {
+            let message = format!("axis {axis} has both errors_negative and backlash_um");
+            let diagnostic = Diagnostic::error(CONFLICT, message)
+                .help("two tables already hold the reversal value: leave backlash_um out");
+            self.refuse(backlash, diagnostic, "counted twice");
+        }
+        if let Some(place) = &data.measured_at_mm
+            && [place.get_ref().X, place.get_ref().Y, place.get_ref().Z][index].is_some()
+        {
+            let diagnostic =
+                Diagnostic::error(CONFLICT, format!("measured_at_mm of {axis} names {axis} itself"))
+                    .help("it says where the other axes stood while this one was measured");
+            self.refuse(place, diagnostic, format!("{axis} moved along the whole line"));
+        }
+        if self.errors.len() > before {
+            return None;
+        }
+        let errors = own.as_ref().and_then(|rows| rows.tables(interpolation));
+        let errors_negative = negative.as_ref().and_then(|rows| rows.tables(interpolation));
+        let Some(travel_mm) = travel.or_else(|| errors.as_ref().map(machine_model::AxisTables::range)) else {
+            let diagnostic = Diagnostic::error(KEY, format!("axis {axis} has neither travel_mm nor errors"))
+                .help("add travel_mm = [lowest, highest], machine coordinates");
+            self.refuse(spanned, diagnostic, "how far does this axis go?");
+            return None;
+        };
+        let place = data.measured_at_mm.as_ref().map(|place| *place.get_ref()).unwrap_or_default();
+        rows[index] = own;
+        Some(LinearAxis {
+            travel_mm,
+            errors,
+            errors_negative,
+            backlash_mm: data.backlash_um.as_ref().map_or(0.0, |b| Length::from_um(b.get_ref().0).mm()),
+            measured_at_mm: Vector::from([place.X, place.Y, place.Z].map(|v| v.map_or(0.0, |Finite(v)| v))),
+            measured_tool_mm: vector(place.tool),
+        })
+    }
+
+    fn rotary(
+        &mut self,
+        document: &Document,
+        chain: Option<&Chain>,
+        interpolation: Interpolation,
+    ) -> [RotaryAxis; 3] {
+        let written = &document.rotary;
+        let parts = [
+            written.A.as_ref().map(|axis| (axis.span(), axis.get_ref().parts())),
+            written.B.as_ref().map(|axis| (axis.span(), axis.get_ref().parts())),
+            written.C.as_ref().map(|axis| (axis.span(), axis.get_ref().parts())),
+        ];
+        let mut all: [RotaryAxis; 3] = std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros()));
+        for ((axis, parts), result) in Axis::ALL[3..].iter().zip(parts).zip(&mut all) {
+            let Some((place, parts)) = parts else { continue };
+            if chain.is_some_and(|chain| !chain.axes().any(|known| known == *axis)) {
+                let diagnostic = Diagnostic::error(
+                    CONFLICT,
+                    format!("[rotary.{axis}] is described, but the chain lacks {axis}"),
+                )
+                .help(format!("add {axis} to the chain, or remove [rotary.{axis}]"))
+                .at(span(&place), "not in the chain");
+                self.errors.push(ProfileError::profile(diagnostic));
+            }
+            result.centre_mm = vector(parts.centre_mm);
+            result.shift_mm =
+                Vector::from(parts.shift_um.map(|v| v.map_or(0.0, |Finite(v)| Length::from_um(v).mm())));
+            result.tilt_rad =
+                Vector::from(parts.tilt_urad.map(|v| v.map_or(0.0, |Finite(v)| Angle::from_urad(v).rad())));
+            if let Some(travel) = parts.travel_deg
+                && let Some(range) = self.range(travel, &format!("travel_deg of {axis}"))
+            {
+                let rad = |deg: f64| Angle::from_deg(deg).rad();
+                result.travel_rad = Range { low: rad(range.low), high: rad(range.high) };
+            }
+            result.errors = self.table(parts.errors, *axis).and_then(|rows| rows.tables(interpolation));
+        }
+        all
+    }
+
+    fn squareness(&mut self, written: &format::Squareness) -> Squareness {
+        let mut read = |value: &Option<Spanned<Finite>>, name: &str| {
+            let Some(value) = value else { return 0.0 };
+            let Finite(urad) = *value.get_ref();
+            if urad.abs() > 1e5 {
+                let diagnostic =
+                    Diagnostic::error(VALUE, format!("{name} of {urad} urad is more than 0.1 rad"))
+                        .help("the unit is the microradian: 1 arc second is 4.848 urad");
+                self.refuse(value, diagnostic, "wrong unit?");
+            }
+            Angle::from_urad(urad).rad()
+        };
+        Squareness {
+            ec0y_rad: read(&written.EC0Y_urad, "EC0Y"),
+            eb0z_rad: read(&written.EB0Z_urad, "EB0Z"),
+            ea0z_rad: read(&written.EA0Z_urad, "EA0Z"),
+        }
+    }
+
+    fn traverses(&mut self, tracker: &format::Tracker) -> Option<[Traverse; 3]> {
+        let mut all = Vec::new();
+        for (axis, name) in Axis::ALL.into_iter().zip([&tracker.x, &tracker.y, &tracker.z]) {
+            let bytes = self.file(name);
+            all.push(bytes.and_then(|bytes| self.keep(traverse(name.get_ref(), &bytes, axis))));
+        }
+        all.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+    }
+
+    fn tools(&mut self, written: &format::Tool) -> Vec<(u32, [f64; 3])> {
+        let mut tools = Vec::new();
+        for (name, length) in &written.lengths_mm {
+            let digits = name.strip_prefix('H').unwrap_or_default();
+            let number =
+                if digits.bytes().all(|b| b.is_ascii_digit()) { digits.parse::<u32>().ok() } else { None };
+            match number.filter(|number| *number > 0) {
+                Some(number) if tools.iter().any(|(known, _)| *known == number) => {
+                    let diagnostic =
+                        Diagnostic::error(CONFLICT, format!("tool H{number} stands there twice"));
+                    self.refuse(length, diagnostic, "again here");
+                }
+                Some(number) => tools.push((
+                    number,
+                    match length.get_ref() {
+                        format::Length::Number(Finite(z)) => [0.0, 0.0, *z],
+                        format::Length::Vector(v) => v.map(|Finite(v)| v),
+                    },
+                )),
+                None => {
+                    let diagnostic = Diagnostic::error(KEY, format!("`{name}` is no H number"))
+                        .help("write H and a whole number from 1, like H1 = 120.0");
+                    self.refuse(length, diagnostic, "of this entry");
+                }
+            }
+        }
+        tools.sort_by_key(|(number, _)| *number);
+        tools
+    }
+
+    fn work_offsets(&mut self, document: &Document) -> Vec<(String, [f64; 3])> {
+        let mut offsets = Vec::new();
+        for (name, zero) in &document.work_offsets_mm {
+            if !name.starts_with('G') || !name[1..].starts_with(|c: char| c.is_ascii_digit()) {
+                let diagnostic = Diagnostic::error(KEY, format!("`{name}` is no work offset"))
+                    .help("write the word that selects it, like G54 or \"G54.1 P2\"");
+                self.errors.push(ProfileError::profile(diagnostic));
+            }
+            offsets.push((name.clone(), zero.map(|Finite(v)| v)));
+        }
+        offsets
+    }
+
+    fn correction(&mut self, written: &format::Correction) -> CorrectionOptions {
+        let mut engine = EngineId::RigidBody;
+        if let Some(name) = &written.engine {
+            let usable = || EngineId::ALL.into_iter().filter(|id| !id.is_published()).map(EngineId::name);
+            match EngineId::from_name(name.get_ref()).filter(|id| !id.is_published()) {
+                Some(id) => engine = id,
+                None => {
+                    let names: Vec<&str> = usable().collect();
+                    let mut diagnostic = Diagnostic::error(
+                        VALUE,
+                        format!("`{}` is no engine that corrects programs", name.get_ref()),
+                    );
+                    diagnostic = diagnostic.help(match closest(name.get_ref(), usable()) {
+                        Some(near) => format!("did you mean \"{near}\"? Engines: {}", names.join(", ")),
+                        None => format!("engines: {}", names.join(", ")),
+                    });
+                    self.refuse(name, diagnostic, "this engine");
+                }
+            }
+        }
+        let mut positive = |value: &Option<Spanned<Finite>>, name: &str, default: f64, zero_too: bool| {
+            let Some(value) = value else { return default };
+            let Finite(number) = *value.get_ref();
+            if number < 0.0 || (number == 0.0 && !zero_too) {
+                let wanted = if zero_too { "0 or more" } else { "a number above 0" };
+                self.refuse(
+                    value,
+                    Diagnostic::error(VALUE, format!("{name} is {number}")),
+                    format!("expected {wanted}"),
+                );
+            }
+            number
+        };
+        CorrectionOptions {
+            engine,
+            tolerance_um: positive(&written.tolerance_um, "tolerance_um", 1.0, false),
+            outside: match written.outside {
+                OutsideName::Refuse => Outside::Refuse,
+                OutsideName::Clamp => Outside::Clamp,
+            },
+            minimum_segment_mm: positive(&written.minimum_segment_mm, "minimum_segment_mm", 0.0, true),
+        }
+    }
+
+    fn effects(
+        &mut self,
+        written: &[Spanned<std::collections::BTreeMap<String, Spanned<toml::Value>>>],
+    ) -> Vec<EffectEntry> {
+        let mut effects = Vec::new();
+        for entry in written {
+            let mut id = None;
+            let mut parameters = Vec::new();
+            for (name, value) in entry.get_ref() {
+                let number = match value.get_ref() {
+                    toml::Value::String(text) if name == "id" => {
+                        id = Some((value, text.clone()));
+                        continue;
+                    }
+                    toml::Value::Integer(number) => *number as f64,
+                    toml::Value::Float(number) => *number,
+                    _ => f64::NAN,
+                };
+                if number.is_finite() && name != "id" {
+                    parameters.push((name.clone(), number));
+                } else {
+                    let what = if name == "id" { "a text" } else { "a finite number" };
+                    self.refuse(
+                        value,
+                        Diagnostic::error(EFFECT, format!("`{name}` of an effect must be {what}")),
+                        format!("expected {what}"),
+                    );
+                }
+            }
+            let Some((place, id)) = id else {
+                let diagnostic = Diagnostic::error(EFFECT, "an effect lacks its id")
+                    .help("add id = \"backlash.X\", or whichever it is");
+                self.refuse(entry, diagnostic, "this effect");
+                continue;
+            };
+            if let Err(e) = EffectTerm::from_entry(&id, &parameters) {
+                self.refuse(place, Diagnostic::error(EFFECT, e.to_string()), "this effect");
+            }
+            effects.push(EffectEntry { id, parameters });
+        }
+        effects
+    }
+}
+
+/// Year-month-day of the Gregorian calendar.
+fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let [year, month, day] = parts[..] else { return false };
+    let digits = |part: &str, length: usize| {
+        (part.len() == length && part.bytes().all(|b| b.is_ascii_digit()))
+            .then(|| part.parse::<u32>().unwrap_or(0))
+    };
+    let (Some(year), Some(month), Some(day)) = (digits(year, 4), digits(month, 2), digits(day, 2)) else {
+        return false;
+    };
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let days = match month {
+        4 | 6 | 9 | 11 => 30,
+        2 => 28 + u32::from(leap),
+        1..=12 => 31,
+        _ => return false,
+    };
+    (1..=days).contains(&day)
+}

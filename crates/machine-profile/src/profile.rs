@@ -1,0 +1,143 @@
+//! A machine profile as values.
+
+use machine_model::engines::{EngineInputs, ParametricTable};
+use machine_model::{Chain, Description, EngineId, Interpolation, RigidBody, Traverse, Volume};
+
+use crate::tables::ErrorRows;
+
+/// When, how warm and with what a machine was measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Calibrated {
+    /// Year-month-day.
+    pub date: Option<String>,
+    /// Temperature, °C.
+    pub temperature_c: Option<f64>,
+    /// Instrument.
+    pub instrument: Option<String>,
+}
+
+/// What happens to feed motion outside the calibrated volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// It is an error.
+    Refuse,
+    /// It takes the correction of the volume's nearest point.
+    Clamp,
+}
+
+/// How programs are corrected unless the command line says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CorrectionOptions {
+    /// Engine; never a published variant.
+    pub engine: EngineId,
+    /// Largest distance of the real path from the programmed one, µm.
+    pub tolerance_um: f64,
+    /// Feed motion outside the calibrated volume.
+    pub outside: Outside,
+    /// No piece is made shorter than this, mm; 0 for no limit.
+    pub minimum_segment_mm: f64,
+}
+
+/// An effect beyond the tables, as the profile names it; [`machine_model::effects::EffectTerm::from_entry`] reads it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectEntry {
+    /// Like `backlash.X`.
+    pub id: String,
+    /// Names with unit, and values; in the order of the alphabet.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// The measuring frame against the machine frame: for `predict --include-setup` only.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MeasuringFrame {
+    /// Shift, mm.
+    pub shift_mm: [f64; 3],
+    /// Rotation, rad.
+    pub rotation_rad: [f64; 3],
+}
+
+/// Everything a profile says, checked: values are finite, tables ordered, the chain complete.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// Name of the machine.
+    pub name: String,
+    /// The control's dialect.
+    pub control: Option<String>,
+    /// Calibration record.
+    pub calibrated: Option<Calibrated>,
+    /// Geometry for the rigid-body model: chain, tables, squareness, rotary axes.
+    pub description: Description,
+    /// Step of the output of X, Y, Z, mm.
+    pub resolution_mm: [f64; 3],
+    /// What lies between table nodes.
+    pub interpolation: Interpolation,
+    /// Tables of X, Y, Z as measured (`errors`), for the engines that work on rows.
+    pub rows: [Option<ErrorRows>; 3],
+    /// Tracker traverses of X, Y, Z.
+    pub traverses: Option<[Traverse; 3]>,
+    /// Tool vector without G43, gauge point to tip, mm.
+    pub default_tool_mm: [f64; 3],
+    /// H number and length vector, mm, ordered by number. The axis command is program + work offset +
+    /// vector; the tool vector is minus the vector.
+    pub tools: Vec<(u32, [f64; 3])>,
+    /// Name (`G54`) and machine coordinate of that program zero, mm, ordered by name.
+    pub work_offsets: Vec<(String, [f64; 3])>,
+    /// How programs are corrected.
+    pub correction: CorrectionOptions,
+    /// Effects beyond the tables.
+    pub effects: Vec<EffectEntry>,
+    /// The measuring frame.
+    pub setup: MeasuringFrame,
+    /// The model of `description`: made once, while loading.
+    pub(crate) rigid_body: RigidBody,
+}
+
+impl Profile {
+    /// The axes from workpiece to tool.
+    #[must_use]
+    pub fn chain(&self) -> &Chain {
+        &self.description.chain
+    }
+
+    /// The rigid-body model of tables, squareness and rotary axes; effects not included.
+    #[must_use]
+    pub fn rigid_body(&self) -> &RigidBody {
+        &self.rigid_body
+    }
+
+    /// Where every table given covers its axis.
+    #[must_use]
+    pub fn volume(&self) -> Volume {
+        machine_model::Engine::volume(&self.rigid_body)
+    }
+
+    /// Which of A, B, C the chain holds.
+    #[must_use]
+    pub fn has_rotary(&self) -> [bool; 3] {
+        let mut has = [false; 3];
+        for axis in self.chain().axes().filter(|axis| !axis.is_linear()) {
+            has[axis.direction()] = true;
+        }
+        has
+    }
+
+    /// What [`machine_model::engines::build`] takes; effects not included.
+    #[must_use]
+    pub fn engine_inputs(&self) -> EngineInputs {
+        let table = |rows: &ErrorRows| ParametricTable::new(rows.positions.clone(), rows.rows.clone()).ok();
+        let [x, y, z] = &self.rows;
+        let tables = match (x, y, z) {
+            (Some(x), Some(y), Some(z)) => match (table(x), table(y), table(z)) {
+                (Some(x), Some(y), Some(z)) => Some([x, y, z]),
+                _ => None,
+            },
+            _ => None,
+        };
+        EngineInputs {
+            rigid: Some(Box::new(self.rigid_body.clone())),
+            traverses: self.traverses.clone(),
+            traverse_interpolation: self.interpolation,
+            tables,
+        }
+    }
+}

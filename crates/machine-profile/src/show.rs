@@ -1,0 +1,134 @@
+//! A profile for people, and its JSON Schema.
+
+use std::fmt::Write as _;
+
+use machine_model::{Axis, EngineId};
+
+use crate::format::Document;
+use crate::profile::{Outside, Profile};
+
+/// The JSON Schema of `format = 1`.
+#[must_use]
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(Document);
+    // A schema is plain data: maps with text keys, which JSON can always write.
+    serde_json::to_string_pretty(&schema).unwrap_or_default()
+}
+
+impl Profile {
+    /// What the profile says, as text: one fact per line, units named.
+    #[must_use]
+    pub fn show(&self) -> String {
+        let mut out = String::new();
+        // Writing to a String cannot fail.
+        let _ = self.write(&mut out);
+        out
+    }
+
+    fn write(&self, out: &mut String) -> std::fmt::Result {
+        writeln!(out, "machine      {}", self.name)?;
+        if let Some(control) = &self.control {
+            writeln!(out, "control      {control}")?;
+        }
+        writeln!(out, "chain        {}", self.chain())?;
+        if let Some(c) = &self.calibrated {
+            let temperature = c.temperature_c.map(|t| format!("{t} °C"));
+            let parts: Vec<String> =
+                [c.date.clone(), temperature, c.instrument.clone()].into_iter().flatten().collect();
+            writeln!(out, "calibrated   {}", parts.join(", "))?;
+        }
+        let volume = self.volume();
+        for (i, axis) in Axis::ALL[..3].iter().enumerate() {
+            let data = &self.description.linear[i];
+            let (travel, known) = (data.travel_mm, volume.0[i]);
+            write!(
+                out,
+                "axis {axis}       travel {} … {} mm, step {} mm",
+                travel.low, travel.high, self.resolution_mm[i]
+            )?;
+            match &self.rows[i] {
+                None => writeln!(out, ", no tables: taken as perfect")?,
+                Some(rows) => {
+                    writeln!(
+                        out,
+                        ", calibrated {} … {} mm, {} rows",
+                        known.low,
+                        known.high,
+                        rows.rows.len()
+                    )?;
+                    for f in 0..6 {
+                        let values = || rows.rows.iter().map(|row| row[f]);
+                        let (low, high) = (
+                            values().fold(f64::INFINITY, f64::min),
+                            values().fold(f64::NEG_INFINITY, f64::max),
+                        );
+                        let symbol = format!("E{}{axis}", ['X', 'Y', 'Z', 'A', 'B', 'C'][f]);
+                        let (scale, unit) = if f < 3 { (1e3, "um") } else { (1e6, "urad") };
+                        if rows.given[f] {
+                            writeln!(
+                                out,
+                                "  {symbol}        {:.2} … {:.2} {unit}",
+                                low * scale,
+                                high * scale
+                            )?;
+                        } else {
+                            writeln!(out, "  {symbol}        not measured: taken as 0")?;
+                        }
+                    }
+                }
+            }
+            if data.errors_negative.is_some() {
+                writeln!(out, "  own tables for the negative direction")?;
+            }
+            if data.backlash_mm != 0.0 {
+                writeln!(out, "  backlash   {:.3} um", data.backlash_mm * 1e3)?;
+            }
+        }
+        let s = self.description.squareness;
+        writeln!(
+            out,
+            "squareness   EC0Y {:.2} urad, EB0Z {:.2} urad, EA0Z {:.2} urad",
+            s.ec0y_rad * 1e6,
+            s.eb0z_rad * 1e6,
+            s.ea0z_rad * 1e6
+        )?;
+        for axis in self.chain().axes().filter(|axis| !axis.is_linear()) {
+            let data = &self.description.rotary[axis.direction()];
+            let c = data.centre_mm;
+            let state = if data.is_perfect() { "no errors given: taken as perfect" } else { "with errors" };
+            writeln!(out, "axis {axis}       centre {} {} {} mm, {state}", c.x, c.y, c.z)?;
+        }
+        if let Some(traverses) = &self.traverses {
+            let text: Vec<String> = traverses
+                .iter()
+                .map(|t| {
+                    let (first, last) = (t.nodes_mm.first().copied(), t.nodes_mm.last().copied());
+                    format!("{} {} … {} mm", Axis::ALL[t.axis], first.unwrap_or(0.0), last.unwrap_or(0.0))
+                })
+                .collect();
+            writeln!(out, "tracker      {}", text.join(", "))?;
+        }
+        let [x, y, z] = self.default_tool_mm;
+        writeln!(out, "tool         default {x} {y} {z} mm")?;
+        for (number, [x, y, z]) in &self.tools {
+            writeln!(out, "  H{number}         {x} {y} {z} mm")?;
+        }
+        for (name, [x, y, z]) in &self.work_offsets {
+            writeln!(out, "{name}          {x} {y} {z} mm")?;
+        }
+        let c = self.correction;
+        let outside = if c.outside == Outside::Refuse { "refused" } else { "clamped" };
+        let engine: EngineId = c.engine;
+        writeln!(
+            out,
+            "correction   engine {engine}, tolerance {} um, feed outside {outside}",
+            c.tolerance_um
+        )?;
+        for effect in &self.effects {
+            let text: Vec<String> =
+                effect.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            writeln!(out, "effect       {} {}", effect.id, text.join(", "))?;
+        }
+        Ok(())
+    }
+}
