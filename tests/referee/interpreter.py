@@ -1,0 +1,272 @@
+"""A program as LinuxCNC's interpreter understands it: straight feeds, arcs and rapids with full doubles.
+
+Codes that move nothing (M, S, T) and tool lengths (G43, G49, H) are taken out of the text first, because
+the interpreter's Python module stops on some of them; they are kept here as events of their line.
+Line numbers stay those of the file.
+"""
+
+import math
+import os
+import re
+import tempfile
+
+INCH = 25.4
+WORD = re.compile(r"([A-Z])\s*([-+]?\s*(?:\d[\d\s]*\.?[\d\s]*|\.\s*\d[\d\s]*))")
+LENGTHS = frozenset("XYZIJKRQ")
+AFTER_MOTION = frozenset(["M0", "M1", "M2", "M5", "M9", "M30", "M60"])
+OFFSETS = ["", "G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
+# Planes as LinuxCNC numbers them: indices of the first, second and normal axis.
+PLANES = {1: (0, 1, 2), 2: (1, 2, 0), 3: (2, 0, 1)}
+
+
+class Unreadable(Exception):
+    """The interpreter refuses the program."""
+
+
+class Move:
+    """One canonical motion; positions in machine coordinates, the tool's length not included."""
+
+    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "known")
+
+    def __init__(self, rapid, line, start, end, arc, feed):
+        self.rapid, self.line, self.start, self.end, self.arc, self.feed = rapid, line, start, end, arc, feed
+
+
+class Arc:
+    """A helix about a plane's normal whose radius goes evenly from its start's to its end's."""
+
+    __slots__ = ("axes", "centre", "angle", "sweep", "radii", "heights", "length")
+
+    def __init__(self, start, end, axes, centre, turns):
+        u, v, w = axes
+        self.axes, self.centre = axes, centre
+        du, dv = start[u] - centre[0], start[v] - centre[1]
+        eu, ev = end[u] - centre[0], end[v] - centre[1]
+        self.angle = math.atan2(dv, du)
+        sweep = math.atan2(ev, eu) - self.angle
+        full = 2.0 * math.pi
+        if turns > 0:
+            sweep = sweep % full
+            if sweep < 1e-9:
+                sweep += full
+            sweep += full * (turns - 1)
+        else:
+            sweep = -((-sweep) % full)
+            if sweep > -1e-9:
+                sweep -= full
+            sweep -= full * (-turns - 1)
+        self.sweep = sweep
+        self.radii = (math.hypot(du, dv), math.hypot(eu, ev))
+        self.heights = (start[w], end[w])
+        self.length = math.hypot(abs(sweep) * 0.5 * sum(self.radii), end[w] - start[w])
+
+    def at(self, t):
+        """Point at a share of the way."""
+        u, v, w = self.axes
+        angle = self.angle + t * self.sweep
+        radius = self.radii[0] + t * (self.radii[1] - self.radii[0])
+        p = [0.0, 0.0, 0.0]
+        p[u] = self.centre[0] + radius * math.cos(angle)
+        p[v] = self.centre[1] + radius * math.sin(angle)
+        p[w] = self.heights[0] + t * (self.heights[1] - self.heights[0])
+        return tuple(p)
+
+
+def number(text):
+    return float(re.sub(r"\s", "", text))
+
+
+def strip_comments(line, semicolon=True):
+    """The line without comments; an unclosed bracket ends it."""
+    out, at = [], 0
+    while at < len(line):
+        if line[at] == "(":
+            close = line.find(")", at)
+            at = len(line) if close < 0 else close + 1
+            out.append(" ")
+        elif line[at] == ";" and semicolon:
+            break
+        else:
+            out.append(line[at])
+            at += 1
+    return "".join(out)
+
+
+class Text:
+    """The lines for the interpreter, and per line what was taken out of them."""
+
+    def __init__(self, raw, least_increment=None):
+        lines = re.split(r"\r*\n|\r", raw.decode("latin-1").replace("\0", ""))
+        self.lines, self.events, self.tool, self.exempt, self.words = [], {}, {}, set(), {}
+        percent, executable, tool = 0, False, None
+        for number_, line in enumerate(lines, 1):
+            bare = strip_comments(line).strip().upper().lstrip("/")
+            if bare.startswith("%"):
+                percent += 1
+                bare = ""
+                if percent > 1 and executable:
+                    break
+            if not executable and bare and WORD.sub("", bare).strip():
+                bare = ""  # a name or a leader, not a block
+            if re.match(r"[O:]\s*\d+\s*$", bare):
+                bare = ""
+            executable = executable or bool(bare)
+            if any(mark in bare for mark in "#[<") or bare.startswith("O"):
+                self.lines.append(bare)
+                self.tool[number_] = tool
+                continue
+            kept = []
+            letters = set()
+            words = [(letter, number(value), value) for letter, value in WORD.findall(bare)]
+            codes = [f"G{value:g}" for letter, value, _ in words if letter == "G"]
+            if "G43" in codes:
+                tool = next((f"H{value:g}" for letter, value, _ in words if letter == "H"), tool)
+                if tool is None:
+                    raise Unreadable(f"line {number_}: G43 without H")
+            if "G49" in codes or tool == "H0":
+                tool = None
+            if {"G53", "G28", "G30"} & set(codes):
+                self.exempt.add(number_)
+            positions = not {"G4", "G10", "G92", "G52"} & set(codes)
+            events = []
+            for letter, value, text in words:
+                name = f"{letter}{value:g}"
+                if letter in "MST":
+                    events.append(name)
+                elif letter in "HDN" or name in ("G43", "G49"):
+                    pass
+                else:
+                    if letter in LENGTHS and least_increment is not None and "." not in text and positions:
+                        text = f"{value / 10**least_increment:.{least_increment}f}"
+                    kept.append(f"{letter}{text}")
+                    if positions:
+                        letters.add(letter)
+            if "G4" in codes:
+                events.append("G4 " + " ".join(f"{letter}{value:g}" for letter, value, _ in words if letter in "PXU"))
+            if events:
+                self.events[number_] = events
+            self.words[number_] = letters
+            self.tool[number_] = tool
+            self.lines.append(" ".join(kept))
+
+
+class Canon:
+    """Receives canonical motion from the interpreter."""
+
+    def __init__(self, folder):
+        self.parameter_file = os.path.join(folder, "fresh.var")
+        self.moves = []
+        self.line = 0
+        self.position = (0.0, 0.0, 0.0)
+        self.offset_name, self.g92, self.plane, self.feed = "G54", (0.0, 0.0, 0.0), 1, 0.0
+        self.offsets = {}
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return lambda *arguments: None
+
+    def check_abort(self):
+        return False
+
+    def get_external_length_units(self):
+        return 1.0 / INCH
+
+    def get_external_angular_units(self):
+        return 1.0
+
+    def get_axis_mask(self):
+        return 7
+
+    def get_block_delete(self):
+        return False
+
+    def get_tool(self, pocket):
+        return (-1,) + (0.0,) * 12 + (0,)
+
+    def next_line(self, code):
+        self.line = code.sequence_number
+
+    def set_g5x_offset(self, index, *values):
+        if any(values):
+            raise Unreadable(f"line {self.line}: the program sets a work offset")
+        self.offset_name = OFFSETS[index]
+
+    def set_g92_offset(self, *values):
+        self.g92 = tuple(value * INCH for value in values[:3])
+
+    def set_xy_rotation(self, angle):
+        if angle:
+            raise Unreadable(f"line {self.line}: the program turns its frame")
+
+    def set_plane(self, plane):
+        self.plane = plane
+
+    def set_feed_rate(self, feed):
+        self.feed = feed * INCH
+
+    def machine(self, values):
+        offset = self.offsets.get(self.offset_name, (0.0, 0.0, 0.0))
+        return tuple(v * INCH + g + o for v, g, o in zip(values, self.g92, offset))
+
+    def add(self, rapid, end, arc=None):
+        self.moves.append(Move(rapid, self.line, self.position, end, arc, 0.0 if rapid else self.feed))
+        self.position = end
+
+    def straight_traverse(self, *values):
+        self.add(True, self.machine(values))
+
+    def straight_feed(self, *values):
+        self.add(False, self.machine(values))
+
+    def rigid_tap(self, *values):
+        self.add(False, self.machine(values))
+
+    def arc_feed(self, first, second, centre1, centre2, turns, height, *_):
+        axes = PLANES[self.plane]
+        raw, centre = [0.0] * 3, [0.0] * 3
+        for axis, end, middle in zip(axes, (first, second, height), (centre1, centre2, 0.0)):
+            raw[axis], centre[axis] = end, middle
+        end, centre = self.machine(raw), self.machine(centre)
+        start = self.position
+        self.add(False, end, Arc(start, end, axes, (centre[axes[0]], centre[axes[1]]), turns))
+
+
+def interpret(raw, offsets, least_increment=None):
+    """Moves and events of a program.
+
+    Events are (name, line, index of the move before which it happens).
+    """
+    import gcode  # of the package linuxcnc-uspace
+
+    text = Text(raw, least_increment)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "program.ngc")
+        with open(path, "w", encoding="latin-1") as file:
+            file.write("\n".join(text.lines) + "\nM2\n")
+        canon = Canon(folder)
+        canon.offsets = offsets
+        open(canon.parameter_file, "w").close()
+        result, line = gcode.parse(path, canon, "G21 G17 G40 G49 G80 G90 G94", "")
+        if result > gcode.MIN_ERROR:
+            raise Unreadable(f"line {line}: {gcode.strerror(result)}")
+    known = set()
+    last = 0
+    for move in canon.moves:
+        # Positions count from where every axis was programmed once; a probe or reference return is no guide.
+        for line in range(last + 1, move.line + 1):
+            known |= text.words.get(line, set()) & set("XYZ")
+        last = max(last, move.line)
+        move.known = len(known) == 3
+        move.tool = text.tool.get(move.line)
+        move.exempt = move.line in text.exempt
+    events, index = [], 0
+    for line in sorted(text.events):
+        while index < len(canon.moves) and canon.moves[index].line < line:
+            index += 1
+        after = index
+        while after < len(canon.moves) and canon.moves[after].line <= line:
+            after += 1
+        for name in text.events[line]:
+            events.append((name, line, after if name in AFTER_MOTION else index))
+    return canon.moves, events
