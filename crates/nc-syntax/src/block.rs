@@ -68,7 +68,7 @@ pub enum Invalid {
 pub enum ItemKind {
     /// Letter (upper case) and value. `N`, `G`, `X`, `O`… all are words.
     Word {
-        /// Upper-case ASCII letter, or `:` for the main block or program number of `:1234`.
+        /// Upper-case ASCII letter. `:1234` is a word of `O`: its program number, or the label of a main block.
         letter: u8,
         /// What follows it.
         value: Value,
@@ -128,7 +128,7 @@ pub const MAX_BLOCK_BYTES: usize = 1 << 16;
 /// A letter with its value, as [`Block::words`] yields them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Upper-case ASCII letter, or `:`.
+    /// Upper-case ASCII letter.
     pub letter: u8,
     /// What follows it.
     pub value: Value,

@@ -1,7 +1,7 @@
 //! Items inside one block.
 
 use crate::dialect::{Command, Paren, Semicolon};
-use crate::number::{end_of_garbage, number, skip_spaces};
+use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
     angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, nested_comment,
     o_statement,
@@ -123,7 +123,7 @@ impl<'d> Lexer<'d> {
     }
 
     /// An item that starts with a letter.
-    #[inline]
+    #[inline(always)]
     fn letter(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let letter = line[at].to_ascii_uppercase();
         if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
@@ -172,9 +172,17 @@ impl<'d> Lexer<'d> {
     }
 
     /// What follows a word's letter, which stands just before `at`.
-    #[inline]
+    #[inline(always)]
     fn value(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
-        let mut start = skip_spaces(line, at);
+        if let Some((plain, end)) = common_number(line, at, self.spaces_inside) {
+            return (Ok(Value::Number(plain)), end);
+        }
+        self.uncommon_value(line, at)
+    }
+
+    /// Values with spaces, variables, expressions, and what is none.
+    fn uncommon_value(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
+        let start = skip_spaces(line, at);
         if self.equals_words && line.get(start) == Some(&b'=') {
             return self.assigned(line, skip_spaces(line, start + 1));
         }
@@ -192,10 +200,7 @@ impl<'d> Lexer<'d> {
             Some(b'#' | b'[') => return self.expression(line, start),
             // Only reached with a letter where `letters` saw a function glued to this word's letter.
             Some(byte) if start == at && byte.is_ascii_alphabetic() => return self.expression(line, start),
-            _ => {
-                start = at;
-                return (Ok(Value::Missing), start);
-            }
+            _ => return (Ok(Value::Missing), at),
         }
         let (found, end) = number(line, start, self.spaces_inside);
         (found.map(Value::Number), end)
@@ -242,7 +247,7 @@ impl<'d> Lexer<'d> {
             b'(' => self.round_bracket(line, at),
             b';' if self.semicolon == Semicolon::Comment => (ItemKind::Comment, line.len()),
             b':' if self.colon_number => match number(line, skip_spaces(line, at + 1), false) {
-                (Ok(plain), end) => (ItemKind::Word { letter: b':', value: Value::Number(plain) }, end),
+                (Ok(plain), end) => (ItemKind::Word { letter: b'O', value: Value::Number(plain) }, end),
                 (Err(_), _) => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
             },
             b'#' => self.flow(line, at, at + 1),

@@ -205,7 +205,7 @@ fn a_percent_between_two_others_is_shown() {
 #[test]
 fn program_names() {
     assert_eq!(one("%\nO1234\nG0"), "Percent<%> | O1234 | G0");
-    assert_eq!(one("%\n:1234 X1\nG0"), "Percent<%> | :1234 X1 | G0");
+    assert_eq!(one("%\n:1234 X1\nG0"), "Percent<%> | O1234 X1 | G0");
     assert_eq!(one("%\n<PART-1>\nG0"), "Percent<%> | Name<<PART-1>> | G0");
     assert_eq!(one("%PART 7 (Z)\nG0\n%"), "Percent<%> Name<PART 7> comment | G0 | Percent<%>");
     assert_eq!(
