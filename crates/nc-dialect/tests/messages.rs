@@ -1,0 +1,150 @@
+//! What a person sees who made a mistake in a grammar.
+
+use nc_dialect::load;
+
+/// The linuxcnc grammar with one place changed, and what `load` says about it.
+fn changed(from: &str, to: &str) -> String {
+    let text = include_str!("../../../grammars/linuxcnc.toml");
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    let text = text.replace(from, to);
+    let Err(wrong) = load("changed", &text) else { return "no complaint".to_owned() };
+    let shown = wrong.iter().map(|diagnostic| {
+        let span = diagnostic.span.clone().expect("every message about a grammar has a place");
+        let found = &text[span.start as usize..span.end as usize];
+        let help = diagnostic.help.as_deref().unwrap_or("-");
+        format!("{diagnostic}\n  at `{found}`: {}\n  help: {help}", diagnostic.label)
+    });
+    shown.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_misspelt_action() {
+    insta::assert_snapshot!(changed(r#"does = "inch""#, r#"does = "inches""#), @r#"
+    error[VP0804]: `inches` is not something a code does
+      at `"inches"`: G20 cannot do this
+      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, pass, pass-with-words
+    "#);
+}
+
+#[test]
+fn an_action_nothing_is_near_to() {
+    insta::assert_snapshot!(changed(r#"does = "dwell""#, r#"does = "warten""#), @r#"
+    error[VP0804]: `warten` is not something a code does
+      at `"warten"`: G4 cannot do this
+      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, pass, pass-with-words
+    "#);
+}
+
+#[test]
+fn a_code_twice() {
+    insta::assert_snapshot!(changed("G21     =", "G021 = { group = 6, does = \"inch\" }\nG21 ="), @r#"
+    error[VP0803]: a code stands twice in the table
+      at `G21`: the same code as in another row
+      help: remove one of the rows: `G1` and `G01` are the same code
+    "#);
+}
+
+#[test]
+fn the_same_key_twice() {
+    insta::assert_snapshot!(changed("G21     =", "G20 = { group = 6, does = \"inch\" }\nG21 ="), @r#"
+    error[VP0801]: the grammar cannot be read: duplicate key
+      at `G20`: here
+      help: docs/dialects.md lists every field of a grammar
+    "#);
+}
+
+#[test]
+fn no_code() {
+    insta::assert_snapshot!(changed("\"G90.1\" =", "\"G90.12\" ="), @r#"
+    error[VP0802]: `G90.12` is not a code
+      at `"G90.12"`: expected a key like G81 or "G54.1"
+      help: write the capital letter and the number; keys with a point stand in quotes
+    "#);
+}
+
+#[test]
+fn neither_done_nor_refused() {
+    insta::assert_snapshot!(changed(r#"{ group = 0, does = "dwell" }"#, "{ group = 0 }"), @r#"
+    error[VP0805]: G4 says neither what it does nor why it is refused
+      at `G4`: expected `does`, or `refuse` with `help`
+      help: write `G4 = { group = 0, does = "pass" }` if it moves nothing
+    "#);
+}
+
+#[test]
+fn refused_without_a_way_out() {
+    insta::assert_snapshot!(changed(r#", help = "let the CAM write the moves, or mill the thread (G2/G3 helices)""#, ""), @r#"
+    error[VP0805]: G76 is refused without a way out
+      at `G76`: add `help`: what the user can do
+      help: -
+    "#);
+}
+
+#[test]
+fn an_unknown_field() {
+    insta::assert_snapshot!(changed("spaces_inside  ", "space_inside  "), @r#"
+    error[VP0801]: the grammar cannot be read: unknown field `space_inside`, expected one of `without_point`, `least_increment_decimals_mm`, `least_increment_decimals_inch`, `spaces_inside`
+      at `space_inside`: here
+      help: docs/dialects.md lists every field of a grammar
+    "#);
+}
+
+#[test]
+fn a_start_that_cannot_be() {
+    insta::assert_snapshot!(changed(r#"["G17", "G21", "#, r#"["G17", "G18", "G4", "G52", "G6", "#), @r#"
+    error[VP0807]: `G18` excludes G17, of the same group: it cannot hold at the start
+      at `"G18"`: expected a modal code of the table
+      help: write codes as the table writes them: `G17`, not `G017`
+    error[VP0807]: `G4` holds for one block only (group 0): it cannot hold at the start
+      at `"G4"`: expected a modal code of the table
+      help: write codes as the table writes them: `G17`, not `G017`
+    error[VP0807]: `G52` is a refused code: it cannot hold at the start
+      at `"G52"`: expected a modal code of the table
+      help: write codes as the table writes them: `G17`, not `G017`
+    error[VP0807]: `G6` has no row in [codes]: it cannot hold at the start
+      at `"G6"`: expected a modal code of the table
+      help: write codes as the table writes them: `G17`, not `G017`
+    "#);
+}
+
+#[test]
+fn numbers_out_of_range() {
+    insta::assert_snapshot!(changed("radius_tolerance_mm = 0.01", "radius_tolerance_mm = nan"), @r#"
+    error[VP0806]: arc_radius_tolerance_mm = NaN is out of range
+      at `nan`: expected above 0, up to 10 mm
+      help: -
+    "#);
+    insta::assert_snapshot!(changed("decimals_inch           = 4", "decimals_inch = 12"), @r#"
+    error[VP0806]: decimals_inch = 12 is no control's resolution
+      at `12`: expected 0 to 9
+      help: -
+    "#);
+    insta::assert_snapshot!(changed("loses_position = \"XYZ\" }\nM9", "loses_position = \"XQ\" }\nM9"), @r#"
+    error[VP0806]: `Q` is not a linear axis
+      at `"XQ"`: expected some of X, Y, Z
+      help: -
+    "#);
+}
+
+#[test]
+fn letters_that_are_none() {
+    insta::assert_snapshot!(changed("ABCDEFGHIJKLMNOPQRSTUVWXYZ", "ABCDEFHIJKLMNOPQRSTUVWXYZ"), @r#"
+    error[VP0808]: these cannot be the letters of words: `G` is missing
+      at `"ABCDEFHIJKLMNOPQRSTUVWXYZ"`: expected each letter of a word once
+      help: letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ" takes all
+    "#);
+    insta::assert_snapshot!(changed("ABCDEFGHIJKLMNOPQRSTUVWXYZ", "abc"), @r#"
+    error[VP0808]: these cannot be the letters of words: `a` is not a capital letter
+      at `"abc"`: expected each letter of a word once
+      help: letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ" takes all
+    "#);
+}
+
+#[test]
+fn no_toml() {
+    insta::assert_snapshot!(changed("[codes]", "[codes"), @r#"
+    error[VP0801]: the grammar cannot be read: unclosed table, expected `]`
+      at ``: here
+      help: docs/dialects.md lists every field of a grammar
+    "#);
+}
