@@ -1,0 +1,134 @@
+//! The shipped profiles load, and the numbers in them are what their files give.
+
+use std::path::Path;
+
+use machine_model::{Command, Engine, PathModel, Vector};
+use machine_profile::{Profile, load};
+
+fn shipped(name: &str) -> Profile {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machine-profiles");
+    let text = std::fs::read_to_string(folder.join(name)).unwrap();
+    load(&text, &|path| std::fs::read(folder.join(path))).unwrap_or_else(|e| panic!("{name}: {e:?}"))
+}
+
+fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
+    Command {
+        linear_mm: linear_mm.into(),
+        rotary_rad: Vector::zeros(),
+        tool_mm: tool_mm.into(),
+        direction: [0; 3],
+    }
+}
+
+/// Slope of the least-squares line with intercept.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
+}
+
+#[test]
+fn squareness_of_the_stan_s500_is_what_its_traverses_give() {
+    let profile = shipped("stan_s500.toml");
+    let traverses = profile.traverses.as_ref().unwrap();
+    // What the tracker saw beyond what the tables already contain.
+    let left = |direction: usize, axis: usize| {
+        let traverse = &traverses[axis];
+        let seen: Vec<_> =
+            traverse.nodes_mm.iter().zip(&traverse.measured_mm).map(|(q, p)| (*q, p[direction])).collect();
+        let rows = profile.rows[axis].as_ref().unwrap();
+        let known: Vec<_> = rows
+            .positions
+            .iter()
+            .zip(&rows.rows)
+            .filter(|(q, _)| **q <= 315.0)
+            .map(|(q, row)| (*q, row[direction]))
+            .collect();
+        slope(&seen) - slope(&known)
+    };
+    let (x, y, z) = (0, 1, 2);
+    let squareness = profile.description.squareness;
+    assert!((squareness.ec0y_rad + left(y, x) + left(x, y)).abs() < 1e-7);
+    assert!((squareness.eb0z_rad - left(z, x) - left(x, z)).abs() < 1e-7);
+    assert!((squareness.ea0z_rad + left(z, y) + left(y, z)).abs() < 1e-7);
+}
+
+/// Table 2.13 of Pimushkin 2023: commanded point and measured |d| in mm. Not used for the profile.
+const TABLE_2_13: [([f64; 3], f64); 10] = [
+    ([230.0, 230.0, 230.0], 0.414),
+    ([110.0, 170.0, 185.0], 0.342),
+    ([170.0, 125.0, 200.0], 0.294),
+    ([198.0, 196.0, 140.0], 0.436),
+    ([130.0, 140.0, 106.0], 0.289),
+    ([50.0, 50.0, 50.0], 0.132),
+    ([133.0, 198.0, 176.0], 0.377),
+    ([80.0, 112.0, 118.0], 0.240),
+    ([162.0, 168.0, 210.0], 0.294),
+    ([108.0, 136.0, 168.0], 0.282),
+];
+
+#[test]
+fn the_stan_s500_profile_closes_most_of_the_published_gap() {
+    let profile = shipped("stan_s500.toml");
+    let model = profile.rigid_body();
+    // Deviations were published relative to the origin; 230 and 210 mm lie just above the Z table.
+    let origin = model.error_mm(&command([0.0; 3], [0.0; 3]));
+    let rms = |d: &dyn Fn([f64; 3]) -> f64| {
+        let sum: f64 = TABLE_2_13.iter().map(|(at, measured)| (d(*at) - measured).powi(2)).sum();
+        (sum / TABLE_2_13.len() as f64).sqrt()
+    };
+    let before = rms(&|_| 0.0);
+    let after = rms(&|at| (model.error_mm(&command(at, [0.0; 3])) - origin).norm());
+    assert!((before - 0.321).abs() < 0.001, "{before}");
+    assert!(after < 0.05, "{after}");
+}
+
+#[test]
+fn the_samples_fit_into_the_calibrated_volume_of_the_stan_s500() {
+    let profile = shipped("stan_s500.toml");
+    let offset = Vector::from(profile.work_offsets[0].1);
+    for length in [[0.0; 3], profile.tools[0].1] {
+        for corner in 0..8 {
+            let pick = |i: usize, low: f64, high: f64| if corner >> i & 1 == 0 { low } else { high };
+            let program = Vector::new(pick(0, -3.0, 123.0), pick(1, -3.0, 83.0), pick(2, -1.0, 30.0));
+            let at = program + offset + Vector::from(length);
+            let tool = Vector::from(length) * -1.0;
+            let solution = profile.rigid_body().solve(&command(at.into(), tool.into())).unwrap();
+            assert!(solution.iterations <= 6, "{}", solution.iterations);
+        }
+    }
+    assert_eq!(profile.has_rotary(), [false; 3]);
+}
+
+#[test]
+fn the_perfect_machine_has_no_errors() {
+    let profile = shipped("perfect.toml");
+    assert_eq!(profile.tools.len(), 99);
+    assert_eq!(profile.work_offsets.len(), 6);
+    let mut at = command([-9999.0, 123.456, 7e-7], [1.0, 2.0, 3.0]);
+    at.rotary_rad = Vector::new(1.0, 2.0, 3.0);
+    assert_eq!(profile.rigid_body().error_mm(&at), Vector::zeros());
+    assert_eq!(profile.rigid_body().solve(&at).unwrap().linear_mm, at.linear_mm);
+}
+
+#[test]
+fn the_generic_machine_depends_on_direction() {
+    let profile = shipped("generic_vmc.toml");
+    let model = profile.rigid_body();
+    assert!(model.depends_on_direction());
+    let at = |direction| {
+        model.error_mm(&Command { direction, ..command([-380.0, -210.0, -255.0], [0.0, 0.0, -150.0]) })
+    };
+    assert!((at([-1, 0, 0]) - at([1, 0, 0]) - Vector::new(0.006, 0.0, 0.0)).norm() < 1e-12);
+    assert!(at([0; 3]).norm() < 0.05);
+}
+
+#[test]
+fn every_engine_can_be_built_from_the_stan_s500() {
+    let profile = shipped("stan_s500.toml");
+    for id in machine_model::EngineId::ALL {
+        let engine = machine_model::engines::build(id, profile.engine_inputs());
+        assert!(engine.is_ok(), "{}: {:?}", id.name(), engine.err());
+    }
+}
