@@ -1,0 +1,325 @@
+//! Which names a design cannot tell apart: the lab's own answer, from its own columns.
+
+use crate::design::Layout;
+use crate::dice::Dice;
+use crate::effect::Effect;
+use crate::linear::{Basis, dot};
+use crate::machine::Machine;
+use crate::plans::{BlindPlan, blind};
+use crate::row::{Row, Sight};
+use crate::textbook::{needs_met, variants};
+
+/// Two names count as one on a design where the true effect correlates this much with the other's columns.
+pub(crate) const SAME: f64 = 0.98;
+
+/// Designs that make two names the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Alias {
+    /// One feed and no diagonals: servo lag and backlash of an axis.
+    LagOrBacklash,
+    /// One tool: squareness to Z and an angle of Z that grows evenly.
+    SquarenessOrAngle,
+    /// One temperature, not 20 °C: scale and thermal expansion.
+    ScaleOrThermal,
+    /// X lines at Y = 0 and one height: straightness EYX and roll EAX.
+    StraightnessOrRoll,
+    /// Load that comes on once: load and step.
+    LoadOrStep,
+    /// One component, short series: warm-up and drift of the instrument.
+    WarmupOrDrift,
+}
+
+impl Alias {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::LagOrBacklash,
+        Self::SquarenessOrAngle,
+        Self::ScaleOrThermal,
+        Self::StraightnessOrRoll,
+        Self::LoadOrStep,
+        Self::WarmupOrDrift,
+    ];
+
+    /// The true effect of the `turn`-th case of this alias.
+    pub(crate) fn truth(self, turn: usize) -> Effect {
+        let axis = turn / 2 % 3;
+        let first = turn.is_multiple_of(2);
+        match self {
+            Self::LagOrBacklash if first => Effect::ServoLag(axis),
+            Self::LagOrBacklash => Effect::Backlash(axis),
+            Self::SquarenessOrAngle => match turn % 4 {
+                0 => Effect::Squareness(0, 2),
+                1 => Effect::Angular(1, 2),
+                2 => Effect::Squareness(1, 2),
+                _ => Effect::Angular(0, 2),
+            },
+            Self::ScaleOrThermal if first => Effect::Scale(axis),
+            Self::ScaleOrThermal => Effect::Thermal(axis),
+            Self::StraightnessOrRoll => Effect::Straightness(1, 0),
+            Self::LoadOrStep => Effect::Load(turn % 3),
+            Self::WarmupOrDrift if first => Effect::Warmup(axis),
+            Self::WarmupOrDrift => Effect::InstrumentDrift,
+        }
+    }
+
+    /// The axis a blind plan must look along, where it looks along one only.
+    fn axis(self, turn: usize) -> usize {
+        turn / 2 % 3
+    }
+}
+
+/// Rows of a deliberately blind plan.
+pub(crate) fn aliased_layout(alias: Alias, turn: usize, machine: &Machine, dice: &mut Dice) -> Layout {
+    blind(&blind_plan(alias, turn, dice), machine, dice)
+}
+
+/// The plan of an alias for the `turn`-th case.
+pub(crate) fn blind_plan(alias: Alias, turn: usize, dice: &mut Dice) -> BlindPlan {
+    let everywhere = vec![
+        (0, [0.1, 0.2]),
+        (1, [0.9, 0.2]),
+        (2, [0.1, 0.9]),
+        (0, [0.9, 0.8]),
+        (1, [0.2, 0.9]),
+        (2, [0.8, 0.2]),
+    ];
+    let mut plan = BlindPlan {
+        feed: dice.pick(&[1000.0, 2000.0, 3000.0]),
+        tool: [0.0, 0.0, -(dice.between(10.0, 20.0).round() * 10.0)],
+        temperature: None,
+        load_from_half: 0.0,
+        lines: everywhere,
+        seen: [true; 3],
+        runs: 6,
+    };
+    match alias {
+        Alias::LagOrBacklash | Alias::SquarenessOrAngle => {}
+        Alias::ScaleOrThermal => plan.temperature = Some(dice.pick(&[16.5, 23.5, 25.0])),
+        Alias::StraightnessOrRoll => {
+            let height = dice.between(0.2, 0.8);
+            plan.lines = vec![(0, [0.0, height]); 3];
+            plan.runs = 3;
+        }
+        Alias::LoadOrStep => {
+            plan.load_from_half = 120.0;
+            plan.runs = 1;
+        }
+        Alias::WarmupOrDrift => {
+            let axis = alias.axis(turn);
+            plan.lines = vec![(axis, [0.5, 0.5]); 3];
+            plan.seen = [0, 1, 2].map(|i| i == axis);
+            plan.runs = 1;
+        }
+    }
+    plan
+}
+
+/// The numbers a layout measures, with set-up and run offsets taken out.
+pub(crate) struct View<'a> {
+    machine: &'a Machine,
+    layout: &'a Layout,
+    /// Class (run and component) of each number, where offsets are per component.
+    classes: Option<Vec<usize>>,
+    nuisance: Basis,
+}
+
+impl<'a> View<'a> {
+    /// Prepares the projection: six set-up parameters and three offsets per run.
+    pub(crate) fn new(machine: &'a Machine, layout: &'a Layout) -> Self {
+        let mut view = Self { machine, layout, classes: None, nuisance: Basis::default() };
+        let runs = layout.rows.iter().map(|r| r.run).max().unwrap_or(0) + 1;
+        if layout.rows.iter().all(|r| matches!(r.sight, Sight::Components(_))) {
+            let mut classes = Vec::new();
+            for row in &layout.rows {
+                if let Sight::Components(mask) = row.sight {
+                    classes.extend((0..3).filter(|i| mask[*i]).map(|i| 3 * row.run + i));
+                }
+            }
+            view.classes = Some(classes);
+        } else {
+            for run in 0..runs {
+                for i in 0..3 {
+                    let unit = |r: &Row| {
+                        let mut v = [0.0; 3];
+                        v[i] = if r.run == run { 1.0 } else { 0.0 };
+                        v
+                    };
+                    let column = view.raw(unit);
+                    view.nuisance.add(column);
+                }
+            }
+        }
+        for about in 0..3 {
+            let turned = |r: &Row| {
+                let p = machine.nominal(r);
+                let (u, v) = ((about + 1) % 3, (about + 2) % 3);
+                let mut d = [0.0; 3];
+                d[u] = -p[v];
+                d[v] = p[u];
+                d
+            };
+            let mut column = view.raw(turned);
+            view.centre(&mut column);
+            view.nuisance.add(column);
+        }
+        view
+    }
+
+    /// The measured numbers of a displacement field, as they are.
+    pub(crate) fn raw(&self, field: impl Fn(&Row) -> [f64; 3]) -> Vec<f64> {
+        self.layout.rows.iter().flat_map(|r| r.seen(field(r))).collect()
+    }
+
+    /// The measured numbers of a displacement field without what set-up and run offsets can express.
+    pub(crate) fn clean(&self, field: impl Fn(&Row) -> [f64; 3]) -> Vec<f64> {
+        self.cleaned(self.raw(field))
+    }
+
+    /// The same for a field given row by row.
+    pub(crate) fn clean_rows(&self, field: &[[f64; 3]]) -> Vec<f64> {
+        let rows = self.layout.rows.iter().zip(field);
+        self.cleaned(rows.flat_map(|(row, d)| row.seen(*d)).collect())
+    }
+
+    fn cleaned(&self, mut v: Vec<f64>) -> Vec<f64> {
+        self.centre(&mut v);
+        self.nuisance.remove(&mut v);
+        v
+    }
+
+    fn centre(&self, v: &mut [f64]) {
+        let Some(classes) = &self.classes else { return };
+        let count = classes.iter().max().map_or(0, |c| c + 1);
+        let (mut sums, mut counts) = (vec![0.0; count], vec![0.0f64; count]);
+        for (value, class) in v.iter().zip(classes) {
+            sums[*class] += value;
+            counts[*class] += 1.0;
+        }
+        for (value, class) in v.iter_mut().zip(classes) {
+            *value -= sums[*class] / counts[*class];
+        }
+    }
+
+    /// Orthonormal bases of every variant of every effect the file can show, after cleaning.
+    pub(crate) fn library(&self) -> Vec<(Effect, Basis, Vec<Vec<f64>>)> {
+        let mut effects = Effect::linear();
+        if self.machine.centre.is_some() {
+            effects.extend(Effect::rotary());
+        }
+        let mut library = Vec::new();
+        for effect in effects {
+            if !needs_met(effect, self.layout.columns) {
+                continue;
+            }
+            for variant in variants(effect, self.machine, self.layout) {
+                let mut basis = Basis::default();
+                let mut columns = Vec::new();
+                for column in &variant {
+                    let (raw, clean) = (self.raw(column), self.clean(column));
+                    // What set-up swallows is no column; rounding must not make it one.
+                    if dot(&clean, &clean) > 1e-8 * dot(&raw, &raw) {
+                        basis.add(clean.clone());
+                        columns.push(clean);
+                    }
+                }
+                library.push((effect, basis, columns));
+            }
+        }
+        library
+    }
+
+    /// Names other than `but` that this design cannot tell from the cleaned effect `v`, with their correlation.
+    pub(crate) fn rivals(
+        library: &[(Effect, Basis, Vec<Vec<f64>>)],
+        v: &[f64],
+        but: Option<Effect>,
+    ) -> Vec<(Effect, f64)> {
+        let mut found: Vec<(Effect, f64)> = Vec::new();
+        for (effect, basis, _) in library {
+            let correlation = basis.correlation(v);
+            if Some(*effect) == but || correlation < SAME {
+                continue;
+            }
+            match found.iter_mut().find(|(e, _)| e == effect) {
+                Some((_, most)) => *most = most.max(correlation),
+                None => found.push((*effect, correlation)),
+            }
+        }
+        found
+    }
+
+    /// Share of the variance of `v` that the best three effects other than `but` leave unexplained,
+    /// chosen greedily.
+    pub(crate) fn beyond_three(
+        library: &[(Effect, Basis, Vec<Vec<f64>>)],
+        v: &[f64],
+        but: Option<Effect>,
+    ) -> f64 {
+        let mut joint = Basis::default();
+        let mut left = v.to_vec();
+        for _ in 0..3 {
+            let best = library
+                .iter()
+                .filter(|(effect, ..)| Some(*effect) != but)
+                .max_by(|a, b| a.1.correlation(&left).total_cmp(&b.1.correlation(&left)));
+            let Some((_, _, columns)) = best else { break };
+            columns.iter().for_each(|column| joint.add(column.clone()));
+            left = v.to_vec();
+            joint.remove(&mut left);
+        }
+        dot(&left, &left) / dot(v, v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::Plan;
+    use crate::plans::lay_out;
+
+    fn unit(effect: Effect, machine: &Machine, layout: &Layout) -> Vec<f64> {
+        let view = View::new(machine, layout);
+        let all = variants(effect, machine, layout);
+        view.clean(|r| all[0][0](r))
+    }
+
+    #[test]
+    fn a_set_up_is_invisible_after_cleaning() {
+        let machine = Machine::random(&mut Dice::new(2, 0, 0), false);
+        let layout = lay_out(Plan::Good, &machine, false, &mut Dice::new(2, 0, 1));
+        let view = View::new(&machine, &layout);
+        let moved = view.clean(|r| {
+            let p = r.tip();
+            [3.0 - 2e-3 * p[1] + 1e-3 * p[2], 1.0 + 2e-3 * p[0] + r.run as f64, -1e-3 * p[0]]
+        });
+        assert!(dot(&moved, &moved).sqrt() < 1e-9);
+    }
+
+    #[test]
+    fn one_feed_makes_lag_and_backlash_the_same_and_two_feeds_do_not() {
+        let machine = Machine::random(&mut Dice::new(2, 0, 0), false);
+        let mut dice = Dice::new(2, 0, 1);
+        let one = blind(&blind_plan(Alias::LagOrBacklash, 0, &mut dice), &machine, &mut dice);
+        let two = lay_out(Plan::Good, &machine, false, &mut dice);
+        for (layout, same) in [(one, true), (two, false)] {
+            let lag = unit(Effect::ServoLag(0), &machine, &layout);
+            let library = View::new(&machine, &layout).library();
+            let rivals = View::rivals(&library, &lag, Some(Effect::ServoLag(0)));
+            assert_eq!(rivals.iter().any(|(e, _)| *e == Effect::Backlash(0)), same, "{rivals:?}");
+        }
+    }
+
+    #[test]
+    fn a_name_is_expressed_by_its_own_columns() {
+        let machine = Machine::random(&mut Dice::new(3, 0, 0), false);
+        let layout = lay_out(Plan::Good, &machine, true, &mut Dice::new(3, 0, 1));
+        let library = View::new(&machine, &layout).library();
+        for effect in [Effect::Scale(1), Effect::Squareness(0, 2), Effect::Load(2), Effect::LostMotion(1, 0)]
+        {
+            let v = unit(effect, &machine, &layout);
+            assert!(View::beyond_three(&library, &v, None) < 1e-9, "{}", effect.id());
+            assert!(View::rivals(&library, &v, Some(effect)).is_empty(), "{}", effect.id());
+            assert!(View::beyond_three(&library, &v, Some(effect)) > 0.03, "{}", effect.id());
+        }
+    }
+}

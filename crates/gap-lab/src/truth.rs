@@ -1,0 +1,53 @@
+//! What the files of a case do not say.
+
+pub use crate::collinearity::Alias;
+
+/// One withheld effect.
+#[derive(Clone, Debug)]
+pub struct TrueEffect {
+    /// Id of the contract, or `outside.…`.
+    pub id: String,
+    /// Root mean square over rows of what the file shows of it, set-up and run offsets removed, over σ.
+    pub snr: f64,
+    /// Coefficient of the textbook column that fits the noise-free effect best, with its unit; only
+    /// where the textbook form has exactly one column.
+    pub coefficient: Option<(&'static str, f64)>,
+    /// Names that this design cannot tell from it, with the correlation of the true effect with their columns.
+    pub rivals: Vec<(String, f64)>,
+}
+
+/// Share of the true gap's mean square in a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellShare {
+    /// Which axis is cut into cells.
+    pub axis: usize,
+    /// Commands from … to, mm.
+    pub between_mm: [f64; 2],
+    /// Mean square of the gap in the cell, µm².
+    pub mean_square_um2: f64,
+}
+
+/// The truth of a case.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Withheld effects, the largest first. Empty for a null.
+    pub effects: Vec<TrueEffect>,
+    /// Standard deviation of one reading, µm.
+    pub sigma_um: f64,
+    /// Standard deviation of the run offsets, µm.
+    pub run_sigma_um: f64,
+    /// True where no withheld effect has a rival.
+    pub identifiable: bool,
+    /// Length of the cleaned gap over σ: how many standard deviations a perfect test would see.
+    pub expected_sigma: f64,
+    /// Share of the cleaned gap's mean square in X, Y and Z.
+    pub components: [f64; 3],
+    /// Where the cleaned gap lies along each axis, ten cells each.
+    pub cells: Vec<CellShare>,
+    /// Root mean square per row of the noise-free gap on the hold-out, set-up and run offsets removed, µm.
+    pub holdout_gap_um: f64,
+    /// Root mean square per row of the noise on the hold-out after the same removal, µm.
+    pub holdout_noise_um: f64,
+    /// Noise-free displacement that the withheld effects cause at every hold-out row, µm.
+    pub holdout_field_um: Vec<[f64; 3]>,
+}
