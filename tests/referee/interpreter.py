@@ -98,6 +98,8 @@ class Text:
     def __init__(self, raw, least_increment=None):
         lines = re.split(r"\r*\n|\r", raw.decode("latin-1").replace("\0", ""))
         self.lines, self.events, self.tool, self.exempt, self.words = [], {}, {}, set(), {}
+        # Axes that may stand anywhere after a line: reference returns, tool changes.
+        self.lost = {}
         percent, executable, tool = 0, False, None
         for number_, line in enumerate(lines, 1):
             bare = strip_comments(line).strip().upper().lstrip("/")
@@ -127,6 +129,9 @@ class Text:
                 tool = None
             if {"G53", "G28", "G30"} & set(codes):
                 self.exempt.add(number_)
+                self.lost[number_] = {letter for letter, _, _ in words if letter in "XYZ"}
+            if ("M", 6.0) in ((letter, value) for letter, value, _ in words):
+                self.lost[number_] = set("XYZ")
             positions = not {"G4", "G10", "G92", "G52"} & set(codes)
             events = []
             for letter, value, text in words:
@@ -253,9 +258,10 @@ def interpret(raw, offsets, least_increment=None):
     known = set()
     last = 0
     for move in canon.moves:
-        # Positions count from where every axis was programmed once; a probe or reference return is no guide.
+        # Positions count from where every axis has been programmed.
         for line in range(last + 1, move.line + 1):
             known |= text.words.get(line, set()) & set("XYZ")
+            known -= text.lost.get(line, set())
         last = max(last, move.line)
         move.known = len(known) == 3
         move.tool = text.tool.get(move.line)

@@ -87,17 +87,16 @@ class Machine:
         self.order = [AXES.index(name) for name in chain[1:-1] if name in AXES]
         if sorted(self.order) != [0, 1, 2]:
             raise ValueError(f"chain {chain} does not name X, Y and Z once each")
-        for key in ("effect", "rotary"):
-            if profile.get(key) and key == "effect":
-                raise ValueError("the referee knows no [[effect]]")
+        if profile.get("effect"):
+            raise ValueError("the referee knows no [[effect]]")
+        if profile.get("interpolation", "linear") != "linear":
+            raise ValueError("the referee interpolates linearly only")
         self.tables, self.about, self.travel = [None] * 3, [(0.0, 0.0, 0.0)] * 3, [(-math.inf, math.inf)] * 3
         for index, name in enumerate(AXES):
             axis = profile.get("axis", {}).get(name, {})
             for key in ("backlash_um", "errors_negative"):
                 if axis.get(key):
                     raise ValueError(f"the referee knows no {key}")
-            if axis.get("interpolation", "linear") != "linear":
-                raise ValueError("the referee interpolates linearly only")
             if "errors" in axis:
                 self.tables[index] = read_table(os.path.join(folder, axis["errors"]), name)
                 positions = self.tables[index][0]

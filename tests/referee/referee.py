@@ -42,24 +42,23 @@ def point(move, t):
     return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))
 
 
-def nearest(move, p, guess):
-    """Share of the way of the move's point nearest to p; guess picks the turn of a helix."""
+def nearest(move, p, low, high):
+    """Share of the way, from `low` to `high`, of the move's point nearest to p."""
     if move.arc:
         arc = move.arc
         u, v, _ = arc.axes
         angle = math.atan2(p[v] - arc.centre[1], p[u] - arc.centre[0]) - arc.angle
         turn = 2.0 * math.pi
-        expected = guess * arc.sweep
-        angle += turn * round((expected - angle) / turn)
-        options = [min(max((angle + k * turn) / arc.sweep, 0.0), 1.0) for k in (-1, 0, 1)]
-        return min(options, key=lambda t: distance(point(move, t), p) + ORDER_WEIGHT * abs(t - guess) * arc.length)
+        angle += turn * round((0.5 * (low + high) * arc.sweep - angle) / turn)
+        options = [min(max((angle + k * turn) / arc.sweep, low), high) for k in (-1, 0, 1)]
+        return min(options, key=lambda t: distance(point(move, t), p))
     a, b = move.start, move.end
     d = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
     square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
     if square == 0.0:
         return 1.0
     t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1] + (p[2] - a[2]) * d[2]) / square
-    return min(max(t, 0.0), 1.0)
+    return min(max(t, low), high)
 
 
 def runs(moves):
@@ -93,8 +92,11 @@ class Path:
         best, index = None, first
         while index < len(self.moves) and (best is None or self.ways[index] <= way + SLACK_MM):
             span = self.lengths[index]
-            guess = min(max((way - self.ways[index]) / span, 0.0), 1.0) if span > 0.0 else 0.0
-            t = nearest(self.moves[index], p, guess)
+            low = high = 1.0
+            if span > 0.0:
+                low = min(max((way - SLACK_MM - self.ways[index]) / span, 0.0), 1.0)
+                high = min(max((way + SLACK_MM - self.ways[index]) / span, 0.0), 1.0)
+            t = nearest(self.moves[index], p, low, high)
             at = self.ways[index] + t * span
             d = distance(point(self.moves[index], t), p)
             score = d + ORDER_WEIGHT * abs(at - way)

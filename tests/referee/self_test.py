@@ -181,6 +181,9 @@ def run():
     report.expect("the gap before is large", 150 < result["before"]["um"] < 400, result["before"])
     report.expect("the gap after is rounding", result["after"]["um"] < 0.9, result["after"])
     report.expect("an uncorrected program fails", not verdict(PROGRAM, PROGRAM)["ok"])
+    turns = "G90 G0 X12 Y0 Z5\nG1 Z0 F300\nG3 X12 Y0 Z-2 I-12 J0\nG3 I-12 J0\nG3 I-12 J0\nG1 X0\n"
+    result = verdict(turns, turns)
+    report.expect("turns over each other are told apart", 50 < result["before"]["um"] < 400, result["before"])
     lines = good.splitlines()
     feeds = [k for k, line in enumerate(lines) if line.startswith("G1")]
     rapids = [k for k, line in enumerate(lines) if line.startswith("G0")]
