@@ -1,0 +1,104 @@
+//! The programs in `grammars/*/accept` and `grammars/*/reject`, as far as reading and the tables decide.
+//!
+//! The whole-program test runs them through the command; here it is made sure that every accepted one is
+//! readable and holds known codes only, and that every rejected one says which message it expects.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use nc_dialect::{builtin, builtin_names};
+use nc_syntax::dialect::Action;
+use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
+
+/// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused.
+const DECIDED_HERE: [u16; 4] = [201, 202, 207, 208];
+
+/// Name and bytes of every program in a folder, in alphabetical order.
+fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../grammars").join(dialect).join(folder);
+    let Ok(entries) = std::fs::read_dir(folder) else { return BTreeMap::new() };
+    let read = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.unwrap().path();
+        (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&path).unwrap())
+    };
+    entries.map(read).collect()
+}
+
+/// The first message that reading or the tables decide.
+fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    while reader.next(&mut block) {
+        for item in &block.items {
+            let found = match item.kind {
+                ItemKind::Invalid(_) => Some(201),
+                ItemKind::Flow | ItemKind::Word { value: Value::Expression, .. } => Some(202),
+                ItemKind::BracketCommand => match dialect.command(block.text(item.span)) {
+                    Some(command) if command.refuse.is_none() => None,
+                    _ => Some(224),
+                },
+                _ => None,
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        for word in block.words() {
+            let refused = match word.letter {
+                b'G' => match word.g_code().and_then(|code| dialect.code(code)) {
+                    None => return Some(207),
+                    Some(entry) => matches!(entry.action, Action::Refuse { .. }),
+                },
+                b'M' => {
+                    let number = word.number().and_then(nc_syntax::Number::integer);
+                    let row = number.and_then(|number| dialect.m_code(u16::try_from(number).ok()?));
+                    row.is_some_and(|row| row.refuse.is_some())
+                }
+                _ => false,
+            };
+            if refused {
+                return Some(208);
+            }
+        }
+    }
+    None
+}
+
+/// The number in the first `expect VPnnnn` of a program.
+fn expected(text: &[u8]) -> Option<u16> {
+    let text = String::from_utf8_lossy(text);
+    let number = text.split("expect VP").nth(1)?.get(..4)?;
+    number.parse().ok()
+}
+
+#[test]
+fn accepted_programs_are_readable() {
+    for name in builtin_names() {
+        let dialect = builtin(name).unwrap();
+        for (file, text) in programs(name, "accept") {
+            assert_eq!(looks_like_program(&text), Ok(()), "{name}/accept/{file}");
+            assert_eq!(verdict(&text, dialect), None, "{name}/accept/{file}");
+        }
+    }
+}
+
+#[test]
+fn rejected_programs_say_why_and_are_rejected_for_it() {
+    for name in builtin_names() {
+        let dialect = builtin(name).unwrap();
+        for (file, text) in programs(name, "reject") {
+            let Some(expected) = expected(&text) else {
+                panic!("{name}/reject/{file} has no `expect VPnnnn`")
+            };
+            let found = verdict(&text, dialect).filter(|found| DECIDED_HERE.contains(found));
+            let wanted = Some(expected).filter(|code| DECIDED_HERE.contains(code));
+            assert_eq!(found, wanted, "{name}/reject/{file}");
+        }
+    }
+}
+
+#[test]
+fn no_corpus_is_empty() {
+    for name in ["fanuc", "linuxcnc", "perspektiva"] {
+        assert!(programs(name, "accept").len() > 40 && programs(name, "reject").len() > 40, "{name}");
+    }
+}

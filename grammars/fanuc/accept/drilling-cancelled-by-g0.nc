@@ -1,0 +1,11 @@
+%
+O0001
+(any of G0 to G3 ends a cycle)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G99 G81 X20. Y20. Z40. R52. F100.
+X40.
+G0 X60. Y60.
+G0 Z60.
+M30
+%

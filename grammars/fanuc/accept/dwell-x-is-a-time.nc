@@ -1,0 +1,12 @@
+%
+O0001
+(G4 X2. is two seconds)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G4 X2.
+X20.
+G4 U1.5
+G4 P500
+M30
+%

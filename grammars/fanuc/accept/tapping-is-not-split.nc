@@ -1,0 +1,11 @@
+%
+O0001
+(G84: Z feed and spindle belong together)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+M3 S500
+G98 G84 X20. Y20. Z40. R52. F500.
+X40.
+G80
+M30
+%

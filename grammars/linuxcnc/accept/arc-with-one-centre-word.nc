@@ -1,0 +1,8 @@
+(a missing I J K is 0)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G2 X30. Y10. I10.
+X50. I10.
+G3 X30. I-10.
+M2

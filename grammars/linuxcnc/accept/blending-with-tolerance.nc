@@ -1,0 +1,7 @@
+(P of G64 is a tolerance)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G64 P0.01 Q0.01
+G1 Z50. F200.
+X20.
+M2

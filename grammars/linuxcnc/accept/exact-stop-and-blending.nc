@@ -1,0 +1,8 @@
+(G61 and G64 move nothing)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G61
+G1 Z50. F200.
+G64
+X20.
+M2

@@ -1,0 +1,9 @@
+%CORPUS
+(ISO 6983-1: G70 inches, G71 millimetres)
+G17 G71 G40 G90 G54
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X20. Y20.
+G0 Z60.
+M30
+%
