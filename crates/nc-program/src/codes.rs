@@ -60,9 +60,11 @@ pub const SECONDARY_AXIS: Code = Code(221);
 pub const BLOCK_DELETE: Code = Code(222);
 /// The words of a block may belong to more than one of its codes. Remedy: two blocks.
 pub const WORDS_OF_TWO: Code = Code(223);
-/// A command in brackets; it may move the frame.
-pub const BRACKET_COMMAND: Code = Code(224);
-/// I, J, K or R in a block that is no arc and no cycle: a corner rounding on some controls.
+/// A command by name (`(UAO,1)`, `TRANS`) that the dialect's table refuses or does not have: it may move
+/// the frame.
+pub const COMMAND: Code = Code(224);
+/// I, J, K or R in a block that is no arc and no cycle, or `,R` and `,C`: corner roundings and chamfers.
+/// Remedy: post them as arcs and lines.
 pub const STRAY_ARC_WORD: Code = Code(225);
 /// A rapid cannot be combined with what its block also does (tool change with motion, G53 in a cycle).
 pub const COMBINATION: Code = Code(226);

@@ -85,8 +85,8 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, shift_mm: &[f64; 3])
         }
     }
     if words.has(ROTARY_LETTERS) {
-        for i in 0..3 {
-            if let Some(value) = words.coordinate(ROTARY[i], false) {
+        for (i, letter) in ROTARY.into_iter().enumerate() {
+            if let Some(value) = words.coordinate(letter, false) {
                 end.rotary[i] = Axis::At(match state.distance {
                     Distance::Absolute => value,
                     Distance::Incremental => increment_base(words, state.axes.rotary[i], 3 + i)? + value,

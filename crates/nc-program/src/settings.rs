@@ -61,6 +61,7 @@ struct Wanted<'d> {
     motion: Option<MotionMode>,
     cycle: Option<(CycleCode, GCode, u8)>,
     cancel_group: Option<u8>,
+    probe_group: Option<u8>,
     offset: Option<(GCode, &'d str, Span)>,
     length: Option<(Length, Span)>,
 }
@@ -171,7 +172,11 @@ fn set<'d>(
         Action::Dwell => return Owner::Dwell,
         Action::Reference => return Owner::Reference,
         Action::MachineCoordinates => return Owner::MachineCoordinates,
-        Action::Probe => return Owner::Probe,
+        Action::Probe => {
+            // Where probing is a motion code (LinuxCNC), it replaces the one in force and is not repeated.
+            wanted.probe_group = Some(group);
+            return Owner::Probe;
+        }
     }
     Owner::Motion
 }
@@ -245,6 +250,10 @@ fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
         if Some(group) == env.motion_group {
             state.motion = MotionMode::None;
         }
+    }
+    if wanted.probe_group.is_some() && wanted.probe_group == env.motion_group {
+        state.motion = MotionMode::None;
+        state.cycle = None;
     }
     if let Some(mode) = wanted.motion {
         state.motion = mode;

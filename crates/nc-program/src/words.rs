@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic};
-use nc_syntax::dialect::{Action, CodeEntry, GCode, PointFree};
+use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Number, Span, Value};
 use smallvec::SmallVec;
-use units::decimal::Decimal;
 
 use crate::codes;
 
@@ -133,12 +132,18 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     words.skip = true;
                 }
                 ItemKind::Percent => words.percent = true,
-                ItemKind::BracketCommand => {
-                    let message = "a command in brackets is not understood";
+                ItemKind::CommaWord { letter, .. } => {
+                    let message = format!("a corner by `,{}` cannot be resolved", letter as char);
                     return Err(words
-                        .refuse(codes::BRACKET_COMMAND, message, item.span, "it may move the frame or an axis")
-                        .help("remove it, or post the program without it; comments of this dialect start with `;`"));
+                        .refuse(
+                            codes::STRAY_ARC_WORD,
+                            message,
+                            item.span,
+                            "its shape depends on the next block",
+                        )
+                        .help("post roundings as arcs and chamfers as lines"));
                 }
+                ItemKind::BracketCommand => words.command(item.span)?,
                 ItemKind::Flow => {
                     return Err(words.not_static(item.span, "this"));
                 }
@@ -179,21 +184,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     /// increment of millimetre words (0.001 degree at IS-B).
     pub(crate) fn coordinate(&self, letter: u8, inch: bool) -> Option<f64> {
         let (number, _) = self.number(letter)?;
-        let numbers = &self.dialect.numbers;
-        let decimal = if number.has_point || numbers.point_free == PointFree::Unit {
-            number.decimal
-        } else {
-            let decimals = if inch {
-                numbers.least_increment_decimals_inch
-            } else {
-                numbers.least_increment_decimals_mm
-            };
-            Decimal {
-                mantissa: number.decimal.mantissa,
-                decimals: number.decimal.decimals.saturating_add(decimals),
-            }
-        };
-        Some(decimal.to_f64())
+        Some(self.dialect.numbers.length(number, inch).to_f64())
     }
 
     /// Value as written: F, P, L.
@@ -274,7 +265,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     }
 
     fn preparatory(&mut self, number: Number, span: Span) -> Outcome<()> {
-        let entry = tenths(number).and_then(|tenths| self.dialect.code(GCode(tenths)));
+        let entry = number.tenths().and_then(|tenths| self.dialect.code(GCode(tenths)));
         let Some(entry) = entry else {
             let message = format!("{} is not in the table of dialect {}", self.text(span), self.dialect.name);
             return Err(self.refuse(codes::UNKNOWN_CODE, message, span, "it may move an axis or the frame").help(
@@ -310,6 +301,21 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         Ok(())
     }
 
+    /// A command by name passes where the dialect's table says that it moves nothing.
+    fn command(&self, span: Span) -> Outcome<()> {
+        let (message, help) = match self.dialect.command(self.block.text(span)) {
+            Some(row) => match &row.refuse {
+                None => return Ok(()),
+                Some((reason, help)) => (format!("{} is refused: {reason}", row.name), help.as_str()),
+            },
+            None => (
+                format!("a command that the table of dialect {} does not have", self.dialect.name),
+                "if it moves neither an axis nor the frame, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`",
+            ),
+        };
+        Err(self.refuse(codes::COMMAND, message, span, "it may move the frame or an axis").help(help))
+    }
+
     fn not_static(&self, span: Span, what: &str) -> Box<Diagnostic> {
         let message = format!("{what} is known only while the program runs");
         self.refuse(codes::NOT_STATIC, message, span, "a plain number was expected")
@@ -324,6 +330,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             }
             Invalid::UnclosedComment => ("a comment has no end", "close it in the same block"),
             Invalid::UnclosedBracket => ("a bracket has no partner", "close it in the same block"),
+            Invalid::TooLong => ("a block of more than 65536 bytes", "is this an NC program?"),
             Invalid::Text => (
                 "this is neither a word nor a comment",
                 "is it another dialect (`--dialect`)? else correct or remove it",
@@ -354,31 +361,7 @@ pub(crate) const fn is_motion(action: &Action) -> bool {
 
 /// The value where it is a whole number that is not negative.
 fn whole(number: Number) -> Option<u64> {
-    let Decimal { mut mantissa, decimals } = number.decimal;
-    for _ in 0..decimals {
-        if mantissa % 10 != 0 {
-            return None;
-        }
-        mantissa /= 10;
-    }
-    u64::try_from(mantissa).ok()
-}
-
-/// A code number in tenths: 54.1 is 541.
-fn tenths(number: Number) -> Option<u16> {
-    let Decimal { mantissa, decimals } = number.decimal;
-    let tenths = match decimals {
-        0 => mantissa.checked_mul(10)?,
-        1 => mantissa,
-        more => {
-            let divisor = 10i64.checked_pow(u32::from(more) - 1)?;
-            if mantissa % divisor != 0 {
-                return None;
-            }
-            mantissa / divisor
-        }
-    };
-    u16::try_from(tenths).ok()
+    number.integer().and_then(|value| u64::try_from(value).ok())
 }
 
 /// A refusal that has still to say the way out.
