@@ -30,6 +30,8 @@ pub struct SixBounds {
     pub curvature: Six,
     /// Sums of |jumps of f'| inside the interval.
     pub kinks: Six,
+    /// The same, weighted as [`Bounds::kinks_on_line`].
+    pub kinks_on_line: Six,
 }
 
 impl AxisTables {
@@ -186,6 +188,7 @@ impl AxisTables {
             all.slope[function] = one.slope;
             all.curvature[function] = one.curvature;
             all.kinks[function] = one.kinks;
+            all.kinks_on_line[function] = one.kinks_on_line;
         }
         all
     }

@@ -16,19 +16,31 @@ struct Growth {
     value: [f64; 3],
     first: [f64; 3],
     second: [f64; 3],
-    /// Sum of the jumps of the first derivative.
+    /// Sum of the jumps of the first derivative, each weighted with 4s(1-s) where its place s is known.
     jumps: [f64; 3],
+}
+
+/// How one axis moves over the stretch.
+#[derive(Clone, Copy)]
+struct Run {
+    speed: f64,
+    acceleration: f64,
+    passes: f64,
+    /// Evenly from one end of its range to the other, so that the place of a kink is known.
+    even: bool,
 }
 
 /// Three of the six functions along the stretch: the chain rule on table bounds, equation (10).
 #[inline]
-fn along(bounds: &SixBounds, from: usize, speed: f64, acceleration: f64, passes: f64) -> Growth {
+fn along(bounds: &SixBounds, from: usize, run: Run) -> Growth {
+    let Run { speed, acceleration, passes, even } = run;
+    let kinks = if even { &bounds.kinks_on_line } else { &bounds.kinks };
     let by = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|i| f(from + i));
     Growth {
         value: by(&|i| bounds.value[i]),
         first: by(&|i| bounds.slope[i] * speed),
         second: by(&|i| bounds.curvature[i] * speed * speed + bounds.slope[i] * acceleration),
-        jumps: by(&|i| bounds.kinks[i] * speed * passes),
+        jumps: by(&|i| kinks[i] * speed * passes),
     }
 }
 
@@ -115,8 +127,10 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
                 beyond.first[i] += nominal.first[i];
                 beyond.second[i] += nominal.second[i];
             }
-            let angle = along(&bounds, 3, speed, acceleration, passes);
-            add(&mut error, &along(&bounds, 0, speed, acceleration, passes));
+            let even = acceleration == 0.0 && (range.high - range.low - speed).abs() <= 1e-9 * speed;
+            let run = Run { speed, acceleration, passes, even };
+            let angle = along(&bounds, 3, run);
+            add(&mut error, &along(&bounds, 0, run));
             add_cross(&mut error, &angle, &beyond);
             add_higher_orders(&mut error, &angle, &beyond);
         }

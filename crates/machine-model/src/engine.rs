@@ -55,7 +55,8 @@ impl Volume {
 /// A stretch of a path `q(s)`, 0 ≤ s ≤ 1, of axis commands, as far as bounds need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Move {
-    /// Box that contains every `q(s)`, mm.
+    /// Box that contains every `q(s)`, mm. An axis without acceleration runs from one end of its range
+    /// to the other: bounds use where in it a table has its nodes.
     pub range_mm: [Range; 3],
     /// Upper bounds of |dq/ds| per axis, mm.
     pub speed_mm: [f64; 3],

@@ -1,5 +1,7 @@
 //! The rigid-body model against independent formulas and against itself.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
+
 mod machines;
 
 use machine_model::{
@@ -265,7 +267,7 @@ proptest! {
 #[test]
 fn the_bound_is_tight() {
     let mut random = Random::new(5);
-    for (monotone, most) in [(false, 1.6), (true, 2.5)] {
+    for (monotone, most) in [(false, 1.35), (true, 2.6)] {
         let mut ratios = Vec::new();
         for seed in 0..400 {
             let model = RigidBody::new(machine(seed, "[w X Y b Z t]", monotone, 1.0)).unwrap();

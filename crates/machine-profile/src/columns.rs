@@ -97,16 +97,28 @@ impl<'f> Columns<'f> {
         })
     }
 
-    /// An error about a column's name.
-    pub(crate) fn bad_column(&self, column: usize, message: String, known: &[String]) -> Box<ProfileError> {
-        let (name, place) = &self.header[column];
-        let near = closest(name, known.iter().map(String::as_str));
-        let help = near
-            .map_or_else(|| format!("known columns: {}", known.join(", ")), |n| format!("did you mean {n}?"));
-        ProfileError::table(
-            self.file,
-            Diagnostic::error(COLUMN, message).at(span(place), "this column").help(help),
+    /// An error about a column whose name is none of the known ones.
+    pub(crate) fn unknown_column(
+        &self,
+        column: usize,
+        message: String,
+        known: &[String],
+    ) -> Box<ProfileError> {
+        let near = closest(&self.header[column].0, known.iter().map(String::as_str));
+        self.bad_column(
+            column,
+            message,
+            near.map_or_else(
+                || format!("known columns: {}", known.join(", ")),
+                |n| format!("did you mean {n}?"),
+            ),
         )
+    }
+
+    /// An error about a column.
+    pub(crate) fn bad_column(&self, column: usize, message: String, help: String) -> Box<ProfileError> {
+        let place = span(&self.header[column].1);
+        ProfileError::table(self.file, Diagnostic::error(COLUMN, message).at(place, "this column").help(help))
     }
 
     /// An error about a row, or about the file where the row does not exist.

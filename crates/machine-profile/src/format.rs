@@ -68,7 +68,8 @@ pub(crate) struct Document {
     pub(crate) tool: Tool,
     /// Machine coordinate of each program zero, mm.
     #[serde(default)]
-    pub(crate) work_offsets_mm: BTreeMap<String, Triple>,
+    #[schemars(with = "BTreeMap<String, Triple>")]
+    pub(crate) work_offsets_mm: BTreeMap<String, Spanned<Triple>>,
     /// How programs are corrected.
     #[serde(default)]
     pub(crate) correction: Correction,

@@ -354,12 +354,12 @@ impl Loader<'_> {
     fn work_offsets(&mut self, document: &Document) -> Vec<(String, [f64; 3])> {
         let mut offsets = Vec::new();
         for (name, zero) in &document.work_offsets_mm {
-            if !name.starts_with('G') || !name[1..].starts_with(|c: char| c.is_ascii_digit()) {
+            if !name.strip_prefix('G').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
                 let diagnostic = Diagnostic::error(KEY, format!("`{name}` is no work offset"))
                     .help("write the word that selects it, like G54 or \"G54.1 P2\"");
-                self.errors.push(ProfileError::profile(diagnostic));
+                self.refuse(zero, diagnostic, "of this entry");
             }
-            offsets.push((name.clone(), zero.map(|Finite(v)| v)));
+            offsets.push((name.clone(), zero.get_ref().map(|Finite(v)| v)));
         }
         offsets
     }

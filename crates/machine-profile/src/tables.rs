@@ -65,7 +65,7 @@ pub(crate) fn error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRo
         let (head, unit) = name.split_once('_').unwrap_or((name, ""));
         let Some(function) = (0..6).find(|&i| symbol(i) == head) else {
             let message = format!("unknown column {name} in a table of axis {axis}");
-            return Err(columns.bad_column(column, message, &known));
+            return Err(columns.unknown_column(column, message, &known));
         };
         let units = units_of(function >= 3);
         let Some((_, factor)) = units.iter().find(|(known, _)| *known == unit) else {
@@ -75,20 +75,21 @@ pub(crate) fn error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRo
                 "column {name}: {head} is {kind}, its unit must be one of {}, not `{unit}`",
                 wanted.join(", ")
             );
-            return Err(columns.bad_column(column, message, &known));
+            let names: Vec<String> = wanted.iter().map(|unit| format!("{head}_{unit}")).collect();
+            return Err(columns.bad_column(column, message, format!("name it {}", names.join(" or "))));
         };
         if sources[function].is_some() {
             return Err(columns.bad_column(
                 column,
                 format!("{head} stands there twice, in different units"),
-                &known,
+                "leave one of the two columns out".to_owned(),
             ));
         }
         sources[function] = Some((column, *factor));
     }
     if sources.iter().all(Option::is_none) {
         let message = format!("the table holds no error function of axis {axis}");
-        return Err(columns.bad_column(position, message, &known));
+        return Err(columns.unknown_column(position, message, &known));
     }
     columns.increasing(position)?;
     let mut rows = Vec::with_capacity(columns.rows.len());
@@ -131,7 +132,7 @@ pub(crate) fn traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse,
     let known: Vec<String> = [&commanded, &measured, &cosines].into_iter().flatten().cloned().collect();
     for (column, (name, _)) in columns.header.iter().enumerate() {
         if !known.contains(name) {
-            return Err(columns.bad_column(
+            return Err(columns.unknown_column(
                 column,
                 format!("unknown column {name} in a tracker traverse"),
                 &known,

@@ -34,7 +34,10 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
         if message.starts_with("missing field") || message.starts_with("duplicate") { KEY } else { VALUE };
     let message = match message.strip_prefix("missing field ") {
         Some(name) => format!("the profile lacks the key {name}"),
-        None => one_line(message),
+        // serde speaks of Rust's types.
+        None => one_line(message)
+            .replace("expected f64", "expected a number")
+            .replace("expected i64", "expected a whole number"),
     };
     let mut diagnostic = Diagnostic::error(code, message);
     if let Some(place) = whole.filter(|place| place.len() < text.len() || place.len() < 200) {

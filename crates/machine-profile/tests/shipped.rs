@@ -1,5 +1,7 @@
 //! The shipped profiles load, and the numbers in them are what their files give.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
+
 use std::path::Path;
 
 use machine_model::{Command, Engine, PathModel, Vector};
@@ -131,4 +133,59 @@ fn every_engine_can_be_built_from_the_stan_s500() {
         let engine = machine_model::engines::build(id, profile.engine_inputs());
         assert!(engine.is_ok(), "{}: {:?}", id.name(), engine.err());
     }
+}
+
+#[test]
+fn the_schema_knows_every_key_of_the_contract() {
+    let schema = machine_profile::schema();
+    for key in [
+        "travel_mm",
+        "errors_negative",
+        "EC0Y_urad",
+        "EX0C_um",
+        "lengths_mm",
+        "minimum_segment_mm",
+        "rotation_urad",
+    ] {
+        assert!(schema.contains(&format!("\"{key}\"")), "{key}");
+    }
+    assert!(schema.contains("\"additionalProperties\": false"));
+}
+
+#[test]
+fn shown_profiles_name_what_is_known_and_what_is_not() {
+    let text = shipped("stan_s500.toml").show();
+    insta::assert_snapshot!(text, @r"
+    machine      STAN S500
+    control      perspektiva
+    chain        [w X Y b Z t]
+    calibrated   Renishaw XL-80 (tables), Leica LTD800 (squareness, traverses)
+    axis X       travel 0 … 1000 mm, step 0.001 mm, calibrated 0 … 400 mm, 21 rows
+      EXX        -0.47 … 42.67 um
+      EYX        1.27 … 14.50 um
+      EZX        -4.03 … 2.30 um
+      EAX        27.14 … 35.91 urad
+      EBX        26.70 … 32.90 urad
+      ECX        -0.91 … 61.40 urad
+    axis Y       travel 0 … 420 mm, step 0.001 mm, calibrated 0 … 280 mm, 29 rows
+      EXY        -12.70 … -0.23 um
+      EYY        6.88 … 78.85 um
+      EZY        -1.70 … 3.83 um
+      EAY        -31.60 … -19.16 urad
+      EBY        7.92 … 11.86 urad
+      ECY        7.69 … 24.88 urad
+    axis Z       travel 0 … 450 mm, step 0.001 mm, calibrated 0 … 200 mm, 21 rows
+      EXZ        -4.13 … 2.25 um
+      EYZ        2.65 … 14.63 um
+      EZZ        -11.83 … 1.10 um
+      EAZ        -0.80 … 14.08 urad
+      EBZ        9.39 … 11.54 urad
+      ECZ        -5.61 … -3.46 urad
+    squareness   EC0Y -1180.00 urad, EB0Z 401.30 urad, EA0Z -564.70 urad
+    tracker      X 0 … 315 mm, Y 0 … 315 mm, Z 0 … 315 mm
+    tool         default 0 0 0 mm
+      H1         0 0 120 mm
+    G54          140 100 20 mm
+    correction   engine rigid-body, tolerance 1 um, feed outside refused
+    ");
 }

@@ -1,5 +1,7 @@
 //! Random machines for the tests.
 
+#![allow(dead_code, clippy::unwrap_used, reason = "shared by test files that use different parts")]
+
 use machine_model::{
     AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RotaryAxis, Squareness, Table,
     Vector,
@@ -8,25 +10,25 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// Travel of X, Y, Z, mm.
-pub const TRAVEL_MM: [f64; 3] = [400.0, 280.0, 200.0];
+pub(crate) const TRAVEL_MM: [f64; 3] = [400.0, 280.0, 200.0];
 
 /// Seeded numbers.
-pub struct Random(ChaCha8Rng);
+pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
     /// Uniform in -size..size.
-    pub fn number(&mut self, size: f64) -> f64 {
+    pub(crate) fn number(&mut self, size: f64) -> f64 {
         (self.0.next_u64() as f64 / u64::MAX as f64 * 2.0 - 1.0) * size
     }
-    pub fn vector(&mut self, size: f64) -> Vector {
+    pub(crate) fn vector(&mut self, size: f64) -> Vector {
         Vector::from_fn(|_, _| self.number(size))
     }
 }
 
-pub fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
+pub(crate) fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
     Command {
         linear_mm: linear_mm.into(),
         rotary_rad: Vector::zeros(),
@@ -36,7 +38,7 @@ pub fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
 }
 
 /// A machine without errors.
-pub fn perfect(chain: &str) -> Description {
+pub(crate) fn perfect(chain: &str) -> Description {
     Description {
         chain: Chain::parse(chain).unwrap(),
         linear: TRAVEL_MM.map(|high| LinearAxis::perfect(Range { low: 0.0, high })),
@@ -46,12 +48,12 @@ pub fn perfect(chain: &str) -> Description {
 }
 
 /// Errors like a worn machine's: 40 µm, 0.3 mrad, 1 mrad out of square, for `scale` 1.
-pub fn machine(seed: u64, chain: &str, monotone: bool, scale: f64) -> Description {
+pub(crate) fn machine(seed: u64, chain: &str, monotone: bool, scale: f64) -> Description {
     let mut random = Random::new(seed);
     let mut machine = perfect(chain);
     let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
     for (axis, high) in TRAVEL_MM.into_iter().enumerate() {
-        let mut set = |random: &mut Random| {
+        let set = |random: &mut Random| {
             let mut nodes = vec![0.0];
             while nodes[nodes.len() - 1] < high {
                 let next = nodes[nodes.len() - 1] + 17.5 + random.number(5.0);
