@@ -66,7 +66,7 @@ pub(crate) struct Inverse {
     pub(crate) iterations: u32,
 }
 
-fn at(linear_mm: Vector) -> Command {
+pub(crate) fn at(linear_mm: Vector) -> Command {
     Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
 }
 

@@ -4,7 +4,9 @@ mod stan_s500;
 
 use machine_model::engines::published::{KmtppPublished, Method, TangentialPublished};
 use machine_model::engines::{Tangential, build};
-use machine_model::finite_rotations::{PointErrors, Translation, Truncation, order_interval};
+use machine_model::finite_rotations::{
+    PointErrors, Translation, Truncation, order_interval, rodrigues_displacement,
+};
 use machine_model::{Command, Engine, EngineId, Squareness, Vector};
 use stan_s500::{inputs, published, tables, traverses};
 
@@ -226,6 +228,19 @@ fn published_finite_rotations_tables_3_14_and_3_15() {
         let computed = volumetric_um(&point.with_angles_scaled(row[1]));
         (0..3).for_each(|i| assert_relative(computed[i], row[2 + i]));
     }
+}
+
+/// Equation 3.5 prints ε_xz·ε_zy in B; the vector product is ε_yz·ε_zx, and the printed numbers tell them apart.
+#[test]
+fn published_finite_rotations_hold_a_slip_in_b() {
+    let point = point([3, 5, 5]).with_angles_scaled(1000.0);
+    let [x, y, z] = point.angular_rad;
+    let mut rotation = point.rotation_as_published(Truncation::AllPlus);
+    rotation.y += 0.5 * (y.z * z.x - x.z * z.y);
+    let right = rodrigues_displacement(&rotation, &tool()) + point.translation_mm(Translation::Published);
+    let printed = 517.530_078;
+    assert_relative(volumetric_um(&point)[0], printed);
+    assert!((right.norm() * 1e3 / printed - 1.0).abs() > 5e-4);
 }
 
 /// "All plus" and "all minus" span only a part of what the orders of rotation span.
