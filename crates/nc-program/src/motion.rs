@@ -249,7 +249,7 @@ fn centre(
     shift_mm: [f64; 2],
 ) -> Outcome<[f64; 2]> {
     let letters = state.plane.centre_letters();
-    let [one, two] = letters.map(char::from);
+    let [one, two] = shown_letters(state);
     let in_plane = Letters::of(&letters);
     let across = CENTRE_LETTERS.without(in_plane);
     let inch = state.units == Units::Inch;
@@ -297,7 +297,7 @@ fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagno
 }
 
 fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_mm: f64) -> Box<Diagnostic> {
-    let [one, two] = state.plane.centre_letters().map(char::from);
+    let [one, two] = shown_letters(state);
     let (unit_mm, unit) = match state.units {
         Units::Millimetre => (1.0, "mm"),
         Units::Inch => (25.4, "inch"),
@@ -345,6 +345,13 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_m
             )
             .help(format!("use {one}/{two} centre form")),
     }
+}
+
+/// The plane's centre letters in the order people write them.
+fn shown_letters(state: &Modal) -> [char; 2] {
+    let mut letters = state.plane.centre_letters().map(char::from);
+    letters.sort_unstable();
+    letters
 }
 
 /// A number for people: at most four decimals, no trailing zeros.

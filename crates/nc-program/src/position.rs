@@ -147,17 +147,14 @@ pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<
 }
 
 fn unknown(words: &Words<'_, '_, '_>, message: &str, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
-    let names: Vec<String> = lost.iter().map(|(name, _)| name.to_string()).collect();
+    let names: Vec<String> = lost.iter().map(|(name, _)| format!("{name}…")).collect();
     let linear_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "XYZ".contains(*name);
     let start_at = if lost.iter().any(linear_from_start) {
         ", or say where the axes start with `--start-at X,Y,Z`"
     } else {
         ""
     };
-    let help = format!(
-        "program a rapid in absolute coordinates (G90 G0) with {} before this block{start_at}",
-        names.join(" and ")
-    );
+    let help = format!("program a rapid `G90 G0 {}` before this block{start_at}", names.join(" "));
     words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
 }
 
