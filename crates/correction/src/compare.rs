@@ -93,6 +93,8 @@ struct Feeding {
     length_mm: f64,
     state: Command,
     line: u64,
+    /// A hole: its pecks and the way back may feed over the same line again.
+    hole: bool,
 }
 
 /// The feed paths of a program, in order.
@@ -108,20 +110,20 @@ fn feeding(program: &Program) -> Vec<Feeding> {
         direction
     };
     for step in program {
-        let mut push = |curve: Curve, rotary_deg: [f64; 3], direction: [i8; 3]| {
+        let mut push = |curve: Curve, rotary_deg: [f64; 3], direction: [i8; 3], hole: bool| {
             let state = Command {
                 linear_mm: Vector::zeros(),
                 rotary_rad: Vector::from(rotary_deg.map(f64::to_radians)),
                 tool_mm: step.tool_mm.into(),
                 direction,
             };
-            found.push(Feeding { curve, length_mm: curve.length_mm(), state, line: step.line });
+            found.push(Feeding { curve, length_mm: curve.length_mm(), state, line: step.line, hole });
         };
         match &step.motion {
             Motion::Feed(feed) => {
                 let (from, to) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
                 let turned = turn(&from, &to);
-                push(Curve::new(from, to, &feed.shape), feed.end.rotary_deg, turned);
+                push(Curve::new(from, to, &feed.shape), feed.end.rotary_deg, turned, false);
             }
             Motion::Hole(hole) => {
                 let normal = hole.plane.axes()[2];
@@ -130,7 +132,7 @@ fn feeding(program: &Program) -> Vec<Feeding> {
                 bottom[normal] = hole.bottom_mm;
                 turn(&hole.start.linear_mm.into(), &top);
                 let turned = turn(&top, &bottom);
-                push(Curve::new(top, bottom, &Shape::Line), hole.at_r.rotary_deg, turned);
+                push(Curve::new(top, bottom, &Shape::Line), hole.at_r.rotary_deg, turned, true);
             }
             Motion::Rapid { start, end } => {
                 if let (Some(from), Some(to)) = (start.complete(), end.complete()) {
@@ -235,13 +237,16 @@ impl Matcher<'_> {
     }
 
     fn take(&mut self, piece: &Feeding) {
+        if self.again(piece) {
+            return;
+        }
         let mut at = self.at;
         let mut s0 = self.s;
         let mut first: Option<(usize, Fit)> = None;
         while at < self.wanted.len() {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
-            if fit.distance_mm <= self.limit_mm && fit.back_mm <= self.limit_mm {
+            if fit.distance_mm <= self.limit_mm && (w.hole || fit.back_mm <= self.limit_mm) {
                 self.result.after.note(fit.distance_mm, w.line);
                 let done = (1.0 - fit.s) * w.length_mm <= self.limit_mm;
                 (self.at, self.s) = if done { (at + 1, 0.0) } else { (at, fit.s) };
@@ -273,7 +278,7 @@ impl Matcher<'_> {
         self.mismatch(Mismatch::TooFar {
             wanted_line: w.line,
             commanded_line: piece.line,
-            distance_mm: fit.distance_mm,
+            distance_mm: fit.distance_mm.max(fit.back_mm),
         });
         // Go on as if it had been meant for this motion, so that one bad block is one mismatch.
         (self.at, self.s) = if (1.0 - fit.s) * w.length_mm <= 10.0 * self.limit_mm {
@@ -281,6 +286,21 @@ impl Matcher<'_> {
         } else {
             (at, fit.s.clamp(0.0, 1.0))
         };
+    }
+
+    /// A further feed in the hole just drilled: the way back of a boring cycle, a piece of it.
+    fn again(&mut self, piece: &Feeding) -> bool {
+        let Some(hole) =
+            self.at.checked_sub(1).map(|before| &self.wanted[before]).filter(|w| w.hole && self.s == 0.0)
+        else {
+            return false;
+        };
+        let fit = self.fit(hole, piece, 1.0);
+        let belongs = fit.distance_mm <= self.limit_mm;
+        if belongs {
+            self.result.after.note(fit.distance_mm, hole.line);
+        }
+        belongs
     }
 
     fn mismatch(&mut self, mismatch: Mismatch) {

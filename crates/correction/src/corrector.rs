@@ -80,6 +80,7 @@ pub struct Correction {
 }
 
 /// Corrects motions in the order of the program.
+#[derive(Clone)]
 pub struct Corrector<'m> {
     pub(crate) model: &'m dyn PathModel,
     pub(crate) options: Options,

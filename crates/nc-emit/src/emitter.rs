@@ -5,9 +5,9 @@ use nc_syntax::dialect::{GCode, Semicolon};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 
 use crate::edit::{Piece, WordEdit};
-use crate::habits::{Habits, Increments, MOTION_GROUP, Modes, line_end};
+use crate::habits::{Habits, Increments, Modes, is_motion, line_end};
 use crate::numbers::BlockNumbers;
-use crate::splice::{Splices, Style};
+use crate::splice::{Splices, Style, number_span};
 
 /// A block longer than the control takes.
 const BLOCK_TOO_LONG: Code = Code(601);
@@ -46,7 +46,7 @@ impl<'d> Emitter<'d> {
     /// Motion code in force in the output.
     #[must_use]
     pub fn motion(&self) -> Option<GCode> {
-        self.modes.motion
+        self.modes.motion()
     }
 
     /// Copies a block that no edit touches.
@@ -93,7 +93,7 @@ impl<'d> Emitter<'d> {
                 .help("this is a fault of vpost; please report it with the program"));
         };
         self.habits.learn(block);
-        let in_force = self.modes.motion;
+        let in_force = self.modes.motion();
         self.modes.read(self.dialect, block);
         let style = Style {
             habits: &self.habits.of_block(block),
@@ -104,10 +104,13 @@ impl<'d> Emitter<'d> {
         let end_between = if end.is_empty() { style.habits.line_end } else { end };
 
         let mut from = out.len();
-        let splices = Splices::of_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
-        splices.write(block, content, &style, out);
-        if first.motion.is_some() {
-            self.modes.motion = first.motion;
+        if !(later.is_empty() && self.write_numbers(block, first, in_force, &style, content, out)) {
+            out.truncate(from);
+            let splices = Splices::of_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
+            splices.write(block, content, &style, out);
+        }
+        if let Some(code) = first.motion {
+            self.modes.write(self.dialect, code);
         }
         self.check_length(block, &out[from..], content.len())?;
 
@@ -118,13 +121,70 @@ impl<'d> Emitter<'d> {
             let last = index + 1 == later.len();
             self.write_later_piece(block, piece, number, &style, last, out)?;
             number = number.map(|number| number + 1);
-            if piece.motion.is_some() {
-                self.modes.motion = piece.motion;
+            if let Some(code) = piece.motion {
+                self.modes.write(self.dialect, code);
             }
             self.check_length(block, &out[from..], 0)?;
         }
         out.extend_from_slice(end);
         Ok(())
+    }
+
+    /// The common case in one pass over the words: only numbers of words that are there already change.
+    ///
+    /// `false` where it is another case; `out` then holds a part of the block.
+    fn write_numbers(
+        &self,
+        block: &Block<'_>,
+        piece: &Piece,
+        in_force: Option<GCode>,
+        style: &Style<'_>,
+        content: &[u8],
+        out: &mut Vec<u8>,
+    ) -> bool {
+        let mut motion_is_right = piece.motion.is_none() || piece.motion == in_force;
+        let mut left = piece.words.iter().filter(|(_, edit)| *edit != WordEdit::Remove).count();
+        let mut seen = 0_u32;
+        let mut done = 0;
+        for item in &block.items {
+            let ItemKind::Word { letter, value } = item.kind else { continue };
+            if letter == b'G' {
+                if piece.motion.is_some()
+                    && let Some(own) = motion_code(self.dialect, item.kind)
+                {
+                    if piece.motion != Some(own) {
+                        return false;
+                    }
+                    motion_is_right = true;
+                }
+                continue;
+            }
+            let Some((_, edit)) = piece.words.iter().find(|(edited, _)| *edited == letter) else { continue };
+            let bit = 1 << (letter & 31);
+            if seen & bit != 0 {
+                return false;
+            }
+            seen |= bit;
+            match *edit {
+                WordEdit::Keep => {}
+                WordEdit::Remove => return false,
+                WordEdit::Write { counts, decimals } => {
+                    let Value::Number(replaced) = value else { return false };
+                    if !style.same_value(letter, replaced, counts, decimals) {
+                        let number = number_span(block, item.span);
+                        out.extend_from_slice(&content[done..number.start as usize]);
+                        style.write_number(letter, Some(replaced), counts, decimals, out);
+                        done = number.end as usize;
+                    }
+                }
+            }
+            left = left.saturating_sub(1);
+        }
+        if !motion_is_right || left > 0 {
+            return false;
+        }
+        out.extend_from_slice(&content[done..]);
+        true
     }
 
     /// The block without what ends it, and what ends it.
@@ -189,7 +249,7 @@ impl<'d> Emitter<'d> {
                 _ => {}
             }
         }
-        if let Some(motion) = piece.motion.filter(|_| piece.motion != self.modes.motion) {
+        if let Some(motion) = piece.motion.filter(|_| piece.motion != self.modes.motion()) {
             line.blank();
             style.write_g(motion, line.out);
         }
@@ -289,7 +349,7 @@ pub(crate) fn g_code(kind: ItemKind) -> Option<GCode> {
 
 /// The code of a G word of the motion group.
 pub(crate) fn motion_code(dialect: &Dialect, kind: ItemKind) -> Option<GCode> {
-    g_code(kind).filter(|code| dialect.code(*code).is_some_and(|entry| entry.group == MOTION_GROUP))
+    g_code(kind).filter(|code| dialect.code(*code).is_some_and(is_motion))
 }
 
 /// Executed after the block's motion: belongs on the last piece.

@@ -266,8 +266,10 @@ impl Increments {
 /// The modal facts about the output that writing needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Modes {
-    /// Motion code in force (modal group 1).
-    pub(crate) motion: Option<GCode>,
+    /// Code in force in the group of G0 to G3.
+    straight: Option<GCode>,
+    /// Cycle in force, in dialects that keep cycles in a group of their own.
+    cycle: Option<GCode>,
     /// G20 in force.
     pub(crate) inch: bool,
 }
@@ -275,13 +277,18 @@ pub(crate) struct Modes {
 impl Modes {
     /// As a program starts in this dialect.
     pub(crate) fn initial(dialect: &Dialect) -> Self {
-        let mut modes = Self { motion: None, inch: false };
+        let mut modes = Self { straight: None, cycle: None, inch: false };
         for &code in &dialect.initial {
             if let Some(entry) = dialect.code(code) {
                 modes.step(entry);
             }
         }
         modes
+    }
+
+    /// The motion code in force: a cycle hides the code before it until it ends.
+    pub(crate) fn motion(&self) -> Option<GCode> {
+        self.cycle.or(self.straight)
     }
 
     /// After a block as it stands.
@@ -294,7 +301,14 @@ impl Modes {
             if entry.action != Action::CycleCancel || !moves {
                 self.step(entry);
             }
-            moves |= entry.group == MOTION_GROUP;
+            moves |= is_motion(entry);
+        }
+    }
+
+    /// After a motion code was written.
+    pub(crate) fn write(&mut self, dialect: &Dialect, code: GCode) {
+        if let Some(entry) = dialect.code(code) {
+            self.step(entry);
         }
     }
 
@@ -302,15 +316,24 @@ impl Modes {
         match entry.action {
             Action::Inch => self.inch = true,
             Action::Millimetre => self.inch = false,
+            Action::CycleCancel => self.cycle = None,
+            Action::Cycle(_) if entry.group != MOTION_GROUP => self.cycle = Some(entry.code),
             _ => {}
         }
         if entry.group == MOTION_GROUP {
-            self.motion = Some(entry.code);
+            self.straight = Some(entry.code);
+            self.cycle = None;
         }
     }
 }
 
-/// Modal group of G0 to G3 and of the cycles.
+/// G0 to G3, the cycles and G80: some dialects keep the cycles in a group of their own, yet they and
+/// the other motion codes exclude each other all the same.
+pub(crate) fn is_motion(entry: &CodeEntry) -> bool {
+    entry.group == MOTION_GROUP || matches!(entry.action, Action::Cycle(_) | Action::CycleCancel)
+}
+
+/// Modal group of G0 to G3, and in some dialects of the cycles.
 pub(crate) const MOTION_GROUP: u8 = 1;
 
 /// The gap between two words as something that can be repeated: one blank, one tab, or nothing.

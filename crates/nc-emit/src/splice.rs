@@ -44,7 +44,7 @@ impl Style<'_> {
     }
 
     /// The word already says `counts × 10^-decimals`: its text may stay.
-    fn same_value(&self, letter: u8, number: Number, counts: i64, decimals: u8) -> bool {
+    pub(crate) fn same_value(&self, letter: u8, number: Number, counts: i64, decimals: u8) -> bool {
         let written = self.increments.value(letter, number);
         let shift = |value: i64, by: u8| {
             10_i128.checked_pow(u32::from(by)).and_then(|by| i128::from(value).checked_mul(by))
@@ -282,7 +282,7 @@ fn is_cancel(dialect: &Dialect, code: GCode) -> bool {
 }
 
 /// The number of a word: what follows the letter, blanks, and the `=` of `X=10.5`.
-fn number_span(block: &Block<'_>, word: Span) -> Span {
+pub(crate) fn number_span(block: &Block<'_>, word: Span) -> Span {
     let blanks =
         block.text(word)[1..].iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'=')).count() as u32;
     Span { start: word.start + 1 + blanks, end: word.end }

@@ -1,1 +1,67 @@
-//! The command.
+//! The command: arguments, files, messages, exit status.
+//!
+//! The roof of the house and the only room where the text wing and the mathematics wing meet: see
+//! [`correct`] for the line that data takes.
+
+pub mod arguments;
+mod check;
+pub mod correct;
+mod file;
+mod grammar;
+mod message;
+mod points;
+mod predict;
+mod profile;
+mod profile_command;
+mod settings;
+mod solve;
+mod summary;
+mod words;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use message::{Failure, Messages};
+
+/// Exit status: done; refused or a check failed; usage, profile or grammar error; interrupted.
+const DONE: u8 = 0;
+const REFUSED: u8 = 1;
+const USAGE: u8 = 2;
+
+/// Runs the command and says how it ended.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let status = if error.use_stderr() { USAGE } else { DONE };
+            // A closed terminal is no reason to fail louder.
+            let _ = error.print();
+            return ExitCode::from(status);
+        }
+    };
+    let messages = Messages::new(arguments.shared.color, arguments.shared.quiet);
+    let result = match &arguments.command {
+        Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
+        Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
+        Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
+        Some(Command::Profile(a)) => profile_command::run(a, &messages),
+        Some(Command::Grammar(a)) => grammar::run(a, &messages),
+        Some(Command::Completions(a)) => arguments::completions(a),
+        Some(Command::Man) => arguments::man(),
+        None => correct::run(&arguments.correct, &arguments.shared, &messages),
+    };
+    match result {
+        Ok(()) => ExitCode::from(DONE),
+        Err(failure) => {
+            messages.failure(&failure);
+            ExitCode::from(match failure {
+                Failure::Refused(_) | Failure::Check => REFUSED,
+                Failure::Usage(_) => USAGE,
+                Failure::Interrupted(signal) => 128 + signal,
+            })
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+
+use crate::message::Failure;
+
+/// Rewrites NC programs so that a measured machine goes where the program says.
+#[derive(Debug, Parser)]
+#[command(name = "vpost", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(
+    after_help = "Exit status: 0 done; 1 refused or a check failed (nothing is written); 2 usage, profile or grammar error; 130/143 interrupted.\nExample: vpost in.nc -m machine-profiles/stan_s500.toml > out.nc"
+)]
+pub struct Arguments {
+    /// The work.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The main job.
+    #[command(flatten)]
+    pub correct: Correct,
+    /// What all jobs share.
+    #[command(flatten)]
+    pub shared: Shared,
+}
+
+/// What is asked for besides the main job.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run two programs through the machine model and compare the tool paths.
+    Check(Check),
+    /// Where the machine really goes for commanded points.
+    Predict(Predict),
+    /// What to command so that the tool reaches points.
+    Solve(Solve),
+    /// Check, show or describe machine profiles.
+    Profile(Profile),
+    /// List or check dialect tables.
+    Grammar(Grammar),
+    /// Completions for a shell.
+    Completions(Completions),
+    /// The manual page (roff).
+    Man,
+}
+
+/// Options of every job.
+#[derive(Debug, Clone, Args)]
+pub struct Shared {
+    /// Machine profile (TOML).
+    #[arg(short = 'm', long = "machine", value_name = "PROFILE", global = true)]
+    pub machine: Option<PathBuf>,
+    /// Correction engine; default: the profile's.
+    #[arg(short, long, value_name = "ENGINE", global = true)]
+    pub engine: Option<String>,
+    /// Dialect: a name of `vpost grammar list`, or a grammar file; default: the profile's control.
+    #[arg(short, long, value_name = "DIALECT", global = true)]
+    pub dialect: Option<String>,
+    /// Largest path deviation, µm, rounding of the output apart.
+    #[arg(long, value_name = "UM", global = true)]
+    pub tolerance: Option<f64>,
+    /// Machine coordinates of a work offset's zero, mm: G54=X,Y,Z (repeatable).
+    #[arg(long = "work-offset", value_name = "G54=X,Y,Z", global = true, allow_hyphen_values = true)]
+    pub work_offset: Vec<String>,
+    /// Tool length or length vector of an H number, mm: H1=120 or H1=0,0,120 (repeatable).
+    #[arg(long, value_name = "H1=LENGTH|X,Y,Z", global = true, allow_hyphen_values = true)]
+    pub tool: Vec<String>,
+    /// Where the axes stand at the start of the program, machine coordinates, mm.
+    #[arg(long = "start-at", value_name = "X,Y,Z", global = true, allow_hyphen_values = true)]
+    pub start_at: Option<String>,
+    /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
+    #[arg(long, value_enum, global = true)]
+    pub outside: Option<Outside>,
+    /// Results as JSON on standard output, where the job prints any.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// No warnings.
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// More about what is done, on standard error (repeatable).
+    #[arg(short, long, action = clap::ArgAction::Count, global = true)]
+    pub verbose: u8,
+    /// Colours in messages.
+    #[arg(long, value_enum, default_value_t = Color::Auto, global = true)]
+    pub color: Color,
+}
+
+/// Feed motion outside the calibrated volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Outside {
+    /// An error.
+    Refuse,
+    /// The nearest point's correction.
+    Clamp,
+}
+
+/// Colours in messages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    /// On a terminal.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// The main job.
+#[derive(Debug, Args)]
+pub struct Correct {
+    /// NC program; - for standard input.
+    #[arg(value_name = "IN.nc", required = true)]
+    pub input: Option<PathBuf>,
+    /// Write to this file, all or nothing, instead of standard output.
+    #[arg(short, long, value_name = "OUT.nc")]
+    pub output: Option<PathBuf>,
+    /// Write a summary for pipelines (JSON).
+    #[arg(long, value_name = "FILE")]
+    pub summary: Option<PathBuf>,
+    /// Correct a program that says it was corrected before.
+    #[arg(long)]
+    pub force: bool,
+    /// Report progress in this style on standard error.
+    #[arg(long, value_enum)]
+    pub progress: Option<Progress>,
+}
+
+/// Style of progress reports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Progress {
+    /// `FILTER_PROGRESS=nn` lines, as LinuxCNC's program filters give them.
+    Linuxcnc,
+}
+
+/// `vpost check`
+#[derive(Debug, Args)]
+pub struct Check {
+    /// The program as posted.
+    #[arg(value_name = "IN.nc")]
+    pub input: PathBuf,
+    /// The corrected program.
+    #[arg(value_name = "OUT.nc")]
+    pub output: PathBuf,
+}
+
+/// `vpost predict`
+#[derive(Debug, Args)]
+pub struct Predict {
+    /// Commanded points (CSV); - for standard input.
+    #[arg(value_name = "POINTS.csv")]
+    pub points: PathBuf,
+    /// Give positions in the measuring frame: apply the profile's [setup].
+    #[arg(long)]
+    pub include_setup: bool,
+}
+
+/// `vpost solve`
+#[derive(Debug, Args)]
+pub struct Solve {
+    /// Target points (CSV); - for standard input.
+    #[arg(value_name = "POINTS.csv")]
+    pub points: PathBuf,
+}
+
+/// `vpost profile`
+#[derive(Debug, Args)]
+pub struct Profile {
+    /// The work.
+    #[command(subcommand)]
+    pub command: ProfileCommand,
+}
+
+/// Work on profiles.
+#[derive(Debug, Subcommand)]
+pub enum ProfileCommand {
+    /// Read a profile and everything it names; say what is wrong.
+    Check {
+        /// Machine profile (TOML).
+        profile: PathBuf,
+    },
+    /// Say what a profile means.
+    Show {
+        /// Machine profile (TOML).
+        profile: PathBuf,
+    },
+    /// Print the JSON Schema of profiles.
+    Schema,
+}
+
+/// `vpost grammar`
+#[derive(Debug, Args)]
+pub struct Grammar {
+    /// The work.
+    #[command(subcommand)]
+    pub command: GrammarCommand,
+}
+
+/// Work on dialect tables.
+#[derive(Debug, Subcommand)]
+pub enum GrammarCommand {
+    /// Read grammar files; say what is wrong.
+    Check {
+        /// Grammar files (TOML).
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// The dialects vpost knows, with their assumptions.
+    List,
+}
+
+/// `vpost completions`
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Prints completions.
+pub(crate) fn completions(arguments: &Completions) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "vpost", &mut text);
+    crate::file::print(&text)
+}
+
+/// Prints the manual page.
+pub(crate) fn man() -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(Arguments::command())
+        .render(&mut text)
+        .map_err(|error| Failure::file("standard output", "write", &error))?;
+    crate::file::print(&text)
+}

@@ -1,0 +1,188 @@
+//! The closed loop: two programs through the machine model, their tool paths compared.
+
+use correction::{Comparison, Mismatch, Step, compare};
+use diagnostic::Diagnostic;
+use nc_program::Interpreter;
+use nc_syntax::dialect::Action;
+use nc_syntax::{Block, ItemKind, Reader};
+use serde::Serialize;
+
+use crate::arguments::{Check, Shared};
+use crate::file;
+use crate::message::{Failure, Messages};
+use crate::settings::Settings;
+
+/// A program as the check sees it.
+struct Program {
+    steps: Vec<Step>,
+    /// Words that are not motion, in order, with their lines: M, S, T, H, D and G codes that set something.
+    events: Vec<(String, u64)>,
+    inch: bool,
+}
+
+/// The JSON of `vpost check --json`.
+#[derive(Debug, Serialize)]
+struct Outcome<'a> {
+    schema: &'static str,
+    passed: bool,
+    tolerance_um: f64,
+    limit_um: f64,
+    feed_motions_in: usize,
+    feed_motions_out: usize,
+    approach_moves: usize,
+    deviation_before_um: f64,
+    deviation_before_line: u64,
+    deviation_after_um: f64,
+    deviation_after_line: u64,
+    findings: &'a [String],
+}
+
+/// `vpost check IN.nc OUT.nc -m PROFILE`
+pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let settings = Settings::load(shared, messages)?;
+    let model = settings.path_model()?;
+    let wanted = program(&arguments.input, &settings)?;
+    let commanded = program(&arguments.output, &settings)?;
+    let limit_mm = settings.options.tolerance_mm + rounding_mm(&settings, wanted.inch);
+    let comparison = compare(model, &wanted.steps, &commanded.steps, limit_mm);
+    let findings = findings(&comparison, &wanted, &commanded);
+    let passed = findings.is_empty();
+    let um = |mm: f64| (mm * 1e6).round() / 1e3;
+    if shared.json {
+        let outcome = Outcome {
+            schema: "vpost.check/1",
+            passed,
+            tolerance_um: um(settings.options.tolerance_mm),
+            limit_um: um(limit_mm),
+            feed_motions_in: comparison.wanted,
+            feed_motions_out: comparison.commanded,
+            approach_moves: comparison.approaches,
+            deviation_before_um: um(comparison.before.largest_mm),
+            deviation_before_line: comparison.before.line,
+            deviation_after_um: um(comparison.after.largest_mm),
+            deviation_after_line: comparison.after.line,
+            findings: &findings,
+        };
+        let mut text = serde_json::to_vec_pretty(&outcome).expect("plain values always serialise");
+        text.push(b'\n');
+        file::print(&text)?;
+    } else {
+        let mut text = format!(
+            "{} feed motions in, {} out\nbefore: the tool is up to {:8.3} um off its path (line {})\nafter:  the tool is up to {:8.3} um off its path (line {}), allowed are {:.3} um\n",
+            comparison.wanted,
+            comparison.commanded,
+            um(comparison.before.largest_mm),
+            comparison.before.line,
+            um(comparison.after.largest_mm),
+            comparison.after.line,
+            um(limit_mm),
+        );
+        for finding in &findings {
+            text.push_str("- ");
+            text.push_str(finding);
+            text.push('\n');
+        }
+        text.push_str(if passed { "passed\n" } else { "FAILED\n" });
+        file::print(text.as_bytes())?;
+    }
+    if passed { Ok(()) } else { Err(Failure::Check) }
+}
+
+/// Half an output step on each axis, as a distance.
+fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
+    let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
+    let unit = if inch { 25.4 } else { 1.0 };
+    decimals
+        .map(|d| 0.5 * unit / f64::from(10u32.pow(u32::from(d))))
+        .iter()
+        .map(|h| h * h)
+        .sum::<f64>()
+        .sqrt()
+}
+
+fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failure> {
+    let text = file::read(path)?;
+    let refuse = |diagnostics: Vec<Diagnostic>| Failure::refused(&file::name(path), &text, diagnostics);
+    nc_syntax::looks_like_program(&text).map_err(|diagnostic| refuse(vec![diagnostic]))?;
+    let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false };
+    let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
+    let mut reader = Reader::new(&text, &settings.dialect);
+    let mut block = Block::default();
+    while reader.next(&mut block) {
+        let step = interpreter.step(&block).map_err(refuse)?;
+        program.inch |= step.context.unit_mm != 1.0 && !step.motions.is_empty();
+        for motion in &step.motions {
+            program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line: block.line });
+        }
+        events(&block, settings, &mut program.events);
+        if step.ends_program {
+            break;
+        }
+    }
+    Ok(program)
+}
+
+/// What a block says besides where to go.
+fn events(block: &Block<'_>, settings: &Settings, events: &mut Vec<(String, u64)>) {
+    /// Motion codes and the return levels of cycles: a cycle may be written as moves.
+    const MOTION_GROUPS: [u8; 2] = [1, 10];
+    for item in &block.items {
+        let ItemKind::Word { letter, .. } = item.kind else { continue };
+        let counts = match letter {
+            b'M' | b'S' | b'T' | b'H' | b'D' => true,
+            b'G' => {
+                block.words().find(|word| word.span == item.span).and_then(|word| word.g_code()).is_some_and(
+                    |code| {
+                        code.0 != 40
+                            && settings
+                                .dialect
+                                .code(code)
+                                .is_none_or(|entry| !MOTION_GROUPS.contains(&entry.group))
+                    },
+                )
+            }
+            _ => false,
+        };
+        if counts {
+            let text: String =
+                block.text(item.span).iter().map(|byte| byte.to_ascii_uppercase() as char).collect();
+            events.push((text, block.line));
+        }
+    }
+}
+
+fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> Vec<String> {
+    let mut findings: Vec<String> = comparison
+        .mismatches
+        .iter()
+        .map(|mismatch| match mismatch {
+            Mismatch::TooFar { wanted_line, commanded_line, distance_mm } => format!(
+                "line {commanded_line} of the corrected program is {:.3} um off the path of line {wanted_line}",
+                distance_mm * 1e3
+            ),
+            Mismatch::Missing { wanted_line } => {
+                format!("the motion of line {wanted_line} is missing from the corrected program")
+            }
+            Mismatch::Extra { commanded_line } => {
+                format!("line {commanded_line} of the corrected program belongs to no programmed motion")
+            }
+        })
+        .collect();
+    if comparison.mismatches.len() >= correction::MOST_MISMATCHES {
+        findings.push("and more; these are two different programs".to_owned());
+    }
+    let different = wanted.events.iter().zip(&commanded.events).find(|(a, b)| a.0 != b.0);
+    if let Some((a, b)) = different {
+        findings.push(format!(
+            "the programs say different things besides motion: {} on line {} against {} on line {}",
+            a.0, a.1, b.0, b.1
+        ));
+    } else if wanted.events.len() != commanded.events.len() {
+        findings.push(format!(
+            "the programs say different things besides motion: {} words against {}",
+            wanted.events.len(),
+            commanded.events.len()
+        ));
+    }
+    findings
+}

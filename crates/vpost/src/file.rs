@@ -1,0 +1,98 @@
+//! Files: read whole, written whole or not at all.
+
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::message::Failure;
+
+/// The name of a path in messages.
+pub(crate) fn name(path: &Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// Reads a file, or standard input for `-`.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let result = if path.as_os_str() == "-" {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    result.map_err(|error| Failure::file(&name(path), "read", &error))
+}
+
+/// Writes a file so that it is there whole or, where that fails, an earlier one is left as it was.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let fail = |error: &std::io::Error| Failure::file(&name(path), "write", error);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if path.is_dir() {
+        return Err(fail(&std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+    }
+    // Standard output's devices and pipes cannot be replaced, only written to.
+    if path.exists() && !path.is_file() {
+        return std::fs::write(path, bytes).map_err(|error| fail(&error));
+    }
+    let mut file = tempfile::Builder::new()
+        .prefix(".vpost-")
+        .permissions(permissions(path))
+        .tempfile_in(folder)
+        .map_err(|error| fail(&error))?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(|error| fail(&error))?;
+    file.persist(path).map_err(|error| fail(&error.error))?;
+    Ok(())
+}
+
+/// A new output gets the usual permissions, an overwritten one keeps its own.
+#[cfg(unix)]
+fn permissions(path: &Path) -> std::fs::Permissions {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::metadata(path).map_or_else(|_| std::fs::Permissions::from_mode(0o666), |old| old.permissions())
+}
+#[cfg(not(unix))]
+fn permissions(path: &Path) -> std::fs::Permissions {
+    // Windows has no mode; the folder's rules apply.
+    std::fs::metadata(path).map_or_else(
+        |_| std::fs::metadata(".").expect("the working directory exists").permissions(),
+        |old| old.permissions(),
+    )
+}
+
+/// Prints to standard output.
+pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        // Whoever reads has seen enough.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::Check),
+        result => result.map_err(|error| Failure::file("standard output", "write to", &error)),
+    }
+}
+
+/// Signals that end the work, asked for between blocks, so that nothing is left half done.
+#[derive(Debug, Clone)]
+pub(crate) struct Interrupt(Arc<AtomicUsize>);
+
+impl Interrupt {
+    /// Catches SIGINT and SIGTERM from here on.
+    pub(crate) fn listen() -> Self {
+        let seen = Arc::new(AtomicUsize::new(0));
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+            // Where a signal cannot be caught it ends the program at once, as it would have without us.
+            let _ = signal_hook::flag::register_usize(
+                signal,
+                Arc::clone(&seen),
+                usize::from(signal.unsigned_abs() as u16),
+            );
+        }
+        Self(seen)
+    }
+
+    /// Fails once a signal has come.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        match self.0.load(Ordering::Relaxed) {
+            0 => Ok(()),
+            signal => Err(Failure::Interrupted(u8::try_from(signal).unwrap_or(2))),
+        }
+    }
+}

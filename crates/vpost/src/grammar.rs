@@ -1,0 +1,35 @@
+//! `vpost grammar`.
+
+use crate::arguments::{Grammar, GrammarCommand};
+use crate::file;
+use crate::message::{Failure, Messages};
+use crate::settings::load_dialect;
+
+/// `vpost grammar list|check`
+pub(crate) fn run(arguments: &Grammar, messages: &Messages) -> Result<(), Failure> {
+    match &arguments.command {
+        GrammarCommand::List => {
+            let mut text = String::new();
+            for name in nc_dialect::builtin_names() {
+                let dialect = load_dialect(name)?;
+                text.push_str(&format!("{name}: {}\n", dialect.title));
+                for assumption in &dialect.assumptions {
+                    text.push_str(&format!("  - {assumption}\n"));
+                }
+            }
+            file::print(text.as_bytes())
+        }
+        GrammarCommand::Check { files } => {
+            for path in files {
+                let dialect = load_dialect(&path.to_string_lossy())?;
+                messages.note(&format!(
+                    "{}: {} ({} G codes)",
+                    file::name(path),
+                    dialect.title,
+                    dialect.codes.len()
+                ));
+            }
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! A machine profile from disk.
+
+use std::path::{Path, PathBuf};
+
+use diagnostic::{Code, Diagnostic};
+use machine_profile::{Profile, ProfileError};
+
+use crate::file;
+use crate::message::{Failure, Report, Source, file_diagnostic};
+
+/// A profile and the bytes it was made from.
+pub(crate) struct Loaded {
+    pub profile: Profile,
+    /// Hash of the profile and of every table it names, in the order they were read.
+    pub hash: blake3::Hash,
+}
+
+/// Reads a profile and the tables it names; everything wrong with them is one failure.
+pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+    let bytes = std::fs::read(path)
+        .map_err(|error| Failure::usage(file_diagnostic(&file::name(path), "read", &error)))?;
+    let source = |name: &str, bytes: &[u8]| Some(Source { name: name.to_owned(), bytes: bytes.to_vec() });
+    let name = file::name(path);
+    let Ok(text) = std::str::from_utf8(&bytes) else {
+        let at = std::str::from_utf8(&bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
+        let diagnostic = Diagnostic::error(Code(301), "a profile is UTF-8 text")
+            .at(at..at + 1, "this byte is not")
+            .help("save it as UTF-8, or give the profile, not the program, to -m");
+        return Err(Failure::Usage(vec![Report {
+            source: source(&name, &bytes),
+            diagnostics: vec![diagnostic],
+        }]));
+    };
+    let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    let hasher = std::cell::RefCell::new(blake3::Hasher::new());
+    hasher.borrow_mut().update(&bytes);
+    let read = |table: &str| {
+        let bytes = std::fs::read(folder.join(table))?;
+        hasher.borrow_mut().update(&bytes);
+        Ok(bytes)
+    };
+    match machine_profile::load(text, &read) {
+        Ok(profile) => Ok(Loaded { profile, hash: hasher.into_inner().finalize() }),
+        Err(errors) => Err(Failure::Usage(
+            errors
+                .into_iter()
+                .map(|ProfileError { file, diagnostic }| {
+                    let source = match file {
+                        None => source(&name, &bytes),
+                        Some(table) => {
+                            let path = folder.join(&table);
+                            source(&path.display().to_string(), &std::fs::read(&path).unwrap_or_default())
+                        }
+                    };
+                    Report { source, diagnostics: vec![diagnostic] }
+                })
+                .collect(),
+        )),
+    }
+}

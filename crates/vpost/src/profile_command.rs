@@ -1,0 +1,21 @@
+//! `vpost profile`.
+
+use crate::arguments::{Profile, ProfileCommand};
+use crate::message::{Failure, Messages};
+use crate::{file, profile};
+
+/// `vpost profile check|show|schema`
+pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failure> {
+    match &arguments.command {
+        ProfileCommand::Check { profile: path } => {
+            let loaded = profile::load(path)?;
+            messages.note(&format!("{}: a good profile of {}", file::name(path), loaded.profile.name));
+            Ok(())
+        }
+        ProfileCommand::Show { profile: path } => {
+            let loaded = profile::load(path)?;
+            file::print(loaded.profile.show().as_bytes())
+        }
+        ProfileCommand::Schema => file::print(machine_profile::schema().as_bytes()),
+    }
+}

@@ -1,0 +1,53 @@
+//! Inverse: what to command so that the tool reaches points.
+
+use diagnostic::Diagnostic;
+use machine_model::engines::build;
+
+use crate::arguments::{Shared, Solve};
+use crate::correct::OUTSIDE;
+use crate::message::{Failure, Messages};
+use crate::points::{Points, fixed};
+use crate::settings::{engine_named, machine, setup_tool};
+use crate::{file, profile};
+
+/// `vpost solve POINTS.csv -m PROFILE`
+pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
+    let profile = profile::load(machine(shared)?)?.profile;
+    let id = match &shared.engine {
+        Some(name) => engine_named(name)?,
+        None => profile.correction.engine,
+    };
+    let engine = build(id, profile.engine_inputs())
+        .map_err(|error| Failure::option(error.to_string(), "see the profile"))?;
+    let bytes = file::read(&arguments.points)?;
+    let name = file::name(&arguments.points);
+    let points = Points::read(&name, &bytes, setup_tool(&profile))?;
+    let mut out = points.columns.join(",");
+    out.push_str(",qx_mm,qy_mm,qz_mm");
+    for (axis, has) in ["qa_deg", "qb_deg", "qc_deg"].iter().zip(points.rotary) {
+        if has {
+            out.push(',');
+            out.push_str(axis);
+        }
+    }
+    out.push_str(",iterations,residual_um\n");
+    for (row, (fields, command)) in points.rows.iter().enumerate() {
+        let solution = engine.solve(command).map_err(|error| {
+            let diagnostic =
+                Diagnostic::error(OUTSIDE, format!("point {} cannot be reached: {error}", row + 1))
+                    .help("leave the point out, or choose another engine with `--engine`");
+            Failure::refused(&name, &bytes, vec![diagnostic])
+        })?;
+        out.push_str(&fields.join(","));
+        for value in solution.linear_mm.iter() {
+            out.push(',');
+            out.push_str(&fixed(*value, 9));
+        }
+        for axis in (0..3).filter(|axis| points.rotary[*axis]) {
+            out.push(',');
+            out.push_str(&fixed(command.rotary_rad[axis].to_degrees(), 9));
+        }
+        out.push_str(&format!(",{},{}\n", solution.iterations, fixed(solution.residual_mm * 1e3, 9)));
+    }
+    file::print(out.as_bytes())
+}

@@ -1,0 +1,127 @@
+//! What was done, for pipelines.
+
+use serde::Serialize;
+
+use crate::correct::{Corrected, Figures};
+use crate::settings::Settings;
+
+/// The JSON of `--summary`.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary<'a> {
+    schema: &'static str,
+    version: &'static str,
+    input: File<'a>,
+    profile: Profile<'a>,
+    output: Hash,
+    changed: bool,
+    engine: &'static str,
+    dialect: &'a str,
+    tolerance_um: f64,
+    blocks_in: u64,
+    blocks_out: u64,
+    splits: u64,
+    approach_moves: u64,
+    largest_correction_um: f64,
+    largest_correction_line: u64,
+    deviation_before_um: f64,
+    deviation_before_line: u64,
+    deviation_after_um: f64,
+    deviation_after_line: u64,
+    warnings: Vec<Warning>,
+}
+
+#[derive(Debug, Serialize)]
+struct File<'a> {
+    name: &'a str,
+    bytes: usize,
+    blake3: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Profile<'a> {
+    name: &'a str,
+    machine: &'a str,
+    blake3: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Hash {
+    bytes: usize,
+    blake3: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Warning {
+    code: String,
+    message: String,
+    note: String,
+}
+
+/// Micrometres with three decimals: nanometres are below everything that is promised.
+fn um(mm: f64) -> f64 {
+    (mm * 1e6).round() / 1e3
+}
+
+impl<'a> Summary<'a> {
+    pub(crate) fn new(name: &'a str, text: &[u8], settings: &'a Settings, corrected: &Corrected) -> Self {
+        let figures = &corrected.figures;
+        Self {
+            schema: "vpost.summary/1",
+            version: env!("CARGO_PKG_VERSION"),
+            input: File { name, bytes: text.len(), blake3: blake3::hash(text).to_hex().to_string() },
+            profile: Profile {
+                name: &settings.profile_name,
+                machine: &settings.profile.name,
+                blake3: settings.profile_hash.to_hex().to_string(),
+            },
+            output: Hash {
+                bytes: corrected.text.len(),
+                blake3: blake3::hash(&corrected.text).to_hex().to_string(),
+            },
+            changed: corrected.text != text,
+            engine: settings.engine.id().name(),
+            dialect: &settings.dialect.name,
+            tolerance_um: um(settings.options.tolerance_mm),
+            blocks_in: figures.blocks_in,
+            blocks_out: figures.blocks_out,
+            splits: figures.splits,
+            approach_moves: figures.approaches,
+            largest_correction_um: um(figures.largest.0),
+            largest_correction_line: figures.largest.1,
+            deviation_before_um: um(figures.before.0),
+            deviation_before_line: figures.before.1,
+            deviation_after_um: um(figures.after.0),
+            deviation_after_line: figures.after.1,
+            warnings: figures
+                .warnings
+                .iter()
+                .map(|warning| Warning {
+                    code: warning.code.to_string(),
+                    message: warning.message.clone(),
+                    note: warning.label.clone(),
+                })
+                .collect(),
+        }
+    }
+
+    /// The JSON text, one trailing line end.
+    pub(crate) fn json(&self) -> Vec<u8> {
+        let mut text = serde_json::to_vec_pretty(self).expect("plain values always serialise");
+        text.push(b'\n');
+        text
+    }
+
+    /// The same in one line for people.
+    pub(crate) fn line(figures: &Figures) -> String {
+        format!(
+            "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after",
+            figures.blocks_in,
+            figures.blocks_out,
+            figures.splits,
+            figures.largest.0 * 1e3,
+            figures.largest.1,
+            figures.before.0 * 1e3,
+            figures.after.0 * 1e3,
+        )
+    }
+}

@@ -1,0 +1,151 @@
+//! Between the wings: corrected pieces become edits of words.
+
+use correction::{AxisWord, Centre, Letters, PieceKind};
+use nc_emit::{Piece, WordEdit};
+use nc_program::Context;
+use nc_syntax::Block;
+use nc_syntax::dialect::{Action, Dialect, GCode};
+use toolpath::{Feed, Motion, Shape};
+use units::decimal::Decimal;
+
+/// The dialect's own codes for the motions that correction writes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MotionCodes {
+    rapid: GCode,
+    line: GCode,
+    clockwise: GCode,
+    counter_clockwise: GCode,
+    dwell: GCode,
+}
+
+impl MotionCodes {
+    /// From the dialect's table; codes it lacks keep their usual numbers and are never written.
+    pub(crate) fn of(dialect: &Dialect) -> Self {
+        let find = |action: Action, usual: u16| {
+            dialect.codes.iter().find(|entry| entry.action == action).map_or(GCode(usual), |entry| entry.code)
+        };
+        Self {
+            rapid: find(Action::Rapid, 0),
+            line: find(Action::Line, 10),
+            clockwise: find(Action::ArcClockwise, 20),
+            counter_clockwise: find(Action::ArcCounterClockwise, 30),
+            dwell: find(Action::Dwell, 40),
+        }
+    }
+}
+
+/// The letters of a block's words.
+pub(crate) fn letters(block: &Block<'_>) -> Letters {
+    let mut letters = Letters::default();
+    for word in block.words() {
+        if word.letter.is_ascii_uppercase() {
+            letters.insert(word.letter);
+        }
+    }
+    letters
+}
+
+/// What a block made the axes do, as far as its words have a meaning of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Original {
+    Straight,
+    Arc,
+    Cycle,
+}
+
+impl Original {
+    pub(crate) fn of(motion: &Motion) -> Self {
+        match motion {
+            Motion::Feed(Feed { shape: Shape::Arc(_), .. }) => Self::Arc,
+            Motion::Hole(_) => Self::Cycle,
+            _ => Self::Straight,
+        }
+    }
+}
+
+/// Writes pieces of one motion as edits of its block.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Editing<'a> {
+    pub codes: &'a MotionCodes,
+    pub context: &'a Context,
+    /// Letters of the block the pieces come from.
+    pub letters: Letters,
+    /// What the block made the axes do.
+    pub original: Original,
+    /// Decimals of X, Y, Z in program units.
+    pub decimals: [u8; 3],
+    /// F under G93 and the decimals it is written with.
+    pub inverse_time: Option<f64>,
+    pub decimals_feed: u8,
+    /// P of the cycle, where a dwell must be written.
+    pub dwell: Option<Decimal>,
+}
+
+impl Editing<'_> {
+    /// One piece; `first`: it is the block itself, whose other words are still there; `only`: nothing
+    /// else stands for the block.
+    pub(crate) fn edit(&self, piece: &correction::Piece, first: bool, only: bool) -> Piece {
+        let mut words: Vec<(u8, WordEdit)> = Vec::with_capacity(6);
+        let mut push = |letter: u8, word: AxisWord, decimals: u8| {
+            let edit = match word {
+                AxisWord::Omit if first && self.letters.contains(letter) => WordEdit::Remove,
+                AxisWord::Omit => return,
+                AxisWord::Keep => WordEdit::Keep,
+                AxisWord::Write(counts) => WordEdit::Write { counts, decimals },
+            };
+            words.push((letter, edit));
+        };
+        if piece.kind != PieceKind::Dwell {
+            for axis in 0..3 {
+                push(b"XYZ"[axis], piece.axes[axis], self.decimals[axis]);
+            }
+        }
+        let [u, v, n] = self.context.plane.axes();
+        let motion = match piece.kind {
+            PieceKind::Rapid | PieceKind::Line => {
+                // The words of the arc or cycle that this was have no meaning on a straight move.
+                let own: &[u8] = match self.original {
+                    Original::Straight => b"",
+                    Original::Arc => b"IJKRP",
+                    Original::Cycle => b"IJKRQPL",
+                };
+                own.iter().for_each(|letter| push(*letter, AxisWord::Omit, 0));
+                Some(if piece.kind == PieceKind::Rapid { self.codes.rapid } else { self.codes.line })
+            }
+            PieceKind::Arc { clockwise, centre } => {
+                match centre {
+                    Centre::Offsets(offsets) => {
+                        push(b"IJK"[u], offsets[0], self.decimals[u]);
+                        push(b"IJK"[v], offsets[1], self.decimals[v]);
+                        push(b'R', AxisWord::Omit, 0);
+                    }
+                    Centre::Radius(radius) => push(b'R', radius, self.decimals[u]),
+                }
+                if !only {
+                    // P counts whole turns, which the pieces now make themselves.
+                    push(b'P', AxisWord::Omit, 0);
+                }
+                Some(if clockwise { self.codes.clockwise } else { self.codes.counter_clockwise })
+            }
+            PieceKind::Cycle { r } => {
+                push(b'R', r, self.decimals[n]);
+                self.context.motion_code
+            }
+            PieceKind::Dwell => {
+                push(b'G', AxisWord::Write(i64::from(self.codes.dwell.0 / 10)), 0);
+                if let Some(p) = self.dwell {
+                    push(b'P', AxisWord::Write(p.mantissa), p.decimals);
+                }
+                None
+            }
+        };
+        if let (Some(rate), false, PieceKind::Line | PieceKind::Arc { .. }) =
+            (self.inverse_time, only, piece.kind)
+        {
+            let steps = f64::from(10u32.pow(u32::from(self.decimals_feed)));
+            let counts = units::decimal::counts(rate / piece.share.max(1e-9), steps).unwrap_or(i64::MAX);
+            words.push((b'F', WordEdit::Write { counts, decimals: self.decimals_feed }));
+        }
+        Piece { motion, words }
+    }
+}
