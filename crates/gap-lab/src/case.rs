@@ -5,6 +5,7 @@ use crate::design::{Layout, Plan};
 use crate::dice::Dice;
 use crate::effect::Effect;
 use crate::files;
+use crate::fresh::Fresh;
 use crate::linear::{dot, rms};
 use crate::machine::{Contribution, Machine};
 use crate::matrix::{carry, shift, tilt, times};
@@ -110,6 +111,8 @@ pub struct Case {
     pub truth_json: String,
     /// The truth.
     pub truth: Truth,
+    /// The hold-out and the truth about it.
+    pub fresh: Fresh,
 }
 
 /// Everything of an attempt that the acceptance looks at.
@@ -301,7 +304,9 @@ impl CaseSpec {
             ("holdout.csv".to_owned(), text(&fresh, &fresh_noise, "h")),
         ];
         list.extend(files::tables(&a.machine));
-        let truth = truth(a, &fresh, field, &fresh_noise, offset);
+        let noise_um = fresh_noise.iter().map(|n| n.map(|v| v * a.sigma)).collect();
+        let fresh = Fresh { machine: a.machine.clone(), layout: fresh, field_um: field, noise_um };
+        let truth = truth(a, &fresh, offset);
         let without = (self.kind == Kind::Removed).then(|| truth.effects[0].id.clone());
         Case {
             truth_json: files::truth(&id, self.kind.word(), a.plan.word(), self.noise.word(), &truth),
@@ -312,6 +317,7 @@ impl CaseSpec {
             without,
             files: list,
             truth,
+            fresh,
         }
     }
 }
@@ -343,7 +349,7 @@ fn coefficient(
     Some((unit, per_mm * dot(&column, clean) / dot(&column, &column)))
 }
 
-fn truth(a: &Attempt, fresh: &Layout, field: Vec<[f64; 3]>, noise: &[[f64; 3]], offset: f64) -> Truth {
+fn truth(a: &Attempt, fresh: &Fresh, offset: f64) -> Truth {
     let rows = a.layout.rows.len() as f64;
     let (mut components, mut per_row, mut at) = ([0.0; 3], Vec::new(), 0);
     for row in &a.layout.rows {
@@ -361,12 +367,6 @@ fn truth(a: &Attempt, fresh: &Layout, field: Vec<[f64; 3]>, noise: &[[f64; 3]], 
     if whole > 0.0 {
         components = components.map(|c| c / whole);
     }
-    let view = View::new(&a.machine, fresh);
-    let fresh_rows = fresh.rows.len() as f64;
-    let size = |field: &[[f64; 3]]| {
-        let clean = view.clean_rows(field);
-        (dot(&clean, &clean) / fresh_rows).sqrt()
-    };
     Truth {
         identifiable: !a.effects.is_empty() && a.effects.iter().all(|e| e.rivals.is_empty()),
         expected_sigma: rms(&a.gap) * 1e3 * (a.gap.len() as f64).sqrt() / a.sigma,
@@ -375,9 +375,8 @@ fn truth(a: &Attempt, fresh: &Layout, field: Vec<[f64; 3]>, noise: &[[f64; 3]], 
         run_sigma_um: offset * a.sigma,
         components,
         cells: cells(a, &per_row, rows),
-        holdout_gap_um: size(&field),
-        holdout_noise_um: size(noise) * a.sigma,
-        holdout_field_um: field,
+        holdout_before_um: fresh.shrink(&vec![[0.0; 3]; fresh.len()]).before_um,
+        holdout_noise_um: fresh.noise_rms_um(),
     }
 }
 

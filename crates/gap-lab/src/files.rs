@@ -183,13 +183,13 @@ pub(crate) fn truth(id: &str, kind: &str, plan: &str, noise: &str, truth: &Truth
     format!(
         "{{ \"schema\": \"gap-lab.truth/1\", \"id\": \"{id}\", \"kind\": \"{kind}\", \"plan\": \"{plan}\", \
          \"noise\": \"{noise}\",\n  \"sigma_um\": {:.4}, \"run_sigma_um\": {:.4}, \"identifiable\": {}, \
-         \"expected_sigma\": {:.3},\n  \"components\": [{x:.4}, {y:.4}, {z:.4}], \"holdout_gap_um\": {:.4}, \
+         \"expected_sigma\": {:.3},\n  \"components\": [{x:.4}, {y:.4}, {z:.4}], \"holdout_before_um\": {:.4}, \
          \"holdout_noise_um\": {:.4},\n  \"effects\": [\n{}\n  ] }}\n",
         truth.sigma_um,
         truth.run_sigma_um,
         truth.identifiable,
         truth.expected_sigma,
-        truth.holdout_gap_um,
+        truth.holdout_before_um,
         truth.holdout_noise_um,
         effects.join(",\n")
     )

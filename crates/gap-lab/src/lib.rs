@@ -19,6 +19,7 @@ mod design;
 mod dice;
 mod effect;
 mod files;
+mod fresh;
 mod linear;
 mod machine;
 mod matrix;
@@ -34,6 +35,7 @@ pub use case::{Case, CaseSpec, Kind, Observation};
 pub use catalogue::{catalogue, sample_cases};
 pub use design::Plan;
 pub use effect::Effect;
+pub use fresh::{Fresh, Shrink};
 pub use noise::NoiseKind;
 pub use truth::{Alias, CellShare, TrueEffect, Truth};
 

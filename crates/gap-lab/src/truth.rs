@@ -44,10 +44,8 @@ pub struct Truth {
     pub components: [f64; 3],
     /// Where the cleaned gap lies along each axis, ten cells each.
     pub cells: Vec<CellShare>,
-    /// Root mean square per row of the noise-free gap on the hold-out, set-up and run offsets removed, µm.
-    pub holdout_gap_um: f64,
-    /// Root mean square per row of the noise on the hold-out after the same removal, µm.
+    /// Root mean square per row of the gap on the hold-out, noise included, set-up and run offsets removed, µm.
+    pub holdout_before_um: f64,
+    /// The same of the noise alone, µm.
     pub holdout_noise_um: f64,
-    /// Noise-free displacement that the withheld effects cause at every hold-out row, µm.
-    pub holdout_field_um: Vec<[f64; 3]>,
 }
