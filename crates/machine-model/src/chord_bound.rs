@@ -70,7 +70,7 @@ fn norm(v: &[f64; 3]) -> f64 {
 #[inline]
 fn add_higher_orders(sum: &mut Growth, e: &Growth, x: &Growth) {
     let (w, w1, w2, wj) = (norm(&e.value), norm(&e.first), norm(&e.second), norm(&e.jumps));
-    let over = 1.0 / (1.0 - w.min(0.5));
+    let over = if w < 0.5 { 1.0 / (1.0 - w) } else { units::math::exp(w) };
     let value = 0.5 * w * w * over;
     let first = w1 * w * over;
     let second = (w1 * w1 + w2 * w) * over;

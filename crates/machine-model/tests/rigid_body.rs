@@ -100,12 +100,14 @@ fn outside_the_tables_is_refused_with_axis_and_range() {
     let error = model.solve(&command([100.0, 281.0, 10.0], [0.0; 3])).unwrap_err();
     assert_eq!(error, SolveError::OutsideVolume { axis: 'Y', value_mm: 281.0, low_mm: 0.0, high_mm: 280.0 });
     // Inside, but only a command outside would bring the tool there.
-    let edge = (0..40).filter_map(|seed| {
-        let model = RigidBody::new(machine(seed, "[w X Y b Z t]", false, 1.0)).unwrap();
-        model.solve(&command([0.0, 280.0, 200.0], [0.0; 3])).err()
-    });
-    assert!(edge.clone().count() > 20);
-    assert!(edge.clone().all(|e| matches!(e, SolveError::OutsideVolume { .. })));
+    let refused: Vec<SolveError> = (0..40)
+        .filter_map(|seed| {
+            let model = RigidBody::new(machine(seed, "[w X Y b Z t]", false, 1.0)).unwrap();
+            model.solve(&command([0.0, 280.0, 200.0], [0.0; 3])).err()
+        })
+        .collect();
+    assert!(refused.len() > 20);
+    assert!(refused.iter().all(|e| matches!(e, SolveError::OutsideVolume { .. })));
 }
 
 #[test]
