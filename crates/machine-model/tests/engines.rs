@@ -19,7 +19,7 @@ fn at(linear_mm: Vector) -> Command {
 fn engine(id: EngineId, interpolation: Interpolation) -> Box<dyn Engine> {
     let mut inputs = inputs(&tables(), &traverses(315), Squareness::default());
     inputs.traverse_interpolation = interpolation;
-    build(id, inputs).unwrap()
+    build(id, inputs).expect("nothing is lacking")
 }
 
 /// Engines with a path model that are continuous, by name.
@@ -210,7 +210,7 @@ fn constant_angle(angle: Vector, scale: f64, axis: usize) -> ParametricTable {
         row[3..].copy_from_slice(angle.as_slice());
         row
     });
-    ParametricTable::new(positions.clone(), rows.collect()).unwrap()
+    ParametricTable::new(positions.clone(), rows.collect()).expect("a table")
 }
 
 fn straight_traverses(directions: [Vector; 3]) -> [Traverse; 3] {
@@ -247,6 +247,59 @@ fn kmtpp_integral_does_not_change_when_refined() {
     for _ in 0..50 {
         let q = Vector::new(200.0, 140.0, 100.0) + random.vector(99.0);
         assert!((coarse.error_mm(&at(q)) - fine.error_mm(&at(q))).norm() < 1e-11);
+    }
+}
+
+/// A machine far worse than any (white noise of 5 mrad and 0.1 mm), with tables on both sides of the origin and of uneven steps.
+fn bent(seed: u64) -> Kmtpp {
+    let mut random = Random::new(seed);
+    let tables = [0, 1, 2].map(|_| {
+        let mut positions = vec![-150.0];
+        while positions[positions.len() - 1] < 150.0 {
+            positions.push(positions[positions.len() - 1] + 20.0 + random.number(12.0));
+        }
+        let rows =
+            positions.iter().map(|_| std::array::from_fn(|f| random.number(if f < 3 { 0.1 } else { 5e-3 })));
+        let rows = rows.collect();
+        ParametricTable::new(positions, rows).expect("a table")
+    });
+    let mut traverses = straight_traverses([0, 1, 2].map(|i| {
+        let mut direction = random.vector(0.01);
+        direction[i] = 1.0;
+        direction
+    }));
+    for traverse in &mut traverses {
+        // From -200 to 200 through the common origin.
+        traverse.start_mm[traverse.axis] = -200.0;
+        traverse.nodes_mm.iter_mut().for_each(|q| *q -= 200.0);
+    }
+    Kmtpp::from_measurements(&tables, &traverses).expect("three axes")
+}
+
+#[test]
+fn kmtpp_bounds_and_inverts_bent_machines_on_both_sides_of_the_origin() {
+    for seed in 0..12 {
+        let engine = bent(seed);
+        let mut random = Random::new(100 + seed);
+        let mut ratios = Vec::new();
+        for (length, bend) in [(5.0, 0.0), (50.0, 0.0), (200.0, 0.0), (50.0, 20.0)] {
+            for _ in 0..25 {
+                let stretch = Stretch::random(&mut random, &engine, length, bend);
+                let (bound, found) =
+                    (engine.chord_bound_mm(&stretch.as_move()), stretch.deviation_mm(&engine));
+                assert!(
+                    found <= bound * (1.0 + 1e-9) + 1e-12,
+                    "{seed} {length} {bend}: {found:e} > {bound:e}"
+                );
+                ratios.push(bound / found);
+                let target = at(stretch.place(0.5));
+                let solution = engine.solve(&target).expect("well inside the volume");
+                let back = solution.linear_mm + engine.error_mm(&at(solution.linear_mm));
+                assert!((back - target.linear_mm).norm() <= 1e-9);
+            }
+        }
+        ratios.sort_by(f64::total_cmp);
+        assert!(ratios[ratios.len() / 2] < 60.0, "{seed}: median {}", ratios[ratios.len() / 2]);
     }
 }
 

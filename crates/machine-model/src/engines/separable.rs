@@ -54,8 +54,10 @@ impl Separable {
 ///
 /// With `g(s) = f(q(s))`: `|g''| ≤ |f''| |q'|² + |f'| |q''|` between the kinks, worth an eighth; every
 /// kink bends g by its jump times |q'|, worth at most `s(1-s) ≤ ¼` of that, as often as it is passed.
+/// On long stretches over many kinks it says more that curve and chord both lie within the values of `f`.
 pub(crate) fn curve_chord_bound(bounds: &Bounds, stretch: &Move, axis: usize) -> f64 {
     let (speed, acceleration) = (stretch.speed_mm[axis], stretch.acceleration_mm[axis]);
-    (bounds.curvature * speed * speed + bounds.slope * acceleration) / 8.0
-        + bounds.kinks * speed * f64::from(stretch.passes) / 4.0
+    let bent = (bounds.curvature * speed * speed + bounds.slope * acceleration) / 8.0
+        + bounds.kinks * speed * f64::from(stretch.passes) / 4.0;
+    bent.min(2.0 * bounds.value)
 }

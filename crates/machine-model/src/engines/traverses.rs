@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::BuildError;
 use crate::{Interpolation, Range, Table, Traverse, Vector, Volume};
 
-/// Traverses of X, Y and Z with their common origin.
+/// Traverses of X, Y and Z, counted from their common origin.
 #[derive(Clone, Debug)]
 pub(crate) struct Traverses {
     axes: [Traverse; 3],
@@ -38,7 +38,19 @@ impl Traverses {
             }
             origin_mm[i] = a;
         }
-        Ok(Self { axes: axes.clone(), origin_mm })
+        let mut this = Self { axes: axes.clone(), origin_mm };
+        // Each traverse counts from where it passes the common origin, whatever the tracker's zero was.
+        for axis in 0..3 {
+            let k = this.interval(axis, origin_mm[axis]);
+            let nodes = this.nodes_mm(axis);
+            let part = (origin_mm[axis] - nodes[k]) / (nodes[k + 1] - nodes[k]);
+            let (low, high) = (this.measured_mm(axis, k), this.measured_mm(axis, k + 1));
+            let zero = low + (high - low) * part;
+            for measured in &mut this.axes[axis].measured_mm {
+                *measured = (Vector::from(*measured) - zero).into();
+            }
+        }
+        Ok(this)
     }
 
     /// Commands at the nodes of one axis, mm.
@@ -54,7 +66,7 @@ impl Traverses {
         }))
     }
 
-    /// Measured position at a node, mm.
+    /// Measured position at a node, relative to the common origin, mm.
     fn measured_mm(&self, axis: usize, node: usize) -> Vector {
         Vector::from(self.axes[axis].measured_mm[node])
     }
