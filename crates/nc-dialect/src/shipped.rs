@@ -7,11 +7,13 @@ use nc_syntax::Dialect;
 use crate::load;
 
 /// Names and texts, in alphabetical order.
-pub(crate) const TEXTS: [(&str, &str); 4] = [
+pub(crate) const TEXTS: [(&str, &str); 6] = [
+    ("balt-system", include_str!("../../../grammars/balt-system.toml")),
     ("centroid", include_str!("../../../grammars/centroid.toml")),
     ("fanuc", include_str!("../../../grammars/fanuc.toml")),
     ("linuxcnc", include_str!("../../../grammars/linuxcnc.toml")),
     ("perspektiva", include_str!("../../../grammars/perspektiva.toml")),
+    ("sinumerik", include_str!("../../../grammars/sinumerik.toml")),
 ];
 
 static DIALECTS: LazyLock<Vec<Dialect>> = LazyLock::new(|| {

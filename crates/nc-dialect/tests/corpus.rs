@@ -10,8 +10,8 @@ use nc_dialect::{builtin, builtin_names};
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
 
-/// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused.
-const DECIDED_HERE: [u16; 4] = [201, 202, 207, 208];
+/// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused, command.
+const DECIDED_HERE: [u16; 5] = [201, 202, 207, 208, 224];
 
 /// Name and bytes of every program in a folder, in alphabetical order.
 fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {

@@ -89,7 +89,8 @@ pub enum ItemKind {
     /// Program name in a form that is not an `O` or `:` word, or a text line in the leader.
     Name,
     /// A command by name: in round brackets where the dialect has such ([`crate::dialect::Paren::Command`]),
-    /// or from a word of the dialect's command table to the end of the block. See [`crate::Dialect::command`].
+    /// or a word of the dialect's command table; a refused one reaches to the end of the block. See
+    /// [`crate::Dialect::command`].
     BracketCommand,
     /// Flow and variables: `#1=…`, `IF`, `WHILE`, `GOTO`, `O100 sub`; to the next comment or the end of the block.
     Flow,

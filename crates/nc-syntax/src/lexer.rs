@@ -157,8 +157,8 @@ impl<'d> Lexer<'d> {
         if is_flow_word(name) {
             return Some(self.flow(line, at, at + run));
         }
-        if self.commands.iter().any(|command| names(command, &line[at..])) {
-            return Some((ItemKind::BracketCommand, self.end_of_command(line, at)));
+        if let Some(command) = self.commands.iter().find(|command| names(command, &line[at..])) {
+            return Some((ItemKind::BracketCommand, end_of_command(command, line, at)));
         }
         if is_function(&name[1..]) && line.get(skip_spaces(line, at + run)) == Some(&b'[') {
             return None;
@@ -317,12 +317,6 @@ impl<'d> Lexer<'d> {
         if depth == 0 { (ItemKind::Flow, end) } else { (ItemKind::Invalid(Invalid::UnclosedBracket), end) }
     }
 
-    /// A command by name takes the rest of the block, `( )` in it included; `;` ends it.
-    fn end_of_command(&self, line: &[u8], at: usize) -> usize {
-        let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
-        at + trim_end(&line[at..stop])
-    }
-
     /// Where bytes that mean nothing end: at a blank or a comment.
     fn end_of_text(&self, line: &[u8], at: usize) -> usize {
         let rest = &line[at + 1..];
@@ -343,6 +337,21 @@ fn names(command: &Command, text: &[u8]) -> bool {
     text.len() >= name.len()
         && text[..name.len()].eq_ignore_ascii_case(name)
         && text.get(name.len()).is_none_or(whole)
+}
+
+/// A refused command takes the rest of the block with it, to a `;`: whose words they are is not known.
+///
+/// One that passes takes its round brackets only, so that a motion beside it is not overlooked.
+fn end_of_command(command: &Command, line: &[u8], at: usize) -> usize {
+    if command.refuse.is_some() {
+        let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
+        return at + trim_end(&line[at..stop]);
+    }
+    let end = at + command.name.len();
+    match nested_comment(&line[skip_spaces(line, end)..]) {
+        Ok((left, _)) => line.len() - left.len(),
+        Err(_) => end,
+    }
 }
 
 #[inline]

@@ -258,14 +258,17 @@ fn bracket_commands_are_kept_as_commands() {
 fn words_with_an_equals_sign() {
     let mut sinumerik = dialect();
     sinumerik.equals_words = true;
-    let command = |name: &str| nc_syntax::dialect::Command { name: name.to_owned(), refuse: None };
-    sinumerik.commands = vec![command("MSG"), command("TRANS")];
+    let command = |name: &str, refuse| nc_syntax::dialect::Command { name: name.to_owned(), refuse };
+    let refused = Some(("moves the frame".to_owned(), "do without".to_owned()));
+    sinumerik.commands = vec![command("MSG", None), command("SOFT", None), command("TRANS", refused)];
     assert_eq!(
         shown(b"G1 X=10.5 Y=IC(5 ) Z = R1+2 F=200;c", &sinumerik),
         ["G1 X10.5 Y<Y=IC(5 )> Z<Z = R1+2> F200 comment"]
     );
     assert_eq!(shown(b"TRANS X10 Y20 ;c", &sinumerik), ["BracketCommand<TRANS X10 Y20> comment"]);
     assert_eq!(shown(b"MSG(\"part X1\")", &sinumerik), ["BracketCommand<MSG(\"part X1\")>"]);
+    assert_eq!(shown(b"MSG (\"a (b)\") G1 X2", &sinumerik), ["BracketCommand<MSG (\"a (b)\")> G1 X2"]);
+    assert_eq!(shown(b"N5 SOFT G1 X2", &sinumerik), ["N5 BracketCommand<SOFT> G1 X2"]);
     assert_eq!(shown(b"TRANSMIT", &sinumerik), ["Text<TRANSMIT>"]);
 }
 

@@ -1,0 +1,8 @@
+;G27 G28 G29 choose how corners are passed
+G17 G71 G90
+G0 X10 Y10 Z60
+G28
+G1 Z50 F200
+X20
+G29
+M30

@@ -1,0 +1,6 @@
+;( ) after ; is text
+G17 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200 ;(UAO,1)
+X20
+M30

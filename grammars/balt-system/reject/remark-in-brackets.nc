@@ -1,0 +1,6 @@
+;expect VP0224
+G17 G71 G90
+G0 X10 Y10 Z60
+(finishing pass)
+G1 X20 F200
+M30

@@ -1,0 +1,8 @@
+%_N_PART_MPF
+;SOFT beside G1: the G1 is corrected
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+SOFT G1 Z50 F200
+FFWON
+X20
+M30
