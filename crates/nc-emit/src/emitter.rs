@@ -93,7 +93,7 @@ impl<'d> Emitter<'d> {
                 .help("this is a fault of vpost; please report it with the program"));
         };
         self.habits.learn(block);
-        let in_force = self.modes.motion();
+        let in_force = self.modes.motion_for(self.dialect, block);
         self.modes.read(self.dialect, block);
         let style = Style {
             habits: &self.habits.of_block(block),

@@ -130,8 +130,8 @@ impl Habits {
             Sign::None | Sign::Minus => {}
         }
         if has_point && decimal.decimals > 0 {
-            let one = 10_i64.checked_pow(u32::from(decimal.decimals)).unwrap_or(i64::MAX);
-            if decimal.mantissa.abs() < one {
+            // Where there is a digit before the point other than 0, it says nothing about `.5`.
+            if !leading_digit || decimal.mantissa.unsigned_abs() < one(decimal.decimals) {
                 spelling.leading_zero = leading_digit;
             }
             if decimal.mantissa % 10 == 0 {
@@ -198,6 +198,20 @@ impl Habits {
         spelling.trailing_zeros &= decimals > 0 && point;
         Written { counts, decimals, spelling }
     }
+}
+
+/// How many steps of `10^-decimals` make one.
+fn one(decimals: u8) -> u64 {
+    const ONES: [u64; 20] = {
+        let mut ones = [1; 20];
+        let mut at = 1;
+        while at < ones.len() {
+            ones[at] = ones[at - 1] * 10;
+            at += 1;
+        }
+        ones
+    };
+    ONES.get(usize::from(decimals)).copied().unwrap_or(u64::MAX)
 }
 
 /// A value as a whole number of steps of `10^-decimals`.
@@ -291,6 +305,18 @@ impl Modes {
         self.cycle.or(self.straight)
     }
 
+    /// The motion code that the block's axis words meet if it has none of its own: a `G80` of another group
+    /// than G0's ends the cycle before they move.
+    pub(crate) fn motion_for(&self, dialect: &Dialect, block: &Block<'_>) -> Option<GCode> {
+        if self.cycle.is_some() {
+            let codes = block.items.iter().filter_map(|item| crate::emitter::g_code(item.kind));
+            if codes.filter_map(|code| dialect.code(code)).any(|entry| entry.action == Action::CycleCancel) {
+                return self.straight;
+            }
+        }
+        self.motion()
+    }
+
     /// After a block as it stands.
     pub(crate) fn read(&mut self, dialect: &Dialect, block: &Block<'_>) {
         let mut moves = false;
@@ -327,10 +353,10 @@ impl Modes {
     }
 }
 
-/// G0 to G3, the cycles and G80: some dialects keep the cycles in a group of their own, yet they and
-/// the other motion codes exclude each other all the same.
+/// G0 to G3 and the cycles: some dialects keep the cycles in a group of their own, yet they and the other
+/// motion codes exclude each other all the same. G80 only where it is one of G0's group.
 pub(crate) fn is_motion(entry: &CodeEntry) -> bool {
-    entry.group == MOTION_GROUP || matches!(entry.action, Action::Cycle(_) | Action::CycleCancel)
+    entry.group == MOTION_GROUP || matches!(entry.action, Action::Cycle(_))
 }
 
 /// Modal group of G0 to G3, and in some dialects of the cycles.

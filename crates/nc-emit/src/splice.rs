@@ -46,6 +46,9 @@ impl Style<'_> {
     /// The word already says `counts × 10^-decimals`: its text may stay.
     pub(crate) fn same_value(&self, letter: u8, number: Number, counts: i64, decimals: u8) -> bool {
         let written = self.increments.value(letter, number);
+        if written.decimals == decimals {
+            return written.counts == counts;
+        }
         let shift = |value: i64, by: u8| {
             10_i128.checked_pow(u32::from(by)).and_then(|by| i128::from(value).checked_mul(by))
         };

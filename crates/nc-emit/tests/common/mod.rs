@@ -2,67 +2,19 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use nc_emit::{Emitter, Piece, WordEdit};
-use nc_syntax::dialect::{
-    Action, CodeEntry, CycleCode, CycleLevels, GCode, MCode, Numbers, Output, Paren, PointFree, Semicolon,
-};
+use nc_syntax::dialect::{GCode, PointFree};
 use nc_syntax::{Block, Dialect, Reader};
 
-/// Codes enough for the tests; calculator-type numbers.
+/// LinuxCNC's table (calculator-type numbers) with what these tests are about switched on.
 pub(crate) fn dialect() -> Dialect {
-    let entry = |tenths, group, action| CodeEntry { code: GCode(tenths), group, action };
-    let m_code = |number, after_motion| MCode {
-        number,
-        after_motion,
-        loses_position: [false; 3],
-        ends_program: false,
-        refuse: None,
-    };
-    Dialect {
-        name: "test".into(),
-        title: String::new(),
-        assumptions: Vec::new(),
-        paren: Paren::Comment { nested: false },
-        semicolon: Semicolon::Comment,
-        skip: Some(b'/'),
-        colon_number: true,
-        equals_words: true,
-        commands: Vec::new(),
-        letters: (b'A'..=b'Z').collect(),
-        numbers: Numbers {
-            point_free: PointFree::Unit,
-            least_increment_decimals_mm: 3,
-            least_increment_decimals_inch: 4,
-            spaces_inside: false,
-        },
-        codes: vec![
-            entry(0, 1, Action::Rapid),
-            entry(10, 1, Action::Line),
-            entry(20, 1, Action::ArcClockwise),
-            entry(30, 1, Action::ArcCounterClockwise),
-            entry(90, 0, Action::Pass { takes_words: false }),
-            entry(200, 6, Action::Inch),
-            entry(210, 6, Action::Millimetre),
-            entry(800, 1, Action::CycleCancel),
-            entry(810, 1, Action::Cycle(CycleCode::Drill)),
-            entry(900, 3, Action::Absolute),
-        ],
-        m_codes: vec![m_code(0, true), m_code(5, true), m_code(9, true), m_code(30, true)],
-        initial: vec![GCode(0), GCode(210)],
-        cycle_levels: CycleLevels::Unstated,
-        length_of_loaded_tool: false,
-        output: Output {
-            decimals_inch: 4,
-            decimals_feed: 3,
-            max_block_bytes: 0,
-            number_inserted_blocks: true,
-            max_block_number: 99_999,
-            centre_words: true,
-            radius_word: true,
-            arc_radius_tolerance_mm: 0.002,
-            peck_clearance_mm: 0.5,
-            chip_retreat_mm: 0.5,
-        },
-    }
+    let mut dialect = nc_dialect::builtin("linuxcnc").expect("shipped").clone();
+    dialect.colon_number = true;
+    dialect.equals_words = true;
+    dialect.initial = vec![GCode(0), GCode(210)];
+    dialect.output.max_block_bytes = 0;
+    dialect.output.number_inserted_blocks = true;
+    dialect.output.max_block_number = 99_999;
+    dialect
 }
 
 /// The same control with conventional numbers: `X100` is 0.1 mm.
