@@ -18,8 +18,9 @@ fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../grammars").join(dialect).join(folder);
     let Ok(entries) = std::fs::read_dir(folder) else { return BTreeMap::new() };
     let read = |entry: std::io::Result<std::fs::DirEntry>| {
-        let path = entry.unwrap().path();
-        (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(&path).unwrap())
+        let entry = entry.expect("the corpus can be listed");
+        let text = std::fs::read(entry.path()).expect("the corpus can be read");
+        (entry.file_name().to_string_lossy().into_owned(), text)
     };
     entries.map(read).collect()
 }
