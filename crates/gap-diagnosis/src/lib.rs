@@ -1,1 +1,37 @@
 //! Which effect explains the gap.
+//!
+//! Measurements against the prediction of a machine model: is there a gap above the noise, where does it
+//! lie, which unmodelled effect causes it and which others could, how far it shrinks with that effect in the
+//! model, and what to measure next. The method and its thresholds are in `docs/diagnosis.md`.
+
+mod align;
+mod crossval;
+mod diagnose;
+mod diagnosis;
+mod engine;
+mod fit;
+mod gram;
+mod library;
+mod linear;
+mod locate;
+mod magnitude;
+mod next;
+mod noise;
+mod observation;
+mod propose;
+mod remedy;
+mod rivals;
+mod search;
+mod sentence;
+mod shrinkage;
+mod structure;
+mod term;
+mod verdict;
+
+pub use diagnose::{Options, diagnose, underpowered};
+pub use diagnosis::{
+    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, NextMeasurement, Parameter, Setup, Shrinkage,
+    Verdict,
+};
+pub use observation::{Measurements, Reading, Row};
+pub use remedy::remedy;

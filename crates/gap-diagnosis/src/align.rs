@@ -1,0 +1,82 @@
+//! The gap after the set-up is fitted: what is left to explain, in µm.
+
+use machine_model::Vector;
+
+use crate::engine::source;
+use crate::gram::Gram;
+use crate::observation::{Measurements, Scalar};
+use crate::term::Term;
+
+/// Below this many equations a set-up is not fitted: six parameters would eat what they should judge.
+const ENOUGH_FOR_SETUP: usize = 24;
+
+/// Equations with a displacement taken off, aligned again.
+#[must_use]
+pub(crate) fn aligned(
+    data: &Measurements,
+    scalars: &[Scalar],
+    set_up: &[Term],
+    rho: f64,
+    taken_off: &[(Term, f64)],
+) -> Vec<f64> {
+    let changed: Vec<Scalar> = scalars
+        .iter()
+        .map(|s| {
+            let row = &data.rows[s.row];
+            let sum: f64 = taken_off.iter().map(|(t, v)| v * t.value(s, row, &data.geometry)).sum();
+            Scalar { gap_um: s.gap_um - sum, ..*s }
+        })
+        .collect();
+    let magnitudes = data.has_magnitudes();
+    if changed.len() < ENOUGH_FOR_SETUP || magnitudes {
+        return changed.iter().map(|s| s.gap_um).collect();
+    }
+    let source = source(data, &changed);
+    Gram::new(set_up.to_vec(), &source).solve(rho, &source).residuals_um
+}
+
+/// Length of the gap of every row that has any equation, µm.
+#[must_use]
+pub(crate) fn row_lengths(scalars: &[Scalar], values: &[f64]) -> Vec<f64> {
+    let mut lengths: Vec<f64> = Vec::new();
+    let mut last = None;
+    for (scalar, value) in scalars.iter().zip(values) {
+        if last != Some(scalar.row) {
+            lengths.push(0.0);
+            last = Some(scalar.row);
+        }
+        if let Some(square) = lengths.last_mut() {
+            *square += value * value;
+        }
+    }
+    for length in &mut lengths {
+        *length = length.sqrt();
+    }
+    lengths
+}
+
+/// Root mean square.
+#[must_use]
+pub(crate) fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Rows that hold only the length of their displacement: what is left of it, µm.
+///
+/// `measured`: lengths; the displacement predicted by the model and the effects is compared as a length.
+#[must_use]
+pub(crate) fn magnitude_errors(data: &Measurements, taken_off: &[(Term, f64)]) -> Vec<f64> {
+    data.rows
+        .iter()
+        .filter_map(|row| match row.reading {
+            crate::observation::Reading::Magnitude(um) => {
+                let effects: Vector = taken_off
+                    .iter()
+                    .map(|(t, v)| t.displacement_um(row, &data.geometry) * *v)
+                    .fold(Vector::zeros(), |a, b| a + b);
+                Some(um - (1e3 * row.predicted_mm + effects).norm())
+            }
+            _ => None,
+        })
+        .collect()
+}

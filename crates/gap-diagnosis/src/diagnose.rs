@@ -1,0 +1,493 @@
+//! The whole diagnosis of one file.
+
+use machine_model::effects::{EffectKind, EffectTerm, Shape};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+use crate::align::{aligned, magnitude_errors, rms, row_lengths};
+use crate::crossval::{Folding, Folds};
+use crate::diagnosis::{
+    Cause, Detectable, Diagnosis, Gap, Holdout, Leftover, Parameter, Setup, Shrinkage, Verdict,
+};
+use crate::engine::{Explained, explain, f_tail, model_columns, source};
+use crate::gram::Gram;
+use crate::linear::explained;
+use crate::locate::places;
+use crate::noise::{Noise, NoiseSource, estimate};
+use crate::observation::{Measurements, Scalar};
+use crate::remedy::remedy;
+use crate::rivals::{Rival, rivals};
+use crate::search::{Part, without};
+use crate::shrinkage::transported;
+use crate::term::Term;
+use crate::verdict::{Evidence, verdict};
+
+/// What can be asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Effects taken out of the library.
+    pub without: Vec<EffectKind>,
+    /// Seed of every random relabelling.
+    pub seed: u64,
+}
+
+/// Diagnoses the gap between `data` and the model that predicted its rows; `holdout` is never fitted.
+#[must_use]
+pub fn diagnose(data: &Measurements, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
+    let (scalars, magnitude_notes) = crate::magnitude::linearised(data, &options.without);
+    if let Some(answer) = too_little(data, &scalars) {
+        return answer;
+    }
+    let model = explain(data, &scalars, &options.without);
+    let mut answer = Assembly::new(data, &model).diagnosis(holdout, options);
+    answer.notes.extend(magnitude_notes);
+    answer
+}
+
+/// Files that cannot carry any statement.
+fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
+    let mut missing = Vec::new();
+    let runs = data.runs.len();
+    if scalars.len() < 24 {
+        missing.push(format!("{} readings, at least 24 are needed beside the six set-up parameters", scalars.len()));
+    }
+    if runs < 2 {
+        missing.push(format!("{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each"));
+    }
+    if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !data.geometry.moves_rotary(data) {
+        missing.push("no axis moves in this file".to_owned());
+    }
+    let first = scalars.first()?.gap_um;
+    if scalars.iter().all(|s| s.gap_um == first) {
+        missing.push("every reading is the same number".to_owned());
+    }
+    (!missing.is_empty()).then(|| underpowered(data.rows.len(), missing))
+}
+
+/// The verdict UNDERPOWERED with what is missing.
+#[must_use]
+pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
+    Diagnosis {
+        verdict: Verdict::Underpowered,
+        sentence: format!("Too little was measured: {}.", missing.join("; ")),
+        gap: Gap { rows, ..Gap::default() },
+        places: Vec::new(),
+        causes: Vec::new(),
+        setup: Setup::default(),
+        leftover: Leftover::default(),
+        holdout: None,
+        next_measurement: None,
+        outlier_lines: Vec::new(),
+        detectable: Vec::new(),
+        notes: missing,
+    }
+}
+
+trait MovesRotary {
+    fn moves_rotary(&self, data: &Measurements) -> bool;
+}
+
+impl MovesRotary for machine_model::effects::EffectGeometry {
+    fn moves_rotary(&self, data: &Measurements) -> bool {
+        let first = data.rows.first().map(|r| r.command.rotary_rad);
+        data.rows.iter().any(|r| Some(r.command.rotary_rad) != first)
+    }
+}
+
+struct Assembly<'a> {
+    data: &'a Measurements,
+    model: &'a Explained,
+    noise: Option<Noise>,
+    /// Parts in order of share, with their shares.
+    ordered: Vec<Ranked>,
+}
+
+struct Ranked {
+    place: usize,
+    part: Part,
+    unique: f64,
+    alone: f64,
+    p: f64,
+    rivals: Vec<Rival>,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(data: &'a Measurements, model: &'a Explained) -> Self {
+        let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um);
+        let mut assembly = Self { data, model, noise, ordered: Vec::new() };
+        assembly.ordered = assembly.rank();
+        assembly
+    }
+
+    fn degrees(&self) -> f64 {
+        (self.model.space.degrees - self.model.fit.rank as f64).max(1.0)
+    }
+
+    /// Variance of the residual, µm².
+    fn variance(&self) -> f64 {
+        self.model.solution.residual_square / self.degrees()
+    }
+
+    /// Variance of the noise alone: never more than what is left.
+    fn noise_variance(&self) -> f64 {
+        self.noise.map_or(self.variance(), |n| n.variance.min(self.variance()))
+    }
+
+    fn square(&self, parts: &[Part]) -> (f64, usize) {
+        let space = &self.model.space;
+        let columns = space.columns(&self.model.library, parts);
+        let (square, rank) = explained(space.products(self.model.fit.level), &columns, space.reference());
+        ((space.total(self.model.fit.level) - square).max(0.0), rank)
+    }
+
+    fn rank(&self) -> Vec<Ranked> {
+        let model = self.model;
+        let (full, full_rank) = self.square(&model.parts);
+        let total = model.space.total(model.fit.level);
+        let reducible = (total - self.noise_variance() * model.space.degrees).max(1e-12);
+        let questions = model.library.questions() as f64;
+        let mut ranked: Vec<Ranked> = model
+            .parts
+            .iter()
+            .enumerate()
+            .map(|(place, part)| {
+                let (rest, rest_rank) = self.square(&without(&model.parts, place));
+                let (alone, _) = self.square(&[*part]);
+                let columns = (full_rank.saturating_sub(rest_rank)).max(1) as f64;
+                let ratio = (rest - full) / columns / (full / self.degrees()).max(1e-12);
+                let p = (f_tail(ratio, columns, self.degrees()) * questions).min(1.0);
+                let share = |gain: f64| (gain / reducible).clamp(0.0, 1.0);
+                let (unique, alone) = (share(rest - full), share(total - alone));
+                Ranked {
+                    place,
+                    part: *part,
+                    unique: unique.min(alone),
+                    alone: unique.max(alone),
+                    p,
+                    rivals: rivals(model, place),
+                }
+            })
+            .collect();
+        ranked.sort_by(|a, b| (b.unique + b.alone).total_cmp(&(a.unique + a.alone)));
+        ranked
+    }
+
+    /// Terms and values of the first `count` causes, or of all.
+    fn taken_off(&self, count: usize) -> Vec<(Term, f64)> {
+        self.ordered.iter().take(count).flat_map(|r| self.own(r.place)).collect()
+    }
+
+    /// Terms and values of one part.
+    fn own(&self, place: usize) -> Vec<(Term, f64)> {
+        self.positions(place)
+            .map(|i| (self.model.solution.terms[i], self.model.solution.coefficients[i]))
+            .collect()
+    }
+
+    /// Positions of a part's columns in the solution.
+    fn positions(&self, place: usize) -> std::ops::Range<usize> {
+        let length = |p: &Part| self.model.library.candidates[p.candidate].variants[p.variant].columns.len();
+        let before: usize = self.model.parts.iter().take(place).map(length).sum();
+        let start = self.model.library.nuisances + before;
+        start..start + length(&self.model.parts[place])
+    }
+
+    fn set_up_terms(&self) -> &[Term] {
+        &self.model.solution.terms[..self.model.library.nuisances]
+    }
+
+    fn gap_after(&self, count: usize) -> Vec<f64> {
+        aligned(self.data, &self.model.scalars, self.set_up_terms(), self.model.solution.rho, &self.taken_off(count))
+    }
+
+    fn diagnosis(&self, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
+        let model = self.model;
+        let before = self.gap_after(0);
+        let mut lengths = row_lengths(&model.scalars, &before);
+        let gap_rms = rms(&lengths);
+        lengths.sort_by(f64::total_cmp);
+        let quantile = |q: f64| lengths.get(((lengths.len() as f64 - 1.0) * q).round() as usize).copied().unwrap_or(0.0);
+        let gap = Gap {
+            rows: lengths.len(),
+            rms_um: gap_rms,
+            p95_um: quantile(0.95),
+            max_um: quantile(1.0),
+            noise_um: self.noise_variance().sqrt(),
+        };
+        let leftover = self.leftover();
+        let causes = self.causes(holdout, gap_rms);
+        let evidence = Evidence {
+            degrees: model.space.degrees,
+            runs: self.data.runs.len(),
+            visible: model.library.candidates.len(),
+            causes: causes.len(),
+            instrument_causes: causes.iter().filter(|c| c.term.kind().is_instrument()).count(),
+            ambiguous: self.ordered.iter().any(|r| !r.rivals.is_empty()),
+            phi: leftover.phi,
+            lack_of_fit_p: leftover.lack_of_fit_p,
+            noise_ratio: self.noise_ratio(),
+        };
+        let verdict = verdict(&evidence);
+        let causes = if verdict == Verdict::Underpowered { Vec::new() } else { causes };
+        let holdout = holdout.map(|h| self.holdout(h));
+        Diagnosis {
+            verdict,
+            sentence: crate::sentence::sentence(verdict, &gap, &causes, &leftover),
+            gap,
+            places: places(self.data, &model.scalars, &before, options.seed),
+            next_measurement: crate::next::next_measurement(self.data, model, &self.worst_pair()),
+            causes,
+            setup: self.setup(),
+            leftover,
+            holdout,
+            outlier_lines: model.outliers.iter().map(|r| self.data.rows[*r].line).collect(),
+            detectable: self.detectable(),
+            notes: self.notes(),
+        }
+    }
+
+    /// The cause and its rival that most need to be told apart.
+    fn worst_pair(&self) -> Option<(usize, Part)> {
+        self.ordered.iter().find_map(|r| r.rivals.first().map(|rival| (r.place, rival.part)))
+    }
+
+    fn noise_ratio(&self) -> Option<f64> {
+        let stated = self.data.rows.iter().any(|r| r.u_um.is_some());
+        stated.then(|| self.variance().sqrt() / self.data.typical_uncertainty_um())
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        match self.noise {
+            Some(Noise { source: NoiseSource::Neighbours, .. }) => notes.push(
+                "No command was measured twice in a run: the noise is estimated from neighbouring rows, and a gap finer than their distance counts as noise.".to_owned(),
+            ),
+            None => notes.push("There are neither repeats nor neighbours to tell noise from gap.".to_owned()),
+            Some(_) => {}
+        }
+        if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
+            notes.push(format!("The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used."));
+        }
+        if let Some(refused) = &self.model.refused {
+            notes.push(format!("{} was considered next and not named: {}.", refused.kind, refused.reason));
+        }
+        notes
+    }
+
+    fn leftover(&self) -> Leftover {
+        let model = self.model;
+        let noise = self.noise_variance();
+        let total = model.space.total(model.fit.level) / model.space.degrees;
+        let phi = ((self.variance() - noise) / (total - noise).max(1e-12)).clamp(0.0, 1.0);
+        let lack_of_fit_p = crate::structure::lack_of_fit(
+            &self.data.rows,
+            &model.scalars,
+            &model.solution.residuals_um,
+            self.noise,
+            self.degrees(),
+        );
+        let lengths = row_lengths(&model.scalars, &self.gap_after(self.ordered.len()));
+        let correlates_with = if lack_of_fit_p < crate::verdict::LACK_OF_FIT {
+            crate::structure::correlates(self.data, &model.scalars, &model.solution.residuals_um)
+        } else {
+            Vec::new()
+        };
+        let absorber = model
+            .refused
+            .as_ref()
+            .map(|r| format!("{} would absorb {:.0} % of what is left ({})", r.kind, 100.0 * r.share, r.reason));
+        Leftover { rms_um: rms(&lengths), phi, lack_of_fit_p, correlates_with, absorber }
+    }
+
+    fn causes(&self, holdout: Option<&Measurements>, gap_rms: f64) -> Vec<Cause> {
+        let mut rms_before_um = gap_rms;
+        (0..self.ordered.len())
+            .map(|index| {
+                let ranked = &self.ordered[index];
+                let kind = self.model.library.candidates[ranked.part.candidate].kind;
+                let after = row_lengths(&self.model.scalars, &self.gap_after(index + 1));
+                let rms_after_um = rms(&after);
+                let cause = Cause {
+                    term: self.term(ranked.place),
+                    effect: kind.to_string(),
+                    parameters: self.parameters(ranked.place),
+                    share_unique: ranked.unique,
+                    share_alone: ranked.alone,
+                    p: ranked.p,
+                    cannot_be_told_from: ranked.rivals.iter().map(|r| r.kind.to_string()).collect(),
+                    rms_before_um,
+                    rms_after_um,
+                    shrink_predicted: self.shrink(index + 1, holdout),
+                    remedy: remedy(kind),
+                };
+                rms_before_um = rms_after_um;
+                cause
+            })
+            .collect()
+    }
+
+    /// The part as a profile entry. Two time constants share one entry.
+    fn term(&self, place: usize) -> EffectTerm {
+        let kind = self.model.library.candidates[self.model.parts[place].candidate].kind;
+        let mut coefficients = vec![0.0; kind.coefficient_names().len()];
+        let mut common = Shape::default();
+        for (nth, (term, value)) in self.own(place).into_iter().enumerate() {
+            if let Term::Effect { index, shape, .. } = term {
+                if matches!(kind, EffectKind::Warmup(_)) && nth == 1 {
+                    common.tau2_s = shape.tau_s;
+                    coefficients[1] = value;
+                } else {
+                    common = shape;
+                    coefficients[index] = value;
+                }
+            }
+        }
+        EffectTerm::new(kind, common, &coefficients, self.data.geometry.clone())
+    }
+
+    fn parameters(&self, place: usize) -> Vec<Parameter> {
+        let solution = &self.model.solution;
+        let positions = self.positions(place);
+        let quantile = StudentsT::new(0.0, 1.0, self.degrees()).map_or(1.96, |d| d.inverse_cdf(0.975));
+        let deviation = |i: usize| (solution.unit_covariance[(i, i)] * self.variance()).max(0.0).sqrt();
+        let kind = self.model.library.candidates[self.model.parts[place].candidate].kind;
+        let names = kind.coefficient_names();
+        let mut parameters = Vec::new();
+        let waves = matches!(kind, EffectKind::Pitch(_) | EffectKind::Eccentricity(_) | EffectKind::ProbeLobing);
+        if waves && positions.len() >= 2 {
+            let (s, c) = (solution.coefficients[positions.start], solution.coefficients[positions.start + 1]);
+            let amplitude = units::math::hypot(s, c);
+            let (us, uc) = (deviation(positions.start), deviation(positions.start + 1));
+            let u = units::math::hypot(s * us, c * uc) / amplitude.max(1e-12);
+            let unit = if matches!(kind, EffectKind::Eccentricity(_)) { "urad" } else { "um" };
+            parameters.push(Parameter { name: format!("amplitude_{unit}"), value: amplitude, u95: Some(quantile * u) });
+        }
+        for i in positions {
+            if let Term::Effect { index, .. } = solution.terms[i] {
+                let u95 = Some(quantile * deviation(i));
+                parameters.push(Parameter { name: names[index].to_owned(), value: solution.coefficients[i], u95 });
+            }
+        }
+        let shapes = kind.shape_names();
+        let entry = self.term(place).entry();
+        parameters.extend(
+            entry
+                .into_iter()
+                .filter(|(n, _)| shapes.contains(n))
+                .map(|(name, value)| Parameter { name: name.to_owned(), value, u95: None }),
+        );
+        parameters
+    }
+
+    /// Mean square of the displacement of the first causes, whitened and free of set-up, per equation, in
+    /// units of the noise variance.
+    fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> f64 {
+        let own: Vec<(Term, f64)> = self.taken_off(count);
+        let mut terms = self.set_up_terms().to_vec();
+        let nuisances = terms.len();
+        terms.extend(own.iter().map(|(t, _)| *t));
+        let source = source(data, scalars);
+        let (whitened, _) = Gram::new(terms, &source).whitened(self.model.solution.rho);
+        let (products, _) = crate::gram::eliminate(&whitened, if scalars.len() < 24 { 0 } else { nuisances });
+        let offset = products.nrows() - 1 - own.len();
+        let mut square = 0.0;
+        for (i, (_, a)) in own.iter().enumerate() {
+            for (j, (_, b)) in own.iter().enumerate() {
+                square += a * b * products[(offset + i, offset + j)];
+            }
+        }
+        square / scalars.len().max(1) as f64 / self.noise_variance().max(1e-12)
+    }
+
+    fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
+        let model = self.model;
+        let parts: Vec<Part> = self.ordered.iter().take(count).map(|r| r.part).collect();
+        let columns = model_columns(&model.library, &parts);
+        let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
+        let source = source(self.data, &model.scalars);
+        let folding = if self.data.runs.len() < 8 { Folding::Stretches } else { Folding::Runs };
+        let folds = Folds::new(&terms, model.library.nuisances, model.solution.rho, &source, folding);
+        let all: Vec<usize> = (0..terms.len() - model.library.nuisances).collect();
+        let losses = folds.losses(&all);
+        let noise = self.noise_variance().max(1e-12);
+        let share = model.space.degrees / model.scalars.len() as f64;
+        let equations = model.scalars.len() as f64 * share;
+        let m = losses.iter().sum::<f64>() / equations / noise;
+        let each: Vec<f64> = losses
+            .iter()
+            .zip(folds.counts())
+            .filter(|(_, n)| **n > 0)
+            .map(|(l, n)| l / (*n as f64 * share) / noise)
+            .collect();
+        let mean = each.iter().sum::<f64>() / each.len().max(1) as f64;
+        let spread = each.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+        let m_error = (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt();
+        let f_data = self.strength(self.data, &model.scalars, count);
+        let f_target = match holdout.filter(|h| !h.has_magnitudes()) {
+            Some(h) => self.strength(h, &h.scalars(None), count),
+            None => f_data,
+        };
+        transported(m, m_error, f_data, f_target)
+    }
+
+    fn holdout(&self, holdout: &Measurements) -> Holdout {
+        let all = self.taken_off(self.ordered.len());
+        let (before, after) = if holdout.has_magnitudes() {
+            (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
+        } else {
+            let scalars = holdout.scalars(None);
+            let rho = self.model.solution.rho;
+            let length = |off: &[(Term, f64)]| {
+                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), rho, off))
+            };
+            (length(&[]), length(&all))
+        };
+        let (rms_before_um, rms_after_um) = (rms(&before), rms(&after));
+        let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
+        Holdout { rows: before.len(), rms_before_um, rms_after_um, shrink }
+    }
+
+    fn setup(&self) -> Setup {
+        let solution = &self.model.solution;
+        let mut setup = Setup::default();
+        for (term, value) in solution.terms.iter().zip(&solution.coefficients) {
+            match term {
+                Term::SetupShift(axis) => setup.shift_um[*axis] = *value,
+                Term::SetupRotation(axis) => setup.rotation_urad[*axis] = *value,
+                _ => {}
+            }
+        }
+        let offsets = solution.run_offsets_um.iter().map(|o| [o.x, o.y, o.z]);
+        setup.run_offsets_um = self.data.runs.iter().cloned().zip(offsets).collect();
+        setup
+    }
+
+    /// Smallest first coefficient of every effect that would pass the F test nine times in ten.
+    fn detectable(&self) -> Vec<Detectable> {
+        let space = &self.model.space;
+        let level = self.model.fit.level;
+        let questions = self.model.library.questions() as f64;
+        let sigma = self.variance().sqrt();
+        let beyond = Normal::standard().inverse_cdf(1.0 - 0.5 * crate::engine::LEVEL / questions) + 1.28;
+        self.model
+            .library
+            .candidates
+            .iter()
+            .map(|candidate| {
+                let columns = space.columns(&self.model.library, &[]);
+                debug_assert!(columns.is_empty(), "no part, no column");
+                let first = candidate.variants.first().and_then(|v| v.columns.first());
+                let square = first.map_or(0.0, |c| {
+                    let c = c - self.model.library.nuisances;
+                    let left = space.products(level)[(c, c)];
+                    if left > crate::linear::RANK_TOLERANCE * space.reference()[c] { left } else { 0.0 }
+                });
+                let smallest = (square > 0.0).then(|| beyond * sigma / square.sqrt());
+                Detectable {
+                    effect: candidate.kind.to_string(),
+                    parameter: candidate.kind.coefficient_names()[0].to_owned(),
+                    smallest,
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,354 @@
+//! From measurements to an explained gap: search, outliers, proposals, tests.
+
+use machine_model::effects::{EffectKind, Shape};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::crossval::{Folding, Folds};
+use crate::fit::Solution;
+use crate::gram::{Gram, Source};
+use crate::library::{Library, Variant};
+use crate::noise::outliers;
+use crate::observation::{Measurements, Scalar};
+use crate::propose;
+use crate::search::{Fit, Move, Part, Space, next_move, without};
+use crate::term::Term;
+
+/// Bonferroni-corrected level of the F test.
+pub(crate) const LEVEL: f64 = 1e-3;
+/// Least share of the reducible square that a cause must explain.
+pub(crate) const LEAST_SHARE: f64 = 0.05;
+/// Most causes named.
+const MOST_CAUSES: usize = 8;
+/// Passes of dropping outliers and searching again.
+const PASSES: usize = 3;
+
+/// What the search arrived at.
+#[derive(Clone, Debug)]
+pub(crate) struct Explained {
+    /// Equations that were used.
+    pub scalars: Vec<Scalar>,
+    /// Library with all proposed shapes.
+    pub library: Library,
+    /// Products of all its columns.
+    pub gram: Gram,
+    /// The same, whitened.
+    pub space: Space,
+    /// The model.
+    pub parts: Vec<Part>,
+    /// Its judgement.
+    pub fit: Fit,
+    /// It, solved.
+    pub solution: Solution,
+    /// Rows left out as outliers, ascending.
+    pub outliers: Vec<usize>,
+    /// The effect that would come next and why it did not.
+    pub refused: Option<Refused>,
+}
+
+/// An effect that scored and failed a test.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Refused {
+    /// Which.
+    pub kind: EffectKind,
+    /// Share of the square left that it explains.
+    pub share: f64,
+    /// Corrected p value.
+    pub p: f64,
+    /// Which test it failed.
+    pub reason: &'static str,
+}
+
+/// Runs the search, drops lone outliers, and searches again until they stay the same.
+#[must_use]
+pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
+    let mut dropped: Vec<usize> = Vec::new();
+    let mut result = explain_once(data, scalars.to_vec(), without);
+    for _ in 0..PASSES {
+        let source = source(data, scalars);
+        let sub = result.model_gram();
+        let residuals = conditional_residuals(&sub, &result.solution, &source);
+        let found = outliers(&data.rows, scalars, &residuals);
+        if found == dropped || found.len() * 5 > data.rows.len() {
+            break;
+        }
+        dropped = found;
+        let kept = scalars.iter().filter(|s| dropped.binary_search(&s.row).is_err()).copied().collect();
+        result = explain_once(data, kept, without);
+        result.outliers.clone_from(&dropped);
+    }
+    result
+}
+
+/// Where the products come from.
+#[must_use]
+pub(crate) fn source<'a>(data: &'a Measurements, scalars: &'a [Scalar]) -> Source<'a> {
+    Source { rows: &data.rows, scalars, runs: data.runs.len(), geometry: &data.geometry }
+}
+
+fn conditional_residuals(sub: &Gram, solution: &Solution, source: &Source<'_>) -> Vec<f64> {
+    crate::fit::residuals(&sub.terms, &solution.coefficients, source)
+        .iter()
+        .zip(source.scalars)
+        .map(|(r, s)| r - s.along.dot(&solution.run_offsets_um[source.rows[s.row].run]))
+        .collect()
+}
+
+impl Explained {
+    /// Columns of the library that the model uses: the set-up first.
+    #[must_use]
+    pub(crate) fn model_columns(&self) -> Vec<usize> {
+        model_columns(&self.library, &self.parts)
+    }
+
+    /// Products of those columns.
+    #[must_use]
+    pub(crate) fn model_gram(&self) -> Gram {
+        self.gram.select(&self.model_columns())
+    }
+}
+
+/// Set-up columns and those of some parts, as positions in the library.
+#[must_use]
+pub(crate) fn model_columns(library: &Library, parts: &[Part]) -> Vec<usize> {
+    let own = parts.iter().flat_map(|p| &library.candidates[p.candidate].variants[p.variant].columns);
+    (0..library.nuisances).chain(own.copied()).collect()
+}
+
+fn explain_once(data: &Measurements, scalars: Vec<Scalar>, without: &[EffectKind]) -> Explained {
+    let source = source(data, &scalars);
+    let mut state = State::new(data, &source, without);
+    state.search();
+    let State { library, gram, space, parts, fit, refused, .. } = state;
+    let sub = gram.select(&model_columns(&library, &parts));
+    let rho = sub.best_rho(space.rho(fit.level));
+    let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
+    let solution = sub.solve(rho, &source);
+    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), refused, scalars }
+}
+
+struct State<'a> {
+    data: &'a Measurements,
+    source: &'a Source<'a>,
+    without: &'a [EffectKind],
+    library: Library,
+    gram: Gram,
+    space: Space,
+    parts: Vec<Part>,
+    fit: Fit,
+    refused: Option<Refused>,
+}
+
+impl<'a> State<'a> {
+    fn new(data: &'a Measurements, source: &'a Source<'a>, without: &'a [EffectKind]) -> Self {
+        let library = Library::new(data, without);
+        let gram = Gram::new(library.terms.clone(), source);
+        let space = Space::new(&gram, library.nuisances);
+        let fit = space.fit(&library, &[]);
+        Self { data, source, without, library, gram, space, parts: Vec::new(), fit, refused: None }
+    }
+
+    fn search(&mut self) {
+        self.propose();
+        for _ in 0..60 {
+            match next_move(&self.space, &self.library, &self.parts, self.fit.score) {
+                Move::Change(parts, fit) => {
+                    self.parts = parts;
+                    self.fit = fit;
+                }
+                Move::Add(part, fit) => {
+                    if self.parts.len() >= MOST_CAUSES {
+                        break;
+                    }
+                    if let Some(refused) = self.objection(part, &fit) {
+                        self.refused = Some(refused);
+                        break;
+                    }
+                    self.parts.push(part);
+                    self.fit = fit;
+                    self.propose();
+                }
+                Move::Stop => break,
+            }
+        }
+        self.prune();
+    }
+
+    /// New columns with their products, then everything whitened again.
+    fn grow(&mut self) {
+        let known = self.gram.terms.len();
+        let new: Vec<Term> = self.library.terms[known..].to_vec();
+        if !new.is_empty() {
+            self.gram.extend(new, self.source);
+            self.space = Space::new(&self.gram, self.library.nuisances);
+            self.fit = self.space.fit(&self.library, &self.parts);
+        }
+    }
+
+    /// Shapes worth asking about, given what is explained already.
+    fn propose(&mut self) {
+        let rho = self.space.rho(self.fit.level);
+        let sub = self.gram.select(&model_columns(&self.library, &self.parts));
+        let solution = sub.solve(rho, self.source);
+        for axis in 0..3 {
+            let kind = EffectKind::Pitch(axis);
+            if self.without.contains(&kind) || self.uses(kind) {
+                continue;
+            }
+            let (found, asked) = propose::pitches(self.source, &solution.residuals_um, axis);
+            let range = self.data.range_mm(axis);
+            for pitch in found {
+                let variants = propose::pitch_variants(&mut self.library, axis, pitch, range);
+                self.library.add_variants(kind, variants, asked);
+            }
+        }
+        self.refine_shapes(rho);
+        self.grow();
+    }
+
+    fn uses(&self, kind: EffectKind) -> bool {
+        self.parts.iter().any(|p| self.library.candidates[p.candidate].kind == kind)
+    }
+
+    /// Refined shapes of the effects in the model.
+    fn refine_shapes(&mut self, rho: f64) {
+        for place in 0..self.parts.len() {
+            let part = self.parts[place];
+            let kind = self.library.candidates[part.candidate].kind;
+            let columns = self.library.candidates[part.candidate].variants[part.variant].columns.clone();
+            let Some((shape, indices)) = self.shape_of(&columns) else { continue };
+            let rest = model_columns(&self.library, &without(&self.parts, place));
+            let others: Vec<Term> = rest.iter().map(|c| self.library.terms[*c]).collect();
+            let Some(better) = propose::refined(self.source, &others, kind, &shape, &indices, rho) else { continue };
+            if better == shape {
+                continue;
+            }
+            let variants = match kind {
+                EffectKind::Pitch(axis) => {
+                    let range = self.data.range_mm(axis);
+                    propose::pitch_variants(&mut self.library, axis, better.pitch_mm, range)
+                }
+                EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
+                _ => {
+                    let columns = self.library.add_columns(kind, better, &indices);
+                    vec![Variant { columns, enriched: false }]
+                }
+            };
+            self.library.add_variants(kind, variants, 0);
+        }
+    }
+
+    /// The common shape of an effect's columns and their coefficient indices; two time constants have none.
+    fn shape_of(&self, columns: &[usize]) -> Option<(Shape, Vec<usize>)> {
+        let mut shape: Option<Shape> = None;
+        let mut indices = Vec::new();
+        for column in columns {
+            let Term::Effect { shape: this, index, .. } = self.library.terms[*column] else { return None };
+            if shape.is_some_and(|s| s != this) {
+                return None;
+            }
+            shape = Some(this);
+            indices.push(index);
+        }
+        shape.map(|s| (s, indices))
+    }
+
+    /// Why an effect that scores must not be named; `None` where it may.
+    fn objection(&self, part: Part, fit: &Fit) -> Option<Refused> {
+        let mut with = self.parts.clone();
+        with.push(part);
+        let kind = self.library.candidates[part.candidate].kind;
+        let (before, rank_before) = self.residual(&self.parts, fit.level);
+        let gain = (before - fit.residual).max(0.0);
+        let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
+        let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
+        let effective = self.effective_degrees(part, fit.level, degrees);
+        let ratio = gain / columns / (fit.residual / degrees).max(1e-12);
+        let p = f_tail(ratio, columns, effective) * self.library.questions() as f64;
+        let share = gain / before.max(1e-12);
+        let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
+        if p > LEVEL {
+            return refuse("the F test");
+        }
+        let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
+        if gain / reducible < LEAST_SHARE {
+            return refuse("its share is below 5 % of what can be explained");
+        }
+        if !self.predicts(&with, fit.level) {
+            return refuse("it does not predict lines it has not seen");
+        }
+        None
+    }
+
+    fn residual(&self, parts: &[Part], level: usize) -> (f64, usize) {
+        let columns = self.space.columns(&self.library, parts);
+        let (explained, rank) =
+            crate::linear::explained(self.space.products(level), &columns, self.space.reference());
+        ((self.space.total(level) - explained).max(0.0), rank)
+    }
+
+    /// Degrees of freedom of the noise that an effect competes with: few where only the differences
+    /// between runs show it (Satterthwaite's combination of within and between).
+    fn effective_degrees(&self, part: Part, level: usize, within: f64) -> f64 {
+        let columns = self.space.columns(&self.library, &[part]);
+        let last_level = crate::search::RHO_GRID.len() - 1;
+        let information = |l: usize| -> f64 {
+            columns.iter().map(|c| self.space.products(l)[(*c, *c)] / self.space.reference()[*c].max(1e-300)).sum()
+        };
+        let (here, free) = (information(level), information(last_level));
+        let share = if here > 0.0 { (free / here).clamp(0.0, 1.0) } else { 1.0 };
+        let between = (self.source.runs as f64 - 2.0).max(1.0);
+        1.0 / (share * share / within + (1.0 - share) * (1.0 - share) / between)
+    }
+
+    /// True where the last of `with` helps to predict lines left out.
+    fn predicts(&self, with: &[Part], level: usize) -> bool {
+        let columns = model_columns(&self.library, with);
+        let terms: Vec<Term> = columns.iter().map(|c| self.library.terms[*c]).collect();
+        let nuisances = self.library.nuisances;
+        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
+        let own = with
+            .last()
+            .map_or(0, |p| self.library.candidates[p.candidate].variants[p.variant].columns.len());
+        let (base, added) = all.split_at(all.len() - own);
+        let rho = self.space.rho(level);
+        let passes = |folding| {
+            let folds = Folds::new(&terms, nuisances, rho, self.source, folding);
+            let (gain, error) = folds.gain(base, &all);
+            (gain > error, folds.concentration(added))
+        };
+        let (passed, concentration) = passes(Folding::Runs);
+        let few = self.source.runs < 8 || concentration > 0.3;
+        passed || (few && passes(Folding::Stretches).0)
+    }
+
+    /// Takes out causes that others have made superfluous.
+    fn prune(&mut self) {
+        loop {
+            let level = self.fit.level;
+            let (full, _) = self.residual(&self.parts, level);
+            let reducible = (self.space.total(level) - full).max(1e-12);
+            let weakest = (0..self.parts.len())
+                .map(|place| {
+                    let rest = without(&self.parts, place);
+                    ((self.residual(&rest, level).0 - full) / reducible, rest)
+                })
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            match weakest {
+                Some((share, rest)) if share < LEAST_SHARE && self.parts.len() > 1 => {
+                    self.parts = rest;
+                    self.fit = self.space.fit(&self.library, &self.parts);
+                }
+                _ => break,
+            }
+        }
+    }
+}
+
+/// Probability that an F variate exceeds `ratio`.
+#[must_use]
+pub(crate) fn f_tail(ratio: f64, numerator: f64, denominator: f64) -> f64 {
+    if ratio <= 0.0 || ratio.is_nan() {
+        return 1.0;
+    }
+    FisherSnedecor::new(numerator.max(1.0), denominator.max(1.0)).map_or(1.0, |d| d.sf(ratio))
+}

@@ -1,0 +1,250 @@
+//! The candidates: every effect the data could show, in its textbook form and bent ones.
+
+use machine_model::effects::{EffectKind, Shape};
+
+use crate::observation::{Measurements, Row};
+use crate::term::Term;
+
+/// One form of an effect: columns of the design.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Variant {
+    /// Positions in [`Library::terms`].
+    pub columns: Vec<usize>,
+    /// True for forms that only bend the textbook form.
+    pub enriched: bool,
+}
+
+/// One effect with all its forms.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    /// Which.
+    pub kind: EffectKind,
+    /// Its forms.
+    pub variants: Vec<Variant>,
+    /// Forms that were looked at and not kept, so that looking has its price.
+    pub rejected: usize,
+}
+
+impl Candidate {
+    /// Number of forms the data were asked about.
+    #[must_use]
+    pub(crate) fn asked(&self) -> usize {
+        self.variants.len() + self.rejected
+    }
+}
+
+/// All columns and all candidates.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Library {
+    /// Set-up columns first, then those of the effects.
+    pub terms: Vec<Term>,
+    /// How many of the columns are set-up.
+    pub nuisances: usize,
+    /// The effects.
+    pub candidates: Vec<Candidate>,
+}
+
+/// Places along an axis where damage is looked for; finer ones are proposed by the search.
+const LOCAL_PLACES: usize = 14;
+/// Times at which a knock is looked for; finer ones are proposed by the search.
+const STEP_TIMES: usize = 24;
+/// Time constants as shares of the time the measurement took.
+const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
+
+/// What the rows vary in.
+struct Seen {
+    range: [(f64, f64); 3],
+    direction: [bool; 3],
+    unknown_direction: [bool; 3],
+    temperature: [bool; 3],
+    time: Option<(f64, f64)>,
+    load: bool,
+    feed: bool,
+    rotary: [bool; 3],
+}
+
+impl Seen {
+    fn new(data: &Measurements) -> Self {
+        let rows = &data.rows;
+        let varies = |value: &dyn Fn(&Row) -> Option<f64>| range(rows, value).is_some_and(|(a, b)| b > a);
+        Self {
+            range: [0, 1, 2].map(|a| data.range_mm(a)),
+            direction: [0, 1, 2].map(|a| {
+                let has = |d: i8| rows.iter().any(|r| r.command.direction[a] == d);
+                has(1) && has(-1)
+            }),
+            unknown_direction: [0, 1, 2].map(|a| rows.iter().any(|r| r.command.direction[a] == 0)),
+            temperature: [0, 1, 2].map(|a| {
+                range(rows, &|r| r.conditions.temp_c[a])
+                    .is_some_and(|(low, high)| high > low || high != data.geometry.reference_temp_c)
+            }),
+            time: range(rows, &|r| r.conditions.time_s).filter(|(a, b)| b > a),
+            load: varies(&|r| r.conditions.load_kg),
+            feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
+            rotary: [0, 1, 2].map(|a| {
+                data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))
+            }),
+        }
+    }
+}
+
+fn range(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> Option<(f64, f64)> {
+    let mut known = rows.iter().filter_map(value);
+    let first = known.next()?;
+    Some(known.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
+}
+
+impl Library {
+    /// Every effect whose columns the rows hold, except those in `without`.
+    #[must_use]
+    pub(crate) fn new(data: &Measurements, without: &[EffectKind]) -> Self {
+        let seen = Seen::new(data);
+        let mut terms: Vec<Term> = (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
+        if data.has_lengths() {
+            terms.push(Term::BarLength);
+        }
+        for axis in 0..3 {
+            if seen.direction[axis] && seen.unknown_direction[axis] {
+                terms.push(Term::UnknownApproach(axis));
+            }
+        }
+        let nuisances = terms.len();
+        let mut library = Self { terms, nuisances, candidates: Vec::new() };
+        for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
+            let variants = library.forms(kind, &seen);
+            if !variants.is_empty() {
+                library.candidates.push(Candidate { kind, variants, rejected: 0 });
+            }
+        }
+        library
+    }
+
+    /// Adds columns of an effect and returns their positions.
+    pub(crate) fn add_columns(&mut self, kind: EffectKind, shape: Shape, indices: &[usize]) -> Vec<usize> {
+        let first = self.terms.len();
+        self.terms.extend(indices.iter().map(|index| Term::Effect { kind, index: *index, shape }));
+        (first..self.terms.len()).collect()
+    }
+
+    /// Adds forms to an effect, as the search proposes them; `asked`: how many were looked at to find them.
+    pub(crate) fn add_variants(&mut self, kind: EffectKind, variants: Vec<Variant>, asked: usize) {
+        if let Some(candidate) = self.candidates.iter_mut().find(|c| c.kind == kind) {
+            candidate.variants.extend(variants);
+            candidate.rejected = candidate.rejected.max(asked);
+        } else {
+            self.candidates.push(Candidate { kind, variants, rejected: asked });
+        }
+    }
+
+    /// Forms made of a list of coefficient indices each; the first list is the textbook form.
+    fn selections(&mut self, kind: EffectKind, shape: Shape, lists: &[&[usize]]) -> Vec<Variant> {
+        let mut indices: Vec<usize> = lists.iter().flat_map(|l| l.iter().copied()).collect();
+        indices.sort_unstable();
+        indices.dedup();
+        let columns = self.add_columns(kind, shape, &indices);
+        let at = |index: &usize| indices.iter().position(|i| i == index).map_or(0, |p| columns[p]);
+        let pick = |(place, list): (usize, &&[usize])| Variant {
+            columns: list.iter().map(at).collect(),
+            enriched: place > 0,
+        };
+        lists.iter().enumerate().map(pick).collect()
+    }
+
+    fn forms(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let travels = |a: usize| seen.range[a].1 - seen.range[a].0 > 1e-6;
+        let interval = |a: usize| Shape { from_mm: seen.range[a].0, to_mm: seen.range[a].1, ..Shape::default() };
+        let none = Shape::default();
+        match kind {
+            EffectKind::Scale(a) if travels(a) => self.selections(kind, none, &[&[0]]),
+            EffectKind::Squareness(a, b) if travels(a) && travels(b) => self.selections(kind, none, &[&[0]]),
+            EffectKind::Backlash(a) | EffectKind::LostMotion { axis: a, .. } if seen.direction[a] => {
+                self.selections(kind, interval(a), &[&[0], &[0, 1], &[0, 1, 2, 3]])
+            }
+            EffectKind::Thermal(a) if seen.temperature[a] && travels(a) => {
+                self.selections(kind, none, &[&[0, 1], &[0], &[0, 1, 2]])
+            }
+            EffectKind::Warmup(_) => self.warmup(kind, seen),
+            EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
+                let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
+                self.selections(kind, interval(a), &lists)
+            }
+            EffectKind::Angular { axis: a, .. } if travels(a) => {
+                let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
+                self.selections(kind, interval(a), &lists)
+            }
+            EffectKind::Sag(a) if travels(a) => {
+                let lists: [&[usize]; 6] = [&[0], &[1], &[0, 1], &[0, 3], &[0, 1, 2], &[0, 1, 2, 3]];
+                self.selections(kind, interval(a), &lists)
+            }
+            EffectKind::Load(_) if seen.load => self.selections(kind, none, &[&[0], &[0, 1]]),
+            EffectKind::ServoLag(a) if seen.feed && seen.direction[a] => {
+                self.selections(kind, none, &[&[0], &[1], &[0, 2]])
+            }
+            EffectKind::ServoMismatch(a, b) if seen.feed && seen.direction[a] && seen.direction[b] => {
+                self.selections(kind, none, &[&[0], &[0, 1]])
+            }
+            EffectKind::Rotary { axis, .. } if seen.rotary[axis] => self.selections(kind, none, &[&[0]]),
+            EffectKind::Eccentricity(axis) if seen.rotary[axis] => {
+                self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]])
+            }
+            EffectKind::ProbeLobing if seen.direction[0] && seen.direction[1] => {
+                self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3]])
+            }
+            EffectKind::InstrumentDrift if seen.time.is_some() => {
+                self.selections(kind, none, &[&[0, 1, 2], &[0, 1, 2, 3, 4, 5]])
+            }
+            EffectKind::Step(_) => self.steps(kind, seen),
+            EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a]),
+            _ => Vec::new(),
+        }
+    }
+
+    fn warmup(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let Some((start, end)) = seen.time else { return Vec::new() };
+        let taus = TAU_SHARES.map(|share| share * (end - start));
+        let columns: Vec<usize> = taus
+            .iter()
+            .flat_map(|tau| self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0]))
+            .collect();
+        let single = columns.iter().map(|c| Variant { columns: vec![*c], enriched: false });
+        let double = columns.iter().zip(columns.iter().skip(2));
+        let double = double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true });
+        single.chain(double).collect()
+    }
+
+    fn steps(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let Some((start, end)) = seen.time else { return Vec::new() };
+        (1..=STEP_TIMES)
+            .map(|k| {
+                let time_s = start + (end - start) * k as f64 / (STEP_TIMES + 1) as f64;
+                let columns = self.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
+                Variant { columns, enriched: false }
+            })
+            .collect()
+    }
+
+    fn places(&mut self, kind: EffectKind, (low, high): (f64, f64)) -> Vec<Variant> {
+        let width_mm = 2.0 * (high - low) / LOCAL_PLACES as f64;
+        (0..=LOCAL_PLACES)
+            .flat_map(|k| {
+                let centre_mm = low + (high - low) * k as f64 / LOCAL_PLACES as f64;
+                self.place(kind, centre_mm, width_mm)
+            })
+            .collect()
+    }
+
+    /// Damage at one place: along one direction or all three.
+    pub(crate) fn place(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
+        let columns = self.add_columns(kind, Shape { centre_mm, width_mm, ..Shape::default() }, &[0, 1, 2]);
+        let mut variants: Vec<Variant> =
+            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false }).collect();
+        variants.push(Variant { columns, enriched: true });
+        variants
+    }
+
+    /// Number of forms of all effects: how often the data are asked.
+    #[must_use]
+    pub(crate) fn questions(&self) -> usize {
+        self.candidates.iter().map(Candidate::asked).sum()
+    }
+}

@@ -1,0 +1,115 @@
+//! Small least-squares problems from inner products, aware of rank.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A column counts as explained by the others where less than this share of its square is left.
+pub(crate) const RANK_TOLERANCE: f64 = 1e-6;
+
+/// Pivoted Cholesky factor of the products of some columns.
+#[derive(Clone, Debug)]
+pub(crate) struct Factor {
+    /// Columns that are independent, in pivot order, as positions in the list given.
+    pub kept: Vec<usize>,
+    /// Lower triangular factor over the kept columns.
+    lower: DMatrix<f64>,
+}
+
+impl Factor {
+    /// Factors `products[columns, columns]`; `reference` is the square of each column before anything was
+    /// taken out of it.
+    #[must_use]
+    pub(crate) fn new(products: &DMatrix<f64>, columns: &[usize], reference: &[f64]) -> Self {
+        let count = columns.len();
+        let mut kept: Vec<usize> = Vec::with_capacity(count);
+        let mut rest: Vec<f64> = columns.iter().map(|c| products[(*c, *c)]).collect();
+        // rows[k] holds row k of Lᵀ over all columns given.
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
+        for _ in 0..count {
+            let open = (0..count).filter(|i| !kept.contains(i));
+            let best = open
+                .filter(|i| rest[*i] > RANK_TOLERANCE * reference[columns[*i]] && rest[*i] > 0.0)
+                .max_by(|i, j| {
+                    let share = |i: usize| rest[i] / reference[columns[i]];
+                    share(*i).total_cmp(&share(*j)).then(j.cmp(i))
+                });
+            let Some(pivot) = best else { break };
+            let root = rest[pivot].sqrt();
+            let row: Vec<f64> = (0..count)
+                .map(|j| {
+                    let sum: f64 = rows.iter().map(|r| r[pivot] * r[j]).sum();
+                    (products[(columns[pivot], columns[j])] - sum) / root
+                })
+                .collect();
+            for (to, v) in rest.iter_mut().zip(&row) {
+                *to -= v * v;
+            }
+            kept.push(pivot);
+            rows.push(row);
+        }
+        let rank = kept.len();
+        let lower = DMatrix::from_fn(rank, rank, |i, j| if j <= i { rows[j][kept[i]] } else { 0.0 });
+        Self { kept, lower }
+    }
+
+    /// Number of independent columns.
+    #[must_use]
+    pub(crate) fn rank(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Logarithm of the determinant of the products of the kept columns.
+    #[must_use]
+    pub(crate) fn log_determinant(&self) -> f64 {
+        (0..self.rank()).map(|i| 2.0 * units::math::ln(self.lower[(i, i)])).sum()
+    }
+
+    /// `L⁻¹ b`, b over the kept columns.
+    #[must_use]
+    pub(crate) fn forward(&self, b: &[f64]) -> Vec<f64> {
+        let mut x: Vec<f64> = Vec::with_capacity(b.len());
+        for i in 0..self.rank() {
+            let sum: f64 = x.iter().enumerate().map(|(k, v)| self.lower[(i, k)] * v).sum();
+            x.push((b[i] - sum) / self.lower[(i, i)]);
+        }
+        x
+    }
+
+    /// Solution of the normal equations; zero for columns that are not kept.
+    #[must_use]
+    pub(crate) fn solve(&self, b: &[f64], count: usize) -> DVector<f64> {
+        let picked: Vec<f64> = self.kept.iter().map(|k| b[*k]).collect();
+        let mut x = self.forward(&picked);
+        for i in (0..self.rank()).rev() {
+            let sum: f64 = (i + 1..self.rank()).map(|k| self.lower[(k, i)] * x[k]).sum();
+            x[i] = (x[i] - sum) / self.lower[(i, i)];
+        }
+        let mut result = DVector::zeros(count);
+        for (k, v) in self.kept.iter().zip(x) {
+            result[*k] = v;
+        }
+        result
+    }
+
+    /// Inverse of the products over the kept columns, zeros elsewhere: covariance / σ².
+    #[must_use]
+    pub(crate) fn inverse(&self, count: usize) -> DMatrix<f64> {
+        let mut result = DMatrix::zeros(count, count);
+        for j in 0..count {
+            let mut b = vec![0.0; count];
+            b[j] = 1.0;
+            if self.kept.contains(&j) {
+                result.set_column(j, &self.solve(&b, count));
+            }
+        }
+        result
+    }
+}
+
+/// How much the columns take off the square of the last column (the gap), and their rank.
+#[must_use]
+pub(crate) fn explained(products: &DMatrix<f64>, columns: &[usize], reference: &[f64]) -> (f64, usize) {
+    let factor = Factor::new(products, columns, reference);
+    let last = products.nrows() - 1;
+    let b: Vec<f64> = factor.kept.iter().map(|k| products[(columns[*k], last)]).collect();
+    (factor.forward(&b).iter().map(|v| v * v).sum(), factor.rank())
+}

@@ -1,0 +1,191 @@
+//! Where the gap lies: component, axis segment, direction, voxel, run, time, feed, tool, load.
+
+use std::collections::BTreeMap;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::diagnosis::Cell;
+use crate::observation::{Measurements, Row, Scalar};
+
+/// Random relabellings behind a p value: the smallest is 1 / (this + 1).
+const RELABELLINGS: usize = 199;
+/// Segments of an axis, and of the time.
+const SEGMENTS: usize = 4;
+/// Classes of a quantity with few values (feeds, tools, loads).
+const MOST_CLASSES: usize = 8;
+
+/// One way to sort the equations into cells.
+struct Family {
+    by: String,
+    names: Vec<String>,
+    /// Cell of every equation.
+    label: Vec<usize>,
+}
+
+/// Cells that hold more of the gap than their number of equations explains, by family, the worst first;
+/// always at least the worst cell of each family.
+#[must_use]
+pub(crate) fn places(data: &Measurements, scalars: &[Scalar], gap_um: &[f64], seed: u64) -> Vec<Cell> {
+    let total: f64 = gap_um.iter().map(|g| g * g).sum();
+    if total <= 0.0 {
+        return Vec::new();
+    }
+    let squares: Vec<f64> = gap_um.iter().map(|g| g * g).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut cells = Vec::new();
+    for family in families(data, scalars) {
+        let counts = sums(&family, &vec![1.0; scalars.len()], 0);
+        let observed = sums(&family, &squares, 0);
+        let mean = total / scalars.len() as f64;
+        // Excess over an even spread, on the scale of its own scatter.
+        let excess = |sum: f64, count: f64| if count > 0.0 { (sum - mean * count) / count.sqrt() } else { f64::NEG_INFINITY };
+        let score = |sums: &[f64]| -> Vec<f64> {
+            sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect()
+        };
+        let own = score(&observed);
+        // Shifting the labels along the file keeps how rows hang together, and the largest of all cells
+        // corrects for their number.
+        let largest: Vec<f64> = (0..RELABELLINGS)
+            .map(|_| {
+                let shift = random.random_range(1..scalars.len().max(2));
+                score(&sums(&family, &squares, shift)).into_iter().fold(f64::NEG_INFINITY, f64::max)
+            })
+            .collect();
+        let mut found: Vec<Cell> = family
+            .names
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| counts[*i] > 0.0)
+            .map(|(i, name)| {
+                let beyond = largest.iter().filter(|l| **l >= own[i]).count();
+                let p = (beyond + 1) as f64 / (RELABELLINGS + 1) as f64;
+                Cell { by: family.by.clone(), cell: name.clone(), share: observed[i] / total, p }
+            })
+            .collect();
+        found.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let keep = if family.by == "voxel" { found.len().div_ceil(5) } else { 4 };
+        found.truncate(keep.max(1));
+        cells.extend(found);
+    }
+    cells
+}
+
+fn sums(family: &Family, values: &[f64], shift: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; family.names.len()];
+    let (late, early) = values.split_at(values.len() - shift.min(values.len()));
+    for (value, label) in early.iter().chain(late).zip(&family.label) {
+        sums[*label] += value;
+    }
+    sums
+}
+
+fn families(data: &Measurements, scalars: &[Scalar]) -> Vec<Family> {
+    let row = |s: &Scalar| &data.rows[s.row];
+    let mut all = Vec::new();
+    if scalars.iter().any(|s| s.class < 3) {
+        let names = ["dx", "dy", "dz", "along the bar"].map(str::to_owned).to_vec();
+        all.push(Family { by: "component".to_owned(), names, label: scalars.iter().map(|s| s.class).collect() });
+    }
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        let (low, high) = data.range_mm(axis);
+        if high > low {
+            let names = segments(low, high, SEGMENTS, "");
+            let label = scalars.iter().map(|s| segment(row(s).command.linear_mm[axis], low, high, SEGMENTS)).collect();
+            all.push(Family { by: name.to_owned(), names, label });
+        }
+    }
+    all.extend(voxels(data, scalars));
+    let text = |by: &str, name: &dyn Fn(&Row) -> Option<String>| by_name(by, scalars, data, name);
+    all.extend(text("direction", &|r| {
+        let signs: String = ["X", "Y", "Z"]
+            .into_iter()
+            .zip(r.command.direction)
+            .filter(|(_, d)| *d != 0)
+            .map(|(axis, d)| format!("{axis}{}", if d > 0 { '+' } else { '-' }))
+            .collect();
+        Some(if signs.is_empty() { "unknown".to_owned() } else { signs })
+    }));
+    all.extend(text("run", &|r| Some(data.runs[r.run].clone())));
+    all.extend(text("feed", &|r| r.conditions.feed_mm_min.map(|f| format!("{f} mm/min"))));
+    all.extend(text("load", &|r| r.conditions.load_kg.map(|l| format!("{l} kg"))));
+    all.extend(text("tool", &|r| {
+        let t = r.command.tool_mm;
+        Some(format!("{},{},{} mm", t.x, t.y, t.z))
+    }));
+    let times = || data.rows.iter().filter_map(|r| r.conditions.time_s);
+    let (start, end) = times().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+    if end > start && data.rows.iter().all(|r| r.conditions.time_s.is_some()) {
+        let names = segments(start, end, SEGMENTS, " s");
+        let time = |s: &Scalar| row(s).conditions.time_s.unwrap_or(start);
+        let label = scalars.iter().map(|s| segment(time(s), start, end, SEGMENTS)).collect();
+        all.push(Family { by: "time".to_owned(), names, label });
+    }
+    all
+}
+
+/// Three cells per axis that is travelled.
+fn voxels(data: &Measurements, scalars: &[Scalar]) -> Option<Family> {
+    const PER_AXIS: usize = 3;
+    let travelled: Vec<usize> = (0..3).filter(|a| data.range_mm(*a).1 > data.range_mm(*a).0).collect();
+    if travelled.len() < 2 {
+        return None;
+    }
+    let mut names = vec![String::new()];
+    for axis in &travelled {
+        let (low, high) = data.range_mm(*axis);
+        let own = segments(low, high, PER_AXIS, "");
+        names = names
+            .iter()
+            .flat_map(|before| {
+                own.iter().map(move |s| {
+                    let join = if before.is_empty() { "" } else { ", " };
+                    format!("{before}{join}{} {s}", ["X", "Y", "Z"][*axis])
+                })
+            })
+            .collect();
+    }
+    let label = scalars
+        .iter()
+        .map(|s| {
+            travelled.iter().fold(0, |index, axis| {
+                let (low, high) = data.range_mm(*axis);
+                index * PER_AXIS + segment(data.rows[s.row].command.linear_mm[*axis], low, high, PER_AXIS)
+            })
+        })
+        .collect();
+    Some(Family { by: "voxel".to_owned(), names, label })
+}
+
+fn segment(value: f64, low: f64, high: f64, count: usize) -> usize {
+    (((value - low) / (high - low) * count as f64).floor().max(0.0) as usize).min(count - 1)
+}
+
+fn segments(low: f64, high: f64, count: usize, unit: &str) -> Vec<String> {
+    let at = |k: usize| (10.0 * (low + (high - low) * k as f64 / count as f64)).round() / 10.0;
+    (0..count).map(|k| format!("{}..{}{unit}", at(k), at(k + 1))).collect()
+}
+
+/// Families of named classes; `None` where there is one class or too many.
+fn by_name(
+    by: &str,
+    scalars: &[Scalar],
+    data: &Measurements,
+    name: &dyn Fn(&Row) -> Option<String>,
+) -> Option<Family> {
+    let of_row: Vec<Option<String>> = data.rows.iter().map(name).collect();
+    let mut index: BTreeMap<&str, usize> = BTreeMap::new();
+    for class in of_row.iter().flatten() {
+        index.entry(class).or_default();
+    }
+    let most = if by == "run" { 400 } else { MOST_CLASSES.max(27) };
+    if index.len() < 2 || index.len() > most || of_row.iter().any(Option::is_none) {
+        return None;
+    }
+    for (place, slot) in index.values_mut().enumerate() {
+        *slot = place;
+    }
+    let names = index.keys().map(|k| (*k).to_owned()).collect();
+    let label = scalars.iter().filter_map(|s| of_row[s.row].as_deref().and_then(|n| index.get(n).copied())).collect();
+    Some(Family { by: by.to_owned(), names, label })
+}

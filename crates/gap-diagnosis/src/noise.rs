@@ -1,0 +1,165 @@
+//! What of the residual is noise: repeats, neighbours, outliers.
+
+use std::collections::BTreeMap;
+
+use crate::observation::{Row, Scalar};
+
+/// Where the noise figure comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoiseSource {
+    /// Same command, same approach, same conditions, measured again.
+    Repeats,
+    /// No repeats: differences of neighbouring rows of a run.
+    Neighbours,
+}
+
+/// Noise of a row of weight one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Noise {
+    /// Variance, µm².
+    pub variance: f64,
+    /// Degrees of freedom of that variance.
+    pub degrees: f64,
+    /// Where it comes from.
+    pub source: NoiseSource,
+}
+
+/// Repeats must give at least this many degrees of freedom to be believed.
+const ENOUGH_REPEATS: f64 = 12.0;
+
+/// Noise variance from residuals: from repeats where there are enough, else from neighbours.
+#[must_use]
+pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let repeats = from_repeats(rows, scalars, residuals_um);
+    match repeats {
+        Some(noise) if noise.degrees >= ENOUGH_REPEATS => Some(noise),
+        _ => from_neighbours(rows, scalars, residuals_um).or(repeats),
+    }
+}
+
+/// Everything that must agree for two rows to be repeats, in steps far below what matters.
+fn key(row: &Row, scalar: &Scalar) -> [i64; 17] {
+    let step = |v: f64, unit: f64| (v / unit).round() as i64;
+    let c = &row.command;
+    let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
+    [
+        row.run as i64,
+        step(c.linear_mm.x, 1e-5),
+        step(c.linear_mm.y, 1e-5),
+        step(c.linear_mm.z, 1e-5),
+        step(c.rotary_rad.x, 1e-8),
+        step(c.rotary_rad.y, 1e-8),
+        step(c.rotary_rad.z, 1e-8),
+        step(c.tool_mm.x, 1e-5),
+        step(c.tool_mm.y, 1e-5),
+        step(c.tool_mm.z, 1e-5),
+        i64::from(c.direction[0]) * 9 + i64::from(c.direction[1]) * 3 + i64::from(c.direction[2]),
+        optional(row.conditions.feed_mm_min, 1e-3),
+        optional(row.conditions.load_kg, 1e-3),
+        scalar.class as i64,
+        step(scalar.along.x, 1e-4),
+        step(scalar.along.y, 1e-4),
+        step(scalar.along.z, 1e-4),
+    ]
+}
+
+fn from_repeats(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let mut groups: BTreeMap<[i64; 17], Vec<f64>> = BTreeMap::new();
+    let mut joined: BTreeMap<[i64; 17], Vec<f64>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let mut key = key(&rows[scalar.row], scalar);
+        let value = r * scalar.weight.sqrt();
+        groups.entry(key).or_default().push(value);
+        key[0] = 0;
+        joined.entry(key).or_default().push(value);
+    }
+    // Repeats within a run are free of the run's offset; across runs the offset was estimated and removed.
+    let pooled = |groups: &BTreeMap<[i64; 17], Vec<f64>>| {
+        let (mut square, mut degrees) = (0.0, 0.0);
+        for group in groups.values().filter(|g| g.len() > 1) {
+            let mean = group.iter().sum::<f64>() / group.len() as f64;
+            square += group.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+            degrees += group.len() as f64 - 1.0;
+        }
+        (degrees > 0.0).then(|| Noise { variance: square / degrees, degrees, source: NoiseSource::Repeats })
+    };
+    pooled(&groups).filter(|n| n.degrees >= ENOUGH_REPEATS).or_else(|| pooled(&joined))
+}
+
+/// Second differences along a run, robustly: a smooth residual cancels, noise does not.
+fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let row = &rows[scalar.row];
+        let line = lines.entry((row.run, scalar.class, row.command.direction)).or_default();
+        line.push(r * scalar.weight.sqrt());
+    }
+    let mut differences: Vec<f64> = lines
+        .values()
+        .flat_map(|line| line.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs() / 1.5_f64.sqrt()))
+        .collect();
+    let degrees = differences.len() as f64 / 3.0;
+    let sigma = 1.4826 * median(&mut differences)?;
+    (degrees >= 4.0).then_some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Neighbours })
+}
+
+/// Median; sorts what it is given.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(values[middle]),
+        _ => Some(0.5 * (values[middle - 1] + values[middle])),
+    }
+}
+
+/// A residual is an outlier beyond this many robust standard deviations.
+const OUTLIER: f64 = 4.5;
+/// A neighbour that is as far out on the same side makes it structure, not an outlier.
+const ACCOMPLICE: f64 = 2.5;
+
+/// Rows that stand alone far from what the model and their neighbours say, ascending.
+#[must_use]
+pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<usize> {
+    let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
+    let mut sizes: Vec<f64> = weighted.iter().map(|v| v.abs()).collect();
+    let Some(mad) = median(&mut sizes) else { return Vec::new() };
+    let sigma = (1.4826 * mad).max(1e-6);
+    let mut lines: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for (index, scalar) in scalars.iter().enumerate() {
+        lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
+    }
+    let mut found: Vec<usize> = Vec::new();
+    for line in lines.values() {
+        for (place, index) in line.iter().enumerate() {
+            let value = weighted[*index] / sigma;
+            if value.abs() <= OUTLIER {
+                continue;
+            }
+            let beside = [place.checked_sub(1), Some(place + 1)];
+            let alone = beside.iter().flatten().filter_map(|p| line.get(*p)).all(|other| {
+                let there = weighted[*other] / sigma;
+                there * value.signum() < ACCOMPLICE
+            });
+            if alone {
+                found.push(scalars[*index].row);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(&mut []), None);
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+}

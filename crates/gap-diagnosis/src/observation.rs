@@ -1,0 +1,143 @@
+//! What was measured, row by row, and the scalar equations it gives.
+
+use machine_model::effects::{Conditions, EffectGeometry};
+use machine_model::{Command, Vector};
+
+/// What the instrument showed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// Measured minus commanded tip, workpiece frame, µm; `None` for a component that was not measured.
+    Displacement([Option<f64>; 3]),
+    /// Ball bar: distance between the fixed ball and the tip, mm.
+    Length {
+        /// The reading.
+        length_mm: f64,
+        /// Centre of the fixed ball, machine coordinates.
+        ball_mm: Vector,
+    },
+    /// Length of the displacement alone, µm.
+    Magnitude(f64),
+}
+
+/// One row of a measurement file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Index into [`Measurements::runs`].
+    pub run: usize,
+    /// What the axes were told.
+    pub command: Command,
+    /// Temperature, time, load, feed, where known.
+    pub conditions: Conditions,
+    /// Real minus nominal tip that the model predicts here, mm.
+    pub predicted_mm: Vector,
+    /// Standard uncertainty stated for the row, µm.
+    pub u_um: Option<f64>,
+    /// What was read.
+    pub reading: Reading,
+    /// Line of the file, for messages.
+    pub line: u64,
+}
+
+/// A measurement file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurements {
+    /// Names of the runs, in order of appearance.
+    pub runs: Vec<String>,
+    /// The rows in the order of the file.
+    pub rows: Vec<Row>,
+    /// What the effects must know of the machine.
+    pub geometry: EffectGeometry,
+}
+
+/// One equation: the gap seen along a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scalar {
+    /// Index of the row.
+    pub row: usize,
+    /// Unit vector along which the displacement is seen.
+    pub along: Vector,
+    /// 0, 1, 2 for a component, 3 for any other direction.
+    pub class: usize,
+    /// Measured minus predicted, µm.
+    pub gap_um: f64,
+    /// Inverse variance relative to the other rows.
+    pub weight: f64,
+}
+
+impl Measurements {
+    /// The scalar equations of all rows, vectors component by component, lengths along the bar.
+    ///
+    /// Magnitudes are linearised about `estimate_um` (the displacement beyond the prediction that the
+    /// magnitude is believed to hold, µm), one per row; without it magnitude rows give nothing.
+    #[must_use]
+    pub fn scalars(&self, estimate_um: Option<&[Vector]>) -> Vec<Scalar> {
+        let typical = self.typical_uncertainty_um();
+        let mut scalars = Vec::with_capacity(3 * self.rows.len());
+        for (index, row) in self.rows.iter().enumerate() {
+            let weight = row.u_um.map_or(1.0, |u| (typical / u) * (typical / u));
+            let mut push = |along: Vector, class: usize, gap_um: f64| {
+                scalars.push(Scalar { row: index, along, class, gap_um, weight });
+            };
+            match row.reading {
+                Reading::Displacement(components) => {
+                    for (class, value) in components.iter().enumerate() {
+                        if let Some(um) = value {
+                            let mut along = Vector::zeros();
+                            along[class] = 1.0;
+                            push(along, class, um - 1e3 * row.predicted_mm[class]);
+                        }
+                    }
+                }
+                Reading::Length { length_mm, ball_mm } => {
+                    let bar = self.geometry.nominal_tip_mm(&row.command) + row.predicted_mm - ball_mm;
+                    let predicted_mm = bar.norm();
+                    if predicted_mm > 0.0 {
+                        push(bar / predicted_mm, 3, 1e3 * (length_mm - predicted_mm));
+                    }
+                }
+                Reading::Magnitude(um) => {
+                    if let Some(estimate) = estimate_um.and_then(|all| all.get(index)) {
+                        let whole = 1e3 * row.predicted_mm + estimate;
+                        let norm = whole.norm();
+                        if norm > 0.0 {
+                            let along = whole / norm;
+                            push(along, 3, um - 1e3 * along.dot(&row.predicted_mm));
+                        }
+                    }
+                }
+            }
+        }
+        scalars
+    }
+
+    /// Root mean square of the stated uncertainties, 1 where none is stated.
+    #[must_use]
+    pub fn typical_uncertainty_um(&self) -> f64 {
+        let stated: Vec<f64> = self.rows.iter().filter_map(|r| r.u_um).collect();
+        if stated.is_empty() {
+            return 1.0;
+        }
+        (stated.iter().map(|u| u * u).sum::<f64>() / stated.len() as f64).sqrt()
+    }
+
+    /// True where any row holds only the length of its displacement.
+    #[must_use]
+    pub fn has_magnitudes(&self) -> bool {
+        self.rows.iter().any(|r| matches!(r.reading, Reading::Magnitude(_)))
+    }
+
+    /// True where any row is a ball-bar length.
+    #[must_use]
+    pub fn has_lengths(&self) -> bool {
+        self.rows.iter().any(|r| matches!(r.reading, Reading::Length { .. }))
+    }
+
+    /// Smallest and largest command of a linear axis, mm.
+    #[must_use]
+    pub fn range_mm(&self, axis: usize) -> (f64, f64) {
+        self.rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| {
+            let q = row.command.linear_mm[axis];
+            (low.min(q), high.max(q))
+        })
+    }
+}

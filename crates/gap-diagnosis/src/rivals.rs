@@ -1,0 +1,106 @@
+//! Which other effects the data cannot tell from a named one.
+
+use machine_model::effects::EffectKind;
+use nalgebra::DMatrix;
+
+use crate::engine::Explained;
+use crate::linear::{Factor, explained};
+use crate::search::{Part, without};
+
+/// Two effects look alike where the correlation of what they do to this design, set-up and other causes
+/// taken out, reaches this.
+pub(crate) const ALIKE: f64 = 0.98;
+/// Two effects are equally likely within this difference of the extended BIC.
+pub(crate) const WITHIN: f64 = 10.0;
+
+/// An effect that could stand in for a named one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rival {
+    /// Which.
+    pub kind: EffectKind,
+    /// Its best form in place of the named one.
+    pub part: Part,
+    /// How far its score lies behind.
+    pub behind: f64,
+    /// Correlation of the named effect's displacement with the nearest one of the rival.
+    pub correlation: f64,
+}
+
+/// Rivals of the part at `place`, the nearest in score first.
+#[must_use]
+pub(crate) fn rivals(model: &Explained, place: usize) -> Vec<Rival> {
+    let rest = without(&model.parts, place);
+    let own = model.parts[place];
+    let scanned = model.space.scan(&model.library, &rest, None);
+    let own_score =
+        scanned.iter().filter(|(p, _)| p.candidate == own.candidate).map(|(_, f)| f.score).fold(f64::INFINITY, f64::min);
+    let left = left_over(model, &rest);
+    let contribution = contribution(model, &left, own);
+    let mut found: Vec<Rival> = Vec::new();
+    for candidate in 0..model.library.candidates.len() {
+        if candidate == own.candidate {
+            continue;
+        }
+        let forms = scanned.iter().filter(|(p, _)| p.candidate == candidate);
+        let Some((part, fit)) = forms.min_by(|a, b| a.1.score.total_cmp(&b.1.score)) else { continue };
+        let behind = fit.score - own_score;
+        let correlation = (0..model.library.candidates[candidate].variants.len())
+            .map(|variant| alike(model, &left, &contribution, Part { candidate, variant }))
+            .fold(0.0, f64::max);
+        if behind <= WITHIN || correlation >= ALIKE {
+            let kind = model.library.candidates[candidate].kind;
+            found.push(Rival { kind, part: *part, behind, correlation });
+        }
+    }
+    found.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+    found
+}
+
+/// Products with the columns of `rest` eliminated, at the model's run-offset ratio.
+fn left_over(model: &Explained, rest: &[Part]) -> DMatrix<f64> {
+    let products = model.space.products(model.fit.level);
+    let columns = model.space.columns(&model.library, rest);
+    if columns.is_empty() {
+        return products.clone();
+    }
+    let factor = Factor::new(products, &columns, model.space.reference());
+    let size = products.nrows();
+    let sweep = DMatrix::from_fn(factor.rank(), size, |k, j| products[(columns[factor.kept[k]], j)]);
+    let mut solved = DMatrix::zeros(factor.rank(), size);
+    for j in 0..size {
+        let column: Vec<f64> = sweep.column(j).iter().copied().collect();
+        for (k, v) in factor.forward(&column).into_iter().enumerate() {
+            solved[(k, j)] = v;
+        }
+    }
+    products - solved.transpose() * solved
+}
+
+/// Inner products of the fitted displacement of a part with every column, and its square last.
+fn contribution(model: &Explained, left: &DMatrix<f64>, part: Part) -> Vec<f64> {
+    let columns = model.space.columns(&model.library, &[part]);
+    let last = left.nrows() - 1;
+    let factor = Factor::new(left, &columns, model.space.reference());
+    let b: Vec<f64> = columns.iter().map(|c| left[(*c, last)]).collect();
+    let x = factor.solve(&b, columns.len());
+    let mut products: Vec<f64> =
+        (0..last).map(|j| columns.iter().enumerate().map(|(i, c)| x[i] * left[(*c, j)]).sum()).collect();
+    products.push(columns.iter().enumerate().map(|(i, c)| x[i] * products[*c]).sum());
+    products
+}
+
+fn alike(model: &Explained, left: &DMatrix<f64>, contribution: &[f64], rival: Part) -> f64 {
+    let columns = model.space.columns(&model.library, &[rival]);
+    let count = columns.len();
+    let last = contribution.len() - 1;
+    let at = |i: usize, j: usize| match (columns.get(i), columns.get(j)) {
+        (Some(a), Some(b)) => left[(*a, *b)],
+        (Some(a), None) | (None, Some(a)) => contribution[*a],
+        (None, None) => contribution[last],
+    };
+    let small = DMatrix::from_fn(count + 1, count + 1, at);
+    let reference: Vec<f64> = columns.iter().map(|c| model.space.reference()[*c]).collect();
+    let all: Vec<usize> = (0..count).collect();
+    let (square, _) = explained(&small, &all, &reference);
+    if contribution[last] > 0.0 { (square / contribution[last]).clamp(0.0, 1.0).sqrt() } else { 0.0 }
+}

@@ -1,0 +1,102 @@
+//! Columns of the linear model: set-up, and effects per unit of a coefficient.
+
+use machine_model::Vector;
+use machine_model::effects::{EffectGeometry, EffectKind, Shape};
+
+use crate::observation::{Reading, Row, Scalar};
+
+/// One column; its value is the displacement in µm per unit of its coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Term {
+    /// The measuring frame is shifted; coefficient in µm.
+    SetupShift(usize),
+    /// The measuring frame is turned about the machine's origin; coefficient in µrad.
+    SetupRotation(usize),
+    /// The ball bar is longer than it says; coefficient in µm.
+    BarLength,
+    /// Rows whose direction of approach on an axis is not known, among others where it is: their mean may
+    /// lie anywhere between the two sides. First the axis, then the component it is seen in.
+    UnknownApproach(usize),
+    /// One coefficient of an effect, in the unit of its name.
+    Effect {
+        /// Which.
+        kind: EffectKind,
+        /// Index into its coefficient names.
+        index: usize,
+        /// Its non-linear numbers.
+        shape: Shape,
+    },
+}
+
+impl Term {
+    /// True where the column belongs to the set-up and can never be blamed.
+    #[must_use]
+    pub(crate) const fn is_nuisance(&self) -> bool {
+        !matches!(self, Self::Effect { .. })
+    }
+
+    /// Displacement in µm per unit. Conditions that are missing in single rows displace nothing.
+    #[must_use]
+    pub(crate) fn displacement_um(&self, row: &Row, geometry: &EffectGeometry) -> Vector {
+        match self {
+            Self::SetupShift(axis) => unit(*axis),
+            Self::SetupRotation(axis) => unit(*axis).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
+            Self::BarLength => Vector::zeros(),
+            Self::UnknownApproach(axis) => {
+                if row.command.direction[*axis] == 0 { unit(*axis) } else { Vector::zeros() }
+            }
+            Self::Effect { kind, index, shape } => kind
+                .unit_displacement_mm(*index, shape, &row.command, &row.conditions, geometry)
+                .map_or_else(|_| Vector::zeros(), |v| v * 1e3),
+        }
+    }
+
+    /// What the equation sees of the column.
+    #[must_use]
+    pub(crate) fn value(&self, scalar: &Scalar, row: &Row, geometry: &EffectGeometry) -> f64 {
+        if let Self::BarLength = self {
+            return if matches!(row.reading, Reading::Length { .. }) { 1.0 } else { 0.0 };
+        }
+        if scalar.class < 3 && !self.touches(scalar.class) {
+            return 0.0;
+        }
+        scalar.along.dot(&self.displacement_um(row, geometry))
+    }
+
+    /// False where the component is zero for every row, known without looking.
+    #[must_use]
+    pub(crate) fn touches(&self, component: usize) -> bool {
+        match *self {
+            Self::SetupShift(axis) | Self::UnknownApproach(axis) => axis == component,
+            Self::SetupRotation(axis) => axis != component,
+            Self::BarLength => false,
+            Self::Effect { kind, index, .. } => match kind {
+                EffectKind::Scale(a)
+                | EffectKind::Thermal(a)
+                | EffectKind::Warmup(a)
+                | EffectKind::Backlash(a)
+                | EffectKind::Positioning(a)
+                | EffectKind::Pitch(a)
+                | EffectKind::Load(a)
+                | EffectKind::ServoLag(a)
+                | EffectKind::Step(a)
+                | EffectKind::Squareness(a, _) => a == component,
+                EffectKind::LostMotion { direction, .. } | EffectKind::Straightness { direction, .. } => {
+                    direction == component
+                }
+                EffectKind::ServoMismatch(a, b) => a == component || b == component,
+                EffectKind::Angular { about, .. } => about != component,
+                EffectKind::Local(_) => index == component,
+                EffectKind::InstrumentDrift => index % 3 == component,
+                EffectKind::Sag(a) => if index < 3 { component == 2 } else { component != 1 - a },
+                EffectKind::ProbeLobing | EffectKind::Rotary { .. } | EffectKind::Eccentricity(_) => true,
+            },
+        }
+    }
+}
+
+fn unit(axis: usize) -> Vector {
+    let mut v = Vector::zeros();
+    v[axis] = 1.0;
+    v
+}
