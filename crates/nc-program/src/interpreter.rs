@@ -110,9 +110,10 @@ impl<'d> Interpreter<'d> {
     /// What the block asks for cannot be told with certainty ([`crate::codes`]); the state is then as it
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
-        match run(&self.env, &self.modal, block) {
-            Ok((modal, step)) => {
-                self.modal = modal;
+        let mut state = self.modal;
+        match run(&self.env, &self.modal, &mut state, block) {
+            Ok(step) => {
+                self.modal = state;
                 Ok(step)
             }
             Err(diagnostic) => Err(vec![*diagnostic]),
@@ -120,13 +121,15 @@ impl<'d> Interpreter<'d> {
     }
 }
 
-/// The state after a block, and what the block does.
-fn run(env: &Environment<'_>, before: &Modal, block: &Block<'_>) -> Outcome<(Modal, Step)> {
-    let mut state = *before;
+/// What a block does; `state`, which comes in equal to `before`, is left as it is after the block.
+#[inline]
+fn run(env: &Environment<'_>, before: &Modal, state: &mut Modal, block: &Block<'_>) -> Outcome<Step> {
+    let mut moved = Moved { repeats: 1, ..Moved::default() };
     if before.progress == Progress::Ended {
-        return Ok((state, step(env, before, &state, Moved::default(), false)));
+        return Ok(step(env, before, state, moved, false));
     }
-    let words = Words::read(block, env.dialect)?;
+    let mut words = Words::new(block, env.dialect);
+    words.read()?;
     if words.percent {
         // The first `%` opens a tape, unless the program already runs; the next one closes it.
         state.progress = match before.progress {
@@ -135,22 +138,22 @@ fn run(env: &Environment<'_>, before: &Modal, block: &Block<'_>) -> Outcome<(Mod
         };
     }
     if words.is_idle() || state.progress == Progress::Ended {
-        return Ok((state, step(env, before, &state, Moved::default(), words.skip)));
+        return Ok(step(env, before, state, moved, words.skip));
     }
     state.progress = Progress::Running;
-    let demand = settings::apply(env, &words, &mut state)?;
-    let mut moved = motion::execute(env, &words, &demand, before, &mut state)?;
-    miscellaneous(env, &words, &mut state, &mut moved)?;
-    let done = if words.skip {
-        let merged = delete::merge(&words, before, &state, !moved.motions.is_empty())?;
-        let mut step = step(env, before, &state, moved, true);
+    let demand = settings::apply(env, &words, before, state)?;
+    motion::execute(env, &words, &demand, before, state, &mut moved)?;
+    if !words.m_codes.is_empty() {
+        miscellaneous(env, &words, state, &mut moved)?;
+    }
+    if words.skip {
+        let merged = delete::merge(&words, before, state, !moved.motions.is_empty())?;
+        let mut step = step(env, before, state, moved, true);
         step.ends_program = false;
-        (merged, step)
-    } else {
-        let step = step(env, before, &state, moved, false);
-        (state, step)
-    };
-    Ok(done)
+        *state = merged;
+        return Ok(step);
+    }
+    Ok(step(env, before, state, moved, false))
 }
 
 /// M codes that the dialect's table names.
@@ -185,6 +188,7 @@ fn miscellaneous(
     Ok(())
 }
 
+#[inline]
 fn step(env: &Environment<'_>, before: &Modal, state: &Modal, moved: Moved, skip: bool) -> Step {
     let tool_mm = match state.tool_length {
         ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,

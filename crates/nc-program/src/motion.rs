@@ -36,12 +36,12 @@ pub(crate) fn execute(
     demand: &Demand,
     before: &Modal,
     state: &mut Modal,
-) -> Outcome<Moved> {
-    let mut moved = Moved { repeats: 1, ..Moved::default() };
+    moved: &mut Moved,
+) -> Outcome<()> {
     match demand.owner {
         Owner::Motion => {
             known_axes(env, words)?;
-            by_mode(env, words, before, state, &mut moved)?;
+            by_mode(env, words, before, state, moved)?;
         }
         Owner::Dwell => dwell(words, demand)?,
         Owner::Arguments => {
@@ -69,7 +69,7 @@ pub(crate) fn execute(
             }
         }
     }
-    Ok(moved)
+    Ok(())
 }
 
 /// What F means for a motion; `value` is F where G93 is in force.
@@ -149,6 +149,7 @@ fn by_mode(
 }
 
 /// G0 and G1.
+#[inline]
 fn straight(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,

@@ -13,6 +13,7 @@ use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY, ROTARY_LETTER
 /// From program coordinates to axis commands, mm: work offset plus tool length.
 ///
 /// `None` where the work offset in force is not given.
+#[inline]
 pub(crate) fn shift_mm(state: &Modal) -> Option<[f64; 3]> {
     let zero = state.work_offset.zero_mm?;
     let applied = state.tool_length.applied_mm();
@@ -20,6 +21,7 @@ pub(crate) fn shift_mm(state: &Modal) -> Option<[f64; 3]> {
 }
 
 /// The same, refused where there is none.
+#[inline]
 pub(crate) fn require_shift(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
@@ -38,6 +40,7 @@ pub(crate) fn require_shift(
 }
 
 /// Refuses words for rotary axes that the machine does not have, and U V W.
+#[inline]
 pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
     if words.has(crate::words::SECONDARY_LETTERS) {
         let letters = crate::words::SECONDARY_LETTERS;
@@ -71,6 +74,7 @@ pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Ou
 ///
 /// # Errors
 /// An increment from an unknown position.
+#[inline]
 pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, shift_mm: &[f64; 3]) -> Outcome<Axes> {
     let mut end = state.axes;
     let inch = state.units == Units::Inch;
@@ -112,6 +116,7 @@ pub(crate) fn increment_base(words: &Words<'_, '_, '_>, axis: Axis, index: usize
 /// The position of all axes, refused where one is unknown.
 ///
 /// `what` names the motion: `the feed move`.
+#[inline]
 pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Outcome<Position> {
     let [x, y, z] = axes.linear;
     let [a, b, c] = axes.rotary;
@@ -119,6 +124,13 @@ pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) 
     {
         return Ok(Position { linear_mm: [x, y, z], rotary_deg: [a, b, c] });
     }
+    Err(not_known(words, axes, what))
+}
+
+#[cold]
+fn not_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Box<Diagnostic> {
+    let [x, y, z] = axes.linear;
+    let [a, b, c] = axes.rotary;
     let lost: Vec<(char, Lost)> = [x, y, z, a, b, c]
         .into_iter()
         .zip(AXIS_NAMES)
@@ -128,20 +140,21 @@ pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) 
         })
         .collect();
     let message = format!("{what} starts from an unknown position");
-    Err(unknown(words, &message, words.span(AXIS_LETTERS), &lost))
+    unknown(words, &message, words.span(AXIS_LETTERS), &lost)
 }
 
 /// Refuses unknown rotary axes: what a linear axis must be told depends on them.
+#[inline]
 pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<()> {
+    if axes.rotary.iter().all(|axis| axis.known().is_some()) {
+        return Ok(());
+    }
     let lost: Vec<(char, Lost)> = (0..3)
         .filter_map(|i| match axes.rotary[i] {
             Axis::At(_) => None,
             Axis::Unknown(lost) => Some((AXIS_NAMES[3 + i], lost)),
         })
         .collect();
-    if lost.is_empty() {
-        return Ok(());
-    }
     let message = "a motion of linear axes while a rotary axis is unknown";
     Err(unknown(words, message, words.span(AXIS_LETTERS), &lost))
 }

@@ -67,10 +67,20 @@ struct Wanted<'d> {
 }
 
 /// Applies the codes of a block to the state.
-pub(crate) fn apply(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<Demand> {
-    let before = *state;
-    let mut wanted = Wanted::default();
+///
+/// `state` comes in equal to `before`.
+pub(crate) fn apply(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<Demand> {
+    const ONE_LETTER_SETTINGS: Letters = Letters::of(b"HT");
     let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None };
+    if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(ONE_LETTER_SETTINGS) {
+        return Ok(demand);
+    }
+    let mut wanted = Wanted::default();
     for code in &words.codes {
         let owner = set(&code.entry.action, code.entry.code, code.entry.group, code.span, state, &mut wanted);
         match owner {
@@ -112,7 +122,7 @@ pub(crate) fn apply(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mu
     length(env, words, state, wanted.length)?;
     motion(env, state, &wanted);
     if before.cycle.is_some() && state.cycle.is_some() {
-        cycle_frame(words, &before, state)?;
+        cycle_frame(words, before, state)?;
     }
     Ok(demand)
 }

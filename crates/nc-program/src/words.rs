@@ -86,10 +86,10 @@ pub(crate) struct Words<'b, 'a, 'd> {
 }
 
 impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
-    /// Reads the items once; whether the codes agree with each other is not its business, except that
-    /// two codes of one modal group are refused here.
-    pub(crate) fn read(block: &'b Block<'a>, dialect: &'d Dialect) -> Outcome<Self> {
-        let mut words = Self {
+    /// Nothing read yet.
+    #[inline]
+    pub(crate) fn new(block: &'b Block<'a>, dialect: &'d Dialect) -> Self {
+        Self {
             block,
             codes: SmallVec::new(),
             m_codes: SmallVec::new(),
@@ -98,7 +98,14 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             percent: false,
             dialect,
             at: [0; 26],
-        };
+        }
+    }
+
+    /// Reads the items once; whether the codes agree with each other is not its business, except that
+    /// two codes of one modal group are refused here.
+    pub(crate) fn read(&mut self) -> Outcome<()> {
+        let block = self.block;
+        let words = self;
         for (index, item) in block.items.iter().enumerate() {
             match item.kind {
                 ItemKind::Word { letter, .. } if !letter.is_ascii_uppercase() => {
@@ -150,7 +157,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 ItemKind::Invalid(reason) => return Err(words.unreadable(item.span, reason)),
             }
         }
-        Ok(words)
+        Ok(())
     }
 
     /// True where nothing is executed: names, comments, `%`, N and O alone.
