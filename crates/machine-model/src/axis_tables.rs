@@ -28,6 +28,10 @@ pub struct SixBounds {
     pub slope: Six,
     /// Upper bounds of |f''| between kinks.
     pub curvature: Six,
+    /// Lower bounds of f'' between kinks, with sign.
+    pub curvature_low: Six,
+    /// Upper bounds of f'' between kinks, with sign.
+    pub curvature_high: Six,
     /// Sums of |jumps of f'| inside the interval.
     pub kinks: Six,
     /// The same, weighted as [`Bounds::kinks_on_line`].
@@ -187,6 +191,7 @@ impl AxisTables {
             all.value[function] = one.value;
             all.slope[function] = one.slope;
             all.curvature[function] = one.curvature;
+            [all.curvature_low[function], all.curvature_high[function]] = one.curvature_range;
             all.kinks[function] = one.kinks;
             all.kinks_on_line[function] = one.kinks_on_line;
         }

@@ -56,6 +56,8 @@ pub struct Bounds {
     pub slope: f64,
     /// Upper bound of |f''| between the kinks.
     pub curvature: f64,
+    /// Lower and upper bound of f'' between the kinks, with sign.
+    pub curvature_range: [f64; 2],
     /// Sum of |jumps of f'| at the kinks strictly inside the interval.
     pub kinks: f64,
     /// The same sum, each jump weighted with 4s(1-s), s its place in the interval from 0 to 1: what a kink
@@ -145,11 +147,13 @@ pub(crate) fn bounds_of(c: &Cubic, low: f64, high: f64) -> Bounds {
         return Bounds { value, slope: c[1].abs(), ..Bounds::default() };
     }
     let eighth = (high - low) * (high - low) / 8.0;
-    let curvature = larger(2.0 * c[2] + 6.0 * c[3] * low, 2.0 * c[2] + 6.0 * c[3] * high);
+    let (from, to) = (2.0 * c[2] + 6.0 * c[3] * low, 2.0 * c[2] + 6.0 * c[3] * high);
+    let curvature = larger(from, to);
     Bounds {
         value: larger(value_of(c, low), value_of(c, high)) + curvature * eighth,
         slope: larger(slope_of(c, low), slope_of(c, high)) + (6.0 * c[3]).abs() * eighth,
         curvature,
+        curvature_range: [from.min(to), from.max(to)],
         ..Bounds::default()
     }
 }
@@ -160,6 +164,9 @@ fn join(so_far: &mut Bounds, other: &Bounds) {
     so_far.value = so_far.value.max(other.value);
     so_far.slope = so_far.slope.max(other.slope);
     so_far.curvature = so_far.curvature.max(other.curvature);
+    let [low, high] = &mut so_far.curvature_range;
+    *low = low.min(other.curvature_range[0]);
+    *high = high.max(other.curvature_range[1]);
 }
 
 /// One error function of one axis command.
@@ -278,6 +285,9 @@ pub(crate) fn bounds_over(grid: &Grid, range: Range, cubic: impl Fn(usize) -> Cu
         let jump = slope_of(&cubic(k), 0.0) - slope_of(&cubic(k - 1), nodes[k] - nodes[k - 1]);
         kink(&mut all, nodes[k], real_jump(jump, &cubic(k), &cubic(k - 1)));
         join(&mut all, &bounds_of(&cubic(k), 0.0, end(k)));
+    }
+    if range.low < grid.low() || range.high > grid.high() {
+        join(&mut all, &Bounds::default());
     }
     // Beyond the ends the function is constant: a kink where the interval reaches over an end.
     if range.low < grid.low() && range.high > grid.low() {

@@ -150,7 +150,7 @@ fn first_order_is_teleshevskys_formula() {
 const CHAINS: [&str; 4] = ["[w X Y b Z t]", "[w Y X b Z t]", "[w Z b X Y t]", "[w X Y Z b t]"];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
 
     /// Halving all errors must quarter the difference between the product and the first-order sum.
     #[test]
@@ -269,7 +269,7 @@ proptest! {
 #[test]
 fn the_bound_is_tight() {
     let mut random = Random::new(5);
-    for (monotone, most) in [(false, 1.35), (true, 2.6)] {
+    for (monotone, most) in [(false, 1.35), (true, 1.8)] {
         let mut ratios = Vec::new();
         for seed in 0..400 {
             let model = RigidBody::new(machine(seed, "[w X Y b Z t]", monotone, 1.0)).unwrap();
