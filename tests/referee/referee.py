@@ -201,17 +201,20 @@ class Judge:
             at = next((k for k, (a, b) in enumerate(zip(runs_in, runs_out)) if a[0] != b[0]), min(len(runs_in), len(runs_out)))
             line = moves_out[runs_out[at][1][0]].line if at < len(runs_out) else None
             self.failures.append(f"rapids and feeds do not follow each other as in the original, from line {line}")
+        # Only a cycle goes both at rapid and at feed rate on one line.
+        cycle_lines = {move.line for move in moves_in if move.rapid} & {move.line for move in moves_in if not move.rapid}
         skipped = 0
         for (kind, a), (other, b) in zip(runs_in, runs_out):
             if kind != other:
                 break
             wanted, taken = [moves_in[k] for k in a], [moves_out[k] for k in b]
-            if kind == "rapid" and len(wanted) != len(taken):
+            in_cycle = kind == "rapid" and any(move.line in cycle_lines for move in wanted)
+            if in_cycle and len(wanted) != len(taken):
                 # What a cycle does between two feeds is the control's: it may go in one move or in three, or
                 # nowhere. Where the next feed starts is what counts.
                 wanted, taken = wanted[-1:], taken[-1:]
-            if kind == "exempt" and len(wanted) != len(taken):
-                self.failures.append(f"{len(taken)} moves for {len(wanted)} of the original, from line {taken[0].line}")
+            if kind != "feed" and len(wanted) != len(taken):
+                self.failures.append(f"{len(taken)} {kind} moves for {len(wanted)} of the original, from line {taken[0].line}")
                 continue
             if kind == "exempt":
                 for one, two in zip(wanted, taken):
@@ -220,7 +223,7 @@ class Judge:
             elif kind == "rapid":
                 for one, two in zip(wanted, taken):
                     if one.known:
-                        worst = rapids if one is wanted[-1] else on_the_way
+                        worst = on_the_way if in_cycle and one is not wanted[-1] else rapids
                         worst.see(self.point_deviation(one, one.end, two.end), two.line)
                     else:
                         skipped += 1
