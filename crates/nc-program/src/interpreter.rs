@@ -110,23 +110,45 @@ impl<'d> Interpreter<'d> {
     /// What the block asks for cannot be told with certainty ([`crate::codes`]); the state is then as it
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
-        let mut state = self.modal;
-        match run(&self.env, &self.modal, &mut state, block) {
-            Ok(step) => {
-                self.modal = state;
-                Ok(step)
+        let before = &self.modal;
+        let mut state = *before;
+        let mut moved = Moved { repeats: 1, ..Moved::default() };
+        match run(&self.env, before, &mut state, &mut moved, block) {
+            Ok(skip) => {
+                let step = Step {
+                    context: context(&self.env, before, &state, &moved, skip.is_some()),
+                    motions: moved.motions,
+                    ends_program: state.progress == Progress::Ended,
+                };
+                match skip {
+                    None => {
+                        self.modal = state;
+                        Ok(step)
+                    }
+                    Some(merged) => {
+                        self.modal = *merged;
+                        Ok(Step { ends_program: self.modal.progress == Progress::Ended, ..step })
+                    }
+                }
             }
             Err(diagnostic) => Err(vec![*diagnostic]),
         }
     }
 }
 
-/// What a block does; `state`, which comes in equal to `before`, is left as it is after the block.
+/// Executes a block on `state` (which comes in equal to `before`) and collects what moves in `moved`.
+///
+/// Where the block may be skipped: also the state that serves both ways.
 #[inline]
-fn run(env: &Environment<'_>, before: &Modal, state: &mut Modal, block: &Block<'_>) -> Outcome<Step> {
-    let mut moved = Moved { repeats: 1, ..Moved::default() };
+fn run(
+    env: &Environment<'_>,
+    before: &Modal,
+    state: &mut Modal,
+    moved: &mut Moved,
+    block: &Block<'_>,
+) -> Outcome<Option<Box<Modal>>> {
     if before.progress == Progress::Ended {
-        return Ok(step(env, before, state, moved, false));
+        return Ok(None);
     }
     let mut words = Words::new(block, env.dialect);
     words.read()?;
@@ -138,22 +160,19 @@ fn run(env: &Environment<'_>, before: &Modal, state: &mut Modal, block: &Block<'
         };
     }
     if words.is_idle() || state.progress == Progress::Ended {
-        return Ok(step(env, before, state, moved, words.skip));
+        return Ok(words.skip.then(|| Box::new(*state)));
     }
     state.progress = Progress::Running;
     let demand = settings::apply(env, &words, before, state)?;
-    motion::execute(env, &words, &demand, before, state, &mut moved)?;
+    motion::execute(env, &words, &demand, before, state, moved)?;
     if !words.m_codes.is_empty() {
-        miscellaneous(env, &words, state, &mut moved)?;
+        miscellaneous(env, &words, state, moved)?;
     }
     if words.skip {
-        let merged = delete::merge(&words, before, state, !moved.motions.is_empty())?;
-        let mut step = step(env, before, state, moved, true);
-        step.ends_program = false;
-        *state = merged;
-        return Ok(step);
+        return delete::merge(&words, before, state, !moved.motions.is_empty())
+            .map(|both| Some(Box::new(both)));
     }
-    Ok(step(env, before, state, moved, false))
+    Ok(None)
 }
 
 /// M codes that the dialect's table names.
@@ -189,27 +208,23 @@ fn miscellaneous(
 }
 
 #[inline]
-fn step(env: &Environment<'_>, before: &Modal, state: &Modal, moved: Moved, skip: bool) -> Step {
+fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved, skip: bool) -> Context {
     let tool_mm = match state.tool_length {
         ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
         // Where G44 subtracts the vector, the tool points the other way.
         ToolLength::On { applied_mm, .. } => applied_mm.map(|v| 0.0 - v),
     };
-    Step {
-        motions: moved.motions,
-        context: Context {
-            frame: Frame::shift(position::shift_mm(state).unwrap_or([0.0; 3])),
-            unit_mm: state.units.mm(),
-            incremental: state.distance == Distance::Incremental,
-            arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
-            plane: state.plane,
-            tool_mm,
-            motion_code: state.motion_code(),
-            arc_by_radius: moved.arc_by_radius,
-            compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
-            skip,
-            repeats: moved.repeats,
-        },
-        ends_program: state.progress == Progress::Ended,
+    Context {
+        frame: Frame::shift(position::shift_mm(state).unwrap_or([0.0; 3])),
+        unit_mm: state.units.mm(),
+        incremental: state.distance == Distance::Incremental,
+        arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
+        plane: state.plane,
+        tool_mm,
+        motion_code: state.motion_code(),
+        arc_by_radius: moved.arc_by_radius,
+        compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
+        skip,
+        repeats: moved.repeats,
     }
 }
