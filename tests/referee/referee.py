@@ -141,6 +141,13 @@ class Judge:
         """Where the machine takes the tool."""
         return self.machine.forward(self.command(move, program), self.machine.tool_vector(move.tool))
 
+    def tip_anywhere(self, move, program):
+        """The same; beyond the calibrated volume with the errors of its nearest point."""
+        command = self.command(move, program)
+        inside = self.machine.clamp(command)
+        tip = self.machine.forward(inside, self.machine.tool_vector(move.tool))
+        return tuple(t + c - i for t, c, i in zip(tip, command, inside))
+
     def nominal(self, move, program):
         """Where the program wants the tool."""
         c, t = self.command(move, program), self.machine.tool_vector(move.tool)
@@ -209,9 +216,9 @@ class Judge:
                 break
             wanted, taken = [moves_in[k] for k in a], [moves_out[k] for k in b]
             in_cycle = kind == "rapid" and any(move.line in cycle_lines for move in wanted)
-            if in_cycle and len(wanted) != len(taken):
-                # What a cycle does between two feeds is the control's: it may go in one move or in three, or
-                # nowhere. Where the next feed starts is what counts.
+            if in_cycle:
+                self.way_round(wanted, taken, on_the_way)
+                # In one move or in three: where the next feed starts is what counts.
                 wanted, taken = wanted[-1:], taken[-1:]
             if kind != "feed" and len(wanted) != len(taken):
                 self.failures.append(f"{len(taken)} {kind} moves for {len(wanted)} of the original, from line {taken[0].line}")
@@ -223,8 +230,7 @@ class Judge:
             elif kind == "rapid":
                 for one, two in zip(wanted, taken):
                     if one.known:
-                        worst = on_the_way if in_cycle and one is not wanted[-1] else rapids
-                        worst.see(self.point_deviation(one, one.end, two.end), two.line)
+                        rapids.see(self.point_deviation(one, one.end, two.end), two.line)
                     else:
                         skipped += 1
             else:
@@ -258,6 +264,16 @@ class Judge:
             },
             "failures": self.failures,
         }
+
+    def way_round(self, wanted, taken, worst):
+        """A cycle's rapids between two feeds, both ways: the tool leaves the hole and comes to the next as it should."""
+        if not wanted[0].known:
+            return
+        path = [self.nominal(wanted[0], wanted[0].start)] + [self.nominal(move, move.end) for move in wanted]
+        tips = [self.tip_anywhere(taken[0], taken[0].start)] + [self.tip_anywhere(move, move.end) for move in taken]
+        for corners, other in ((path, tips), (tips, path)):
+            for corner in corners:
+                worst.see(min(to_segment(a, b, corner) for a, b in zip(other, other[1:])), taken[0].line)
 
     def check_time(self, wanted, taken):
         """Feeds: the stretch takes as long as before."""
