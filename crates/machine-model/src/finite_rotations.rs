@@ -1,4 +1,4 @@
-//! Finite rotations to second order (Pimushkin 2023, chapter 3; `methods.md` §5).
+//! Finite rotations to second order (Pimushkin 2023, chapter 3): equations (20) to (22) of `docs/equations.md`.
 //!
 //! Every linear axis turns the tool by three small rotations; nine in all. Rotations do not commute, so
 //! to second order the result depends on the order in which they are composed, and nobody knows that

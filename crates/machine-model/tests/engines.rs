@@ -303,7 +303,7 @@ fn kmtpp_bounds_and_inverts_bent_machines_on_both_sides_of_the_origin() {
     }
 }
 
-/// methods.md §4: 2 to 6 µm at 200 mm on the STAN S500 tables.
+/// Expected from a prototype: 2 to 6 µm at 200 mm on the STAN S500 tables.
 #[test]
 fn kmtpp_depends_on_the_path() {
     let engine = Kmtpp::from_measurements(&tables(), &traverses(315)).unwrap();

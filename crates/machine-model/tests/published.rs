@@ -132,6 +132,26 @@ fn published_kmtpp_table_4_9_reproduces_in_steps_but_in_one_point_only() {
     assert_printed(&solution.linear_mm, [129.545, 139.663, 105.239], 1e-3);
 }
 
+/// Printed as positions that the tracker measured after the solutions were driven to; nine of ten are the
+/// solutions themselves, to the last digit.
+#[test]
+fn published_kmtpp_tables_4_3_and_4_4_are_commands_and_not_measurements() {
+    let target = Command { linear_mm: Vector::from(TARGET), ..at(0.0, 0.0, 0.0) };
+    let rows = published("tables_4_3_4_4_kmtpp_far_point");
+    assert_eq!(rows.len(), 10);
+    for row in rows {
+        let engine = KmtppPublished::new(tables(), &traverses(315), row[0], row[1]).unwrap();
+        let solution = engine.solve(&target).unwrap();
+        let steps = f64::from(solution.iterations);
+        if (row[0], row[1]) == (1.0, 0.015) {
+            assert_eq!((steps, row[2]), (175.0, 152.0), "this row is of another run");
+        } else {
+            assert_eq!(steps, row[2]);
+            assert_printed(&solution.linear_mm, [row[3], row[4], row[5]], 1e-3);
+        }
+    }
+}
+
 /// The error that K and l seem to steer is that of the rounded node.
 #[test]
 fn published_kmtpp_errs_by_the_distance_of_the_last_command_from_its_node() {

@@ -169,6 +169,14 @@ pub(super) fn kmtpp() -> String {
         .map(|r| row(&coarse, r[0], 0.1, fifty, r[0].to_string(), r[1], printed(r, 2)))
         .collect();
     text += &table(&head("K"), &rows);
+    text += "\nTables 4.3 (K = 1.5) and 4.4 (K = 1), target (130, 140, 106); the printed columns are said to be positions measured by the tracker:\n\n";
+    let rows: Vec<_> = published("tables_4_3_4_4_kmtpp_far_point")
+        .iter()
+        .map(|r| {
+            row(&coarse, r[0], r[1], Vector::from(TARGET), format!("{}, {}", r[0], r[1]), r[2], printed(r, 3))
+        })
+        .collect();
+    text += &table(&head("K, l"), &rows);
     text += "\nTable 4.9, tables refined linearly to 2 mm, K = 1.5, l = 0.1 (\
              `vpost solve samples/points/table_4_9_targets.csv … --engine kmtpp-published` solves the same points on the coarse tables):\n\n";
     let fine = tables().map(|rows| rows.refined(2.0));
@@ -185,7 +193,10 @@ pub(super) fn kmtpp() -> String {
          With q[m] as base (last column) K and l stop to matter. Tables 4.1–4.4 measure this rounding.\n\
          3. Table 4.1: the rows l = 0.1 and l = 0.015 are swapped; Table 4.2's row K = 1.5 repeats the swapped one. The recommended l = 0.1 rests on it.\n\
          4. Table 4.9: m reproduces for all seven points, q for (50, 50, 50) only.\n\
-         5. The linear errors δ of the same tables are never used.\n\n\
+         5. Tables 4.3 and 4.4 print \"positions of the drives measured by the tracker\" after the solutions were entered. Nine of the ten are the \
+         solutions of the listing themselves, to the last digit (the tenth, K = 1, l = 0.015, is of another run: m is 175, not 152): \
+         they are commands, no measurement. So nothing measured supports these two tables.\n\
+         6. The linear errors δ of the same tables are never used.\n\n\
          The consistent engine `kmtpp` needs neither K nor l and gives {} for (50, 50, 50) and {} for (130, 140, 106); it adds EXX, EYY, EZZ. \
          `docs/engines.md` says where its premise and the rigid body part.\n\n",
         vector(&command(&product, fifty), 3),

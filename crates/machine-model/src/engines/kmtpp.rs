@@ -1,4 +1,4 @@
-//! `kmtpp`: the premise of Pimushkin 2023, chapter 4, made consistent (`methods.md` §4).
+//! `kmtpp`: the premise of Pimushkin 2023, chapter 4, made consistent: equation (18) of `docs/equations.md`.
 //!
 //! All axis directions turn with the total rotation `E(q)` of the point:
 //!

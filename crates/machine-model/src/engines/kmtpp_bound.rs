@@ -1,4 +1,4 @@
-//! How far the error of [`Kmtpp`] can leave its chord.
+//! How far the error of [`Kmtpp`] can leave its chord: equation (19) of `docs/equations.md`.
 //!
 //! With `Q` the command relative to the origin and `H(Q) = ∫₀¹ F(E(tQ)) dt` the error is
 //! `e = r01 + (H L - 1) Q + positioning`. Along a stretch `Q(s)`

@@ -7,7 +7,7 @@
 //!   *command* integrated along each axis. (The publication takes the interval of the target; the two
 //!   differ only within the error's distance of a node.)
 //!
-//! Both are sums over the axes, so [`Separable`] carries them. A unit tangent knows nothing of scale: a
+//! Equation (17) of `docs/equations.md`. Both are sums over the axes, so [`Separable`] carries them. A unit tangent knows nothing of scale: a
 //! step that is 0.1 % too long has the same cosines as one that is right.
 
 use super::BuildError;

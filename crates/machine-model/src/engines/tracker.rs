@@ -1,4 +1,4 @@
-//! `tracker`: positions add, `p(q) = Σ_i P_i(q_i)` (`methods.md` §3, last paragraph).
+//! `tracker`: positions add, `p(q) = Σ_i P_i(q_i)`: equation (15) of `docs/equations.md`.
 //!
 //! `P_i` is the measured traverse of axis i relative to the common origin, with its signs, interpolated
 //! between the nodes. The order of motion does not matter. What one axis does to the lines of another

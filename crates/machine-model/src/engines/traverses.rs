@@ -1,4 +1,4 @@
-//! Three axis traverses as the tangential methods read them (`methods.md` §3).
+//! Three axis traverses as the tangential methods read them: equation (16) of `docs/equations.md`.
 
 use nalgebra::Matrix3;
 

@@ -56,25 +56,48 @@ pub fn traverses(cube: u32) -> [Traverse; 3] {
     })
 }
 
-/// Slope of component `c` along a traverse, least squares, mm/mm.
-pub fn slope(traverse: &Traverse, c: usize) -> f64 {
-    let n = traverse.nodes_mm.len() as f64;
-    let mean_q = traverse.nodes_mm.iter().sum::<f64>() / n;
-    let mean_p = traverse.measured_mm.iter().map(|p| p[c]).sum::<f64>() / n;
+/// Slope of the least-squares line with intercept.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (mean_q, mean_p) = (mean(|p| p.0), mean(|p| p.1));
     let (mut covariance, mut variance) = (0.0, 0.0);
-    for (q, p) in traverse.nodes_mm.iter().zip(&traverse.measured_mm) {
-        covariance += (q - mean_q) * (p[c] - mean_p);
+    for (q, p) in points {
+        covariance += (q - mean_q) * (p - mean_p);
         variance += (q - mean_q) * (q - mean_q);
     }
     covariance / variance
 }
 
-/// Squareness from the directions of three traverses, ISO 230-1 signs: equation (5) read backwards.
-pub fn squareness([x, y, z]: &[Traverse; 3]) -> Squareness {
+/// Slopes of the traverses against the commands, scale error on the diagonal: `[i][c]` of axis i towards c.
+pub fn traverse_slopes(traverses: &[Traverse; 3]) -> [Vector; 3] {
+    [0, 1, 2].map(|i| {
+        let line = |c: usize| {
+            traverses[i].nodes_mm.iter().copied().zip(traverses[i].measured_mm.iter().map(move |p| p[c]))
+        };
+        Vector::from_fn(|c, _| slope(&line(c).collect::<Vec<_>>()) - if c == i { 1.0 } else { 0.0 })
+    })
+}
+
+/// Slopes that the interferometer tables keep in themselves, over the 315 mm of the traverses.
+pub fn table_slopes(tables: &[ParametricTable; 3]) -> [Vector; 3] {
+    [0, 1, 2].map(|i| {
+        let positions = tables[i].positions_mm().iter().copied().enumerate().filter(|(_, q)| *q <= 315.0);
+        let rows: Vec<(usize, f64)> = positions.collect();
+        let line = |c: usize| rows.iter().map(move |&(k, q)| (q, tables[i].linear_mm(k)[c]));
+        Vector::from_fn(|c, _| slope(&line(c).collect::<Vec<_>>()))
+    })
+}
+
+/// Squareness that is left to say beside the tables, ISO 230-1 signs: the angles between the traverses less those
+/// that the slopes of the straightness tables already hold (a slope is counted once; docs/decisions.md).
+pub fn squareness(tables: &[ParametricTable; 3], traverses: &[Traverse; 3]) -> Squareness {
+    let (seen, held) = (traverse_slopes(traverses), table_slopes(tables));
+    let left = |i: usize, c: usize| seen[i][c] - held[i][c];
     Squareness {
-        ec0y_rad: -(slope(y, 0) + slope(x, 1)),
-        eb0z_rad: slope(z, 0) + slope(x, 2),
-        ea0z_rad: -(slope(z, 1) + slope(y, 2)),
+        ec0y_rad: -(left(1, 0) + left(0, 1)),
+        eb0z_rad: left(2, 0) + left(0, 2),
+        ea0z_rad: -(left(2, 1) + left(1, 2)),
     }
 }
 

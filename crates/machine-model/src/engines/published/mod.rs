@@ -1,6 +1,6 @@
 //! The engines exactly as published, for `solve` and for tests: they reproduce, they do not correct.
 //!
-//! Their defects are part of them (`methods.md` §3 and §4, `docs/reproduction.md`): cosines without
+//! Their defects are part of them (`docs/reproduction.md`): cosines without
 //! signs, a transposed matrix, a base rounded to a node.
 
 mod kmtpp;
