@@ -21,37 +21,46 @@ impl Block<'_> {
                 101,
                 format!("`{shown}` is not a number a control reads"),
                 "expected a sign, digits and one decimal point",
-                "write it like `X-12.5`: no exponent, one sign, a point and not a comma",
+                "write it like `X-12.5`: no exponent, one sign, a point and not a comma".to_owned(),
             ),
             Invalid::TooManyDigits => (
                 102,
                 format!("`{shown}` has more than 15 digits"),
                 "not exact in any control",
-                "round it to the decimals of the machine's input step, 3 or 4",
+                "round it to the decimals of the machine's input step, 3 or 4".to_owned(),
             ),
             Invalid::UnclosedComment => (
                 103,
                 "the comment is not closed".to_owned(),
                 "this bracket has no partner in its line",
-                "close the comment with `)` on the same line",
+                "close the comment with `)` on the same line".to_owned(),
             ),
             Invalid::UnclosedBracket => (
                 104,
                 format!("`{shown}` has a bracket without its partner"),
                 "brackets must close in the block they open in",
-                "add the missing bracket or remove this one",
+                "add the missing bracket or remove this one".to_owned(),
             ),
-            Invalid::Text => (
-                105,
-                format!("`{shown}` is not a word, a comment or a command of this dialect"),
-                "expected a letter and a number",
-                "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`",
-            ),
+            Invalid::Text => match cyrillic_twin(&shown) {
+                Some((cyrillic, latin)) => (
+                    105,
+                    format!("`{shown}` starts with a Cyrillic `{cyrillic}`"),
+                    "it looks like a Latin letter, and no control reads it",
+                    format!("type the Latin `{latin}`"),
+                ),
+                None => (
+                    105,
+                    format!("`{shown}` is not a word, a comment or a command of this dialect"),
+                    "expected a letter and a number",
+                    "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`"
+                        .to_owned(),
+                ),
+            },
             Invalid::TooLong => (
                 106,
                 format!("the block is {length} bytes long; the longest that is read is {MAX_BLOCK_BYTES}"),
                 "no line end within that length",
-                "check that this is a part program and that its line ends arrived with it",
+                "check that this is a part program and that its line ends arrived with it".to_owned(),
             ),
         };
         // A caret under a gigabyte helps nobody.
@@ -60,6 +69,31 @@ impl Block<'_> {
             .at(self.file_span(Span { start: span.start, end }), label)
             .help(help)
     }
+}
+
+/// The Latin letter that the text's first letter looks like, where that is Cyrillic (UTF-8).
+fn cyrillic_twin(text: &str) -> Option<(char, char)> {
+    const TWINS: [(char, char); 12] = [
+        ('А', 'A'),
+        ('В', 'B'),
+        ('Е', 'E'),
+        ('К', 'K'),
+        ('М', 'M'),
+        ('Н', 'H'),
+        ('О', 'O'),
+        ('Р', 'P'),
+        ('С', 'C'),
+        ('Т', 'T'),
+        ('У', 'Y'),
+        ('Х', 'X'),
+    ];
+    let first = text.chars().next()?;
+    let upper = first.to_uppercase().next()?;
+    let (_, latin) = TWINS.into_iter().find(|(cyrillic, _)| *cyrillic == upper)?;
+    // Prose starts with such letters too: only a letter with a number is a mistyped word.
+    let number =
+        text.chars().nth(1).is_some_and(|next| next.is_ascii_digit() || matches!(next, '.' | '+' | '-'));
+    number.then_some((first, latin))
 }
 
 /// The bytes as a person can read them: short, nothing that moves a terminal's cursor.

@@ -30,7 +30,11 @@ pub(crate) const fn is_blank(byte: u8) -> bool {
 
 /// First byte at or after `at` that is not blank.
 pub(crate) fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
-    while bytes.get(at).is_some_and(|byte| is_blank(*byte)) {
+    while let Some(&byte) = bytes.get(at) {
+        // Most bytes are decided by the first comparison.
+        if (byte > b' ' && byte != 0x7F) || !is_blank(byte) {
+            break;
+        }
         at += 1;
     }
     at
@@ -85,6 +89,16 @@ impl<'d> Lexer<'d> {
             if byte == b';' && self.semicolon == Semicolon::EndOfBlock {
                 return at + 1;
             }
+            // A letter and a plain number: what nearly every item is. O may start a statement.
+            let letter = byte.to_ascii_uppercase();
+            if self.has_letter(letter)
+                && letter != b'O'
+                && let Some((number, end)) = common_number(line, at + 1, self.spaces_inside)
+            {
+                push(items, ItemKind::Word { letter, value: Value::Number(number) }, at, end);
+                at = end;
+                continue;
+            }
             let (kind, end) =
                 if byte.is_ascii_alphabetic() { self.letter(line, at) } else { self.other(line, at) };
             push(items, kind, at, end);
@@ -107,7 +121,11 @@ impl<'d> Lexer<'d> {
         match run {
             0 => text.first().is_some_and(u8::is_ascii_digit),
             1 => false,
-            _ => !(is_flow_word(&text[..run]) || text.get(run) == Some(&b'[') && is_function(&text[1..run])),
+            _ => {
+                let function = text.get(run) == Some(&b'[') && is_function(&text[1..run]);
+                let command = self.commands.iter().any(|command| names(command, text));
+                !(function || command || is_flow_word(&text[..run]))
+            }
         }
     }
 
@@ -123,7 +141,6 @@ impl<'d> Lexer<'d> {
     }
 
     /// An item that starts with a letter.
-    #[inline(always)]
     fn letter(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let letter = line[at].to_ascii_uppercase();
         if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
@@ -172,16 +189,7 @@ impl<'d> Lexer<'d> {
     }
 
     /// What follows a word's letter, which stands just before `at`.
-    #[inline(always)]
     fn value(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
-        if let Some((plain, end)) = common_number(line, at, self.spaces_inside) {
-            return (Ok(Value::Number(plain)), end);
-        }
-        self.uncommon_value(line, at)
-    }
-
-    /// Values with spaces, variables, expressions, and what is none.
-    fn uncommon_value(&self, line: &[u8], at: usize) -> (Result<Value, Invalid>, usize) {
         let start = skip_spaces(line, at);
         if self.equals_words && line.get(start) == Some(&b'=') {
             return self.assigned(line, skip_spaces(line, start + 1));

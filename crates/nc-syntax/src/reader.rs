@@ -26,7 +26,7 @@ pub struct Reader<'a> {
     line: u64,
     /// End of the line `at` is on: without and with its line end.
     line_end: (usize, usize),
-    /// True between the opening `%` and the first thing that is executed or is a name.
+    /// True between a `%` without a name beside it and the first thing that is executed or is a name.
     name_line: bool,
 }
 
@@ -93,8 +93,7 @@ impl<'a> Reader<'a> {
         }
         match items.first().map(|item| item.kind) {
             None | Some(ItemKind::Comment) => {}
-            // A name on the `%` line leaves room for the bare name line below it.
-            Some(ItemKind::Percent) => self.name_line = true,
+            Some(ItemKind::Percent) => self.name_line = !items.iter().any(|item| item.kind == ItemKind::Name),
             Some(_) => self.name_line = false,
         }
         end

@@ -1,54 +1,11 @@
 //! Every trap of "Text" in the list of what breaks programs, by name.
 
-use nc_syntax::dialect::{CycleLevels, Numbers, Output, Paren, PointFree, Semicolon};
+use common::{conventional, dialect};
+use nc_syntax::dialect::{Paren, PointFree, Semicolon};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Reader, Value};
 use proptest::prelude::*;
 
-/// A dialect without codes: reading needs none.
-fn dialect() -> Dialect {
-    Dialect {
-        name: "test".to_owned(),
-        title: String::new(),
-        assumptions: Vec::new(),
-        paren: Paren::Comment { nested: false },
-        semicolon: Semicolon::Comment,
-        skip: Some(b'/'),
-        colon_number: true,
-        equals_words: false,
-        letters: (b'A'..=b'Z').collect(),
-        numbers: Numbers {
-            point_free: PointFree::Unit,
-            least_increment_decimals_mm: 3,
-            least_increment_decimals_inch: 4,
-            spaces_inside: true,
-        },
-        codes: Vec::new(),
-        m_codes: Vec::new(),
-        commands: Vec::new(),
-        initial: Vec::new(),
-        cycle_levels: CycleLevels::Unstated,
-        length_of_loaded_tool: false,
-        output: Output {
-            decimals_inch: 4,
-            decimals_feed: 3,
-            max_block_bytes: 0,
-            number_inserted_blocks: false,
-            max_block_number: 99_999,
-            centre_words: true,
-            radius_word: true,
-            arc_radius_tolerance_mm: 0.01,
-            peck_clearance_mm: 1.0,
-            chip_retreat_mm: 0.5,
-        },
-    }
-}
-
-fn conventional() -> Dialect {
-    let mut dialect = dialect();
-    dialect.semicolon = Semicolon::EndOfBlock;
-    dialect.numbers.spaces_inside = false;
-    dialect
-}
+mod common;
 
 /// One line per block: what stands in it, in the order it stands.
 fn shown(text: &[u8], dialect: &Dialect) -> Vec<String> {
@@ -269,6 +226,12 @@ fn words_with_an_equals_sign() {
     assert_eq!(shown(b"MSG(\"part X1\")", &sinumerik), ["BracketCommand<MSG(\"part X1\")>"]);
     assert_eq!(shown(b"MSG (\"a (b)\") G1 X2", &sinumerik), ["BracketCommand<MSG (\"a (b)\")> G1 X2"]);
     assert_eq!(shown(b"N5 SOFT G1 X2", &sinumerik), ["N5 BracketCommand<SOFT> G1 X2"]);
+    // Below a name on the % line, and in any case for a command, a bare line is no name.
+    assert_eq!(
+        shown(b"%_N_A_MPF\nCYCLE(1)\n", &sinumerik),
+        ["Percent<%> Name<_N_A_MPF>", "Text<CYCLE> comment"]
+    );
+    assert_eq!(shown(b"%\nTRANS X10\n", &sinumerik), ["Percent<%>", "BracketCommand<TRANS X10>"]);
     assert_eq!(shown(b"TRANSMIT", &sinumerik), ["Text<TRANSMIT>"]);
 }
 
@@ -302,6 +265,17 @@ fn places_are_the_files() {
     let diagnostic = block.unreadable().unwrap();
     assert_eq!((diagnostic.code.0, diagnostic.span), (101, Some(8..12)));
     assert_eq!(diagnostic.message, "`Y--2` is not a number a control reads");
+}
+
+#[test]
+fn a_cyrillic_letter_is_named() {
+    let (dialect, mut block) = (dialect(), Block::default());
+    assert!(Reader::new("G1 Х10.5 Y2".as_bytes(), &dialect).next(&mut block));
+    let diagnostic = block.unreadable().unwrap();
+    assert_eq!(diagnostic.message, "`Х10.5` starts with a Cyrillic `Х`");
+    assert_eq!(diagnostic.help.as_deref(), Some("type the Latin `X`"));
+    assert!(Reader::new("деталь".as_bytes(), &dialect).next(&mut block));
+    assert!(block.unreadable().unwrap().message.contains("is not a word"));
 }
 
 fn lossless(text: &[u8], dialect: &Dialect) -> Result<(), TestCaseError> {

@@ -1,0 +1,51 @@
+//! Dialects that tests read with.
+
+use nc_syntax::Dialect;
+use nc_syntax::dialect::{CycleLevels, Numbers, Output, Paren, PointFree, Semicolon};
+
+/// A dialect without codes: reading needs none.
+pub(crate) fn dialect() -> Dialect {
+    Dialect {
+        name: "test".to_owned(),
+        title: String::new(),
+        assumptions: Vec::new(),
+        paren: Paren::Comment { nested: false },
+        semicolon: Semicolon::Comment,
+        skip: Some(b'/'),
+        colon_number: true,
+        equals_words: false,
+        letters: (b'A'..=b'Z').collect(),
+        numbers: Numbers {
+            point_free: PointFree::Unit,
+            least_increment_decimals_mm: 3,
+            least_increment_decimals_inch: 4,
+            spaces_inside: true,
+        },
+        codes: Vec::new(),
+        m_codes: Vec::new(),
+        commands: Vec::new(),
+        initial: Vec::new(),
+        cycle_levels: CycleLevels::Unstated,
+        length_of_loaded_tool: false,
+        output: Output {
+            decimals_inch: 4,
+            decimals_feed: 3,
+            max_block_bytes: 0,
+            number_inserted_blocks: false,
+            max_block_number: 99_999,
+            centre_words: true,
+            radius_word: true,
+            arc_radius_tolerance_mm: 0.01,
+            peck_clearance_mm: 1.0,
+            chip_retreat_mm: 0.5,
+        },
+    }
+}
+
+/// The same, of the conventional type: `;` ends blocks, no spaces in numbers.
+pub(crate) fn conventional() -> Dialect {
+    let mut dialect = dialect();
+    dialect.semicolon = Semicolon::EndOfBlock;
+    dialect.numbers.spaces_inside = false;
+    dialect
+}
