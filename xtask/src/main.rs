@@ -1,6 +1,7 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
 mod engines;
+mod gap_bench;
 mod markdown;
 mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
@@ -21,6 +22,14 @@ struct Arguments {
 enum Task {
     /// Print docs/engines.md: the engines against one another.
     Engines,
+    /// Diagnose machines with withheld effects and write docs/diagnosis-benchmark.md.
+    GapBench(gap_bench::Options),
+    /// Write the sample measurements into a folder.
+    GapSamples {
+        /// Where they go.
+        #[arg(default_value = "samples/diagnosis")]
+        folder: std::path::PathBuf,
+    },
     /// Print docs/reproduction.md: printed numbers beside ours.
     Reproduction,
 }
@@ -28,6 +37,8 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
         Task::Engines => engines::page(),
+        Task::GapBench(options) => gap_bench::run(&options)?,
+        Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
         Task::Reproduction => reproduction::page(),
     };
     std::io::stdout().write_all(text.as_bytes())?;

@@ -178,7 +178,7 @@ impl CaseSpec {
             .iter()
             .map(|e| Withheld {
                 effect: Some(*e),
-                amplitude: dice.sign(),
+                amplitude: if e.one_signed() { 1.0 } else { dice.sign() },
                 form: form(*e, &machine, layout.span, dice, bend),
             })
             .collect();

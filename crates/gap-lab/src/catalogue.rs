@@ -157,7 +157,7 @@ pub fn sample_cases() -> Vec<(&'static str, CaseSpec)> {
         index,
         seed: 2026,
         kind: Kind::Single,
-        plans: vec![plan],
+        plans: vec![plan; 40],
         effects,
         snr,
         noise: NoiseKind::RunOffsets,
@@ -166,7 +166,7 @@ pub fn sample_cases() -> Vec<(&'static str, CaseSpec)> {
     };
     let blind = Plan::Aliased(Alias::LagOrBacklash, 1);
     let two = CaseSpec {
-        kind: Kind::Multiple,
+        kind: Kind::Single,
         ..base(900_002, vec![Effect::Squareness(0, 1), Effect::Scale(1)], vec![10.0, 6.0], Plan::Sparse)
     };
     vec![

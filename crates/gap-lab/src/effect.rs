@@ -113,6 +113,11 @@ impl Effect {
         vec![Self::RotaryC(0), Self::RotaryC(1), Self::Eccentricity]
     }
 
+    /// True where nature knows one sign only: play and lag hold back, gravity pulls down.
+    pub(crate) fn one_signed(self) -> bool {
+        matches!(self, Self::Backlash(_) | Self::ServoLag(_) | Self::Sag(_))
+    }
+
     /// True where the effect changes with time or load and so must be seen within a run, not between runs.
     pub(crate) fn needs_long_runs(self) -> bool {
         matches!(self, Self::Warmup(_) | Self::Step(_) | Self::Load(_) | Self::InstrumentDrift)

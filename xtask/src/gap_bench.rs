@@ -1,0 +1,211 @@
+//! Runs `vpost diagnose` on the lab's cases and scores the answers against the truth.
+//!
+//! The bench knows the command by its files only: it writes the files of a case into a folder of its own,
+//! starts the released command there, reads the JSON, and compares. What each figure means stands in
+//! [`page`], which writes the document.
+
+mod answer;
+mod outcome;
+mod page;
+mod scores;
+mod table;
+mod transport;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use clap::Args;
+use gap_lab::{Case, CaseSpec, catalogue};
+use rayon::prelude::*;
+
+use answer::Answer;
+use outcome::Outcome;
+
+/// Options of the benchmark.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Number of cases; the mixture of kinds stays the same.
+    #[arg(long, default_value_t = 1200)]
+    cases: usize,
+    /// Seed of the cases.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The command under test; default: the release build beside this program, built first.
+    #[arg(long)]
+    vpost: Option<PathBuf>,
+    /// Cases at the same time.
+    #[arg(long, default_value_t = 2)]
+    jobs: usize,
+    /// Keep the files of every case, the answers and a table of outcomes in this folder.
+    #[arg(long)]
+    keep: Option<PathBuf>,
+    /// Only cases whose id contains this text; nothing is written to docs/ then.
+    #[arg(long)]
+    only: Option<String>,
+    /// Where the page goes.
+    #[arg(long, default_value = "docs/diagnosis-benchmark.md")]
+    page: PathBuf,
+}
+
+/// Longest time one diagnosis may take.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Makes the cases, runs the command, writes the page; returns the summary for the terminal.
+pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
+    let vpost = match &options.vpost {
+        Some(path) => path.canonicalize().with_context(|| format!("{} is not there", path.display()))?,
+        None => released()?,
+    };
+    let temporary = std::env::temp_dir().join(format!("gap-bench-{}", std::process::id()));
+    let root = options.keep.clone().unwrap_or_else(|| temporary.clone());
+    std::fs::create_dir_all(&root)?;
+    let specs: Vec<CaseSpec> = catalogue(options.cases, options.seed);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;
+    let started = Instant::now();
+    let outcomes: Vec<anyhow::Result<Option<Outcome>>> = pool.install(|| {
+        specs
+            .par_iter()
+            .map(|spec| {
+                let case = spec.build();
+                if options.only.as_ref().is_some_and(|only| !case.id.contains(only.as_str())) {
+                    return Ok(None);
+                }
+                let folder = root.join(&case.id);
+                let outcome = examine(&vpost, &folder, case)?;
+                if options.keep.is_none() {
+                    std::fs::remove_dir_all(&folder)?;
+                }
+                Ok(Some(outcome))
+            })
+            .collect()
+    });
+    let mut found = Vec::new();
+    for outcome in outcomes {
+        found.extend(outcome?);
+    }
+    if options.keep.is_none() {
+        std::fs::remove_dir_all(&temporary)?;
+    } else {
+        std::fs::write(root.join("outcomes.csv"), table::outcomes_csv(&found))?;
+    }
+    let run = page::Run {
+        seed: options.seed,
+        jobs: options.jobs,
+        elapsed: started.elapsed(),
+        version: version(&vpost)?,
+    };
+    let page = page::page(&found, &run);
+    if options.only.is_none() {
+        std::fs::write(&options.page, &page)
+            .with_context(|| format!("cannot write {}", options.page.display()))?;
+    }
+    Ok(page::summary(&page))
+}
+
+/// Writes the sample measurements of the documents; returns their names.
+pub(crate) fn write_samples(folder: &Path) -> anyhow::Result<String> {
+    let mut names = String::new();
+    for (name, spec) in gap_lab::sample_cases() {
+        let case = spec.build();
+        for (file, text) in &case.files {
+            let path = match file.as_str() {
+                "profile.toml" => folder.join(format!("{name}.toml")),
+                "measurement.csv" => folder.join(format!("{name}.csv")),
+                "holdout.csv" => folder.join(format!("{name}_holdout.csv")),
+                table => bail!("{name}: a sample machine has no table, this one has {table}"),
+            };
+            std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))?;
+            names.push_str(&format!("{}\n", path.display()));
+        }
+        std::fs::write(folder.join(format!("{name}.truth.json")), &case.truth_json)?;
+    }
+    Ok(names)
+}
+
+/// Builds the command in release mode and says where it lies.
+fn released() -> anyhow::Result<PathBuf> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo).args(["build", "--release", "-q", "-p", "vpost"]).status()?;
+    if !status.success() {
+        bail!("cargo build --release -p vpost failed");
+    }
+    let own = std::env::current_exe()?;
+    let beside = own.parent().map(|folder| folder.join("vpost")).unwrap_or_default();
+    // Run from a debug build, the release folder is next door.
+    let path = if beside.is_file() { beside } else { own.with_file_name("../release/vpost") };
+    path.canonicalize().with_context(|| format!("no release build of vpost at {}", path.display()))
+}
+
+fn version(vpost: &Path) -> anyhow::Result<String> {
+    let output = Command::new(vpost).arg("--version").output()?;
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// Writes the files of a case, runs the command and compares.
+fn examine(vpost: &Path, folder: &Path, case: Case) -> anyhow::Result<Outcome> {
+    std::fs::create_dir_all(folder)?;
+    for (name, text) in &case.files {
+        std::fs::write(folder.join(name), text)?;
+    }
+    std::fs::write(folder.join("truth.json"), &case.truth_json)?;
+    let mut command = Command::new(vpost);
+    command.args(["diagnose", "measurement.csv", "-m", "profile.toml", "--holdout", "holdout.csv"]);
+    command.args(["--json", "answer.json", "--write-profile", "found.toml"]);
+    if let Some(id) = &case.without {
+        command.args(["--without", id]);
+    }
+    let started = Instant::now();
+    let failure = attempt(command, folder)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let path = folder.join("answer.json");
+    let answer = match failure {
+        Some(words) => Err(words),
+        None => read(&path),
+    };
+    let transport = match &answer {
+        Ok(answer) => transport::check(vpost, folder, &case, answer),
+        Err(_) => None,
+    };
+    Ok(Outcome { case, answer, seconds, transport })
+}
+
+fn read(path: &Path) -> Result<Answer, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("no JSON was written: {e}"))?;
+    serde_json::from_str(&text).map_err(|e| format!("the JSON is not of the contract: {e}"))
+}
+
+/// Runs a command to its end; what went wrong, or `None`.
+fn attempt(mut command: Command, folder: &Path) -> anyhow::Result<Option<String>> {
+    let errors = folder.join("stderr.txt");
+    let output = folder.join("stdout.txt");
+    let mut child = command
+        .current_dir(folder)
+        .env("RAYON_NUM_THREADS", "1")
+        .stdin(Stdio::null())
+        .stdout(std::fs::File::create(output)?)
+        .stderr(std::fs::File::create(&errors)?)
+        .spawn()
+        .context("cannot start the command under test")?;
+    let started = Instant::now();
+    let mut pause = Duration::from_millis(1);
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if started.elapsed() > PATIENCE {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Some(format!("no answer after {} s", PATIENCE.as_secs())));
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(10));
+    };
+    if status.success() {
+        return Ok(None);
+    }
+    let words = std::fs::read_to_string(errors).unwrap_or_default();
+    let first = words.lines().next().unwrap_or("no message").to_owned();
+    Ok(Some(format!("exit {}: {first}", status.code().map_or("by signal".into(), |c| c.to_string()))))
+}

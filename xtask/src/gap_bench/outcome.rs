@@ -1,0 +1,132 @@
+//! One case with its answer, and what counts as right.
+
+use gap_lab::{Case, Kind, NoiseKind};
+
+use super::answer::Answer;
+use super::transport::Transport;
+
+/// A case and what the command said.
+pub(crate) struct Outcome {
+    pub(crate) case: Case,
+    pub(crate) answer: Result<Answer, String>,
+    pub(crate) seconds: f64,
+    /// The lab's own account of the hold-out, where the written profile could be predicted with.
+    pub(crate) transport: Option<Transport>,
+}
+
+impl Outcome {
+    /// The answer, where there was one.
+    pub(crate) fn said(&self) -> Option<&Answer> {
+        self.answer.as_ref().ok()
+    }
+
+    /// Id of the (largest) withheld effect.
+    pub(crate) fn truth(&self) -> Option<&str> {
+        self.case.truth.effects.first().map(|e| e.id.as_str())
+    }
+
+    /// The (largest) withheld effect was named first.
+    pub(crate) fn right_first(&self) -> bool {
+        self.truth().is_some() && self.said().and_then(Answer::first) == self.truth()
+    }
+
+    /// The withheld effect is among the reported names.
+    pub(crate) fn inside(&self) -> bool {
+        let truth = self.truth();
+        self.said().is_some_and(|a| truth.is_some_and(|t| a.set().contains(&t)))
+    }
+
+    /// AMBIGUOUS with the truth among the names.
+    pub(crate) fn honest(&self) -> bool {
+        self.inside() && self.said().is_some_and(|a| a.verdict == "AMBIGUOUS")
+    }
+
+    /// A cause was named where there is none. Where the instrument drifts, `instrument-drift` is no alarm.
+    pub(crate) fn false_alarm(&self) -> bool {
+        let drifts = self.case.noise == NoiseKind::Drift;
+        self.said().is_some_and(|a| a.causes.iter().any(|c| !(drifts && c.effect == "instrument-drift")))
+    }
+
+    /// NAMED, and the first name is not a withheld effect.
+    pub(crate) fn confidently_wrong(&self) -> bool {
+        let Some(answer) = self.said() else { return false };
+        if answer.verdict != "NAMED" {
+            return false;
+        }
+        match self.case.kind {
+            Kind::Null => self.false_alarm(),
+            Kind::Outside | Kind::Removed => true,
+            _ => !self.case.truth.effects.iter().any(|e| Some(e.id.as_str()) == answer.first()),
+        }
+    }
+
+    /// PARTIAL or UNKNOWN.
+    pub(crate) fn admits_unknown(&self) -> bool {
+        self.said().is_some_and(Answer::admits_unknown)
+    }
+
+    /// Whether this kind of case got the answer it should have.
+    pub(crate) fn right(&self) -> bool {
+        match self.case.kind {
+            Kind::Null => self.said().is_some() && !self.false_alarm(),
+            Kind::Outside | Kind::Removed => self.admits_unknown(),
+            Kind::Aliased => self.honest(),
+            Kind::Multiple => {
+                let Some(answer) = self.said() else { return false };
+                let named = answer.causes.iter().map(|c| c.effect.as_str());
+                let (mut named, mut truth): (Vec<_>, Vec<_>) =
+                    (named.collect(), self.case.truth.effects.iter().map(|e| e.id.as_str()).collect());
+                named.sort_unstable();
+                truth.sort_unstable();
+                named == truth
+            }
+            _ if self.case.truth.identifiable => self.right_first(),
+            _ => self.inside(),
+        }
+    }
+
+    /// Why an answer is not right, as a kind of reason.
+    pub(crate) fn reason(&self) -> String {
+        let answer = match &self.answer {
+            Ok(answer) => answer,
+            Err(words) => return format!("no answer: {words}"),
+        };
+        let family = |id: &str| id.split('.').next().unwrap_or(id).to_owned();
+        let Some(first) = answer.first() else {
+            return match self.case.kind {
+                Kind::Multiple => "nothing named".into(),
+                _ if self.case.truth.expected_sigma < 6.0 => "below what noise allows (gap under 6 σ)".into(),
+                _ => format!("not named ({})", answer.verdict),
+            };
+        };
+        match (self.case.kind, self.truth()) {
+            (Kind::Null, _) => "named a cause where there is none".into(),
+            (Kind::Outside | Kind::Removed, _) => format!("{} instead of an unknown", answer.verdict),
+            (Kind::Aliased, _) if self.inside() => format!("truth inside, but {}", answer.verdict),
+            (Kind::Multiple, _) => {
+                let missed = self.missed().len();
+                let extra = answer.causes.len() + missed - self.case.truth.effects.len();
+                format!("{missed} of {} missed, {extra} extra", self.case.truth.effects.len())
+            }
+            (_, Some(truth)) if self.inside() => {
+                let rival = if answer.causes[0].cannot_be_told_from.iter().any(|r| r == truth) {
+                    "its rival"
+                } else {
+                    "another"
+                };
+                format!("{rival} named first, truth inside ({})", answer.verdict)
+            }
+            (_, Some(truth)) if family(truth) == family(first) => "right family, wrong axis".into(),
+            (_, Some(_)) => format!("another effect named ({})", answer.verdict),
+            (_, None) => "nothing to name".into(),
+        }
+    }
+
+    /// Withheld effects that no cause names.
+    pub(crate) fn missed(&self) -> Vec<&str> {
+        let named: Vec<&str> =
+            self.said().map(|a| a.causes.iter().map(|c| c.effect.as_str()).collect()).unwrap_or_default();
+        let truth = self.case.truth.effects.iter().map(|e| e.id.as_str());
+        truth.filter(|id| !named.contains(id)).collect()
+    }
+}
