@@ -94,6 +94,10 @@ impl Pair<'_> {
             passes: if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 },
             state: machine.state,
         }) + self.commanded.difference_bound(self.wanted, a.s, b.s);
+        if !leaves_chord.is_finite() {
+            // The model jumps here. Infinity times a curvature of zero is not a number, and `max` would forget it.
+            return f64::INFINITY;
+        }
         // The chord itself, seen square to a tangent that turns by θ: P(s)·chord(s) has a second
         // derivative of at most 4θ²·|chord| + 2θ·|b - a|.
         let turning = self.wanted.turning_rad() * (b.s - a.s);
