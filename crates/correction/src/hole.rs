@@ -223,14 +223,11 @@ impl Corrector<'_> {
         if hole.cycle.dwell {
             corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
         }
+        let after_mm = if hole.cycle.return_to_initial { initial_mm } else { r_mm };
         if hole.cycle.kind == CycleKind::Bore {
             feed(self, bottom_mm, r_mm, corrected)?;
-        } else {
-            rapid(self, place(r_mm), corrected)?;
         }
-        if hole.cycle.return_to_initial {
-            rapid(self, place(initial_mm), corrected)?;
-        }
+        rapid(self, place(after_mm), corrected)?;
         Ok(())
     }
 }
