@@ -112,13 +112,13 @@ fn by_mode(
             }
             if words.has(AXIS_LETTERS) {
                 let rapid = matches!(state.motion, MotionMode::Rapid(_));
-                moved.motions.push(straight(env, words, before, state, rapid)?);
+                straight(env, words, before, state, rapid, &mut moved.motions)?;
             }
         }
         MotionMode::Arc(turn, _) => {
             if words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
                 moved.arc_by_radius = words.has(Letters::of(b"R"));
-                moved.motions.push(circular(env, words, before, state, turn)?);
+                circular(env, words, before, state, turn, &mut moved.motions)?;
             }
         }
         MotionMode::None if words.has(AXIS_LETTERS) => {
@@ -156,7 +156,8 @@ fn straight(
     before: &Modal,
     state: &mut Modal,
     rapid: bool,
-) -> Outcome<Motion> {
+    motions: &mut Motions,
+) -> Outcome<()> {
     let shift = require_shift(env, words, state)?;
     let start = state.axes;
     let end = end(words, state, &shift)?;
@@ -164,11 +165,13 @@ fn straight(
     let turns = words.has(ROTARY_LETTERS);
     if turns && (!words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary)) {
         // Only rotary axes move: nothing to correct, and the linear axes stay where they are.
-        return Ok(Motion::Uncorrected { end: end.partial() });
+        motions.push(Motion::Uncorrected { end: end.partial() });
+        return Ok(());
     }
     require_rotary(words, &end)?;
     if rapid {
-        return Ok(Motion::Rapid { start: start.partial(), end: end.partial() });
+        motions.push(Motion::Rapid { start: start.partial(), end: end.partial() });
+        return Ok(());
     }
     let what = "the feed move";
     let from = require_known(words, &start, what)?;
@@ -177,13 +180,9 @@ fn straight(
         return Err(simultaneous(words));
     }
     let rate = feed_rate(words, state)?;
-    Ok(Motion::Feed(Feed {
-        start: from,
-        end: to,
-        shape: Shape::Line,
-        rate,
-        may_split: !compensated(before, state),
-    }))
+    let may_split = !compensated(before, state);
+    motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, may_split }));
+    Ok(())
 }
 
 /// G2 and G3.
@@ -193,7 +192,8 @@ fn circular(
     before: &Modal,
     state: &mut Modal,
     turn: Turn,
-) -> Outcome<Motion> {
+    motions: &mut Motions,
+) -> Outcome<()> {
     let shift = require_shift(env, words, state)?;
     let start = state.axes;
     let end = end(words, state, &shift)?;
@@ -233,13 +233,10 @@ fn circular(
         circle.map_err(|fault| no_circle(words, state, fault, tolerance_mm))?;
     let rate = feed_rate(words, state)?;
     state.axes = end;
-    Ok(Motion::Feed(Feed {
-        start: from,
-        end: to,
-        shape: Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad }),
-        rate,
-        may_split: !compensated(before, state),
-    }))
+    let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
+    let may_split = !compensated(before, state);
+    motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, may_split }));
+    Ok(())
 }
 
 /// The centre by I J K, axis commands in mm.
