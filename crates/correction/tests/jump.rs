@@ -19,7 +19,13 @@ fn engine() -> TangentialInterval {
             p
         };
         let measured_mm = nodes_mm.iter().map(measured).collect();
-        Traverse { axis, nodes_mm: nodes_mm.clone(), start_mm: [0.0; 3], measured_mm, published_cosines: None }
+        Traverse {
+            axis,
+            nodes_mm: nodes_mm.clone(),
+            start_mm: [0.0; 3],
+            measured_mm,
+            published_cosines: None,
+        }
     };
     TangentialInterval::new(&[traverse(0), traverse(1), traverse(2)]).expect("three traverses")
 }
