@@ -45,6 +45,26 @@ def point(move, t):
     return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))
 
 
+def descend(arc, p, t, low, high):
+    """Share of the way where the distance to p is least near t: Newton's rule on its square, safe steps only."""
+    u, v, w = arc.axes
+    growth, rise = arc.radii[1] - arc.radii[0], arc.heights[1] - arc.heights[0]
+    for _ in range(6):
+        q = arc.at(t)
+        radius = arc.radii[0] + t * growth
+        ru, rv = (q[u] - arc.centre[0]) / radius, (q[v] - arc.centre[1]) / radius
+        du, dv = growth * ru - arc.sweep * radius * rv, growth * rv + arc.sweep * radius * ru
+        # The pull along the path, and how it changes: the path's own speed less its bend towards p.
+        pull = (p[u] - q[u]) * du + (p[v] - q[v]) * dv + (p[w] - q[w]) * rise
+        speed = du * du + dv * dv + rise * rise
+        bend = -arc.sweep * arc.sweep * radius * ((p[u] - q[u]) * ru + (p[v] - q[v]) * rv)
+        step = pull / max(speed - bend, 0.25 * speed)
+        t = min(max(t + step, low), high)
+        if abs(step) < 1e-12:
+            break
+    return t
+
+
 def nearest(move, p, low, high):
     """Share of the way, from `low` to `high`, of the move's point nearest to p."""
     if move.arc:
@@ -54,6 +74,11 @@ def nearest(move, p, low, high):
         turn = 2.0 * math.pi
         angle += turn * round((0.5 * (low + high) * arc.sweep - angle) / turn)
         options = [min(max((angle + k * turn) / arc.sweep, low), high) for k in (-1, 0, 1)]
+        if arc.heights[0] != arc.heights[1]:
+            # On a helix the nearest point is neither at the same angle nor at the same height.
+            height = (p[arc.axes[2]] - arc.heights[0]) / (arc.heights[1] - arc.heights[0])
+            options += [min(max(height, low), high)]
+            options = [descend(arc, p, t, low, high) for t in options]
         return min(options, key=lambda t: distance(point(move, t), p))
     a, b = move.start, move.end
     d = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
