@@ -33,6 +33,8 @@ pub enum Command {
     Predict(Predict),
     /// What to command so that the tool reaches points.
     Solve(Solve),
+    /// Which unmodelled effect explains the gap between the model and measurements.
+    Diagnose(crate::diagnose::Diagnose),
     /// Check, show or describe machine profiles.
     Profile(Profile),
     /// List or check dialect tables.
@@ -70,9 +72,6 @@ pub struct Shared {
     /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
     #[arg(long, value_enum, global = true)]
     pub outside: Option<Outside>,
-    /// Results as JSON on standard output, where the job prints any.
-    #[arg(long, global = true)]
-    pub json: bool,
     /// No warnings.
     #[arg(short, long, global = true)]
     pub quiet: bool,
@@ -140,6 +139,9 @@ pub struct Check {
     /// The corrected program.
     #[arg(value_name = "OUT.nc")]
     pub output: PathBuf,
+    /// The result as JSON on standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `vpost predict`

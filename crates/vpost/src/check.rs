@@ -3,7 +3,7 @@
 use correction::{Comparison, Mismatch, Step, compare};
 use diagnostic::Diagnostic;
 use nc_program::Interpreter;
-use nc_syntax::dialect::Action;
+use nc_syntax::dialect::{Action, CodeEntry};
 use nc_syntax::{Block, ItemKind, Reader};
 use serde::Serialize;
 
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let findings = findings(&comparison, &wanted, &commanded);
     let passed = findings.is_empty();
     let um = |mm: f64| (mm * 1e6).round() / 1e3;
-    if shared.json {
+    if arguments.json {
         let outcome = Outcome {
             schema: "vpost.check/1",
             passed,
@@ -124,23 +124,15 @@ fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failu
 
 /// What a block says besides where to go.
 fn events(block: &Block<'_>, settings: &Settings, events: &mut Vec<(String, u64)>) {
-    /// Motion codes and the return levels of cycles: a cycle may be written as moves.
-    const MOTION_GROUPS: [u8; 2] = [1, 10];
     for item in &block.items {
         let ItemKind::Word { letter, .. } = item.kind else { continue };
         let counts = match letter {
             b'M' | b'S' | b'T' | b'H' | b'D' => true,
-            b'G' => {
-                block.words().find(|word| word.span == item.span).and_then(|word| word.g_code()).is_some_and(
-                    |code| {
-                        code.0 != 40
-                            && settings
-                                .dialect
-                                .code(code)
-                                .is_none_or(|entry| !MOTION_GROUPS.contains(&entry.group))
-                    },
-                )
-            }
+            b'G' => block
+                .words()
+                .find(|word| word.span == item.span)
+                .and_then(|word| word.g_code())
+                .is_some_and(|code| settings.dialect.code(code).is_none_or(sets_something)),
             _ => false,
         };
         if counts {
@@ -149,6 +141,16 @@ fn events(block: &Block<'_>, settings: &Settings, events: &mut Vec<(String, u64)
             events.push((text, block.line));
         }
     }
+}
+
+/// False for motion codes and for what only a cycle needs: a cycle may be written as moves.
+fn sets_something(entry: &CodeEntry) -> bool {
+    const MOTION_GROUP: u8 = 1;
+    entry.group != MOTION_GROUP
+        && !matches!(
+            entry.action,
+            Action::Dwell | Action::Cycle(_) | Action::CycleCancel | Action::ReturnInitial | Action::ReturnR
+        )
 }
 
 fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> Vec<String> {

@@ -6,6 +6,7 @@
 pub mod arguments;
 mod check;
 pub mod correct;
+pub mod diagnose;
 mod file;
 mod grammar;
 mod message;
@@ -47,6 +48,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
         Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
+        Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Completions(a)) => arguments::completions(a),

@@ -1,0 +1,108 @@
+//! The diagnosis as JSON, `vpost.diagnosis/1`.
+
+use gap_diagnosis::{Cause, Diagnosis};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    verdict: &'static str,
+    sentence: &'a str,
+    gap: Value,
+    #[serde(rename = "where")]
+    places: Vec<Value>,
+    causes: Vec<Value>,
+    setup: Value,
+    leftover: Value,
+    holdout: Value,
+    next_measurement: Value,
+    outlier_lines: &'a [u64],
+    detectable: Vec<Value>,
+    notes: &'a [String],
+}
+
+/// The file's bytes.
+pub(super) fn bytes(d: &Diagnosis) -> Vec<u8> {
+    let document = Document {
+        schema: "vpost.diagnosis/1",
+        verdict: d.verdict.name(),
+        sentence: &d.sentence,
+        gap: json!({
+            "rows": d.gap.rows, "rms_um": round(d.gap.rms_um), "p95_um": round(d.gap.p95_um),
+            "max_um": round(d.gap.max_um), "noise_um": round(d.gap.noise_um),
+        }),
+        places: d
+            .places
+            .iter()
+            .map(|c| json!({ "by": c.by, "cell": c.cell, "share": round(c.share), "p": round(c.p) }))
+            .collect(),
+        causes: d.causes.iter().map(cause).collect(),
+        setup: json!({
+            "shift_um": d.setup.shift_um.map(round),
+            "rotation_urad": d.setup.rotation_urad.map(round),
+            "run_offsets_um": d.setup.run_offsets_um.iter()
+                .map(|(run, o)| (run.clone(), json!(o.map(round)))).collect::<Map<String, Value>>(),
+        }),
+        leftover: json!({
+            "rms_um": round(d.leftover.rms_um), "phi": round(d.leftover.phi),
+            "lack_of_fit_p": round(d.leftover.lack_of_fit_p), "correlates_with": d.leftover.correlates_with,
+            "absorber": d.leftover.absorber,
+        }),
+        holdout: d.holdout.map_or(Value::Null, |h| {
+            json!({ "rows": h.rows, "rms_before_um": round(h.rms_before_um),
+                "rms_after_um": round(h.rms_after_um), "shrink": round(h.shrink) })
+        }),
+        next_measurement: d.next_measurement.as_ref().map_or(Value::Null, |n| {
+            json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma) })
+        }),
+        outlier_lines: &d.outlier_lines,
+        detectable: d
+            .detectable
+            .iter()
+            .map(|s| json!({ "effect": s.effect, "parameter": s.parameter, "smallest": s.smallest.map(round) }))
+            .collect(),
+        notes: &d.notes,
+    };
+    let mut text = serde_json::to_vec_pretty(&document).expect("plain values always serialise");
+    text.push(b'\n');
+    text
+}
+
+fn cause(c: &Cause) -> Value {
+    let parameters: Vec<Value> = c
+        .parameters
+        .iter()
+        .map(|p| json!({ "name": p.name, "value": round(p.value), "u95": p.u95.map(round) }))
+        .collect();
+    json!({
+        "effect": c.effect,
+        "parameters": parameters,
+        "share_unique": round(c.share_unique),
+        "share_alone": round(c.share_alone),
+        "p": round(c.p),
+        "cannot_be_told_from": c.cannot_be_told_from,
+        "rms_before_um": round(c.rms_before_um),
+        "rms_after_um": round(c.rms_after_um),
+        "shrink_predicted": {
+            "low": round(c.shrink_predicted.low),
+            "mid": round(c.shrink_predicted.mid),
+            "high": round(c.shrink_predicted.high),
+        },
+        "remedy": c.remedy,
+    })
+}
+
+/// Six significant digits: more would only be rounding noise, and differ where a library does.
+pub(super) fn round(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return if value.is_finite() { 0.0 } else { f64::MAX.copysign(value) };
+    }
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A number as TOML writes it, six significant digits.
+pub(super) fn number(value: f64) -> String {
+    let text = format!("{}", round(value));
+    if text.contains(['.', 'e']) { text } else { format!("{text}.0") }
+}
