@@ -26,7 +26,7 @@ class Unreadable(Exception):
 class Move:
     """One canonical motion; positions in machine coordinates, the tool's length not included."""
 
-    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "known")
+    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "known", "start_known")
 
     def __init__(self, rapid, line, start, end, arc, feed):
         self.rapid, self.line, self.start, self.end, self.arc, self.feed = rapid, line, start, end, arc, feed
@@ -146,8 +146,6 @@ class Text:
                     kept.append(f"{letter}{text}")
                     if positions:
                         letters.add(letter)
-            if "G4" in codes:
-                events.append("G4 " + " ".join(f"{letter}{value:g}" for letter, value, _ in words if letter in "PXU"))
             if events:
                 self.events[number_] = events
             self.words[number_] = letters
@@ -165,6 +163,8 @@ class Canon:
         self.position = (0.0, 0.0, 0.0)
         self.offset_name, self.g92, self.plane, self.feed = "G54", (0.0, 0.0, 0.0), 1, 0.0
         self.offsets = {}
+        # (seconds, line, moves before it): of G4 and of cycles.
+        self.dwells = []
 
     def __getattr__(self, name):
         if name.startswith("__"):
@@ -209,6 +209,9 @@ class Canon:
 
     def set_feed_rate(self, feed):
         self.feed = feed * INCH
+
+    def dwell(self, seconds):
+        self.dwells.append((f"dwell {seconds:g}", self.line, len(self.moves)))
 
     def machine(self, values):
         offset = self.offsets.get(self.offset_name, (0.0, 0.0, 0.0))
@@ -257,13 +260,15 @@ def interpret(raw, offsets, least_increment=None):
             raise Unreadable(f"line {line}: {gcode.strerror(result)}")
     known = set()
     last = 0
+    before = False
     for move in canon.moves:
         # Positions count from where every axis has been programmed.
         for line in range(last + 1, move.line + 1):
             known |= text.words.get(line, set()) & set("XYZ")
             known -= text.lost.get(line, set())
         last = max(last, move.line)
-        move.known = len(known) == 3
+        move.start_known, move.known = before and len(known) == 3, len(known) == 3
+        before = move.known
         move.tool = text.tool.get(move.line)
         move.exempt = move.line in text.exempt
     events, index = [], 0
@@ -275,4 +280,5 @@ def interpret(raw, offsets, least_increment=None):
             after += 1
         for name in text.events[line]:
             events.append((name, line, after if name in AFTER_MOTION else index))
-    return canon.moves, events
+    # A dwell stands where the interpreter put it, the words of a line before it.
+    return canon.moves, sorted(events + canon.dwells, key=lambda event: event[2])

@@ -292,7 +292,7 @@ class Judge:
 
     def way_round(self, wanted, taken, worst):
         """A cycle's rapids between two feeds, both ways: the tool leaves the hole and comes to the next as it should."""
-        if not wanted[0].known:
+        if not wanted[0].start_known:
             return
         path = [self.nominal(wanted[0], wanted[0].start)] + [self.nominal(move, move.end) for move in wanted]
         tips = [self.tip_anywhere(taken[0], taken[0].start)] + [self.tip_anywhere(move, move.end) for move in taken]

@@ -84,6 +84,7 @@ def correct(text, machine, piece_mm=4.0):
     moves, events = interpret(text.encode(), machine.offsets)
     before, after = {}, {}
     for name, line, _ in events:
+        name = name.replace("dwell ", "G4 P")
         (after if name in AFTER_MOTION else before).setdefault(line, []).append(name)
     lines = {move.line for move in moves} | set(before) | set(after)
     lines |= {number for number, line in enumerate(text.splitlines(), 1) if "G43" in line}

@@ -263,7 +263,10 @@ impl<'d> Emitter<'d> {
                     line.add(block.text(span));
                 }
                 WordEdit::Write { counts, decimals } => {
-                    let replaced = find_word(block, letter)?.and_then(|(_, value)| match value {
+                    // The block's G and M words are codes of its own, not spellings of this one (`G4` of a
+                    // cycle's dwell).
+                    let own = if matches!(letter, b'G' | b'M') { None } else { find_word(block, letter)? };
+                    let replaced = own.and_then(|(_, value)| match value {
                         Value::Number(number) => Some(number),
                         Value::Expression | Value::Missing => None,
                     });

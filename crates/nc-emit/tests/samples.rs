@@ -95,6 +95,17 @@ fn a_fanuc_cycle_hides_the_motion_code_until_it_ends() {
 }
 
 #[test]
+fn a_cycle_written_as_moves_may_dwell() {
+    let mut dwell = piece("P0.5");
+    dwell.words.push((b'G', WordEdit::Write { counts: 4, decimals: 0 }));
+    let pieces = [piece("G0 Z- R- P-"), piece("G1 Z-2.0"), dwell, piece("G0 Z2.0")];
+    let out = emitted(shipped("linuxcnc"), b"G98 G82 X1. Z-2. R2. P0.5 (c)\n", |emitter, block, out| {
+        emitter.rewrite(block, &pieces, out).expect("rewritten");
+    });
+    assert_eq!(String::from_utf8_lossy(&out), "G98 G0 X1. (c)\nG1 Z-2.\nG4 P0.5\nG0 Z2.\n");
+}
+
+#[test]
 fn an_earlier_error_leaves_the_output_alone() {
     let fanuc = shipped("fanuc");
     let mut out = b"before".to_vec();
