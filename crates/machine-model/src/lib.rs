@@ -17,6 +17,7 @@ pub mod rotation;
 mod solve;
 mod table;
 mod traverse;
+mod with_effects;
 
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
@@ -27,3 +28,4 @@ pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};
 pub use table::{Bounds, Interpolation, Table, TableError};
 pub use traverse::Traverse;
+pub use with_effects::{UnknownCondition, WithEffects};

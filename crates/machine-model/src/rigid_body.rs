@@ -145,6 +145,15 @@ impl RigidBody {
         )
     }
 
+    /// From the directions of the linear axes to the workpiece's, ideal table: the identity without a table.
+    #[inline]
+    pub(crate) fn table_turn(&self, command: &Command) -> Matrix3<f64> {
+        if self.description.chain.table().is_empty() {
+            return Matrix3::identity();
+        }
+        self.table_transform(command, false).0
+    }
+
     /// Error of the three linear axes and the head, in the directions of the linear axes: equation (8).
     #[inline]
     fn linear_error(&self, q: &Vector, command: &Command) -> Vector {
@@ -176,7 +185,7 @@ impl RigidBody {
     }
 
     /// [`SolveError::OutsideVolume`] for a rotary axis outside its tables or travel.
-    fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
+    pub(crate) fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
         for axis in self.description.chain.axes().filter(|axis| !axis.is_linear()) {
             let data = &self.description.rotary[axis.direction()];
             let mut range = data.travel_rad;

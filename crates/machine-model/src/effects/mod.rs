@@ -6,6 +6,7 @@
 //! diagnosis alike, so a cause that was named is the cause that is corrected.
 
 mod basis;
+mod bound;
 mod chain;
 mod kind;
 mod term;

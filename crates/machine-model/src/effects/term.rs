@@ -8,11 +8,11 @@ use crate::{Command, Vector};
 /// An effect with numbers: what a profile states and what a prediction adds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectTerm {
-    kind: EffectKind,
-    shape: Shape,
+    pub(super) kind: EffectKind,
+    pub(super) shape: Shape,
     /// One per name of [`EffectKind::coefficient_names`].
-    coefficients: Vec<f64>,
-    geometry: EffectGeometry,
+    pub(super) coefficients: Vec<f64>,
+    pub(super) geometry: EffectGeometry,
 }
 
 /// Why an entry is not an effect.

@@ -1,0 +1,141 @@
+//! The rigid-body model with effects beyond its tables: equation (22a) of `docs/equations.md`.
+
+use nalgebra::Matrix3;
+
+use crate::effects::{Conditions, EffectKind, EffectTerm, MissingCondition};
+use crate::solve::solve;
+use crate::{
+    Command, Engine, EngineId, Move, PathModel, Prediction, RigidBody, Solution, SolveError, Vector, Volume,
+};
+
+/// An effect cannot be evaluated: what it depends on is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the effect {effect} depends on the {}, which is not known here", condition.0)]
+pub struct UnknownCondition {
+    /// The effect.
+    pub effect: EffectKind,
+    /// What is missing.
+    pub condition: MissingCondition,
+}
+
+/// A machine whose error is that of its tables plus what its effects displace.
+///
+/// Both are evaluated at the command; products of the two (nanometres) are left out, as in the diagnosis
+/// that finds effects. Faults of the measuring instrument are no part of a machine: see
+/// [`EffectKind::is_instrument`] and [`WithEffects::new`].
+#[derive(Clone, Debug)]
+pub struct WithEffects {
+    base: RigidBody,
+    terms: Vec<EffectTerm>,
+    conditions: Conditions,
+    depends_on_direction: bool,
+}
+
+impl WithEffects {
+    /// Puts a machine and its effects together, under fixed conditions.
+    ///
+    /// `terms` that are faults of the instrument are taken as they come: a caller that corrects leaves
+    /// them out.
+    ///
+    /// # Errors
+    /// [`UnknownCondition`] for the first effect that needs a condition that is not known.
+    pub fn new(
+        base: RigidBody,
+        terms: Vec<EffectTerm>,
+        conditions: Conditions,
+    ) -> Result<Self, UnknownCondition> {
+        // Whether a condition is needed depends on the effect and its numbers, never on the place.
+        let anywhere = Command {
+            linear_mm: base.volume().nearest(&Vector::zeros()),
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::zeros(),
+            direction: [1; 3],
+        };
+        for term in &terms {
+            term.displacement_mm(&anywhere, &conditions)
+                .map_err(|condition| UnknownCondition { effect: term.kind(), condition })?;
+        }
+        let depends_on_direction =
+            base.depends_on_direction() || terms.iter().any(EffectTerm::depends_on_direction);
+        Ok(Self { base, terms, conditions, depends_on_direction })
+    }
+
+    /// The machine as its tables describe it.
+    #[must_use]
+    pub fn base(&self) -> &RigidBody {
+        &self.base
+    }
+
+    /// What is added to it.
+    #[must_use]
+    pub fn terms(&self) -> &[EffectTerm] {
+        &self.terms
+    }
+
+    /// Where the tool tip really goes; see [`RigidBody::predict`].
+    #[must_use]
+    pub fn predict(&self, command: &Command) -> Prediction {
+        let Prediction { position_mm, error_mm } = self.base.predict(command);
+        let turn = self.base.table_turn(command);
+        let more = turn * self.displacement(&self.inside(command), &turn);
+        Prediction { position_mm: position_mm + more, error_mm: error_mm + more }
+    }
+
+    /// The command, its linear axes taken to the nearest point of the volume.
+    fn inside(&self, command: &Command) -> Command {
+        Command { linear_mm: self.base.volume().nearest(&command.linear_mm), ..*command }
+    }
+
+    /// Sum of the effects, in the directions of the linear axes; `turn`: from there to the workpiece.
+    fn displacement(&self, command: &Command, turn: &Matrix3<f64>) -> Vector {
+        self.terms.iter().fold(Vector::zeros(), |sum, term| {
+            let by = term
+                .displacement_mm(command, &self.conditions)
+                .expect("conditions were complete when the model was made, and stay what they were");
+            // Effects of rotary axes come as the workpiece sees them, all others along the linear axes.
+            let rotary = matches!(term.kind(), EffectKind::Rotary { .. } | EffectKind::Eccentricity(_));
+            sum + if rotary { turn.tr_mul(&by) } else { by }
+        })
+    }
+}
+
+impl Engine for WithEffects {
+    fn id(&self) -> EngineId {
+        EngineId::RigidBody
+    }
+
+    fn volume(&self) -> Volume {
+        self.base.volume()
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.base.rotary_inside(target)?;
+        solve(&target.linear_mm, &self.base.volume(), |q| {
+            self.error_mm(&Command { linear_mm: *q, ..*target })
+        })
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl PathModel for WithEffects {
+    fn error_mm(&self, command: &Command) -> Vector {
+        let command = self.inside(command);
+        self.base.error_mm(&command) + self.displacement(&command, &self.base.table_turn(&command))
+    }
+
+    /// A sum leaves its chord by no more than its parts do.
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        self.terms
+            .iter()
+            .fold(self.base.chord_bound_mm(stretch), |sum, term| {
+                sum + term.chord_bound_mm(stretch, &self.conditions)
+            })
+    }
+
+    fn depends_on_direction(&self) -> bool {
+        self.depends_on_direction
+    }
+}
