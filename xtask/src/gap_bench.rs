@@ -10,6 +10,7 @@ mod page;
 mod scores;
 mod table;
 mod transport;
+mod voxels;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -157,7 +158,7 @@ fn examine(vpost: &Path, folder: &Path, case: Case) -> anyhow::Result<Outcome> {
         command.args(["--without", id]);
     }
     let started = Instant::now();
-    let failure = attempt(command, folder)?;
+    let failure = attempt(command, folder, "diagnose")?;
     let seconds = started.elapsed().as_secs_f64();
     let path = folder.join("answer.json");
     let answer = match failure {
@@ -176,10 +177,10 @@ fn read(path: &Path) -> Result<Answer, String> {
     serde_json::from_str(&text).map_err(|e| format!("the JSON is not of the contract: {e}"))
 }
 
-/// Runs a command to its end; what went wrong, or `None`.
-fn attempt(mut command: Command, folder: &Path) -> anyhow::Result<Option<String>> {
-    let errors = folder.join("stderr.txt");
-    let output = folder.join("stdout.txt");
+/// Runs a command to its end, its output in files of that `name`; what went wrong, or `None`.
+fn attempt(mut command: Command, folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
+    let errors = folder.join(format!("{name}.err"));
+    let output = folder.join(format!("{name}.out"));
     let mut child = command
         .current_dir(folder)
         .env("RAYON_NUM_THREADS", "1")

@@ -15,7 +15,7 @@ use crate::plans::{hold_out, lay_out};
 use crate::row::{Row, Sight};
 use crate::shape::{Bend, Withheld, form};
 use crate::textbook::{needs_met, variants};
-use crate::truth::{Alias, CellShare, TrueEffect, Truth};
+use crate::truth::{Alias, TrueEffect, Truth};
 
 /// What a case is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -290,7 +290,9 @@ impl CaseSpec {
         if self.observation == Observation::Position {
             fresh.rows.iter_mut().for_each(|row| row.tool = [0.0; 3]);
         }
-        let fresh_noise = draw(self.noise, offset, &fresh, dice);
+        // A wrong row in the hold-out would only measure itself.
+        let fresh_kind = if self.noise == NoiseKind::Outliers { NoiseKind::Plain } else { self.noise };
+        let fresh_noise = draw(fresh_kind, offset, &fresh, dice);
         let field: Vec<[f64; 3]> =
             fresh.rows.iter().map(|r| a.machine.displacement(r, &contribution(r)).map(|d| d * 1e3)).collect();
         let id = format!("{}-{:04}", self.kind.word(), self.index);
@@ -350,7 +352,6 @@ fn coefficient(
 }
 
 fn truth(a: &Attempt, fresh: &Fresh, offset: f64) -> Truth {
-    let rows = a.layout.rows.len() as f64;
     let (mut components, mut per_row, mut at) = ([0.0; 3], Vec::new(), 0);
     for row in &a.layout.rows {
         let seen = row.seen([0.0; 3]).len();
@@ -374,32 +375,10 @@ fn truth(a: &Attempt, fresh: &Fresh, offset: f64) -> Truth {
         sigma_um: a.sigma,
         run_sigma_um: offset * a.sigma,
         components,
-        cells: cells(a, &per_row, rows),
+        gap: a.layout.rows.iter().map(|r| r.command).zip(per_row).collect(),
         holdout_before_um: fresh.shrink(&vec![[0.0; 3]; fresh.len()]).before_um,
         holdout_noise_um: fresh.noise_rms_um(),
     }
-}
-
-/// Mean square of the gap along each axis, ten cells over its travel.
-fn cells(a: &Attempt, per_row: &[f64], rows: f64) -> Vec<CellShare> {
-    let mut cells = Vec::new();
-    if rows == 0.0 {
-        return cells;
-    }
-    for axis in 0..3 {
-        let [low, high] = a.machine.travel[axis];
-        for k in 0..10 {
-            let between = [k, k + 1].map(|j| low + (high - low) * f64::from(j) / 10.0);
-            let inside = |r: &Row| between[0] <= r.command[axis] && r.command[axis] < between[1];
-            let values: Vec<f64> =
-                a.layout.rows.iter().zip(per_row).filter(|(r, _)| inside(r)).map(|(_, v)| *v).collect();
-            if !values.is_empty() {
-                let mean_square_um2 = values.iter().sum::<f64>() / values.len() as f64;
-                cells.push(CellShare { axis, between_mm: between, mean_square_um2 });
-            }
-        }
-    }
-    cells
 }
 
 /// The true effects of an alias, for the catalogue.

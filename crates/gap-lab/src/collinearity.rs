@@ -87,7 +87,7 @@ pub(crate) fn blind_plan(alias: Alias, turn: usize, dice: &mut Dice) -> BlindPla
         feed: dice.pick(&[1000.0, 2000.0, 3000.0]),
         tool: [0.0, 0.0, -(dice.between(10.0, 20.0).round() * 10.0)],
         temperature: None,
-        load_from_half: 0.0,
+        late_load: 0.0,
         lines: everywhere,
         seen: [true; 3],
         runs: 6,
@@ -101,14 +101,14 @@ pub(crate) fn blind_plan(alias: Alias, turn: usize, dice: &mut Dice) -> BlindPla
             plan.runs = 3;
         }
         Alias::LoadOrStep => {
-            plan.load_from_half = 120.0;
-            plan.runs = 1;
+            plan.late_load = 120.0;
+            plan.runs = 2;
         }
         Alias::WarmupOrDrift => {
             let axis = alias.axis(turn);
-            plan.lines = vec![(axis, [0.5, 0.5]); 3];
+            plan.lines = vec![(axis, [0.5, 0.5]); 4];
             plan.seen = [0, 1, 2].map(|i| i == axis);
-            plan.runs = 1;
+            plan.runs = 2;
         }
     }
     plan

@@ -80,13 +80,19 @@ pub(crate) fn measurement(
     let shows = layout.columns;
     let rotary = machine.centre.is_some();
     let ball = layout.rows.iter().any(|r| matches!(r.sight, Sight::Ball(_)));
+    // A column that nobody measured is not there at all.
+    let measured =
+        [0, 1, 2].map(|i| layout.rows.iter().any(|r| matches!(r.sight, Sight::Components(mask) if mask[i])));
     let mut header = vec!["run", "x_mm", "y_mm", "z_mm"];
     if rotary {
         header.push("c_deg");
     }
     match observation {
         _ if ball => header.extend(["length_mm", "bx_mm", "by_mm", "bz_mm"]),
-        Observation::Displacement => header.extend(["dx_um", "dy_um", "dz_um"]),
+        Observation::Displacement => {
+            let names = ["dx_um", "dy_um", "dz_um"].into_iter().zip(measured);
+            header.extend(names.filter(|(_, measured)| *measured).map(|(name, _)| name));
+        }
         Observation::Position => header.extend(["xm_mm", "ym_mm", "zm_mm"]),
         Observation::Magnitude => header.push("d_um"),
     }
@@ -125,7 +131,8 @@ pub(crate) fn measurement(
                 words.extend(centre.map(|v| format!("{v:.4}")));
             }
             (Sight::Components(mask), Observation::Displacement) => {
-                words.extend((0..3).map(|i| if mask[i] { format!("{:.3}", off[i]) } else { String::new() }));
+                let shown = (0..3).filter(|i| measured[*i]);
+                words.extend(shown.map(|i| if mask[i] { format!("{:.3}", off[i]) } else { String::new() }));
             }
             (Sight::Components(_), Observation::Position) => words.extend(read.map(|v| format!("{v:.6}"))),
             (Sight::Components(_), Observation::Magnitude) => {

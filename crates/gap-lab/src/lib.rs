@@ -37,7 +37,7 @@ pub use design::Plan;
 pub use effect::Effect;
 pub use fresh::{Fresh, Shrink};
 pub use noise::NoiseKind;
-pub use truth::{Alias, CellShare, TrueEffect, Truth};
+pub use truth::{Alias, TrueEffect, Truth};
 
 /// Names of the three linear axes, in the order in which positions are stored.
 pub const AXES: [char; 3] = ['X', 'Y', 'Z'];

@@ -29,7 +29,7 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
         }
         Plan::FewLines => {
             let (tools, feeds) = (tools(dice), feeds(dice));
-            few(machine, &[0.5], &[(tools[0], feeds[0])], true, 2, if long_runs { 1 } else { 3 }, dice)
+            few(machine, &[0.5], &[(tools[0], feeds[0])], true, 2, if long_runs { 2 } else { 3 }, dice)
         }
         Plan::Interferometer => {
             let mut layout = lay_out(Plan::FewLines, machine, long_runs, dice);
@@ -231,7 +231,8 @@ pub(crate) fn hold_out(plan: Plan, machine: &Machine, measured: &Layout, dice: &
 }
 
 fn ball_bar(machine: &Machine, dice: &mut Dice) -> Layout {
-    let radius = dice.pick(&[100.0, 150.0]);
+    let smallest = machine.travel.iter().map(|[low, high]| high - low).fold(f64::INFINITY, f64::min);
+    let radius = if smallest > 320.0 { 150.0 } else { 100.0 };
     let feeds = feeds(dice);
     let tool = [0.0, 0.0, -100.0];
     let middle = machine.travel.map(|[low, high]| (0.5 * (low + high)).round());
@@ -288,7 +289,8 @@ fn turntable(machine: &Machine, dice: &mut Dice) -> Layout {
     let mut recorder = Recorder::new(dice, ALL_SEEN);
     let centre = machine.centre.unwrap_or([0.0; 2]);
     for run in 0..6 {
-        let (radius, height) = ([60.0, 120.0, 180.0][run % 3], 20.0 + 40.0 * (run / 3) as f64);
+        let (radius, height) =
+            ([40.0, 80.0, 120.0][run % 3], machine.travel[2][0] + 20.0 + 40.0 * (run / 3) as f64);
         for repeat in 1..=2 {
             for k in 0..24 {
                 recorder.clock += 15.0;
@@ -325,8 +327,8 @@ pub(crate) struct BlindPlan {
     pub(crate) tool: [f64; 3],
     /// Temperature at every row, where it does not move.
     pub(crate) temperature: Option<f64>,
-    /// Load that comes on at half time, kg.
-    pub(crate) load_from_half: f64,
+    /// Load that comes on after a third of the lines, kg.
+    pub(crate) late_load: f64,
     /// The axes that get lines, and the fractions of the other two axes at which they run.
     pub(crate) lines: Vec<(usize, [f64; 2])>,
     /// Components that are measured.
@@ -339,7 +341,8 @@ pub(crate) struct BlindPlan {
 pub(crate) fn blind(plan: &BlindPlan, machine: &Machine, dice: &mut Dice) -> Layout {
     let mut blocks = Vec::new();
     for (k, (axis, offset)) in plan.lines.iter().enumerate() {
-        let load = if 2 * k >= plan.lines.len() { plan.load_from_half } else { 0.0 };
+        // Not where a run begins: its offset would take the change.
+        let load = if 3 * k >= plan.lines.len() { plan.late_load } else { 0.0 };
         let targets = axis_line(dice, machine, *axis, *offset, 11, true);
         blocks.push(Block { targets, tool: plan.tool, feed: plan.feed, load, repeats: 3, both_ways: true });
     }

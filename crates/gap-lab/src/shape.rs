@@ -188,7 +188,7 @@ pub(crate) fn form(effect: Effect, machine: &Machine, span_s: f64, dice: &mut Di
             c
         }),
         Effect::Step(d) => {
-            let at = span_s * if natural { dice.between(0.3, 0.7) } else { 0.5 };
+            let at = span_s * dice.between(0.3, 0.7);
             Box::new(move |r| tip(d, UNIT / (1.0 + libm::exp(-(r.time - at) / 4.0))))
         }
         Effect::Local(a) => {

@@ -123,9 +123,9 @@ pub(crate) fn variants<'a>(effect: Effect, machine: &'a Machine, layout: &Layout
             }
             v
         })]],
-        Effect::Step(d) => (1..20)
+        Effect::Step(d) => (1..30)
             .map(|k| {
-                let at = span * f64::from(k) / 20.0;
+                let at = span * f64::from(k) / 30.0;
                 vec![Box::new(move |r: &Row| along(d, if r.time >= at { 1.0 } else { 0.0 })) as Column<'a>]
             })
             .collect(),

@@ -16,17 +16,6 @@ pub struct TrueEffect {
     pub rivals: Vec<(String, f64)>,
 }
 
-/// Share of the true gap's mean square in a cell.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CellShare {
-    /// Which axis is cut into cells.
-    pub axis: usize,
-    /// Commands from … to, mm.
-    pub between_mm: [f64; 2],
-    /// Mean square of the gap in the cell, µm².
-    pub mean_square_um2: f64,
-}
-
 /// The truth of a case.
 #[derive(Clone, Debug)]
 pub struct Truth {
@@ -42,8 +31,8 @@ pub struct Truth {
     pub expected_sigma: f64,
     /// Share of the cleaned gap's mean square in X, Y and Z.
     pub components: [f64; 3],
-    /// Where the cleaned gap lies along each axis, ten cells each.
-    pub cells: Vec<CellShare>,
+    /// Where the cleaned gap lies: commands of X, Y, Z in mm and square of the gap in µm², row by row.
+    pub gap: Vec<([f64; 3], f64)>,
     /// Root mean square per row of the gap on the hold-out, noise included, set-up and run offsets removed, µm.
     pub holdout_before_um: f64,
     /// The same of the noise alone, µm.

@@ -83,7 +83,7 @@ pub(crate) fn shrinkage(outcome: &Outcome) -> Option<Shrinkage> {
 
 /// What the answer predicts and what the lab's own account of the written profile shows.
 pub(crate) fn shrinkage_by_lab(outcome: &Outcome) -> Option<Shrinkage> {
-    let transport = outcome.transport?;
+    let transport = outcome.transport.filter(|t| !t.silent)?;
     Some(Shrinkage { predicted: 100.0 * predicted(outcome)?, achieved: 100.0 * transport.share })
 }
 
@@ -97,15 +97,21 @@ fn predicted(outcome: &Outcome) -> Option<f64> {
     }
 }
 
-/// Whether the parameter's 95 % interval holds the truth; only where both mean the same number.
+/// Whether the parameter's 95 % interval holds the truth; only where both mean the same number: the
+/// textbook form with its one coefficient.
 pub(crate) fn covered(outcome: &Outcome) -> Option<bool> {
     let effect = outcome.case.truth.effects.first()?;
     let (unit, truth) = effect.coefficient?;
     if outcome.case.kind != Kind::Single || !outcome.right_first() {
         return None;
     }
-    let cause = outcome.said()?.causes.first()?;
-    let parameter = cause.parameters.iter().find(|p| p.name.ends_with(unit))?;
+    let causes = &outcome.said()?.causes;
+    let mut estimated = causes.first()?.parameters.iter().filter(|p| p.u95.is_some());
+    let (parameter, None) = (estimated.next()?, estimated.next()) else { return None };
+    // A lag along the path is another number than a lag of the axis.
+    if causes.len() > 1 || !parameter.name.ends_with(unit) || parameter.name.starts_with("path") {
+        return None;
+    }
     Some((parameter.value? - truth).abs() <= parameter.u95?)
 }
 

@@ -13,6 +13,8 @@ use super::attempt;
 pub(crate) struct Transport {
     /// Share of it that the written profile takes away.
     pub(crate) share: f64,
+    /// The written profile predicts what the one handed out predicts: its effects do nothing.
+    pub(crate) silent: bool,
     /// Largest difference between the lab's kinematics and the model's on the profile as handed out, µm.
     pub(crate) kinematics_um: f64,
 }
@@ -50,18 +52,19 @@ pub(crate) fn check(vpost: &Path, folder: &Path, case: &Case, answer: &Answer) -
     let known = case.fresh.known_um();
     let kinematics_um = known.iter().zip(&before).flat_map(|(k, b)| [0, 1, 2].map(|i| (k[i] - b[i]).abs()));
     let kinematics_um = kinematics_um.fold(0.0, f64::max);
+    let silent = explained.iter().flatten().all(|v| v.abs() < 1e-9);
     let shrink = case.fresh.shrink(&explained);
-    Some(Transport { share: shrink.share(), kinematics_um })
+    Some(Transport { silent, share: shrink.share(), kinematics_um })
 }
 
 /// Displacements `dx_um dy_um dz_um` that a profile predicts at the points.
 fn predict(vpost: &Path, folder: &Path, profile: &str) -> Option<Vec<[f64; 3]>> {
     let mut command = Command::new(vpost);
     command.args(["predict", "points.csv", "-m", profile]);
-    if attempt(command, folder).ok()?.is_some() {
+    if attempt(command, folder, "predict").ok()?.is_some() {
         return None;
     }
-    let text = std::fs::read_to_string(folder.join("stdout.txt")).ok()?;
+    let text = std::fs::read_to_string(folder.join("predict.out")).ok()?;
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next()?.split(',').collect();
     let column = |name: &str| header.iter().position(|h| *h == name);
