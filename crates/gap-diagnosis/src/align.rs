@@ -10,29 +10,57 @@ use crate::term::Term;
 /// Below this many equations a set-up is not fitted: six parameters would eat what they should judge.
 const ENOUGH_FOR_SETUP: usize = 24;
 
-/// Equations with a displacement taken off, aligned again.
+/// The gap less a displacement and the runs' offsets, the set-up fitted to what is left.
+///
+/// The offsets are those of the full model, before and after alike: refitted to the gap itself they would
+/// swallow whatever drifts slowly.
 #[must_use]
 pub(crate) fn aligned(
     data: &Measurements,
     scalars: &[Scalar],
     set_up: &[Term],
-    rho: f64,
+    run_offsets_um: &[Vector],
     taken_off: &[(Term, f64)],
 ) -> Vec<f64> {
-    let changed: Vec<Scalar> = scalars
+    let offset = |s: &Scalar| s.along.dot(&run_offsets_um[data.rows[s.row].run]);
+    let changed: Vec<Scalar> = less(data, scalars, taken_off)
+        .into_iter()
+        .map(|s| Scalar { gap_um: s.gap_um - offset(&s), ..s })
+        .collect();
+    if changed.len() < ENOUGH_FOR_SETUP || data.has_magnitudes() {
+        return changed.iter().map(|s| s.gap_um).collect();
+    }
+    let source = source(data, &changed);
+    Gram::new(set_up.to_vec(), &source).solve(0.0, &source).residuals_um
+}
+
+/// Offsets of the runs once the effects are taken off, µm.
+#[must_use]
+pub(crate) fn run_offsets(
+    data: &Measurements,
+    scalars: &[Scalar],
+    set_up: &[Term],
+    rho: f64,
+    taken_off: &[(Term, f64)],
+) -> Vec<Vector> {
+    if scalars.len() < ENOUGH_FOR_SETUP || data.has_magnitudes() {
+        return vec![Vector::zeros(); data.runs.len()];
+    }
+    let changed = less(data, scalars, taken_off);
+    let source = source(data, &changed);
+    Gram::new(set_up.to_vec(), &source).solve(rho, &source).run_offsets_um
+}
+
+/// Equations with a displacement taken off.
+fn less(data: &Measurements, scalars: &[Scalar], taken_off: &[(Term, f64)]) -> Vec<Scalar> {
+    scalars
         .iter()
         .map(|s| {
             let row = &data.rows[s.row];
             let sum: f64 = taken_off.iter().map(|(t, v)| v * t.value(s, row, &data.geometry)).sum();
             Scalar { gap_um: s.gap_um - sum, ..*s }
         })
-        .collect();
-    let magnitudes = data.has_magnitudes();
-    if changed.len() < ENOUGH_FOR_SETUP || magnitudes {
-        return changed.iter().map(|s| s.gap_um).collect();
-    }
-    let source = source(data, &changed);
-    Gram::new(set_up.to_vec(), &source).solve(rho, &source).residuals_um
+        .collect()
 }
 
 /// Length of the gap of every row that has any equation, µm.

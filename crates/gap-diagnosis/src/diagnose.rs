@@ -3,12 +3,12 @@
 use machine_model::effects::{EffectKind, EffectTerm, Shape};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use crate::align::{aligned, magnitude_errors, rms, row_lengths};
+use crate::align::{aligned, magnitude_errors, rms, row_lengths, run_offsets};
 use crate::crossval::{Folding, Folds};
 use crate::diagnosis::{
-    Cause, Detectable, Diagnosis, Gap, Holdout, Leftover, Parameter, Setup, Shrinkage, Verdict,
+    Cause, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, Parameter, Setup, Shrinkage, Verdict,
 };
-use crate::engine::{Explained, explain, f_tail, model_columns, source};
+use crate::engine::{Explained, f_tail, model_columns, source};
 use crate::gram::Gram;
 use crate::linear::explained;
 use crate::locate::places;
@@ -33,11 +33,10 @@ pub struct Options {
 /// Diagnoses the gap between `data` and the model that predicted its rows; `holdout` is never fitted.
 #[must_use]
 pub fn diagnose(data: &Measurements, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
-    let (scalars, magnitude_notes) = crate::magnitude::linearised(data, &options.without);
-    if let Some(answer) = too_little(data, &scalars) {
+    if let Some(answer) = too_little(data, &crate::magnitude::first_equations(data)) {
         return answer;
     }
-    let model = explain(data, &scalars, &options.without);
+    let (model, magnitude_notes) = crate::magnitude::explained(data, &options.without);
     let mut answer = Assembly::new(data, &model).diagnosis(holdout, options);
     answer.notes.extend(magnitude_notes);
     answer
@@ -56,8 +55,8 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
     if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !data.geometry.moves_rotary(data) {
         missing.push("no axis moves in this file".to_owned());
     }
-    let first = scalars.first()?.gap_um;
-    if scalars.iter().all(|s| s.gap_um == first) {
+    let first = scalars.first().map(|s| s.gap_um);
+    if scalars.iter().all(|s| Some(s.gap_um) == first) {
         missing.push("every reading is the same number".to_owned());
     }
     (!missing.is_empty()).then(|| underpowered(data.rows.len(), missing))
@@ -108,6 +107,26 @@ struct Ranked {
     alone: f64,
     p: f64,
     rivals: Vec<Rival>,
+}
+
+impl Ranked {
+    /// Rivals that the data cannot tell from it.
+    fn told(&self) -> impl Iterator<Item = &Rival> {
+        self.rivals.iter().filter(|r| r.cannot_be_told())
+    }
+
+    /// The most similar effects, for the confounding matrix.
+    fn nearest(&self) -> Vec<Lookalike> {
+        let mut all: Vec<&Rival> = self.rivals.iter().collect();
+        all.sort_by(|a, b| b.correlation.total_cmp(&a.correlation));
+        let told: Vec<&Rival> = self.told().collect();
+        let first = told.iter().copied();
+        let rest = all.into_iter().filter(|r| !told.contains(r)).take(6);
+        first
+            .chain(rest)
+            .map(|r| Lookalike { effect: r.kind.to_string(), correlation: r.correlation, behind: r.behind })
+            .collect()
+    }
 }
 
 impl<'a> Assembly<'a> {
@@ -196,7 +215,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn gap_after(&self, count: usize) -> Vec<f64> {
-        aligned(self.data, &self.model.scalars, self.set_up_terms(), self.model.solution.rho, &self.taken_off(count))
+        aligned(self.data, &self.model.scalars, self.set_up_terms(), &self.model.solution.run_offsets_um, &self.taken_off(count))
     }
 
     fn diagnosis(&self, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
@@ -221,7 +240,7 @@ impl<'a> Assembly<'a> {
             visible: model.library.candidates.len(),
             causes: causes.len(),
             instrument_causes: causes.iter().filter(|c| c.term.kind().is_instrument()).count(),
-            ambiguous: self.ordered.iter().any(|r| !r.rivals.is_empty()),
+            ambiguous: self.ordered.iter().any(|r| r.told().next().is_some()),
             phi: leftover.phi,
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
@@ -234,7 +253,7 @@ impl<'a> Assembly<'a> {
             sentence: crate::sentence::sentence(verdict, &gap, &causes, &leftover),
             gap,
             places: places(self.data, &model.scalars, &before, options.seed),
-            next_measurement: crate::next::next_measurement(self.data, model, &self.worst_pair()),
+            next_measurement: crate::next::next_measurement(self.data, model, self.worst_pair(), self.noise_variance().sqrt()),
             causes,
             setup: self.setup(),
             leftover,
@@ -247,7 +266,7 @@ impl<'a> Assembly<'a> {
 
     /// The cause and its rival that most need to be told apart.
     fn worst_pair(&self) -> Option<(usize, Part)> {
-        self.ordered.iter().find_map(|r| r.rivals.first().map(|rival| (r.place, rival.part)))
+        self.ordered.iter().find_map(|r| r.told().next().map(|rival| (r.place, rival.part)))
     }
 
     fn noise_ratio(&self) -> Option<f64> {
@@ -313,7 +332,8 @@ impl<'a> Assembly<'a> {
                     share_unique: ranked.unique,
                     share_alone: ranked.alone,
                     p: ranked.p,
-                    cannot_be_told_from: ranked.rivals.iter().map(|r| r.kind.to_string()).collect(),
+                    cannot_be_told_from: ranked.told().map(|r| r.kind.to_string()).collect(),
+                    nearest: ranked.nearest(),
                     rms_before_um,
                     rms_after_um,
                     shrink_predicted: self.shrink(index + 1, holdout),
@@ -435,9 +455,9 @@ impl<'a> Assembly<'a> {
             (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
         } else {
             let scalars = holdout.scalars(None);
-            let rho = self.model.solution.rho;
+            let offsets = run_offsets(holdout, &scalars, self.set_up_terms(), self.model.solution.rho, &all);
             let length = |off: &[(Term, f64)]| {
-                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), rho, off))
+                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), &offsets, off))
             };
             (length(&[]), length(&all))
         };

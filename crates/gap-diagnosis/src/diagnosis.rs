@@ -87,6 +87,17 @@ pub struct Shrinkage {
     pub high: f64,
 }
 
+/// An effect that could stand in for a cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lookalike {
+    /// Its id.
+    pub effect: String,
+    /// Correlation, on this design, of what the cause does with the nearest the other effect can do.
+    pub correlation: f64,
+    /// How far its extended BIC lies behind the cause's.
+    pub behind: f64,
+}
+
 /// One cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
@@ -104,6 +115,8 @@ pub struct Cause {
     pub p: f64,
     /// Effects these rows cannot tell from it.
     pub cannot_be_told_from: Vec<String>,
+    /// The nearest other effects, told apart or not.
+    pub nearest: Vec<Lookalike>,
     /// RMS of the gap before this cause is in the model (and after those listed before it), µm.
     pub rms_before_um: f64,
     /// RMS after it, µm.

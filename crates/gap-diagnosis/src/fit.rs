@@ -16,8 +16,6 @@ pub(crate) struct Solution {
     pub coefficients: Vec<f64>,
     /// Covariance of the coefficients divided by σ².
     pub unit_covariance: DMatrix<f64>,
-    /// Independent columns.
-    pub rank: usize,
     /// Whitened residual sum of squares, µm².
     pub residual_square: f64,
     /// Run-offset variance over σ².
@@ -73,7 +71,6 @@ impl Gram {
         Solution {
             terms: self.terms.clone(),
             unit_covariance: factor.inverse(count),
-            rank: factor.rank(),
             residual_square: (whitened[(count, count)] - explained).max(0.0),
             rho,
             run_offsets_um,

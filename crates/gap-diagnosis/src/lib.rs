@@ -30,7 +30,7 @@ mod verdict;
 
 pub use diagnose::{Options, diagnose, underpowered};
 pub use diagnosis::{
-    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, NextMeasurement, Parameter, Setup, Shrinkage,
+    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter, Setup, Shrinkage,
     Verdict,
 };
 pub use observation::{Measurements, Reading, Row};

@@ -26,7 +26,14 @@ pub(crate) struct Rival {
     pub correlation: f64,
 }
 
-/// Rivals of the part at `place`, the nearest in score first.
+impl Rival {
+    /// True where the data cannot tell it from the named effect.
+    pub(crate) fn cannot_be_told(&self) -> bool {
+        self.behind <= WITHIN || self.correlation >= ALIKE
+    }
+}
+
+/// Other effects in place of the part at `place`, the nearest in score first.
 #[must_use]
 pub(crate) fn rivals(model: &Explained, place: usize) -> Vec<Rival> {
     let rest = without(&model.parts, place);
@@ -44,13 +51,14 @@ pub(crate) fn rivals(model: &Explained, place: usize) -> Vec<Rival> {
         let forms = scanned.iter().filter(|(p, _)| p.candidate == candidate);
         let Some((part, fit)) = forms.min_by(|a, b| a.1.score.total_cmp(&b.1.score)) else { continue };
         let behind = fit.score - own_score;
+        // A rival that must be bent to look alike is judged by its score; one that looks alike as it stands
+        // in textbooks is a rival whatever the score says: the true shape is neither.
         let correlation = (0..model.library.candidates[candidate].variants.len())
+            .filter(|variant| !model.library.candidates[candidate].variants[*variant].enriched)
             .map(|variant| alike(model, &left, &contribution, Part { candidate, variant }))
             .fold(0.0, f64::max);
-        if behind <= WITHIN || correlation >= ALIKE {
-            let kind = model.library.candidates[candidate].kind;
-            found.push(Rival { kind, part: *part, behind, correlation });
-        }
+        let kind = model.library.candidates[candidate].kind;
+        found.push(Rival { kind, part: *part, behind, correlation });
     }
     found.sort_by(|a, b| a.behind.total_cmp(&b.behind));
     found

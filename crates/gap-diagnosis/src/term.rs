@@ -29,12 +29,6 @@ pub(crate) enum Term {
 }
 
 impl Term {
-    /// True where the column belongs to the set-up and can never be blamed.
-    #[must_use]
-    pub(crate) const fn is_nuisance(&self) -> bool {
-        !matches!(self, Self::Effect { .. })
-    }
-
     /// Displacement in µm per unit. Conditions that are missing in single rows displace nothing.
     #[must_use]
     pub(crate) fn displacement_um(&self, row: &Row, geometry: &EffectGeometry) -> Vector {

@@ -82,6 +82,9 @@ fn cause(c: &Cause) -> Value {
         "share_alone": round(c.share_alone),
         "p": round(c.p),
         "cannot_be_told_from": c.cannot_be_told_from,
+        "nearest": c.nearest.iter().map(|n| json!({
+            "effect": n.effect, "correlation": round(n.correlation), "behind_bic": round(n.behind),
+        })).collect::<Vec<_>>(),
         "rms_before_um": round(c.rms_before_um),
         "rms_after_um": round(c.rms_after_um),
         "shrink_predicted": {
