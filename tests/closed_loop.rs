@@ -77,11 +77,7 @@ fn path_engines_follow_their_own_model() {
         "tangential-interval",
     ]);
     assert_eq!(jumps.status.code(), Some(1));
-    assert!(
-        jumps.stdout.is_empty() && messages(&jumps).contains("tangential-interval"),
-        "{}",
-        messages(&jumps)
-    );
+    assert!(jumps.stdout.is_empty() && messages(&jumps).starts_with("error[VP05"), "{}", messages(&jumps));
     let published = run(&[
         "samples/plate_linuxcnc.nc",
         "-m",

@@ -23,6 +23,16 @@ struct Candidate {
     radii_apart: f64,
 }
 
+impl Candidate {
+    /// The block's own words serve.
+    fn is_kept(&self) -> bool {
+        match self.words {
+            Centre::Offsets(words) => words.iter().all(|word| !matches!(word, AxisWord::Write(_))),
+            Centre::Radius(word) => word == AxisWord::Keep,
+        }
+    }
+}
+
 impl Corrector<'_> {
     /// Commands arcs from where the axes stand to the end of `part`, as few as hold the tolerance.
     pub(crate) fn follow_arc(
@@ -45,7 +55,7 @@ impl Corrector<'_> {
         }
         let mut nearest = f64::INFINITY;
         for candidate in self.candidates(follow, part, from, to)? {
-            let pair = Pair { wanted: part, commanded: &candidate.curve };
+            let pair = Pair { wanted: part, commanded: &candidate.curve, in_step: follow.in_step };
             match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise: sweep < 0.0, centre: candidate.words };
@@ -131,10 +141,7 @@ impl Corrector<'_> {
         }
         // The programmed words first, then by how well the two radii agree: a control that is strict
         // about them alarms, one that is not makes a small step at the end of the arc.
-        let first = usize::from(
-            matches!(found.first(), Some(c) if matches!(c.words, Centre::Offsets(w) if follow.alone && w.iter().all(|x| !matches!(x, AxisWord::Write(_))))),
-        );
-        found[first..].sort_by(|a, b| a.radii_apart.total_cmp(&b.radii_apart));
+        found.sort_by(|a, b| b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart)));
         Ok(found)
     }
 
@@ -195,7 +202,9 @@ impl Corrector<'_> {
         }
         let major = sweep.abs() > TAU / 2.0;
         let centre_of = |radius: f64| {
+            // Half a turn: the programmed radius and half the chord are the same number but for its last bits.
             let height2 = radius * radius - 0.25 * length * length;
+            let height2 = if height2.abs() < 1e-9 * radius * radius { 0.0 } else { height2 };
             if height2 < 0.0 {
                 return None;
             }

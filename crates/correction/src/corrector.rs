@@ -129,8 +129,14 @@ impl<'m> Corrector<'m> {
             Motion::Feed(feed) => self.feed(feed, block),
             Motion::Hole(hole) => self.hole(hole, block),
             Motion::Uncorrected { end } => {
-                self.standing = end.linear_mm;
-                self.direction = [0; 3];
+                for axis in 0..3 {
+                    // An axis that the block does not name stays where the output has brought it.
+                    if end.linear_mm[axis].is_none() || block.has_axis(axis) || self.standing[axis].is_none()
+                    {
+                        self.standing[axis] = end.linear_mm[axis];
+                        self.direction[axis] = 0;
+                    }
+                }
                 self.last = None;
                 Ok(Corrected { pieces: SmallVec::new(), correction: Correction::default() })
             }
@@ -272,6 +278,7 @@ impl<'m> Corrector<'m> {
                 block,
                 alone: alone && corrected.pieces.is_empty(),
                 may_split: feed.may_split,
+                in_step: feed.start.rotary_deg != feed.end.rotary_deg,
                 length_mm: whole.length_mm(),
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
                 corrected: &mut corrected,
@@ -372,6 +379,8 @@ pub(crate) struct Follow<'a, 'm> {
     /// The part is the whole motion, and nothing was put before it: the block's own words may stay.
     pub(crate) alone: bool,
     pub(crate) may_split: bool,
+    /// Rotary axes turn on the way.
+    pub(crate) in_step: bool,
     /// Length of the whole motion, mm: shares are parts of it.
     pub(crate) length_mm: f64,
     /// Nominal end minus nominal start of the whole motion, mm.

@@ -31,6 +31,9 @@ pub(crate) struct Pair<'c> {
     pub(crate) wanted: &'c Curve,
     /// The path commanded instead.
     pub(crate) commanded: &'c Curve,
+    /// Rotary axes turn on the way: the tip's path is not this curve but turns with the workpiece, so being
+    /// early or late counts in full.
+    pub(crate) in_step: bool,
 }
 
 /// Result of comparing two motions on the machine.
@@ -72,7 +75,7 @@ impl Pair<'_> {
     /// tangent counts, plus what the path curves away over the part along it, t²/2ρ.
     fn place(&self, machine: &Machine<'_>, s: f64) -> Place {
         let difference = self.difference(machine, s);
-        let tangent = self.wanted.tangent(s);
+        let tangent = if self.in_step { Vector::zeros() } else { self.wanted.tangent(s) };
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
         // An end has to be reached, not only its neighbourhood: there all of the difference counts.

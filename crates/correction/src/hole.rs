@@ -17,6 +17,9 @@ pub(crate) struct Remembered {
     bottom: f64,
     r: f64,
     initial_mm: f64,
+    incremental: bool,
+    /// No R or bottom of this series was rewritten.
+    as_programmed: bool,
 }
 
 impl Corrector<'_> {
@@ -101,27 +104,52 @@ impl Corrector<'_> {
         let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
         let (r_origin, own_r_origin) =
             if block.incremental { (level(initial_mm), level(hole.initial_mm)) } else { (0.0, 0.0) };
-        let remembered = self.remembered;
-        let (r, r_value) = word(
-            block,
-            normal,
-            r_wanted - r_origin,
-            block.letters.contains(b'R').then_some(r_own - own_r_origin),
-            remembered.map(|m| m.r),
-        );
+        // What the control remembers of R and bottom: what the program told it while nothing was rewritten;
+        // else what this output told it last, in the same of G90 and G91.
+        let last = self.remembered;
+        let remembered = |own: f64, told: fn(&Remembered) -> f64| match &last {
+            None => Some(own),
+            Some(last) if last.as_programmed => Some(own),
+            Some(last) if !last.incremental && !block.incremental => Some(told(last)),
+            Some(_) => None,
+        };
+        let absolute = Block { incremental: false, ..*block };
+        let own_r = r_own - own_r_origin;
+        let r_told = block.letters.contains(b'R').then_some(own_r);
+        let (mut r, mut r_value) =
+            absolute.choose(normal, r_wanted - r_origin, r_told, remembered(own_r, |m| m.r));
+        let b_told = block.has_axis(normal);
+        let choose_bottom = |r_value: f64| {
+            let (origin, own_origin) =
+                if block.incremental { (r_origin + r_value, r_own) } else { (0.0, 0.0) };
+            let own = b_own - own_origin;
+            let told = b_told.then_some(own);
+            let (word, value) =
+                absolute.choose(normal, b_wanted - origin, told, remembered(own, |m| m.bottom));
+            (word, value, origin)
+        };
+        let (mut b, mut b_value, mut b_origin) = choose_bottom(r_value);
+        let written = |word: AxisWord| matches!(word, AxisWord::Write(_));
+        if block.incremental && written(b) && r == AxisWord::Omit {
+            // Under G91 controls differ in what a remembered R means beside a new bottom: both are said.
+            (r, r_value) = absolute.write(normal, r_wanted - r_origin, None);
+            (b, b_value, b_origin) = choose_bottom(r_value);
+        }
+        if block.incremental && written(r) && b == AxisWord::Omit {
+            (b, b_value) = absolute.write(normal, b_wanted - b_origin, None);
+        }
         let r_reached = r_origin + r_value;
-        let (b_origin, own_b_origin) = if block.incremental { (r_reached, r_own) } else { (0.0, 0.0) };
-        let (b, b_value) = word(
-            block,
-            normal,
-            b_wanted - b_origin,
-            block.has_axis(normal).then_some(b_own - own_b_origin),
-            remembered.map(|m| m.bottom),
-        );
         axes[normal] = b;
         let untouched =
             [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, AxisWord::Keep | AxisWord::Omit));
-        self.remembered = Some(Remembered { bottom: b_value, r: r_value, initial_mm });
+        let as_programmed = last.is_none_or(|last| last.as_programmed) && !written(r) && !written(b);
+        self.remembered = Some(Remembered {
+            bottom: b_value,
+            r: r_value,
+            initial_mm,
+            incremental: block.incremental,
+            as_programmed,
+        });
         let mut place = reached;
         place[normal] = r_reached;
         let from = block.machine(place);
@@ -130,7 +158,8 @@ impl Corrector<'_> {
         let mut end_bottom = at_r;
         end_bottom[normal] = hole.bottom_mm;
         let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
-        let verdict = Pair { wanted: &wanted, commanded: &commanded }.verdict(machine, self.limit_mm(block));
+        let verdict = Pair { wanted: &wanted, commanded: &commanded, in_step: false }
+            .verdict(machine, self.limit_mm(block));
         let mut end = from;
         if hole.cycle.return_to_initial {
             end[normal] = initial_mm;
@@ -178,6 +207,7 @@ impl Corrector<'_> {
                 block,
                 alone: false,
                 may_split: true,
+                in_step: false,
                 length_mm: (bottom_mm - r_mm).abs(),
                 nominal_step: Vector::zeros(),
                 corrected,
@@ -230,18 +260,6 @@ impl Corrector<'_> {
         rapid(self, place(after_mm), corrected)?;
         Ok(())
     }
-}
-
-/// A word that the control remembers between blocks.
-fn word(
-    block: &Block,
-    axis: usize,
-    wanted: f64,
-    own: Option<f64>,
-    remembered: Option<f64>,
-) -> (AxisWord, f64) {
-    let absolute = Block { incremental: false, ..*block };
-    absolute.choose(axis, wanted, own, remembered)
 }
 
 fn kept(piece: Piece, untouched: bool, correction: Correction) -> Corrected {

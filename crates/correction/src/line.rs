@@ -26,7 +26,7 @@ impl Corrector<'_> {
         let axes = self.go(follow.block, &own_end, &wanted, follow.alone);
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
         let commanded = Curve::Line(from, to);
-        let pair = Pair { wanted: part, commanded: &commanded };
+        let pair = Pair { wanted: part, commanded: &commanded, in_step: follow.in_step };
         let limit = self.limit_mm(follow.block);
         match pair.verdict(&follow.machine, limit) {
             Verdict::Within(bound) => {

@@ -121,6 +121,21 @@ impl Profile {
         has
     }
 
+    /// True where what the linear axes must be told depends on where the rotary axes stand: a rotary axis
+    /// with errors, or one that turns the tool while linear axes have errors (the tool is their lever).
+    #[must_use]
+    pub fn rotary_matters(&self) -> bool {
+        let linear_errors = self.description.squareness != machine_model::Squareness::default()
+            || self.rows.iter().any(Option::is_some)
+            || !self.effects.is_empty();
+        let imperfect = self
+            .chain()
+            .axes()
+            .filter(|axis| !axis.is_linear())
+            .any(|axis| !self.description.rotary[axis.direction()].is_perfect());
+        imperfect || (linear_errors && !self.chain().head().is_empty())
+    }
+
     /// What [`machine_model::engines::build`] takes; effects not included.
     #[must_use]
     pub fn engine_inputs(&self) -> EngineInputs {

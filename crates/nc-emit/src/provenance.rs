@@ -116,8 +116,12 @@ pub fn insert_provenance(text: &mut Vec<u8>, position: u64, comment: &[u8]) {
     }
     let end = line_ending(text);
     let at = usize::try_from(position).unwrap_or(text.len()).min(text.len());
+    // Padding and a byte order mark stay the first thing in the file.
+    let padding =
+        text[at..].iter().take_while(|byte| at == 0 && matches!(byte, 0 | 0x7F | 0xEF | 0xBB | 0xBF)).count();
+    let at = at + padding;
     let mut line = Vec::with_capacity(comment.len() + 2 * end.len());
-    if at > 0 && !matches!(text[at - 1], b'\n' | b'\r') {
+    if at > padding && !matches!(text[at - 1], b'\n' | b'\r') {
         line.extend_from_slice(end);
     }
     line.extend_from_slice(comment);

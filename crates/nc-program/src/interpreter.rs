@@ -67,7 +67,7 @@ pub struct Interpreter<'d> {
 impl<'d> Interpreter<'d> {
     /// At the start of a program: the dialect's initial codes, axes where the setup says or unknown.
     ///
-    /// Rotary axes that the machine has are unknown until the program moves them.
+    /// Rotary axes that the machine has are unknown until the program moves them, if it matters where they are.
     #[must_use]
     pub fn new(dialect: &'d Dialect, setup: &'d Setup) -> Self {
         let motion_group =
@@ -88,7 +88,9 @@ impl<'d> Interpreter<'d> {
             work_offset: WorkOffset { code: None, zero_mm: None },
             axes: Axes {
                 linear: setup.start_mm.map_or([unknown; 3], |start| start.map(Axis::At)),
-                rotary: setup.has_rotary.map(|has| if has { unknown } else { Axis::At(0.0) }),
+                rotary: setup
+                    .has_rotary
+                    .map(|has| if has && setup.rotary_matters { unknown } else { Axis::At(0.0) }),
             },
             tool_selected: None,
             tool_loaded: None,

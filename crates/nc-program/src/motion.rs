@@ -176,11 +176,13 @@ fn straight(
     let what = "the feed move";
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
-    if from.rotary_deg != to.rotary_deg {
+    let turns = from.rotary_deg != to.rotary_deg;
+    if turns && env.setup.rotary_matters {
         return Err(simultaneous(words));
     }
     let rate = feed_rate(words, state)?;
-    let may_split = !compensated(before, state);
+    // Pieces of a block that also turns would each need their share of the turn.
+    let may_split = !compensated(before, state) && !turns;
     motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, may_split }));
     Ok(())
 }
@@ -200,7 +202,8 @@ fn circular(
     let what = "the arc";
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
-    if from.rotary_deg != to.rotary_deg {
+    let turning = from.rotary_deg != to.rotary_deg;
+    if turning && env.setup.rotary_matters {
         return Err(simultaneous(words));
     }
     if let Some(turns) = words.plain(b'P')
@@ -234,7 +237,7 @@ fn circular(
     let rate = feed_rate(words, state)?;
     state.axes = end;
     let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
-    let may_split = !compensated(before, state);
+    let may_split = !compensated(before, state) && !turning;
     motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, may_split }));
     Ok(())
 }
@@ -450,7 +453,8 @@ fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why
             linear[i] = lost;
         }
         if (all && env.setup.has_rotary[i]) || words.has(Letters::of(&[ROTARY[i]])) {
-            rotary[i] = lost;
+            // Where it stands is not asked for where it does not matter: any value serves.
+            rotary[i] = if env.setup.rotary_matters { lost } else { Axis::At(0.0) };
         }
     }
 }

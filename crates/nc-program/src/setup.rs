@@ -12,6 +12,9 @@ pub struct Setup {
     pub default_tool_mm: [f64; 3],
     /// Which of A, B, C the machine has.
     pub has_rotary: [bool; 3],
+    /// What the linear axes must be told depends on where the rotary axes stand. Where it does not, their
+    /// position need not be known, and they may turn while linear axes feed.
+    pub rotary_matters: bool,
     /// Axis commands at the start of the program, mm (`--start-at`); `None`: unknown.
     pub start_mm: Option<[f64; 3]>,
 }

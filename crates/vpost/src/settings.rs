@@ -181,6 +181,7 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         tools: profile.tools.clone(),
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
+        rotary_matters: profile.rotary_matters(),
         start_mm: None,
     };
     for option in &shared.work_offset {
