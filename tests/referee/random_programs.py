@@ -210,7 +210,7 @@ def main():
                     failures = [f"{type(error).__name__}: {error}"]
             table["FAILED" if failures else "held"] += 1
             if failures:
-                print(f"seed {seed}: {failures[0]}")
+                print(f"seed {seed}: {failures[0]}", flush=True)
     for name, count in table.most_common():
         print(f"{count:6} {name}")
     return 1 if table["FAILED"] or not table["held"] else 0
