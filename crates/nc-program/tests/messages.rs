@@ -56,7 +56,7 @@ fn positions() {
       3: `Y2.` X, Y, Z not known since line 2, which moves or not, depending on the block delete switch
       help: program a rapid `G90 G0 X… Y… Z…` before this block
     "#);
-    let with_c = Setup { has_rotary: [false, false, true], ..setup() };
+    let with_c = Setup { has_rotary: [false, false, true], rotary_matters: true, ..setup() };
     insta::assert_snapshot!(message_with(dialect("fanuc"), &with_c, "G0 X1. Y1. Z5.\n"), @r#"
     error[VP0213]: a motion of linear axes while a rotary axis is unknown
       1: `X1. Y1. Z5.` C not known since the start of the program

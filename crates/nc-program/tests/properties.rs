@@ -79,7 +79,7 @@ proptest! {
     #[test]
     fn any_program_twice(text in programs(), name in prop::sample::select(vec!["fanuc", "linuxcnc", "perspektiva", "centroid"]),
                          with_a: bool, known: bool) {
-        let setup = Setup { has_rotary: [with_a, false, false], start_mm: known.then_some([0.0; 3]), ..setup() };
+        let setup = Setup { has_rotary: [with_a, false, false], rotary_matters: true, start_mm: known.then_some([0.0; 3]), ..setup() };
         prop_assert_eq!(transcript(name, &setup, &text), transcript(name, &setup, &text));
     }
 

@@ -248,9 +248,19 @@ fn compensation_keeps_its_blocks_whole() {
     assert_eq!(on, [false, true, true, true, false]);
 }
 
+/// A perfect table: where it stands is nobody's business, and it may turn while linear axes feed, in one piece.
+#[test]
+fn rotary_axes_that_do_not_matter() {
+    let with_a = Setup { has_rotary: [true, false, false], rotary_matters: false, ..setup() };
+    let run = run_with(dialect("fanuc"), &with_a, "G0 X1. Y2. Z3.\nG1 X5. A10. F10.\nG28 A0.\nG1 X6.\n");
+    assert!(run.refused.is_none(), "{:?}", run.refused);
+    assert!(!feed(&run.steps[1].motions[0]).may_split);
+    assert!(feed(&run.steps[3].motions[0]).may_split);
+}
+
 #[test]
 fn rotary_axes() {
-    let with_a = Setup { has_rotary: [true, false, false], ..setup() };
+    let with_a = Setup { has_rotary: [true, false, false], rotary_matters: true, ..setup() };
     let go = |text: &str| run_with(dialect("fanuc"), &with_a, text);
     let code = |text: &str| go(text).refused.map(|(line, diagnostics)| (diagnostics[0].code.0, line));
     // The machine must have the axis, and somebody must have said where it stands.
