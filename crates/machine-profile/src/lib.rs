@@ -4,6 +4,7 @@
 //! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
 
 mod columns;
+mod effects;
 mod error;
 mod format;
 mod load;
@@ -12,6 +13,7 @@ mod show;
 mod tables;
 mod toml_error;
 
+pub use effects::EngineError;
 pub use error::ProfileError;
 pub use load::{Read, load};
 pub use profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};

@@ -99,9 +99,9 @@ impl Profile {
         &self.description.chain
     }
 
-    /// The rigid-body model of tables, squareness and rotary axes; effects not included.
+    /// The rigid-body model of tables, squareness and rotary axes alone; [`Profile::machine`] is the whole.
     #[must_use]
-    pub fn rigid_body(&self) -> &RigidBody {
+    pub fn rigid_body_without_effects(&self) -> &RigidBody {
         &self.rigid_body
     }
 
@@ -136,9 +136,9 @@ impl Profile {
         imperfect || (linear_errors && !self.chain().head().is_empty())
     }
 
-    /// What [`machine_model::engines::build`] takes; effects not included.
+    /// What [`machine_model::engines::build`] takes, effects not included; [`Profile::engine`] includes them.
     #[must_use]
-    pub fn engine_inputs(&self) -> EngineInputs {
+    pub fn engine_inputs_without_effects(&self) -> EngineInputs {
         let table = |rows: &ErrorRows| ParametricTable::new(rows.positions.clone(), rows.rows.clone()).ok();
         let [x, y, z] = &self.rows;
         let tables = match (x, y, z) {

@@ -73,7 +73,7 @@ const TABLE_2_13: [([f64; 3], f64); 10] = [
 #[test]
 fn the_stan_s500_profile_closes_most_of_the_published_gap() {
     let profile = shipped("stan_s500.toml");
-    let model = profile.rigid_body();
+    let model = profile.rigid_body_without_effects();
     // Deviations were published relative to the origin; 230 and 210 mm lie just above the Z table.
     let origin = model.error_mm(&command([0.0; 3], [0.0; 3]));
     let rms = |d: &dyn Fn([f64; 3]) -> f64| {
@@ -96,7 +96,7 @@ fn the_samples_fit_into_the_calibrated_volume_of_the_stan_s500() {
             let program = Vector::new(pick(0, -3.0, 123.0), pick(1, -3.0, 83.0), pick(2, -1.0, 30.0));
             let at = program + offset + Vector::from(length);
             let tool = Vector::from(length) * -1.0;
-            let solution = profile.rigid_body().solve(&command(at.into(), tool.into())).unwrap();
+            let solution = profile.rigid_body_without_effects().solve(&command(at.into(), tool.into())).unwrap();
             assert!(solution.iterations <= 6, "{}", solution.iterations);
         }
     }
@@ -110,14 +110,14 @@ fn the_perfect_machine_has_no_errors() {
     assert_eq!(profile.work_offsets.len(), 6);
     let mut at = command([-9999.0, 123.456, 7e-7], [1.0, 2.0, 3.0]);
     at.rotary_rad = Vector::new(1.0, 2.0, 3.0);
-    assert_eq!(profile.rigid_body().error_mm(&at), Vector::zeros());
-    assert_eq!(profile.rigid_body().solve(&at).unwrap().linear_mm, at.linear_mm);
+    assert_eq!(profile.rigid_body_without_effects().error_mm(&at), Vector::zeros());
+    assert_eq!(profile.rigid_body_without_effects().solve(&at).unwrap().linear_mm, at.linear_mm);
 }
 
 #[test]
 fn the_generic_machine_depends_on_direction() {
     let profile = shipped("generic_vmc.toml");
-    let model = profile.rigid_body();
+    let model = profile.rigid_body_without_effects();
     assert!(model.depends_on_direction());
     let at = |direction| {
         model.error_mm(&Command { direction, ..command([-380.0, -210.0, -255.0], [0.0, 0.0, -150.0]) })
@@ -130,7 +130,7 @@ fn the_generic_machine_depends_on_direction() {
 fn every_engine_can_be_built_from_the_stan_s500() {
     let profile = shipped("stan_s500.toml");
     for id in machine_model::EngineId::ALL {
-        let engine = machine_model::engines::build(id, profile.engine_inputs());
+        let engine = machine_model::engines::build(id, profile.engine_inputs_without_effects());
         assert!(engine.is_ok(), "{}: {:?}", id.name(), engine.err());
     }
 }

@@ -69,6 +69,9 @@ pub struct Shared {
     /// Where the axes stand at the start of the program, machine coordinates, mm.
     #[arg(long = "start-at", value_name = "X,Y,Z", global = true, allow_hyphen_values = true)]
     pub start_at: Option<String>,
+    /// Conditions that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min (repeatable).
+    #[arg(long = "at", value_name = "NAME=VALUE,…", global = true, allow_hyphen_values = true)]
+    pub at: Vec<String>,
     /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
     #[arg(long, value_enum, global = true)]
     pub outside: Option<Outside>,

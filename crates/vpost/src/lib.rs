@@ -5,6 +5,7 @@
 
 pub mod arguments;
 mod check;
+mod conditions;
 pub mod correct;
 pub mod diagnose;
 mod file;

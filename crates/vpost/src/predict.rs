@@ -3,6 +3,7 @@
 use machine_model::Vector;
 
 use crate::arguments::{Predict, Shared};
+use crate::conditions::{conditions, failure};
 use crate::message::{Failure, Messages};
 use crate::points::{Points, fixed};
 use crate::settings::{machine, setup_tool};
@@ -14,7 +15,13 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, _: &Messages) -> Result<
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
     let points = Points::read(&name, &bytes, setup_tool(&profile))?;
-    let machine = profile.rigid_body();
+    let conditions = conditions(shared)?;
+    let machine = if arguments.include_setup {
+        profile.measured_machine(&conditions)
+    } else {
+        profile.machine(&conditions)
+    }
+    .map_err(|error| failure(&error))?;
     let setup = &profile.setup;
     let mut out = points.columns.join(",");
     out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um\n");

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use correction::{Options, Outside};
-use machine_model::engines::build;
 use machine_model::{Engine, EngineId};
 use machine_profile::Profile;
 use nc_program::Setup;
@@ -12,7 +11,7 @@ use nc_syntax::Dialect;
 use crate::arguments::{self, Shared};
 use crate::correct::Job;
 use crate::message::{Failure, Messages, Report, Source};
-use crate::{file, profile};
+use crate::{conditions, file, profile};
 
 /// Everything a job on a program needs.
 pub(crate) struct Settings {
@@ -35,8 +34,7 @@ impl Settings {
             Some(name) => engine_named(name)?,
             None => profile.correction.engine,
         };
-        let engine = build(engine_id, profile.engine_inputs())
-            .map_err(|error| Failure::option(error.to_string(), format!("profile {}", file::name(path))))?;
+        let engine = conditions::engine(&profile, engine_id, shared)?;
         let dialect = dialect(shared, &profile)?;
         let setup = setup(shared, &profile)?;
         let tolerance_um = shared.tolerance.unwrap_or(profile.correction.tolerance_um);

@@ -1,14 +1,13 @@
 //! Inverse: what to command so that the tool reaches points.
 
 use diagnostic::Diagnostic;
-use machine_model::engines::build;
 
 use crate::arguments::{Shared, Solve};
 use crate::correct::OUTSIDE;
 use crate::message::{Failure, Messages};
 use crate::points::{Points, fixed};
 use crate::settings::{engine_named, machine, setup_tool};
-use crate::{file, profile};
+use crate::{conditions, file, profile};
 
 /// `vpost solve POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
@@ -17,8 +16,7 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
         Some(name) => engine_named(name)?,
         None => profile.correction.engine,
     };
-    let engine = build(id, profile.engine_inputs())
-        .map_err(|error| Failure::option(error.to_string(), "see the profile"))?;
+    let engine = conditions::engine(&profile, id, shared)?;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
     let points = Points::read(&name, &bytes, setup_tool(&profile))?;

@@ -81,7 +81,7 @@ impl Model {
         let engine = match &shared.engine {
             None => None,
             Some(name) => {
-                let built = build(engine_named(name)?, profile.engine_inputs());
+                let built = build(engine_named(name)?, profile.engine_inputs_without_effects());
                 Some(built.map_err(|error| {
                     Failure::option(error.to_string(), "use an engine the profile has the tables for")
                 })?)
@@ -110,7 +110,7 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
     let tool_mm = setup_tool(&model.profile);
     let mut data = measurements::read(&file::name(path), &bytes, tool_mm, ignore, &model.geometry)?;
     measurements::check(&file::name(path), &bytes, &data, &model.profile)?;
-    let rigid = model.profile.rigid_body();
+    let rigid = model.profile.rigid_body_without_effects();
     for row in &mut data.rows {
         row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {
             Some(engine) => engine.error_mm(&row.command),

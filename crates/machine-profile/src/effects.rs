@@ -1,0 +1,109 @@
+//! A profile's machine with its effects: what predicts and corrects.
+
+use machine_model::effects::{Conditions, EffectError, EffectGeometry, EffectKind, EffectTerm};
+use machine_model::engines::{BuildError, build};
+use machine_model::{Engine, EngineId, UnknownCondition, WithEffects};
+use thiserror::Error;
+
+use crate::Profile;
+
+/// Why a profile gives no engine.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum EngineError {
+    /// The profile lacks what the engine is made of.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// An entry is no effect.
+    #[error(transparent)]
+    Effect(#[from] EffectError),
+    /// An effect depends on something that is not known.
+    #[error(transparent)]
+    Condition(#[from] UnknownCondition),
+    /// An effect counts from the temperature of the calibration.
+    #[error("the effect {effect} counts from the temperature at which the machine was calibrated, which the profile does not give")]
+    ReferenceTemperature {
+        /// The effect.
+        effect: EffectKind,
+    },
+    /// An engine that knows nothing but its tables.
+    #[error("engine `{engine}` cannot take the profile's effects into account: {effects}")]
+    WithoutEffects {
+        /// The engine.
+        engine: &'static str,
+        /// Ids of the effects.
+        effects: String,
+    },
+}
+
+impl Profile {
+    /// What effects must know of the machine: chain, rotary axes, temperature of the calibration.
+    #[must_use]
+    pub fn effect_geometry(&self) -> EffectGeometry {
+        let mut geometry = EffectGeometry::from_chain(self.chain());
+        for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&self.description.rotary) {
+            *to = from.centre_mm;
+        }
+        if let Some(temperature_c) = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c) {
+            geometry.reference_temp_c = temperature_c;
+        }
+        geometry
+    }
+
+    /// The effects on this machine, `instrument` or not: faults of the measuring instrument are effects too,
+    /// but the machine does not go wrong by them.
+    ///
+    /// # Errors
+    /// [`EngineError::Effect`] for an entry that is none (loading refuses it);
+    /// [`EngineError::ReferenceTemperature`].
+    pub fn effect_terms(&self, instrument: bool) -> Result<Vec<EffectTerm>, EngineError> {
+        let geometry = self.effect_geometry();
+        let reference = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c);
+        let mut terms = Vec::new();
+        for entry in &self.effects {
+            let term = EffectTerm::from_entry(&entry.id, &entry.parameters)?;
+            let effect = term.kind();
+            if effect.is_instrument() != instrument {
+                continue;
+            }
+            if reference.is_none() && matches!(effect, EffectKind::Thermal(_)) {
+                return Err(EngineError::ReferenceTemperature { effect });
+            }
+            terms.push(term.with_geometry(geometry.clone()));
+        }
+        Ok(terms)
+    }
+
+    /// The machine as it really is under these conditions: tables, squareness, rotary axes and effects.
+    ///
+    /// # Errors
+    /// [`EngineError`]: nothing an effect depends on is guessed.
+    pub fn machine(&self, conditions: &Conditions) -> Result<WithEffects, EngineError> {
+        Ok(WithEffects::new(self.rigid_body.clone(), self.effect_terms(false)?, *conditions)?)
+    }
+
+    /// The machine as the measuring instrument shows it: with the instrument's own faults.
+    ///
+    /// # Errors
+    /// As [`Profile::machine`].
+    pub fn measured_machine(&self, conditions: &Conditions) -> Result<WithEffects, EngineError> {
+        let mut terms = self.effect_terms(false)?;
+        terms.extend(self.effect_terms(true)?);
+        Ok(WithEffects::new(self.rigid_body.clone(), terms, *conditions)?)
+    }
+
+    /// An engine for this profile under these conditions, effects included.
+    ///
+    /// # Errors
+    /// [`EngineError`], also where the engine cannot take the profile's effects into account.
+    pub fn engine(&self, id: EngineId, conditions: &Conditions) -> Result<Box<dyn Engine>, EngineError> {
+        let terms = self.effect_terms(false)?;
+        if terms.is_empty() {
+            return Ok(build(id, self.engine_inputs_without_effects())?);
+        }
+        if id != EngineId::RigidBody {
+            let ids: Vec<String> = terms.iter().map(|term| term.kind().to_string()).collect();
+            return Err(EngineError::WithoutEffects { engine: id.name(), effects: ids.join(", ") });
+        }
+        Ok(Box::new(self.machine(conditions)?))
+    }
+}

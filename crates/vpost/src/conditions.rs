@@ -1,0 +1,99 @@
+//! What the machine's effects depend on besides the command: `--at temp_c=24,load_kg=100`.
+
+use diagnostic::{Code, Diagnostic};
+use machine_model::effects::Conditions;
+use machine_model::{Engine, EngineId};
+use machine_profile::{EngineError, Profile};
+
+use crate::arguments::Shared;
+use crate::message::{Failure, OPTION};
+
+/// An effect depends on a condition that nobody gave.
+pub(crate) const UNKNOWN_CONDITION: Code = Code(401);
+/// The engine cannot take the profile's effects into account.
+pub(crate) const ENGINE_WITHOUT_EFFECTS: Code = Code(402);
+
+const NAMES: [&str; 7] = ["temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "load_kg", "feed_mm_min"];
+
+/// The conditions of the command line; later ones fill in, none may stand there twice.
+pub(crate) fn conditions(shared: &Shared) -> Result<Conditions, Failure> {
+    let mut found = Conditions::default();
+    let mut seen: Vec<&str> = Vec::new();
+    for given in &shared.at {
+        for part in given.split(',') {
+            let wrong = |what: String| {
+                Failure::option(
+                    format!("`--at {given}`: {what}"),
+                    format!("write as in `--at temp_c=24,load_kg=100`; names: {}", NAMES.join(", ")),
+                )
+            };
+            let Some((name, value)) = part.split_once('=').map(|(name, value)| (name.trim(), value.trim()))
+            else {
+                return Err(wrong(format!("`{part}` is not NAME=VALUE")));
+            };
+            let Some(name) = NAMES.into_iter().find(|known| *known == name) else {
+                return Err(wrong(format!("there is no condition `{name}`")));
+            };
+            let number = value.parse::<f64>().ok().filter(|v| v.is_finite());
+            let Some(number) = number else {
+                return Err(wrong(format!("`{value}` is no number")));
+            };
+            if seen.contains(&name) || (name.starts_with("temp") && overlaps(name, &seen)) {
+                return Err(wrong(format!("`{name}` is given twice")));
+            }
+            if !name.starts_with("temp") && number < 0.0 {
+                return Err(wrong(format!("`{name}` cannot be below zero")));
+            }
+            seen.push(name);
+            match name {
+                "temp_c" => found.temp_c = [Some(number); 3],
+                "temp_x_c" => found.temp_c[0] = Some(number),
+                "temp_y_c" => found.temp_c[1] = Some(number),
+                "temp_z_c" => found.temp_c[2] = Some(number),
+                "time_s" => found.time_s = Some(number),
+                "load_kg" => found.load_kg = Some(number),
+                _ => found.feed_mm_min = Some(number),
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// One temperature for all axes beside one of an axis says two things of that axis.
+fn overlaps(name: &str, seen: &[&str]) -> bool {
+    seen.iter().any(|other| other.starts_with("temp") && (*other == "temp_c" || name == "temp_c"))
+}
+
+/// The engine of a name or of the profile, with the profile's effects under the conditions of the command line.
+pub(crate) fn engine(profile: &Profile, id: EngineId, shared: &Shared) -> Result<Box<dyn Engine>, Failure> {
+    profile.engine(id, &conditions(shared)?).map_err(|error| failure(&error))
+}
+
+/// What to say, and what to type.
+pub(crate) fn failure(error: &EngineError) -> Failure {
+    let (code, help) = match error {
+        EngineError::Build(_) => (OPTION, "see `vpost profile show` for what the profile gives".to_owned()),
+        EngineError::Effect(_) => (UNKNOWN_CONDITION, "correct the profile's [[effect]]".to_owned()),
+        EngineError::Condition(unknown) => {
+            let option = match unknown.condition.0 {
+                "temperature" => "`--at temp_c=24` (degrees Celsius; one axis: temp_x_c)",
+                "time" => "`--at time_s=3600` (seconds since power-on, as in the measurements)",
+                "load" => "`--at load_kg=100`",
+                "feed" => {
+                    "`--at feed_mm_min=500`: the feed for which points are wanted; a program's F is not what the axes do near corners and stops, so it is not taken for it"
+                }
+                _ => "`--at`",
+            };
+            (UNKNOWN_CONDITION, format!("say it: {option}; or take the effect out of the profile"))
+        }
+        EngineError::ReferenceTemperature { .. } => {
+            (UNKNOWN_CONDITION, "add it to the profile: calibrated = { temperature_c = 20.0 }".to_owned())
+        }
+        EngineError::WithoutEffects { .. } => (
+            ENGINE_WITHOUT_EFFECTS,
+            "use `--engine rigid-body`, which can, or take the [[effect]] entries out of the profile"
+                .to_owned(),
+        ),
+    };
+    Failure::usage(Diagnostic::error(code, error.to_string()).help(help))
+}
