@@ -3,6 +3,7 @@
 mod engines;
 mod gap_bench;
 mod markdown;
+mod picture;
 mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
 mod stan_s500;
@@ -30,6 +31,8 @@ enum Task {
         #[arg(default_value = "samples/diagnosis")]
         folder: std::path::PathBuf,
     },
+    /// Draw the README's picture.
+    Picture(picture::Options),
     /// Print docs/reproduction.md: printed numbers beside ours.
     Reproduction,
 }
@@ -39,6 +42,7 @@ fn main() -> anyhow::Result<()> {
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
+        Task::Picture(options) => picture::write(&options)?,
         Task::Reproduction => reproduction::page(),
     };
     std::io::stdout().write_all(text.as_bytes())?;
