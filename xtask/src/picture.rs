@@ -11,6 +11,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 use correction::{Curve, Options as CorrectionOptions, Outside};
 use diagnostic::Diagnostic;
+use machine_model::effects::Conditions;
 use machine_model::{Command, PathModel, Vector};
 use machine_profile::Profile;
 use nc_program::{Interpreter, Setup};
@@ -83,7 +84,7 @@ pub(crate) fn picture() -> anyhow::Result<String> {
         rotary_matters: profile.rotary_matters(),
         start_mm: None,
     };
-    let engine = machine_model::engines::build(profile.correction.engine, profile.engine_inputs())?;
+    let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
     let model = engine.path_model().context("the profile's engine corrects paths")?;
     let corrected = corrected(&text, model, &profile, dialect, &setup)?;
     let before = strokes(&text, model, dialect, &setup)?;
