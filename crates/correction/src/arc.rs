@@ -8,6 +8,7 @@ use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
 use crate::grid::{AxisWord, Block};
+use crate::play::Tried;
 use crate::{Centre, Piece, PieceKind};
 
 /// Below this chord, in output steps, rounding decides where an arc's centre lies: lines serve better.
@@ -33,20 +34,51 @@ impl Candidate {
     }
 }
 
-impl Corrector<'_> {
+impl<'m> Corrector<'m> {
     /// Commands arcs from where the axes stand to the end of `part`, as few as hold the tolerance.
     pub(crate) fn follow_arc(
         &mut self,
-        follow: &mut Follow<'_, '_>,
+        follow: &mut Follow<'_, 'm>,
         part: &Curve,
     ) -> Result<(), CorrectionError> {
-        let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else { return self.follow_line(follow, part) };
+        let Curve::Arc { axes: [u, v, _], .. } = *part else { return self.follow_line(follow, part) };
+        let Tried::Beyond { distance_mm, s } = self.with_play(follow, part, Self::one_arc)? else {
+            return Ok(());
+        };
+        if !follow.may_split {
+            return Err(CorrectionError::MustNotSplit { distance_um: distance_mm * 1e3 });
+        }
+        follow.alone = false;
+        let step = follow.block.step_mm(u).max(follow.block.step_mm(v));
+        if part.length_mm() < SHORTEST_CHORD_STEPS * step
+            || part.length_mm() < 2.0 * self.options.minimum_segment_mm
+        {
+            return self.follow_line(follow, part);
+        }
+        self.follow_arc(follow, &part.part(0.0, s))?;
+        self.follow_arc(follow, &part.part(s, 1.0))
+    }
+
+    /// Tries one arc to the end of `part`; the axes stand where they stood unless it is done.
+    fn one_arc(
+        &mut self,
+        follow: &mut Follow<'_, 'm>,
+        part: &Curve,
+        hold: [bool; 3],
+    ) -> Result<Tried, CorrectionError> {
+        let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else {
+            return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
+        };
         let nominal_end = part.at(1.0);
         let wanted = self.solve(&follow.machine, nominal_end)?;
         let before = self.standing;
         let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go(follow.block, &own_end, &wanted, follow.alone);
+        let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
+        if let Some(against) = self.against(before, follow.machine.state.direction, follow.block) {
+            self.standing = before;
+            return Ok(Tried::Against(against));
+        }
         let mut to: Vector = self.standing.map(|x| x.unwrap_or(f64::NAN)).into();
         let full = sweep.abs() > TAU - 1e-6;
         if full && (to[u] - from[u]).abs() < SAME_PLACE_MM && (to[v] - from[v]).abs() < SAME_PLACE_MM {
@@ -62,24 +94,13 @@ impl Corrector<'_> {
                     let piece = Piece { kind, axes, share: follow.share(part) };
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
                     self.note_end(&follow.machine, nominal_end, wanted);
-                    return Ok(());
+                    return Ok(Tried::Done);
                 }
                 Verdict::Beyond { distance_mm, .. } => nearest = nearest.min(distance_mm),
             }
         }
-        if !follow.may_split {
-            return Err(CorrectionError::MustNotSplit { distance_um: nearest * 1e3 });
-        }
         self.standing = before;
-        follow.alone = false;
-        let step = follow.block.step_mm(u).max(follow.block.step_mm(v));
-        if part.length_mm() < SHORTEST_CHORD_STEPS * step
-            || part.length_mm() < 2.0 * self.options.minimum_segment_mm
-        {
-            return self.follow_line(follow, part);
-        }
-        self.follow_arc(follow, &part.part(0.0, 0.5))?;
-        self.follow_arc(follow, &part.part(0.5, 1.0))
+        Ok(Tried::Beyond { distance_mm: nearest, s: 0.5 })
     }
 
     /// The centres worth trying, best first.

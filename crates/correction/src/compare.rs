@@ -132,6 +132,7 @@ fn feeding(program: &Program) -> Vec<Feeding> {
                 bottom[normal] = hole.bottom_mm;
                 turn(&hole.start.linear_mm.into(), &top);
                 let turned = turn(&top, &bottom);
+                turn(&bottom, &top);
                 push(Curve::new(top, bottom, &Shape::Line), hole.at_r.rotary_deg, turned, true);
             }
             Motion::Rapid { start, end } => {
@@ -269,7 +270,7 @@ impl Matcher<'_> {
         let w = &self.wanted[at];
         // A short move that ends where the programmed motion goes on is an approach.
         let end = piece.curve.at(1.0);
-        let real = end + self.model.error_mm(&Command { linear_mm: end, ..w.state });
+        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
         if piece.length_mm < 1.0 && (w.curve.at(self.s.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm {
             self.result.approaches += 1;
             return;

@@ -87,7 +87,7 @@ pub struct Corrector<'m> {
     /// Where the axes really are commanded to be in the output, mm.
     pub(crate) standing: [Option<f64>; 3],
     /// Direction of each axis' last motion.
-    direction: [i8; 3],
+    pub(crate) direction: [i8; 3],
     /// The last end point solved: nominal command, state and answer. The next motion starts there.
     last: Option<(Command, Vector)>,
     /// Cycles are being written as moves since one could not stay.
@@ -95,6 +95,9 @@ pub struct Corrector<'m> {
     /// Bottom and R as the control remembers them, program mm, and the initial level, mm.
     pub(crate) remembered: Option<crate::hole::Remembered>,
 }
+
+/// How often a rapid's directions are decided anew: each axis turns once where it has play.
+pub(crate) const MOST_TURNS: u32 = 4;
 
 /// A proof leaves this much room for what other judges compute differently (order of small rotations,
 /// last bits), mm.
@@ -217,17 +220,31 @@ impl<'m> Corrector<'m> {
         let end_mm = Vector::from(nominal.linear_mm);
         let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
         self.turn_towards(&from, &end_mm);
-        let machine = self.machine(block, nominal.rotary_deg);
-        let wanted = match self.solve(&machine, end_mm) {
-            Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
-                correction.clamped = true;
-                self.nearest(&machine, end_mm)
+        let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
+        let before = self.standing;
+        let mut turns = 0;
+        let (machine, wanted, axes) = loop {
+            let machine = self.machine(block, nominal.rotary_deg);
+            let wanted = match self.solve(&machine, end_mm) {
+                Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
+                    correction.clamped = true;
+                    self.nearest(&machine, end_mm)
+                }
+                other => other?,
+            };
+            let axes = self.go(block, &own_end, &wanted, true);
+            // An axis that only the correction moves comes from where the correction sends it.
+            let Some(against) = self.against(before, self.direction, block) else {
+                break (machine, wanted, axes);
+            };
+            self.turn(against);
+            turns += 1;
+            if turns == MOST_TURNS {
+                break (machine, wanted, axes);
             }
-            other => other?,
+            self.standing = before;
         };
         correction.largest_mm = (wanted - end_mm).norm();
-        let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
-        let axes = self.go(block, &own_end, &wanted, true);
         self.last = Some((Command { linear_mm: end_mm, ..machine.state }, wanted));
         Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
     }
@@ -242,12 +259,32 @@ impl<'m> Corrector<'m> {
         wanted: &Vector,
         may_keep: bool,
     ) -> [AxisWord; 3] {
+        self.go_holding(block, nominal, wanted, may_keep, [false; 3])
+    }
+
+    /// The same; the axes marked in `hold` stay where they stand (frames that are shifts only).
+    pub(crate) fn go_holding(
+        &mut self,
+        block: &Block,
+        nominal: &Vector,
+        wanted: &Vector,
+        may_keep: bool,
+        hold: [bool; 3],
+    ) -> [AxisWord; 3] {
         let standing = self.standing_program(block);
         let wanted = block.program(wanted);
         let nominal = block.program(nominal);
         let mut words = [AxisWord::Omit; 3];
         let mut reached = [0.0; 3];
         for i in 0..3 {
+            if let (true, Some(stands)) = (hold[i], standing[i]) {
+                (words[i], reached[i]) = if block.has_axis(i) && may_keep {
+                    block.write(i, stands, standing[i])
+                } else {
+                    (AxisWord::Omit, stands)
+                };
+                continue;
+            }
             let own = block.has_axis(i) && may_keep;
             // Under G91 the block's own word adds to where the output stands, not to where the program
             // believes to be: the caller gives the nominal end relative to that.
@@ -342,7 +379,7 @@ impl<'m> Corrector<'m> {
 
     /// Brings the axes to the corrected start where they do not stand there: after a reversal of an
     /// axis with lost motion, after motion that is never corrected, after a change of tool length.
-    fn approach(
+    pub(crate) fn approach(
         &mut self,
         machine: &Machine<'_>,
         part: &Curve,
@@ -350,7 +387,21 @@ impl<'m> Corrector<'m> {
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let start = part.at(0.0);
-        let wanted = self.solve(machine, start)?;
+        let mut wanted = self.solve(machine, start)?;
+        if let Some(turned) = self.approachable(&mut wanted, machine.state.direction, block) {
+            let mut state = machine.state;
+            for (direction, new) in state.direction.iter_mut().zip(turned) {
+                *direction = if new == 0 { *direction } else { new };
+            }
+            let behind = Machine { state, ..*machine };
+            self.approach_to(self.solve(&behind, start)?, start, block, corrected);
+        }
+        self.approach_to(wanted, start, block, corrected);
+        Ok(())
+    }
+
+    /// A line to a corrected start, where the axes do not stand there.
+    fn approach_to(&mut self, wanted: Vector, start: Vector, block: &Block, corrected: &mut Corrected) {
         let standing = self.standing_program(block);
         let to = block.program(&wanted);
         // Standing within rounding of the corrected start is standing there; the last block chose so.
@@ -364,7 +415,6 @@ impl<'m> Corrector<'m> {
                 corrected.correction.approach = true;
             }
         }
-        Ok(())
     }
 
     pub(crate) fn note_end(&mut self, machine: &Machine<'_>, nominal: Vector, answer: Vector) {

@@ -4,7 +4,7 @@ use machine_model::Vector;
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Hole};
 
-use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow};
+use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS};
 use crate::curve::Curve;
 use crate::deviation::{Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block};
@@ -22,7 +22,7 @@ pub(crate) struct Remembered {
     as_programmed: bool,
 }
 
-impl Corrector<'_> {
+impl<'m> Corrector<'m> {
     /// One hole: position, R level and depth move with the machine's error there.
     ///
     /// A cycle drills along one axis. Where the machine leans, the hole's middle is put in place; if its
@@ -34,19 +34,40 @@ impl Corrector<'_> {
         at_bottom[normal] = hole.bottom_mm;
         let start = Vector::from(hole.start.linear_mm);
         self.turn_towards(&start, &at_r);
-        let mut machine = self.machine(block, hole.at_r.rotary_deg);
-        // The depth is fed one way, whatever way the axis went before.
-        machine.state.direction[normal] = if hole.bottom_mm < at_r[normal] { -1 } else { 1 };
-        let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
+        let down = if hole.bottom_mm < at_r[normal] { -1 } else { 1 };
+        let before = (self.standing, self.remembered);
+        let mut turns = 0;
+        let (machine, top, bottom, (piece, untouched, verdict)) = loop {
+            let mut machine = self.machine(block, hole.at_r.rotary_deg);
+            // The depth is fed one way, whatever way the axis went before.
+            machine.state.direction[normal] = down;
+            let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
+            let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
+            // In the plane an axis that only the correction moves comes from where the correction sends it.
+            let against = self.against(before.0, machine.state.direction, block).map(|mut against| {
+                against[normal] = 0;
+                against
+            });
+            turns += 1;
+            match against {
+                Some(against) if against != [0; 3] && turns < MOST_TURNS => {
+                    self.turn(against);
+                    (self.standing, self.remembered) = before;
+                }
+                _ => break (machine, top, bottom, kept),
+            }
+        };
         let mut correction = Correction {
             largest_mm: (top - at_r).norm().max((bottom - at_bottom).norm()),
             before_mm: machine.error(at_r).norm().max(machine.error(at_bottom).norm()),
             ..Correction::default()
         };
+        // Afterwards the axis has come back out of the hole.
+        self.direction[normal] = -down;
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
-        if !(self.expanding && expandable) {
-            let before = (self.standing, self.remembered);
-            let (piece, untouched, verdict) = self.keep_cycle(hole, block, &machine, (top, bottom));
+        if self.expanding && expandable {
+            (self.standing, self.remembered) = before;
+        } else {
             match verdict {
                 Verdict::Within(bound) => {
                     correction.after_mm = bound;
@@ -173,7 +194,7 @@ impl Corrector<'_> {
         &mut self,
         hole: &Hole,
         block: &Block,
-        machine: &Machine<'_>,
+        machine: &Machine<'m>,
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let normal = hole.plane.axes()[2];

@@ -17,6 +17,7 @@ mod deviation;
 mod grid;
 mod hole;
 mod line;
+mod play;
 
 pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};

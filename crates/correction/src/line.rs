@@ -6,29 +6,61 @@ use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
 use crate::grid::AxisWord;
+use crate::play::Tried;
 use crate::{Centre, Piece, PieceKind};
 
 /// A piece shorter than this many output steps cannot be split further to any use.
 const SHORTEST_STEPS: f64 = 4.0;
 
-impl Corrector<'_> {
+impl<'m> Corrector<'m> {
     /// Commands lines from where the axes stand to the end of `part`, as few as hold the tolerance.
     pub(crate) fn follow_line(
         &mut self,
-        follow: &mut Follow<'_, '_>,
+        follow: &mut Follow<'_, 'm>,
         part: &Curve,
     ) -> Result<(), CorrectionError> {
+        let Tried::Beyond { distance_mm, s } = self.with_play(follow, part, Self::one_line)? else {
+            return Ok(());
+        };
+        let step = (0..3).map(|i| follow.block.step_mm(i)).fold(0.0, f64::max);
+        let length = part.length_mm();
+        if !follow.may_split {
+            return Err(CorrectionError::MustNotSplit { distance_um: distance_mm * 1e3 });
+        }
+        if length < SHORTEST_STEPS * step || length < 2.0 * self.options.minimum_segment_mm {
+            return Err(CorrectionError::NotWithinTolerance {
+                distance_um: distance_mm * 1e3,
+                tolerance_um: self.options.tolerance_mm * 1e3,
+            });
+        }
+        follow.alone = false;
+        let shortest = (self.options.minimum_segment_mm / length).clamp(0.05, 0.5);
+        let s = s.clamp(shortest, 1.0 - shortest);
+        self.follow_line(follow, &part.part(0.0, s))?;
+        self.follow_line(follow, &part.part(s, 1.0))
+    }
+
+    /// Tries one line to the end of `part`; the axes stand where they stood unless it is done.
+    fn one_line(
+        &mut self,
+        follow: &mut Follow<'_, 'm>,
+        part: &Curve,
+        hold: [bool; 3],
+    ) -> Result<Tried, CorrectionError> {
         let nominal_end = part.at(1.0);
         let wanted = self.solve(&follow.machine, nominal_end)?;
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go(follow.block, &own_end, &wanted, follow.alone);
+        let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
+        if let Some(against) = self.against(before, follow.machine.state.direction, follow.block) {
+            self.standing = before;
+            return Ok(Tried::Against(against));
+        }
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
         let commanded = Curve::Line(from, to);
         let pair = Pair { wanted: part, commanded: &commanded, in_step: follow.in_step };
-        let limit = self.limit_mm(follow.block);
-        match pair.verdict(&follow.machine, limit) {
+        match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
             Verdict::Within(bound) => {
                 follow.finish(
                     Piece { kind: PieceKind::Line, axes, share: follow.share(part) },
@@ -36,26 +68,11 @@ impl Corrector<'_> {
                     (wanted - nominal_end).norm(),
                 );
                 self.note_end(&follow.machine, nominal_end, wanted);
-                Ok(())
+                Ok(Tried::Done)
             }
             Verdict::Beyond { distance_mm, .. } => {
-                let step = (0..3).map(|i| follow.block.step_mm(i)).fold(0.0, f64::max);
-                let length = part.length_mm();
-                if !follow.may_split {
-                    return Err(CorrectionError::MustNotSplit { distance_um: distance_mm * 1e3 });
-                }
-                if length < SHORTEST_STEPS * step || length < 2.0 * self.options.minimum_segment_mm {
-                    return Err(CorrectionError::NotWithinTolerance {
-                        distance_um: distance_mm * 1e3,
-                        tolerance_um: self.options.tolerance_mm * 1e3,
-                    });
-                }
                 self.standing = before;
-                follow.alone = false;
-                let shortest = (self.options.minimum_segment_mm / length).clamp(0.05, 0.5);
-                let s = pair.worst_place(&follow.machine).clamp(shortest, 1.0 - shortest);
-                self.follow_line(follow, &part.part(0.0, s))?;
-                self.follow_line(follow, &part.part(s, 1.0))
+                Ok(Tried::Beyond { distance_mm, s: pair.worst_place(&follow.machine) })
             }
         }
     }

@@ -1,0 +1,135 @@
+//! Lost motion: an axis that is told to turn back stands still until its play is taken up.
+//!
+//! A correction can tell an axis to creep a few micrometres against the direction it last came from while
+//! another axis feeds: along a bow, or where axes are out of square. With play the axis does not follow. So
+//! no block of output moves an axis against the direction its position was computed for: the axis either
+//! holds its place (where that is within tolerance), or the play is taken up first and the way is computed
+//! for the new direction. Only models whose error depends on the direction need any of this.
+
+use machine_model::Vector;
+
+use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::curve::Curve;
+use crate::grid::Block;
+
+/// Commands nearer than this are the same place: far below every output step.
+const SAME_MM: f64 = 1e-9;
+
+/// What became of a try to follow a curve with one block.
+pub(crate) enum Tried {
+    /// Its block is written.
+    Done,
+    /// These axes would have moved this way, against the direction they were computed for.
+    Against([i8; 3]),
+    /// Too far from the path, mm.
+    Beyond {
+        /// How far.
+        distance_mm: f64,
+        /// Where to split.
+        s: f64,
+    },
+}
+
+/// Follows a curve with one block, the marked axes holding their place.
+pub(crate) type Try<'m> =
+    fn(&mut Corrector<'m>, &mut Follow<'_, 'm>, &Curve, [bool; 3]) -> Result<Tried, CorrectionError>;
+
+impl<'m> Corrector<'m> {
+    /// The axes that came from `before` to where they stand against `direction`, and which way; 0 for the others.
+    ///
+    /// In a turned frame every axis moves by the rounding of all: there the question has no answer.
+    pub(crate) fn against(
+        &self,
+        before: [Option<f64>; 3],
+        direction: [i8; 3],
+        block: &Block,
+    ) -> Option<[i8; 3]> {
+        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+            return None;
+        }
+        let way = |i: usize| match (before[i], self.standing[i]) {
+            (Some(from), Some(to)) if (to - from).abs() > SAME_MM => {
+                let sign = if to > from { 1 } else { -1 };
+                if sign == direction[i] { 0 } else { sign }
+            }
+            _ => 0,
+        };
+        let found = [way(0), way(1), way(2)];
+        (found != [0; 3]).then_some(found)
+    }
+
+    /// Turns axes: what is computed from here on is for these directions.
+    pub(crate) fn turn(&mut self, towards: [i8; 3]) {
+        for (direction, new) in self.direction.iter_mut().zip(towards) {
+            if new != 0 {
+                *direction = new;
+            }
+        }
+    }
+
+    /// One block for a curve; where axes would creep against their direction they hold their place, or turn first.
+    pub(crate) fn with_play(
+        &mut self,
+        follow: &mut Follow<'_, 'm>,
+        part: &Curve,
+        attempt: Try<'m>,
+    ) -> Result<Tried, CorrectionError> {
+        let against = match attempt(self, follow, part, [false; 3])? {
+            Tried::Against(against) => against,
+            other => return Ok(other),
+        };
+        if let Tried::Done = attempt(self, follow, part, against.map(|way| way != 0))? {
+            return Ok(Tried::Done);
+        }
+        let before = self.clone();
+        let (machine, alone) = (follow.machine, follow.alone);
+        let (written, correction) = (follow.corrected.pieces.len(), follow.corrected.correction);
+        self.turn(against);
+        follow.machine.state.direction = self.direction;
+        self.approach(&follow.machine, part, follow.block, follow.corrected)?;
+        follow.alone &= follow.corrected.pieces.len() == written;
+        let (distance_mm, s) = match attempt(self, follow, part, [false; 3])? {
+            Tried::Done => return Ok(Tried::Done),
+            Tried::Beyond { distance_mm, s } => (distance_mm, s),
+            Tried::Against(again) => match attempt(self, follow, part, again.map(|way| way != 0))? {
+                Tried::Done => return Ok(Tried::Done),
+                Tried::Beyond { distance_mm, s } => (distance_mm, s),
+                Tried::Against(_) => (f64::INFINITY, 0.5),
+            },
+        };
+        // Turning did not help either: the caller splits, and each part decides anew.
+        *self = before;
+        (follow.machine, follow.alone) = (machine, alone);
+        follow.corrected.pieces.truncate(written);
+        follow.corrected.correction = correction;
+        Ok(Tried::Beyond { distance_mm, s })
+    }
+
+    /// Where the approach to a corrected start shall bring the axes, `wanted` being that start.
+    ///
+    /// An axis that stands a little too far on its way holds its place: going back would put it into its play.
+    /// One that stands much too far must come again from behind: it is returned as to be turned first.
+    pub(crate) fn approachable(
+        &self,
+        wanted: &mut Vector,
+        direction: [i8; 3],
+        block: &Block,
+    ) -> Option<[i8; 3]> {
+        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+            return None;
+        }
+        let mut turned = [0; 3];
+        for i in 0..3 {
+            let Some(standing) = self.standing[i] else { continue };
+            let way = wanted[i] - standing;
+            if way * f64::from(direction[i]) < 0.0 {
+                if way.abs() <= 0.5 * self.options.tolerance_mm + block.step_mm(i) {
+                    wanted[i] = standing;
+                } else {
+                    turned[i] = -direction[i];
+                }
+            }
+        }
+        (turned != [0; 3]).then_some(turned)
+    }
+}
