@@ -62,6 +62,13 @@ struct Place {
     distance: f64,
 }
 
+impl Place {
+    /// Further away than allowed, or nowhere: an axis whose place is not known gives no number.
+    fn is_beyond(&self, limit_mm: f64) -> bool {
+        self.distance.is_nan() || self.distance > limit_mm
+    }
+}
+
 impl Pair<'_> {
     /// Real tip minus programmed tip at the same s, mm.
     pub(crate) fn difference(&self, machine: &Machine<'_>, s: f64) -> Vector {
@@ -120,7 +127,7 @@ impl Pair<'_> {
 
     fn verdict_between(&self, machine: &Machine<'_>, limit_mm: f64, first: Place, last: Place) -> Verdict {
         for end in [&first, &last] {
-            if !(end.distance <= limit_mm) {
+            if end.is_beyond(limit_mm) {
                 return Verdict::Beyond { s: end.s, distance_mm: end.distance };
             }
         }
@@ -149,7 +156,7 @@ impl Pair<'_> {
                 continue;
             }
             let middle = self.place(machine, 0.5 * (left.s + right.s));
-            if !(middle.distance <= limit_mm) {
+            if middle.is_beyond(limit_mm) {
                 return Verdict::Beyond { s: middle.s, distance_mm: middle.distance };
             }
             if height > DEEPEST as usize {

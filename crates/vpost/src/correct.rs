@@ -420,7 +420,7 @@ fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<D
             Diagnostic::error(OUTSIDE, format!("{what} leaves the calibrated volume"))
                 .at(span, format!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm"))
                 .help(format!(
-                    "place the workpiece inside the volume (`--work-offset G54=X,Y,Z`, now {axis} needs to move by {:.3} mm or more), or accept the nearest point's correction with `--outside clamp`",
+                    "place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`",
                     if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
                 ))
         }

@@ -160,10 +160,19 @@ impl Messages {
                 None => groups.push(Group::with_title(title)),
             },
         }
-        if let Some(help) = &diagnostic.help {
+        // Without a line of source there is nothing that a rule would join to the help.
+        let separate = source.is_none();
+        if let (Some(help), false) = (&diagnostic.help, separate) {
             groups.push(Group::with_title(Level::HELP.secondary_title(help.as_str())));
         }
-        self.renderer.render(&groups)
+        let mut text = self.renderer.render(&groups);
+        if let (Some(help), true) = (&diagnostic.help, separate) {
+            text.push('\n');
+            text.push_str(
+                &self.renderer.render(&[Group::with_title(Level::HELP.secondary_title(help.as_str()))]),
+            );
+        }
+        text
     }
 }
 

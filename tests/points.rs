@@ -1,0 +1,108 @@
+//! Published numbers through the command: `vpost solve` and `vpost predict`.
+
+mod common;
+
+use std::io::Write;
+use std::process::Stdio;
+
+use common::{messages, vpost};
+
+const STAN: [&str; 2] = ["-m", "machine-profiles/stan_s500.toml"];
+
+fn table(arguments: &[&str], input: &str) -> Vec<Vec<String>> {
+    let mut child = vpost()
+        .args(arguments)
+        .args(STAN)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    child.stdin.take().expect("piped").write_all(input.as_bytes()).expect("takes it");
+    let output = child.wait_with_output().expect("ends");
+    assert!(output.status.success(), "{}", messages(&output));
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+fn solved(engine: &str, point: [f64; 3]) -> [f64; 3] {
+    let input = format!("x_mm,y_mm,z_mm\n{},{},{}\n", point[0], point[1], point[2]);
+    let rows = table(&["solve", "-", "--engine", engine], &input);
+    assert_eq!(rows[0].join(","), "x_mm,y_mm,z_mm,qx_mm,qy_mm,qz_mm,iterations,residual_um");
+    let residual: f64 = rows[1][7].parse().expect("a number");
+    assert!(residual <= 1e-6, "{engine}: residual {residual} um");
+    [3, 4, 5].map(|at| rows[1][at].parse().expect("a number"))
+}
+
+#[test]
+fn tangential_methods_reproduce_the_publication() {
+    let target = [130.0, 140.0, 106.0];
+    for (engine, printed) in [
+        ("tangential-static-published", [129.902, 139.929, 105.949]),
+        ("tangential-interval-published", [129.768, 139.921, 105.927]),
+        ("tangential-quasi-differential-published", [129.844, 139.890, 105.891]),
+        // With the signs of the cosines, which the publication lost.
+        ("tangential-quasi-differential", [129.930, 139.893, 105.924]),
+    ] {
+        let found = solved(engine, target);
+        for axis in 0..3 {
+            assert!(
+                (found[axis] - printed[axis]).abs() <= 0.000_501,
+                "{engine}: {found:?} against {printed:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn solving_what_was_predicted_gives_the_command_back() {
+    let commands = "x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm\n100,50,150,0,0,-120\n399,279,10,1,2,3\n20.5,30.25,199,0,0,0\n";
+    let predicted = table(&["predict", "-"], commands);
+    assert!(predicted[0].join(",").ends_with("px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um"));
+    let mut targets = String::from("x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm\n");
+    for row in &predicted[1..] {
+        let value = |at: usize| row[at].parse::<f64>().expect("a number");
+        // The target of `solve` is a nominal command: the tip's place less the tool vector.
+        let nominal = [0, 1, 2].map(|axis| value(6 + axis) - value(3 + axis));
+        targets.push_str(&format!(
+            "{},{},{},{},{},{}\n",
+            nominal[0], nominal[1], nominal[2], row[3], row[4], row[5]
+        ));
+        assert!((value(12) - (value(9).powi(2) + value(10).powi(2) + value(11).powi(2)).sqrt()).abs() < 1e-5);
+    }
+    for (solved, original) in table(&["solve", "-"], &targets)[1..].iter().zip(&predicted[1..]) {
+        for axis in 0..3 {
+            let (q, x): (f64, f64) =
+                (solved[6 + axis].parse().expect("a number"), original[axis].parse().expect("a number"));
+            assert!((q - x).abs() <= 2e-9, "{q} {x}");
+        }
+    }
+}
+
+#[test]
+fn point_files_are_checked() {
+    for (input, says) in [
+        ("x_mm,y_mm\n1,2\n", "column `z_mm` is missing"),
+        ("x_mm,y_mm,z_mm,w\n1,2,3,4\n", "column `w` is unknown"),
+        ("x_mm,y_mm,z_mm\n1,2\n", "2 fields, the header has 3"),
+        ("x_mm,y_mm,z_mm\n1,2,inf\n", "`inf` is not a number"),
+        ("", "the point file is empty"),
+    ] {
+        let mut child = vpost()
+            .args(["predict", "-"])
+            .args(STAN)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("starts");
+        child.stdin.take().expect("piped").write_all(input.as_bytes()).expect("takes it");
+        let output = child.wait_with_output().expect("ends");
+        assert_eq!(output.status.code(), Some(1), "{input}");
+        assert!(
+            output.stdout.is_empty() && messages(&output).contains(says),
+            "{input}: {}",
+            messages(&output)
+        );
+    }
+}

@@ -1,0 +1,312 @@
+//! Bad input: a clear error, no output, the right exit status, and an earlier output left alone.
+
+mod common;
+
+use std::io::Write;
+use std::process::Stdio;
+
+use common::{messages, root, run, vpost};
+
+const PROFILE: [&str; 2] = ["-m", "machine-profiles/stan_s500.toml"];
+const GOOD: &str = "G21 G17 G90 G54\nG0 X10. Y10. Z20.\nG1 X50. F500.\nM30\n";
+
+struct Trial {
+    folder: tempfile::TempDir,
+}
+
+impl Trial {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a temporary folder") }
+    }
+    fn file(&self, name: &str, bytes: &[u8]) -> String {
+        let path = self.folder.path().join(name);
+        std::fs::write(&path, bytes).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    }
+    /// Runs on a program; the messages with the folder's name taken out.
+    fn refused(&self, program: &[u8], more: &[&str]) -> String {
+        let path = self.file("part.nc", program);
+        self.refused_path(&path, more)
+    }
+    fn refused_path(&self, path: &str, more: &[&str]) -> String {
+        let ran = run(&[&[path], &PROFILE[..], more].concat());
+        assert!(ran.stdout.is_empty(), "something was written");
+        let code = ran.status.code().expect("an exit status");
+        assert!(code == 1 || code == 2, "exit status {code}");
+        let said = messages(&ran).replace(self.folder.path().to_str().expect("plain"), "");
+        format!("exit status {code}\n{said}")
+    }
+}
+
+#[test]
+fn a_feed_outside_the_volume() {
+    insta::assert_snapshot!(Trial::new().refused(b"G21 G90\nG0 X0 Y0 Z50.\nG1 X300. F100.\n", &[]), @"
+    exit status 1
+    error[VP0501]: this feed motion leaves the calibrated volume
+     --> /part.nc:3:4
+      |
+    3 | G1 X300. F100.
+      |    ^^^^^ axis X would be commanded to 440.000 mm, calibrated is 0 to 400 mm
+      |
+    help: place the workpiece inside the volume: `--work-offset` with X moved by -40.000 mm or further, or accept the nearest point's correction with `--outside clamp`
+    ");
+}
+
+#[test]
+fn a_number_that_is_none() {
+    insta::assert_snapshot!(Trial::new().refused(b"G21 G90\nG0 Xnan Y0\n", &[]), @"
+    exit status 1
+    error[VP0201]: a number cannot be read
+     --> /part.nc:2:4
+      |
+    2 | G0 Xnan Y0
+      |    ^^^^ not understood
+      |
+    help: write it as digits with at most one point
+    ");
+}
+
+#[test]
+fn an_arc_that_cannot_be() {
+    insta::assert_snapshot!(Trial::new().refused(b"G21 G90\nG0 X4. Y3. Z20.\nN20 G2 X10. Y0. R0.1\n", &[]), @"
+    exit status 1
+    error[VP0203]: arc radius is smaller than half the chord
+     --> /part.nc:3:17
+      |
+    3 | N20 G2 X10. Y0. R0.1
+      |                 ^^^^ R0.1 mm, chord is 6.7082 mm
+      |
+    help: use I/J centre form, or R of at least 3.3542
+    ");
+}
+
+#[test]
+fn the_faulty_arc_of_a_real_post() {
+    insta::assert_snapshot!(Trial::new().refused_path("samples/plate_fanuc.nc", &["-d", "fanuc"]), @"
+    exit status 1
+    error[VP0204]: arc without centre
+       --> samples/plate_fanuc.nc:148:4
+        |
+    148 | G3 X51.853 Y49.000
+        |    ^^^^^^^^^^^^^^^ neither I/J nor R in this block, and neither is modal
+        |
+    help: post the program again so that each arc block has its I and J (some posts drop unchanged ones), or add R
+    ");
+}
+
+#[test]
+fn a_tool_the_profile_lacks() {
+    insta::assert_snapshot!(Trial::new().refused(b"G21 G90\nG43 H7\nG0 X0 Y0 Z10.\n", &[]), @"
+    exit status 1
+    error[VP0215]: tool length H7 is not given
+     --> /part.nc:2:5
+      |
+    2 | G43 H7
+      |     ^^ neither in the profile nor on the command line
+      |
+    help: `--tool H7=120` for a length of 120 mm, or `lengths_mm = { H7 = 120.0 }` under `[tool]` in the profile
+    ");
+}
+
+#[test]
+fn a_work_offset_the_profile_lacks() {
+    insta::assert_snapshot!(Trial::new().refused(b"G21 G90 G57\nG0 X0 Y0 Z10.\n", &[]), @"
+    exit status 1
+    error[VP0214]: work offset G57 is not given
+     --> /part.nc:1:9
+      |
+    1 | G21 G90 G57
+      |         ^^^ neither in the profile nor on the command line
+      |
+    help: `--work-offset G57=X,Y,Z` with the machine coordinates of the program's zero, or `G57 = [X, Y, Z]` under `[work_offsets_mm]` in the profile
+    ");
+}
+
+#[test]
+fn a_second_pass() {
+    let trial = Trial::new();
+    let first = run(&[&[trial.file("good.nc", GOOD.as_bytes()).as_str()], &PROFILE[..]].concat());
+    assert!(first.status.success());
+    insta::assert_snapshot!(trial.refused(&first.stdout, &[]), @"
+    exit status 1
+    error[VP0505]: this program was corrected before
+     --> /part.nc:1:1
+      |
+    1 | (CORRECTED BY VPOST 0.1.0 FOR STAN S500 ENGINE RIGID-BODY)
+      | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ its mark
+      |
+    help: correct the program as posted, not its corrected copy; `--force` corrects once more
+    ");
+    let forced =
+        run(&[&[trial.file("again.nc", &first.stdout).as_str()], &PROFILE[..], &["--force"]].concat());
+    assert!(forced.status.success());
+}
+
+#[test]
+fn empty_and_binary_files() {
+    let trial = Trial::new();
+    insta::assert_snapshot!(trial.refused(b"", &[]), @"
+    exit status 1
+    error[VP0110]: the file is empty: nothing to correct
+    --> /part.nc
+     |
+    help: check that the post processor wrote the program and that the name is right
+    ");
+    insta::assert_snapshot!(trial.refused(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", &[]), @"
+    exit status 1
+    error[VP0111]: this is a picture (PNG), not a part program
+     --> /part.nc:1:1
+      |
+    1 | ·PNG
+      | ^ no text from here on
+      |
+    help: give the part program, not a picture of it
+    ");
+}
+
+#[test]
+fn paths_that_are_no_programs() {
+    let trial = Trial::new();
+    insta::assert_snapshot!(trial.refused_path("samples", &[]), @"
+    exit status 1
+    error[VP0001]: cannot read samples: Is a directory (os error 21)
+    help: give a file in it
+    ");
+    insta::assert_snapshot!(trial.refused_path("no/such/file.nc", &[]), @"
+    exit status 1
+    error[VP0001]: cannot read no/such/file.nc: No such file or directory (os error 2)
+    help: check the name; nothing of it exists there
+    ");
+}
+
+#[test]
+fn options_that_cannot_be() {
+    let trial = Trial::new();
+    let good = trial.file("good.nc", GOOD.as_bytes());
+    insta::assert_snapshot!(trial.refused_path(&good, &["--engine", "magic"]), @"
+    exit status 2
+    error[VP0002]: there is no engine `magic`
+    help: one of: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, tangential-static-published, tangential-interval-published, tangential-quasi-differential-published, kmtpp-published
+    ");
+    insta::assert_snapshot!(trial.refused_path(&good, &["--dialect", "fanux"]), @"
+    exit status 2
+    error[VP0002]: there is no dialect `fanux`
+    help: one of: balt-system, centroid, fanuc, linuxcnc, perspektiva, sinumerik; or the path of a grammar file ending in .toml
+    ");
+    insta::assert_snapshot!(trial.refused_path(&good, &["--work-offset", "G54=1,2"]), @"
+    exit status 2
+    error[VP0002]: `--work-offset G54=1,2` cannot be read
+    help: write millimetres as in `--work-offset G54=100,50,0`
+    ");
+    insta::assert_snapshot!(trial.refused_path(&good, &["--tolerance", "0"]), @"
+    exit status 2
+    error[VP0002]: a tolerance of 0 um cannot be kept
+    help: give micrometres above zero: `--tolerance 1`
+    ");
+    insta::assert_snapshot!(trial.refused_path(&good, &["--engine", "kmtpp-published"]), @"
+    exit status 2
+    error[VP0002]: engine `kmtpp-published` reproduces a publication and corrects no programs
+    help: use `--engine kmtpp`, or `vpost solve` for single points
+    ");
+}
+
+#[test]
+fn a_profile_with_a_slip() {
+    let trial = Trial::new();
+    let good = trial.file("good.nc", GOOD.as_bytes());
+    let profile = trial.file(
+        "slip.toml",
+        b"format = 1\nname = \"X\"\nchain = \"[w X Y b Z t]\"\n[axis.X]\ntravel = [0, 100]\n",
+    );
+    let ran = run(&[good.as_str(), "-m", &profile]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(ran.stdout.is_empty());
+    let said = messages(&ran);
+    assert!(said.contains("VP03") && said.contains("travel") && said.contains("travel_mm"), "{said}");
+    assert!(said.contains("slip.toml:5:"), "{said}");
+}
+
+#[test]
+fn an_existing_output_survives_a_refusal_and_a_full_disk() {
+    let trial = Trial::new();
+    let out = trial.file("out.nc", b"precious\n");
+    let bad = trial.file("bad.nc", b"G21 G90\nG0 X0 Y0 Z50.\nG1 X900. F100.\n");
+    let ran = run(&[&[bad.as_str(), "-o", &out], &PROFILE[..]].concat());
+    assert_eq!(ran.status.code(), Some(1));
+    assert_eq!(std::fs::read(&out).expect("there"), b"precious\n");
+    let left: Vec<_> = std::fs::read_dir(trial.folder.path()).expect("there").collect();
+    assert_eq!(left.len(), 2, "a temporary file was left behind");
+    if cfg!(target_os = "linux") {
+        let good = trial.file("good.nc", GOOD.as_bytes());
+        let full = run(&[&[good.as_str(), "-o", "/dev/full"], &PROFILE[..]].concat());
+        assert_eq!(full.status.code(), Some(1));
+        assert!(messages(&full).contains("VP0001"), "{}", messages(&full));
+    }
+}
+
+#[test]
+fn standard_input_and_output_are_a_pipe() {
+    let mut child = vpost()
+        .args(["-", "-m", PROFILE[1], "-v"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("starts");
+    child.stdin.take().expect("piped").write_all(GOOD.as_bytes()).expect("takes it");
+    let output = child.wait_with_output().expect("ends");
+    assert!(output.status.success(), "{}", messages(&output));
+    let text = String::from_utf8(output.stdout).expect("ASCII");
+    assert!(text.contains("(CORRECTED BY VPOST") && text.ends_with("M30\n"), "{text}");
+    let trial = Trial::new();
+    let same = run(&[&[trial.file("good.nc", GOOD.as_bytes()).as_str()], &PROFILE[..]].concat());
+    assert_eq!(String::from_utf8(same.stdout).expect("ASCII"), text);
+}
+
+/// A signal between two blocks ends the work with the shell's exit status and leaves nothing behind.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_nothing_behind() {
+    let trial = Trial::new();
+    let mut program = GOOD.replace("M30\n", "").into_bytes();
+    for k in 0..1_500_000 {
+        writeln!(program, "G1 X{}.{:03} Y{}.", 10 + k % 90, k % 1000, 20 + k % 70).expect("memory");
+    }
+    let input = trial.file("long.nc", &program);
+    let out = trial.folder.path().join("out.nc");
+    let out_text = out.to_str().expect("plain").to_owned();
+    for (signal, status) in [("INT", 130), ("TERM", 143)] {
+        let child = vpost()
+            .args([input.as_str(), "-m", PROFILE[1], "-o", &out_text])
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("starts");
+        // Signals are caught once the program is read; until then they end the command by themselves.
+        std::thread::sleep(std::time::Duration::from_millis(400));
+        let sent =
+            std::process::Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
+        assert!(sent.is_ok_and(|sent| sent.success()), "the work was done before the signal came");
+        let output = child.wait_with_output().expect("ends");
+        assert_eq!(output.status.code(), Some(status), "{}", messages(&output));
+        assert!(!out.exists());
+        let left: Vec<_> = std::fs::read_dir(trial.folder.path()).expect("there").collect();
+        assert_eq!(left.len(), 1, "a temporary file was left behind");
+    }
+}
+
+/// The same bytes whatever the number of threads a machine offers.
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let once = |threads: &str| {
+        let output = vpost()
+            .env("RAYON_NUM_THREADS", threads)
+            .args(["samples/plate_linuxcnc.nc", "-m", PROFILE[1], "-d", "linuxcnc"])
+            .output()
+            .expect("runs");
+        assert!(output.status.success());
+        output.stdout
+    };
+    let first = once("1");
+    assert!(!first.is_empty() && first == once("4") && first == once("1"));
+    assert!(root().join("samples").is_dir());
+}
