@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn there_and_back() {
-        let frame = Frame::affine([[0.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [5.0, 6.0, 7.0]).unwrap();
+        let frame =
+            Frame::affine([[0.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [5.0, 6.0, 7.0]).unwrap();
         let p = [1.25, -2.5, 3.0];
         assert_eq!(frame.to_machine(p), [7.5, 8.5, 10.0]);
         assert_eq!(frame.to_program(frame.to_machine(p)), p);

@@ -10,8 +10,8 @@ pub struct Decimal {
 }
 
 const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19,
-    1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
 ];
 
 impl Decimal {
@@ -40,7 +40,8 @@ pub struct Spelling {
 
 impl Spelling {
     /// `0.500`, `-12.000`: what most posts write.
-    pub const FIXED: Self = Self { trailing_zeros: true, trailing_point: true, leading_zero: true, plus: false };
+    pub const FIXED: Self =
+        Self { trailing_zeros: true, trailing_point: true, leading_zero: true, plus: false };
 }
 
 /// Nearest whole number of steps, ties away from zero.
