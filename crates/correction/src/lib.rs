@@ -6,7 +6,7 @@
 //!
 //! The promise is proven, not sampled: between two places where the deviation is computed, the model
 //! bounds how far it can leave the chord ([`machine_model::PathModel::chord_bound_mm`]); a stretch that
-//! is not proven is halved until it is, or split. See `docs/equations.md`, "Path promise".
+//! is not proven is halved until it is, or split. See `docs/path-promise.md`.
 
 mod arc;
 mod compare;
