@@ -10,45 +10,23 @@ use crate::term::Term;
 /// Below this many equations a set-up is not fitted: six parameters would eat what they should judge.
 const ENOUGH_FOR_SETUP: usize = 24;
 
-/// The gap less a displacement and the runs' offsets, the set-up fitted to what is left.
-///
-/// The offsets are those of the full model, before and after alike: refitted to the gap itself they would
-/// swallow whatever drifts slowly.
+/// Run offsets of any size: the set-up of a new run says nothing about the machine.
+pub(crate) const FREE_OFFSETS: f64 = 1e6;
+
+/// The gap less a displacement, set-up and the runs' offsets fitted to what is left.
 #[must_use]
 pub(crate) fn aligned(
     data: &Measurements,
     scalars: &[Scalar],
     set_up: &[Term],
-    run_offsets_um: &[Vector],
     taken_off: &[(Term, f64)],
 ) -> Vec<f64> {
-    let offset = |s: &Scalar| s.along.dot(&run_offsets_um[data.rows[s.row].run]);
-    let changed: Vec<Scalar> = less(data, scalars, taken_off)
-        .into_iter()
-        .map(|s| Scalar { gap_um: s.gap_um - offset(&s), ..s })
-        .collect();
+    let changed = less(data, scalars, taken_off);
     if changed.len() < ENOUGH_FOR_SETUP || data.has_magnitudes() {
         return changed.iter().map(|s| s.gap_um).collect();
     }
     let source = source(data, &changed);
-    Gram::new(set_up.to_vec(), &source).solve(0.0, &source).residuals_um
-}
-
-/// Offsets of the runs once the effects are taken off, µm.
-#[must_use]
-pub(crate) fn run_offsets(
-    data: &Measurements,
-    scalars: &[Scalar],
-    set_up: &[Term],
-    rho: f64,
-    taken_off: &[(Term, f64)],
-) -> Vec<Vector> {
-    if scalars.len() < ENOUGH_FOR_SETUP || data.has_magnitudes() {
-        return vec![Vector::zeros(); data.runs.len()];
-    }
-    let changed = less(data, scalars, taken_off);
-    let source = source(data, &changed);
-    Gram::new(set_up.to_vec(), &source).solve(rho, &source).run_offsets_um
+    Gram::new(set_up.to_vec(), &source).solve(FREE_OFFSETS, &source).residuals_um
 }
 
 /// Equations with a displacement taken off.

@@ -3,7 +3,7 @@
 use machine_model::effects::{EffectKind, EffectTerm, Shape};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use crate::align::{aligned, magnitude_errors, rms, row_lengths, run_offsets};
+use crate::align::{aligned, magnitude_errors, rms, row_lengths, FREE_OFFSETS};
 use crate::crossval::{Folding, Folds};
 use crate::diagnosis::{
     Cause, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, Parameter, Setup, Shrinkage, Verdict,
@@ -17,7 +17,7 @@ use crate::observation::{Measurements, Scalar};
 use crate::remedy::remedy;
 use crate::rivals::{Rival, rivals};
 use crate::search::{Part, without};
-use crate::shrinkage::transported;
+use crate::shrinkage::{Strength, transported};
 use crate::term::Term;
 use crate::verdict::{Evidence, verdict};
 
@@ -215,7 +215,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn gap_after(&self, count: usize) -> Vec<f64> {
-        aligned(self.data, &self.model.scalars, self.set_up_terms(), &self.model.solution.run_offsets_um, &self.taken_off(count))
+        aligned(self.data, &self.model.scalars, self.set_up_terms(), &self.taken_off(count))
     }
 
     fn diagnosis(&self, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
@@ -252,7 +252,7 @@ impl<'a> Assembly<'a> {
             verdict,
             sentence: crate::sentence::sentence(verdict, &gap, &causes, &leftover),
             gap,
-            places: places(self.data, &model.scalars, &before, options.seed),
+            places: places(self.data, &model.scalars, &before, self.noise_variance(), options.seed),
             next_measurement: crate::next::next_measurement(self.data, model, self.worst_pair(), self.noise_variance().sqrt()),
             causes,
             setup: self.setup(),
@@ -398,24 +398,36 @@ impl<'a> Assembly<'a> {
         parameters
     }
 
-    /// Mean square of the displacement of the first causes, whitened and free of set-up, per equation, in
-    /// units of the noise variance.
-    fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> f64 {
+    /// What the first causes do to some commands, alignment taken out.
+    fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Strength {
         let own: Vec<(Term, f64)> = self.taken_off(count);
+        let positions: Vec<usize> = self.ordered.iter().take(count).flat_map(|r| self.positions(r.place)).collect();
         let mut terms = self.set_up_terms().to_vec();
         let nuisances = terms.len();
         terms.extend(own.iter().map(|(t, _)| *t));
         let source = source(data, scalars);
-        let (whitened, _) = Gram::new(terms, &source).whitened(self.model.solution.rho);
-        let (products, _) = crate::gram::eliminate(&whitened, if scalars.len() < 24 { 0 } else { nuisances });
+        let gram = Gram::new(terms, &source);
+        let align = scalars.len() >= 24 && !data.has_magnitudes();
+        let (whitened, _) = gram.whitened(if align { FREE_OFFSETS } else { 0.0 });
+        let (products, rank) = crate::gram::eliminate(&whitened, if align { nuisances } else { 0 });
         let offset = products.nrows() - 1 - own.len();
-        let mut square = 0.0;
+        let covariance = &self.model.solution.unit_covariance;
+        let (mut square, mut spread) = (0.0, 0.0);
         for (i, (_, a)) in own.iter().enumerate() {
             for (j, (_, b)) in own.iter().enumerate() {
-                square += a * b * products[(offset + i, offset + j)];
+                let product = products[(offset + i, offset + j)];
+                square += a * b * product;
+                spread += covariance[(positions[i], positions[j])] * product;
             }
         }
-        square / scalars.len().max(1) as f64 / self.noise_variance().max(1e-12)
+        let equations = scalars.len().max(1) as f64;
+        let noise = self.noise_variance().max(1e-12);
+        let fitted = if align { rank as f64 + gram.offsets_fitted() } else { 0.0 };
+        Strength {
+            square: square / equations / noise,
+            spread: spread * self.variance() / equations / noise,
+            noise: (1.0 - fitted / equations).max(0.05),
+        }
     }
 
     fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
@@ -430,8 +442,7 @@ impl<'a> Assembly<'a> {
         let losses = folds.losses(&all);
         let noise = self.noise_variance().max(1e-12);
         let share = model.space.degrees / model.scalars.len() as f64;
-        let equations = model.scalars.len() as f64 * share;
-        let m = losses.iter().sum::<f64>() / equations / noise;
+        let m = losses.iter().sum::<f64>() / model.space.degrees / noise;
         let each: Vec<f64> = losses
             .iter()
             .zip(folds.counts())
@@ -441,12 +452,13 @@ impl<'a> Assembly<'a> {
         let mean = each.iter().sum::<f64>() / each.len().max(1) as f64;
         let spread = each.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
         let m_error = (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt();
-        let f_data = self.strength(self.data, &model.scalars, count);
-        let f_target = match holdout.filter(|h| !h.has_magnitudes()) {
-            Some(h) => self.strength(h, &h.scalars(None), count),
-            None => f_data,
+        let data = self.strength(self.data, &model.scalars, count);
+        let target = match holdout {
+            Some(h) if h.has_magnitudes() => None,
+            Some(h) => Some(self.strength(h, &h.scalars(None), count)),
+            None => None,
         };
-        transported(m, m_error, f_data, f_target)
+        transported(m, m_error, &data, &target.unwrap_or(data))
     }
 
     fn holdout(&self, holdout: &Measurements) -> Holdout {
@@ -455,9 +467,8 @@ impl<'a> Assembly<'a> {
             (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
         } else {
             let scalars = holdout.scalars(None);
-            let offsets = run_offsets(holdout, &scalars, self.set_up_terms(), self.model.solution.rho, &all);
             let length = |off: &[(Term, f64)]| {
-                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), &offsets, off))
+                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), off))
             };
             (length(&[]), length(&all))
         };

@@ -201,6 +201,22 @@ impl<'a> State<'a> {
                 self.library.add_variants(kind, variants, asked);
             }
         }
+        // Residuals with the runs' offsets put back: a knock between two runs hides in them.
+        let marginal = crate::fit::residuals(&sub.terms, &solution.coefficients, self.source);
+        for axis in 0..3 {
+            let kind = EffectKind::Step(axis);
+            if self.without.contains(&kind) || self.uses(kind) {
+                continue;
+            }
+            for residuals in [&solution.residuals_um, &marginal] {
+                if let Some((time_s, asked)) = propose::knock(self.source, residuals, axis) {
+                    let shape = Shape { time_s, ..Shape::default() };
+                    let columns = self.library.add_columns(kind, shape, &[0]);
+                    // The grid of the library asked already; a finer one asks at most that often again.
+                    self.library.add_variants(kind, vec![Variant { columns, enriched: false }], asked.min(48));
+                }
+            }
+        }
         self.refine_shapes(rho);
         self.grow();
     }
@@ -263,7 +279,9 @@ impl<'a> State<'a> {
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
         let effective = self.effective_degrees(part, fit.level, degrees);
         let ratio = gain / columns / (fit.residual / degrees).max(1e-12);
-        let p = f_tail(ratio, columns, effective) * self.library.questions() as f64;
+        // Once with everything, once with the runs' offsets left free: within the runs no drift between
+        // them can deceive, and the better of two tests costs a factor of two.
+        let p = 2.0 * self.library.questions() as f64 * f_tail(ratio, columns, effective).min(self.within_runs(&with));
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
@@ -284,6 +302,19 @@ impl<'a> State<'a> {
         let (explained, rank) =
             crate::linear::explained(self.space.products(level), &columns, self.space.reference());
         ((self.space.total(level) - explained).max(0.0), rank)
+    }
+
+    /// F test of the last part with the runs' offsets left free.
+    fn within_runs(&self, with: &[Part]) -> f64 {
+        let level = crate::search::RHO_GRID.len() - 1;
+        let (before, rank_before) = self.residual(&with[..with.len() - 1], level);
+        let (after, rank_after) = self.residual(with, level);
+        let columns = rank_after.saturating_sub(rank_before) as f64;
+        let degrees = self.space.degrees - 3.0 * self.source.runs as f64 - rank_after as f64;
+        if columns < 1.0 || degrees < 1.0 {
+            return 1.0;
+        }
+        f_tail((before - after) / columns / (after / degrees).max(1e-12), columns, degrees)
     }
 
     /// Degrees of freedom of the noise that an effect competes with: few where only the differences

@@ -60,6 +60,9 @@ struct Seen {
     time: Option<(f64, f64)>,
     load: bool,
     feed: bool,
+    /// Different loads, different feeds.
+    loads: usize,
+    feeds: usize,
     rotary: [bool; 3],
 }
 
@@ -81,11 +84,20 @@ impl Seen {
             time: range(rows, &|r| r.conditions.time_s).filter(|(a, b)| b > a),
             load: varies(&|r| r.conditions.load_kg),
             feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
+            loads: distinct(rows, &|r| r.conditions.load_kg),
+            feeds: distinct(rows, &|r| r.conditions.feed_mm_min),
             rotary: [0, 1, 2].map(|a| {
                 data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))
             }),
         }
     }
+}
+
+fn distinct(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> usize {
+    let mut values: Vec<f64> = rows.iter().filter_map(value).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values.len()
 }
 
 fn range(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> Option<(f64, f64)> {
@@ -173,15 +185,29 @@ impl Library {
                 self.selections(kind, interval(a), &lists)
             }
             EffectKind::Sag(a) if travels(a) => {
-                let lists: [&[usize]; 6] = [&[0], &[1], &[0, 1], &[0, 3], &[0, 1, 2], &[0, 1, 2, 3]];
-                self.selections(kind, interval(a), &lists)
+                // The overhang begins where the ram leaves its support: at the end of travel or later.
+                let (low, high) = seen.range[a];
+                [0.0, 0.2, 0.4, 0.6]
+                    .into_iter()
+                    .flat_map(|share| {
+                        let from_mm = low + share * (high - low);
+                        let shape = Shape { from_mm, to_mm: high, ..Shape::default() };
+                        let lists: &[&[usize]] = if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
+                        let mut forms = self.selections(kind, shape, lists);
+                        forms.iter_mut().for_each(|f| f.enriched = share > 0.0);
+                        forms
+                    })
+                    .collect()
             }
-            EffectKind::Load(_) if seen.load => self.selections(kind, none, &[&[0], &[0, 1]]),
+            // With two feeds a line and a parabola can be any two values: a bend needs three.
+            EffectKind::Load(_) if seen.load => {
+                self.selections(kind, none, if seen.loads > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
+            }
             EffectKind::ServoLag(a) if seen.feed && seen.direction[a] => {
-                self.selections(kind, none, &[&[0], &[1], &[0, 2]])
+                self.selections(kind, none, if seen.feeds > 2 { &[&[0], &[1], &[0, 2]] } else { &[&[0], &[1]] })
             }
             EffectKind::ServoMismatch(a, b) if seen.feed && seen.direction[a] && seen.direction[b] => {
-                self.selections(kind, none, &[&[0], &[0, 1]])
+                self.selections(kind, none, if seen.feeds > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
             }
             EffectKind::Rotary { axis, .. } if seen.rotary[axis] => self.selections(kind, none, &[&[0]]),
             EffectKind::Eccentricity(axis) if seen.rotary[axis] => {

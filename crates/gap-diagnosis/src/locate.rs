@@ -26,8 +26,16 @@ struct Family {
 /// Cells that hold more of the gap than their number of equations explains, by family, the worst first;
 /// always at least the worst cell of each family.
 #[must_use]
-pub(crate) fn places(data: &Measurements, scalars: &[Scalar], gap_um: &[f64], seed: u64) -> Vec<Cell> {
+pub(crate) fn places(
+    data: &Measurements,
+    scalars: &[Scalar],
+    gap_um: &[f64],
+    noise_variance: f64,
+    seed: u64,
+) -> Vec<Cell> {
     let total: f64 = gap_um.iter().map(|g| g * g).sum();
+    // What noise alone puts into a cell is no part of the gap.
+    let beyond = (total - noise_variance * gap_um.len() as f64).max(0.0);
     if total <= 0.0 {
         return Vec::new();
     }
@@ -44,6 +52,10 @@ pub(crate) fn places(data: &Measurements, scalars: &[Scalar], gap_um: &[f64], se
             sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect()
         };
         let own = score(&observed);
+        let share = |sum: f64, count: f64| {
+            let own = (sum - noise_variance * count).max(0.0);
+            if beyond > 0.0 { (own / beyond).min(1.0) } else { sum / total }
+        };
         // Shifting the labels along the file keeps how rows hang together, and the largest of all cells
         // corrects for their number.
         let largest: Vec<f64> = (0..RELABELLINGS)
@@ -60,7 +72,7 @@ pub(crate) fn places(data: &Measurements, scalars: &[Scalar], gap_um: &[f64], se
             .map(|(i, name)| {
                 let beyond = largest.iter().filter(|l| **l >= own[i]).count();
                 let p = (beyond + 1) as f64 / (RELABELLINGS + 1) as f64;
-                Cell { by: family.by.clone(), cell: name.clone(), share: observed[i] / total, p }
+                Cell { by: family.by.clone(), cell: name.clone(), share: share(observed[i], counts[i]), p }
             })
             .collect();
         found.sort_by(|a, b| b.share.total_cmp(&a.share));

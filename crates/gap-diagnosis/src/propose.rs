@@ -12,6 +12,8 @@ use crate::term::Term;
 /// Pitches that screws, racks and gears are made with, mm.
 const NOMINAL_PITCHES_MM: [f64; 17] =
     [2.0, 2.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 30.0, 32.0, 40.0, 50.0];
+/// Damage at a place is narrower than this share of the axis.
+const LOCAL_WIDEST: f64 = 0.3;
 /// How far from a nominal pitch is still a neighbour.
 const NEIGHBOURHOOD: f64 = 0.025;
 /// Equations that a scan over shapes looks at; more are thinned evenly.
@@ -77,6 +79,39 @@ fn power(points: &[(f64, f64)], pitch_mm: f64) -> f64 {
     (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
 }
 
+/// The time at which the residual of one axis jumps most, and how many were looked at.
+#[must_use]
+pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let mut points: Vec<(f64, f64)> = source
+        .scalars
+        .iter()
+        .zip(residuals_um)
+        .filter(|(s, _)| s.along[axis].abs() > 0.3)
+        .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = points.len() as f64;
+    let total: f64 = points.iter().map(|p| p.1).sum();
+    let mut before = 0.0;
+    let mut best: Option<(f64, f64)> = None;
+    let mut asked = 0;
+    for (place, pair) in points.windows(2).enumerate() {
+        before += pair[0].1;
+        if pair[1].0 <= pair[0].0 {
+            continue;
+        }
+        asked += 1;
+        let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
+        // Square explained by two means instead of one.
+        let gap = before / n - (total - before) / m;
+        let power = gap * gap * n * m / count;
+        if best.is_none_or(|(_, p)| power > p) {
+            best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+        }
+    }
+    best.map(|(time, _)| (time, asked))
+}
+
 /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude.
 pub(crate) fn pitch_variants(library: &mut Library, axis: usize, pitch_mm: f64, range: (f64, f64)) -> Vec<Variant> {
     let shape = Shape { pitch_mm, from_mm: range.0, to_mm: range.1, ..Shape::default() };
@@ -100,6 +135,7 @@ struct Free {
     /// Half of the first step.
     step: f64,
     low: f64,
+    high: f64,
 }
 
 fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64) -> Vec<Free> {
@@ -109,12 +145,14 @@ fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64) -> Vec<Free> {
             set: |s, v| s.pitch_mm = v,
             step: 0.15 * shape.pitch_mm * shape.pitch_mm / length_mm.max(shape.pitch_mm),
             low: 0.2,
+            high: f64::INFINITY,
         }],
         EffectKind::Warmup(_) => vec![Free {
             get: |s| s.tau_s,
             set: |s, v| (s.tau_s, s.tau2_s) = (v, v * (s.tau2_s / s.tau_s)),
             step: 0.4 * shape.tau_s,
             low: 1.0,
+            high: f64::INFINITY,
         }],
         EffectKind::Local(_) => vec![
             Free {
@@ -122,8 +160,16 @@ fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64) -> Vec<Free> {
                 set: |s, v| s.centre_mm = v,
                 step: 0.25 * shape.width_mm,
                 low: f64::NEG_INFINITY,
+                high: f64::INFINITY,
             },
-            Free { get: |s| s.width_mm, set: |s, v| s.width_mm = v, step: 0.4 * shape.width_mm, low: 1e-3 * length_mm },
+            Free {
+                get: |s| s.width_mm,
+                set: |s, v| s.width_mm = v,
+                step: 0.4 * shape.width_mm,
+                low: 1e-3 * length_mm,
+                // Wider is a bow, not damage at a place.
+                high: LOCAL_WIDEST * length_mm,
+            },
         ],
         _ => Vec::new(),
     }
@@ -170,7 +216,7 @@ pub(crate) fn refined(
             let here = (free.get)(&best);
             let tries = [here - *step, here + *step].map(|v| {
                 let mut shape = best;
-                (free.set)(&mut shape, v.max(free.low));
+                (free.set)(&mut shape, v.clamp(free.low, free.high));
                 (shape, gain(&shape))
             });
             let better = if tries[0].1 > tries[1].1 { tries[0] } else { tries[1] };

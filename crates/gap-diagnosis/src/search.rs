@@ -175,7 +175,7 @@ impl Space {
                 let own: Vec<usize> = entry.variants[variant].columns.iter().map(|c| c - self.nuisances).collect();
                 let mut best: Option<Fit> = None;
                 for (index, (residual, rank, over)) in sweeps.iter().enumerate() {
-                    let (gain, own_rank) = self.gain(index, &own, over);
+                    let (gain, own_rank) = self.gain(index, &own, over, entry.kind.is_one_sided());
                     if own_rank == 0 {
                         continue;
                     }
@@ -194,7 +194,7 @@ impl Space {
     }
 
     /// What `own` columns add to a base whose sweep is `over`.
-    fn gain(&self, level: usize, own: &[usize], over: &[Vec<f64>]) -> (f64, usize) {
+    fn gain(&self, level: usize, own: &[usize], over: &[Vec<f64>], one_sided: bool) -> (f64, usize) {
         let products = &self.levels[level].products;
         let last = products.nrows() - 1;
         let dot = |i: usize, j: usize| -> f64 { over[i].iter().zip(&over[j]).map(|(a, b)| a * b).sum() };
@@ -204,6 +204,9 @@ impl Space {
                 return (0.0, 0);
             }
             let cross = products[(*single, last)] - dot(*single, last);
+            if one_sided && cross < 0.0 {
+                return (0.0, 0);
+            }
             return (cross * cross / square, 1);
         }
         let count = own.len();

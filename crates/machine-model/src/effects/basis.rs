@@ -53,9 +53,9 @@ impl Shape {
         if half > 0.0 { (position_mm - 0.5 * (self.to_mm + self.from_mm)) / half } else { 0.0 }
     }
 
-    /// Overhang on 0..=1.
+    /// Overhang beyond the support, 1 at the far end; none before the support.
     fn overhang(&self, position_mm: f64) -> f64 {
-        0.5 * (self.relative(position_mm) + 1.0)
+        (0.5 * (self.relative(position_mm) + 1.0)).max(0.0)
     }
 }
 

@@ -150,6 +150,12 @@ impl EffectKind {
         matches!(self, Self::ProbeLobing | Self::InstrumentDrift)
     }
 
+    /// True where the coefficients can only be positive: a ram droops, it does not rise.
+    #[must_use]
+    pub const fn is_one_sided(&self) -> bool {
+        matches!(self, Self::Sag(_))
+    }
+
     /// True where the error depends on the direction of motion.
     #[must_use]
     pub const fn depends_on_direction(&self) -> bool {
