@@ -136,9 +136,10 @@ fn feeding(program: &Program) -> Vec<Feeding> {
                 push(Curve::new(top, bottom, &Shape::Line), hole.at_r.rotary_deg, turned, true);
             }
             Motion::Rapid { start, end } => {
-                if let (Some(from), Some(to)) = (start.complete(), end.complete()) {
-                    turn(&from.linear_mm.into(), &to.linear_mm.into());
-                }
+                // Axis by axis: another axis may not be known yet.
+                let known = |i: usize| start.linear_mm[i].zip(end.linear_mm[i]).unwrap_or((0.0, 0.0));
+                let [x, y, z] = [known(0), known(1), known(2)];
+                turn(&Vector::new(x.0, y.0, z.0), &Vector::new(x.1, y.1, z.1));
             }
             Motion::Uncorrected { .. } => {}
         }

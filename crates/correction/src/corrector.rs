@@ -213,6 +213,9 @@ impl<'m> Corrector<'m> {
         let Some(nominal) = end.complete() else {
             // Some axis is not known yet, so the error is not: the words stay, and the first motion
             // whose end is known in all axes brings the correction.
+            let known = |i: usize| self.standing[i].zip(end.linear_mm[i]).unwrap_or((0.0, 0.0));
+            let [x, y, z] = [known(0), known(1), known(2)];
+            self.turn_towards(&Vector::new(x.0, y.0, z.0), &Vector::new(x.1, y.1, z.1));
             self.standing = end.linear_mm;
             self.last = None;
             return Ok(Corrected { pieces: SmallVec::new(), correction });

@@ -44,13 +44,9 @@ impl<'m> Corrector<'m> {
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
             let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
-            let against = self.against(before.0, machine.state.direction, block).map(|mut against| {
-                against[normal] = 0;
-                against
-            });
             turns += 1;
-            match against {
-                Some(against) if against != [0; 3] && turns < MOST_TURNS => {
+            match self.against_in_plane(before.0, machine.state.direction, normal, block) {
+                Some(against) if turns < MOST_TURNS => {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
                 }
@@ -87,6 +83,27 @@ impl<'m> Corrector<'m> {
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
         Ok(corrected)
+    }
+
+    /// Axes of the plane that moved against their direction.
+    fn against_in_plane(
+        &self,
+        before: [Option<f64>; 3],
+        direction: [i8; 3],
+        normal: usize,
+        block: &Block,
+    ) -> Option<[i8; 3]> {
+        let mut against = self.against(before, direction, block)?;
+        against[normal] = 0;
+        (against != [0; 3]).then_some(against)
+    }
+
+    /// The machine as it drills: in the plane the axes come from where they came from last.
+    fn drilling(&self, machine: &Machine<'m>, normal: usize) -> Machine<'m> {
+        let mut state = machine.state;
+        state.direction = self.direction;
+        state.direction[normal] = machine.state.direction[normal];
+        Machine { state, ..*machine }
     }
 
     /// The cycle block with its words moved, and how far its hole is then from the programmed one.
@@ -209,12 +226,25 @@ impl<'m> Corrector<'m> {
         let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
         let rapid =
             |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
-                let wanted = corrector.solve(machine, to)?;
-                let axes = corrector.go(block, &to, &wanted, false);
+                let before = corrector.standing;
+                let mut turns = 0;
+                let (machine, wanted, axes) = loop {
+                    let machine = corrector.drilling(machine, normal);
+                    let wanted = corrector.solve(&machine, to)?;
+                    let axes = corrector.go(block, &to, &wanted, false);
+                    turns += 1;
+                    match corrector.against_in_plane(before, machine.state.direction, normal, block) {
+                        Some(against) if turns < MOST_TURNS => {
+                            corrector.turn(against);
+                            corrector.standing = before;
+                        }
+                        _ => break (machine, wanted, axes),
+                    }
+                };
                 if axes.iter().any(|word| *word != AxisWord::Omit) {
                     corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
                 }
-                corrector.note_end(machine, to, wanted);
+                corrector.note_end(&machine, to, wanted);
                 Ok(())
             };
         let feed = |corrector: &mut Self,
@@ -224,7 +254,7 @@ impl<'m> Corrector<'m> {
          -> Result<(), CorrectionError> {
             let part = Curve::Line(place(from), place(to));
             let mut follow = Follow {
-                machine: *machine,
+                machine: corrector.drilling(machine, normal),
                 block,
                 alone: false,
                 may_split: true,
