@@ -5,7 +5,8 @@ use correction::{
     AxisWord, Block, Centre, Corrected, Corrector, Curve, Letters, Options, Outside, Piece, PieceKind,
 };
 use machine_model::{
-    Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Vector, Volume,
+    AxisTables, Chain, Command, Description, Engine, EngineId, Interpolation, LinearAxis, Move, PathModel,
+    Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
 };
 use proptest::prelude::*;
 use toolpath::{Arc, Cycle, CycleKind, Feed, FeedRate, Frame, Hole, Motion, Partial, Plane, Position, Shape};
@@ -188,7 +189,7 @@ fn distance(wanted: &Curve, p: &Vector) -> f64 {
     [best.1, 0.0, 1.0].map(refine).into_iter().fold(best.0, f64::min)
 }
 
-fn worst(model: &Wavy, wanted: &Curve, commanded: &[Curve]) -> f64 {
+fn worst(model: &dyn PathModel, wanted: &Curve, commanded: &[Curve]) -> f64 {
     let mut worst: f64 = 0.0;
     for curve in commanded {
         for k in 0..=40 {
@@ -278,14 +279,55 @@ fn feed(
     Ran { corrected, curves }
 }
 
-fn machine() -> impl Strategy<Value = Wavy> {
+/// A machine of one kind or the other.
+#[derive(Clone)]
+struct Crooked(std::sync::Arc<dyn PathModel>);
+
+impl std::fmt::Debug for Crooked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.0.id())
+    }
+}
+
+fn wavy() -> impl Strategy<Value = Crooked> {
     (prop::array::uniform9(-1.2e-3f64..1.2e-3), 0.0f64..0.03, 40.0f64..400.0).prop_map(
-        |(m, amplitude_mm, wavelength_mm)| Wavy {
-            matrix: nalgebra::Matrix3::from_row_slice(&m),
-            amplitude_mm,
-            wavelength_mm,
+        |(m, amplitude_mm, wavelength_mm)| {
+            let matrix = nalgebra::Matrix3::from_row_slice(&m);
+            Crooked(std::sync::Arc::new(Wavy { matrix, amplitude_mm, wavelength_mm }))
         },
     )
+}
+
+/// The rigid-body model with random tables, linear or monotone, random squareness and tool.
+fn tabled() -> impl Strategy<Value = Crooked> {
+    let values = prop::collection::vec(-1.0f64..1.0, 18 * 41);
+    (values, any::<bool>(), prop::array::uniform3(-1e-3f64..1e-3)).prop_map(|(values, monotone, square)| {
+        let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
+        let nodes: Vec<f64> = (-20..=20).map(|k| f64::from(k) * 32.5).collect();
+        let linear = [0, 1, 2].map(|axis| {
+            let functions = [0, 1, 2, 3, 4, 5].map(|function| {
+                let at = (axis * 6 + function) * 41;
+                // Up to 8 µm and 25 µrad from node to node: rougher than machines are.
+                let scale = if function < 3 { 4e-3 } else { 12e-6 };
+                let row = values[at..at + 41].iter().map(|v| v * scale).collect();
+                Some(Table::new(nodes.clone(), row, interpolation).expect("a good table"))
+            });
+            let mut data = LinearAxis::perfect(Range { low: -600.0, high: 600.0 });
+            data.errors = AxisTables::new(&functions);
+            data
+        });
+        let description = Description {
+            chain: Chain::parse("[w X Y b Z t]").expect("a chain"),
+            linear,
+            rotary: [0, 1, 2].map(|_| RotaryAxis::perfect(Vector::zeros())),
+            squareness: Squareness { ec0y_rad: square[0], eb0z_rad: square[1], ea0z_rad: square[2] },
+        };
+        Crooked(std::sync::Arc::new(RigidBody::new(description).expect("a machine")))
+    })
+}
+
+fn machine() -> impl Strategy<Value = Crooked> {
+    prop_oneof![wavy(), tabled()]
 }
 
 /// Places on the output grid, as programs have them.
@@ -298,11 +340,12 @@ proptest! {
 
     #[test]
     fn lines_keep_the_promise(model in machine(), places in prop::collection::vec(place(), 2..5), incremental: bool) {
-        let mut corrector = Corrector::new(&model, OPTIONS);
+        let model = &*model.0;
+        let mut corrector = Corrector::new(model, OPTIONS);
         let mut control = begin(&mut corrector, places[0]);
         for pair in places.windows(2) {
             let ran = feed(&mut corrector, &mut control, pair[0], pair[1], Shape::Line, &block("XYZ", incremental));
-            let found = worst(&model, &Curve::Line(pair[0], pair[1]), &ran.curves);
+            let found = worst(model, &Curve::Line(pair[0], pair[1]), &ran.curves);
             prop_assert!(found <= ALLOWED_MM, "{found} after {:?}", ran.corrected.correction);
             prop_assert!(found <= ran.corrected.correction.after_mm + 1e-9, "proof {} found {found}", ran.corrected.correction.after_mm);
             prop_assert!(ran.corrected.pieces.len() < 400);
@@ -331,12 +374,13 @@ proptest! {
         if clockwise { while swept >= 0.0 { swept -= std::f64::consts::TAU } } else { while swept <= 0.0 { swept += std::f64::consts::TAU } }
         prop_assume!((centre - start).norm() > 0.01);
         let shape = Shape::Arc(Arc { plane, centre_mm: [centre[u], centre[v]], sweep_rad: swept });
-        let mut corrector = Corrector::new(&model, OPTIONS);
+        let model = &*model.0;
+        let mut corrector = Corrector::new(model, OPTIONS);
         let mut control = begin(&mut corrector, start);
         let text = format!("XYZ{}{}", plane.centre_letters()[0] as char, plane.centre_letters()[1] as char);
         let ran = feed(&mut corrector, &mut control, start, end, shape, &block(&text, incremental));
         let wanted = Curve::new(start, end, &shape);
-        let found = worst(&model, &wanted, &ran.curves);
+        let found = worst(model, &wanted, &ran.curves);
         prop_assert!(found <= ALLOWED_MM, "{found} after {:?}", ran.corrected.correction);
         prop_assert!(found <= ran.corrected.correction.after_mm + 1e-7, "proof {} found {found}", ran.corrected.correction.after_mm);
     }
