@@ -311,8 +311,8 @@ impl<'m> Corrector<'m> {
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
             self.turn_towards(&part.at(0.0), &part.at(1.0));
-            let machine = self.machine(block, feed.end.rotary_deg);
-            self.approach(&machine, &part, block, &mut corrected)?;
+            let mut machine = self.machine(block, feed.end.rotary_deg);
+            self.approach(&mut machine, &part, block, &mut corrected)?;
             let mut follow = Follow {
                 machine,
                 block,
@@ -384,13 +384,18 @@ impl<'m> Corrector<'m> {
     /// axis with lost motion, after motion that is never corrected, after a change of tool length.
     pub(crate) fn approach(
         &mut self,
-        machine: &Machine<'_>,
+        machine: &mut Machine<'_>,
         part: &Curve,
         block: &Block,
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let start = part.at(0.0);
         let mut wanted = self.solve(machine, start)?;
+        if let Some(first) = self.first_moves(&wanted, machine.state.direction, block) {
+            self.turn(first);
+            machine.state.direction = self.direction;
+            wanted = self.solve(machine, start)?;
+        }
         if let Some(turned) = self.approachable(&mut wanted, machine.state.direction, block) {
             let mut state = machine.state;
             for (direction, new) in state.direction.iter_mut().zip(turned) {

@@ -86,7 +86,7 @@ impl<'m> Corrector<'m> {
         let (written, correction) = (follow.corrected.pieces.len(), follow.corrected.correction);
         self.turn(against);
         follow.machine.state.direction = self.direction;
-        self.approach(&follow.machine, part, follow.block, follow.corrected)?;
+        self.approach(&mut follow.machine, part, follow.block, follow.corrected)?;
         follow.alone &= follow.corrected.pieces.len() == written;
         let (distance_mm, s) = match attempt(self, follow, part, [false; 3])? {
             Tried::Done => return Ok(Tried::Done),
@@ -103,6 +103,21 @@ impl<'m> Corrector<'m> {
         follow.corrected.pieces.truncate(written);
         follow.corrected.correction = correction;
         Ok(Tried::Beyond { distance_mm, s })
+    }
+
+    /// Axes whose direction is not known and which an approach would move, and which way.
+    pub(crate) fn first_moves(&self, wanted: &Vector, direction: [i8; 3], block: &Block) -> Option<[i8; 3]> {
+        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+            return None;
+        }
+        let way = |i: usize| match self.standing[i] {
+            Some(standing) if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.step_mm(i) => {
+                if wanted[i] > standing { 1 } else { -1 }
+            }
+            _ => 0,
+        };
+        let found = [way(0), way(1), way(2)];
+        (found != [0; 3]).then_some(found)
     }
 
     /// Where the approach to a corrected start shall bring the axes, `wanted` being that start.
