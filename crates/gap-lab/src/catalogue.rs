@@ -66,6 +66,7 @@ fn spec(kind: Kind, turn: usize, index: u64, seed: u64) -> CaseSpec {
         noise: dice.pick(&USUAL),
         observation: Observation::Displacement,
         outside: None,
+        perfect: false,
     };
     match kind {
         Kind::Single => {
@@ -163,10 +164,11 @@ pub fn sample_cases() -> Vec<(&'static str, CaseSpec)> {
         noise: NoiseKind::RunOffsets,
         observation: Observation::Displacement,
         outside: None,
+        perfect: true,
     };
     let blind = Plan::Aliased(Alias::LagOrBacklash, 1);
     let two = CaseSpec {
-        kind: Kind::Single,
+        kind: Kind::Multiple,
         ..base(900_002, vec![Effect::Squareness(0, 1), Effect::Scale(1)], vec![10.0, 6.0], Plan::Sparse)
     };
     vec![

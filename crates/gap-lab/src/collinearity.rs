@@ -7,7 +7,7 @@ use crate::linear::{Basis, dot};
 use crate::machine::Machine;
 use crate::plans::{BlindPlan, blind};
 use crate::row::{Row, Sight};
-use crate::textbook::{needs_met, variants};
+use crate::textbook::{variants, visible};
 
 /// Two names count as one on a design where the true effect correlates this much with the other's columns.
 pub(crate) const SAME: f64 = 0.98;
@@ -208,7 +208,7 @@ impl<'a> View<'a> {
         }
         let mut library = Vec::new();
         for effect in effects {
-            if !needs_met(effect, self.layout.columns) {
+            if !visible(effect, self.layout) {
                 continue;
             }
             for variant in variants(effect, self.machine, self.layout) {

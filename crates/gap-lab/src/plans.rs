@@ -14,8 +14,9 @@ fn tools(dice: &mut Dice) -> [[f64; 3]; 3] {
     [[0.0, 0.0, -short], [0.0, 0.0, -long], [side[0], side[1], -round(0.5 * (short + long))]]
 }
 
-fn feeds(dice: &mut Dice) -> [f64; 2] {
-    [dice.pick(&[500.0, 800.0, 1000.0]), dice.pick(&[3000.0, 4000.0, 5000.0])]
+/// Feeds of a plan: slow, fast, and one between.
+fn feeds(dice: &mut Dice) -> [f64; 3] {
+    [dice.pick(&[500.0, 800.0]), dice.pick(&[4000.0, 5000.0]), dice.pick(&[1500.0, 2000.0])]
 }
 
 /// Makes the rows of a plan. With `long_runs` a run spans many lines, else it is one line.
@@ -25,11 +26,11 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
         Plan::Sparse => {
             let (tools, feeds) = (tools(dice), feeds(dice));
             let setups = [(tools[0], feeds[0]), (tools[1], feeds[1]), (tools[0], feeds[1])];
-            few(machine, &[0.5], &setups, true, 1, if long_runs { 2 } else { 9 }, dice)
+            few(machine, &[0.5], &setups, true, 2, if long_runs { 2 } else { 9 }, dice)
         }
         Plan::FewLines => {
             let (tools, feeds) = (tools(dice), feeds(dice));
-            few(machine, &[0.5], &[(tools[0], feeds[0])], true, 2, if long_runs { 2 } else { 3 }, dice)
+            few(machine, &[0.5], &[(tools[0], feeds[0])], true, 5, if long_runs { 2 } else { 3 }, dice)
         }
         Plan::Interferometer => {
             let mut layout = lay_out(Plan::FewLines, machine, long_runs, dice);
@@ -40,7 +41,7 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
         }
         Plan::OneWay => {
             let (tools, feeds) = (tools(dice), feeds(dice));
-            few(machine, &[0.1, 0.9], &[(tools[0], feeds[0])], false, 2, if long_runs { 2 } else { 6 }, dice)
+            few(machine, &[0.1, 0.9], &[(tools[0], feeds[0])], false, 5, if long_runs { 2 } else { 6 }, dice)
         }
         Plan::Plane => plane(machine, dice),
         Plan::Points => points(machine, dice),
@@ -65,7 +66,7 @@ fn good(machine: &Machine, long_runs: bool, dice: &mut Dice) -> Layout {
                 blocks.push(Block {
                     targets: targets.clone(),
                     tool: tools[(k + half + axis) % 3],
-                    feed: feeds[(k + half) % 2],
+                    feed: feeds[(k + 2 * half) % 3],
                     load: dice.pick(&[0.0, 0.0, 60.0, 150.0]),
                     repeats,
                     both_ways: true,
@@ -140,7 +141,7 @@ fn plane(machine: &Machine, dice: &mut Dice) -> Layout {
         let across = 0.05 + 0.9 * f64::from(k) / f64::from(lines - 1);
         let targets = axis_line(dice, machine, 0, [across, height], 9, false);
         let (tool, feed) = (tools[0], feeds[0]);
-        blocks.push(Block { targets, tool, feed, load: 0.0, repeats: 1, both_ways: true });
+        blocks.push(Block { targets, tool, feed, load: 0.0, repeats: 2, both_ways: true });
     }
     let recorder = Recorder::new(dice, ALL_SEEN);
     record(recorder, &blocks, 2, Columns { load: false, ..Columns::ALL }, dice)
@@ -148,7 +149,7 @@ fn plane(machine: &Machine, dice: &mut Dice) -> Layout {
 
 fn points(machine: &Machine, dice: &mut Dice) -> Layout {
     let (tools, feeds) = (tools(dice), feeds(dice));
-    let count = dice.pick(&[80, 120, 160]);
+    let count = dice.pick(&[120, 200, 300]);
     let mut recorder = Recorder::new(dice, ALL_SEEN);
     for k in 0..count {
         recorder.clock += 20.0;
@@ -371,7 +372,7 @@ mod tests {
             values.dedup();
             values.len()
         };
-        assert_eq!(count(layout.rows.iter().map(|r| r.feed as i64).collect()), 2);
+        assert_eq!(count(layout.rows.iter().map(|r| r.feed as i64).collect()), 3);
         assert_eq!(count(layout.rows.iter().map(|r| r.tool[2] as i64).collect()), 3);
         assert_eq!(count(layout.rows.iter().map(|r| r.approach[0] as i64).collect()), 3);
         assert!(count(layout.rows.iter().map(|r| r.temperature as i64).collect()) >= 4);

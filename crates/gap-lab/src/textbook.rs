@@ -4,7 +4,7 @@
 //! "What each name means", to first order and with explicit lever arms, not with the matrices of
 //! [`crate::machine`]: a test compares the two.
 
-use crate::design::{Columns, Layout};
+use crate::design::Layout;
 use crate::effect::Effect;
 use crate::machine::Machine;
 use crate::row::Row;
@@ -12,11 +12,19 @@ use crate::row::Row;
 /// Displacement per unit of one coefficient, mm.
 pub(crate) type Column<'a> = Box<dyn Fn(&Row) -> [f64; 3] + 'a>;
 
-/// True where the file carries the columns the effect is a function of.
-pub(crate) fn needs_met(effect: Effect, columns: Columns) -> bool {
+/// True where the file carries what the effect is a function of, and lets it vary.
+///
+/// A row without direction of approach counts as unknown, so an effect of the reversal needs rows from
+/// both sides.
+pub(crate) fn visible(effect: Effect, layout: &Layout) -> bool {
+    let columns = layout.columns;
+    let both =
+        |a: usize| [-1.0, 1.0].iter().all(|sign| layout.rows.iter().any(|r| r.approach[a] * sign > 0.5));
     match effect {
-        Effect::Backlash(_) | Effect::LostMotion(..) | Effect::ProbeLobing => columns.approach,
-        Effect::ServoLag(_) | Effect::ServoMismatch(..) => columns.approach && columns.feed,
+        Effect::Backlash(a) | Effect::LostMotion(_, a) => columns.approach && both(a),
+        Effect::ProbeLobing => columns.approach && (0..3).all(both),
+        Effect::ServoLag(a) => columns.approach && columns.feed && both(a),
+        Effect::ServoMismatch(a, b) => columns.approach && columns.feed && both(a) && both(b),
         Effect::Thermal(_) => columns.temperature,
         Effect::Warmup(_) | Effect::Step(_) | Effect::InstrumentDrift => columns.time,
         Effect::Load(_) => columns.load,
