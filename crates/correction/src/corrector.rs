@@ -402,7 +402,10 @@ impl<'m> Corrector<'m> {
                 *direction = if new == 0 { *direction } else { new };
             }
             let behind = Machine { state, ..*machine };
-            self.approach_to(self.solve(&behind, start)?, start, block, corrected);
+            let mut from_behind = self.solve(&behind, start)?;
+            // The axes that need not turn do not creep back meanwhile.
+            let _ = self.approachable(&mut from_behind, state.direction, block);
+            self.approach_to(from_behind, start, block, corrected);
         }
         self.approach_to(wanted, start, block, corrected);
         Ok(())
