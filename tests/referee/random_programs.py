@@ -194,7 +194,12 @@ def main():
             program = Program(seed)
             with open(path, "wb") as file:
                 file.write(program.text.encode())
-            done = subprocess.run([arguments.vpost, path, "-m", profile], capture_output=True, check=False)
+            try:
+                done = subprocess.run([arguments.vpost, path, "-m", profile], capture_output=True, check=False, timeout=20)
+            except subprocess.TimeoutExpired:
+                table["FAILED"] += 1
+                print(f"seed {seed}: no answer within 20 s", flush=True)
+                continue
             if done.returncode == 1:
                 table["refused: " + done.stderr.decode(errors="replace").split("\n")[0]] += 1
                 continue
