@@ -1,0 +1,485 @@
+//! The documentation, held to what it says.
+//!
+//! Every `sh` block of the documents runs; a `text` block behind it is what that prints, byte for byte;
+//! every option, message number, dependency and link in the documents exists, and every one that exists
+//! is in the documents. How blocks are marked: `docs/testing.md`.
+
+mod common;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use common::{messages, root, run, vpost};
+
+/// A fenced block of a document.
+#[derive(Debug)]
+struct Fence {
+    /// Language and what follows it.
+    info: String,
+    text: String,
+    line: usize,
+    /// The heading above.
+    heading: String,
+}
+
+impl Fence {
+    fn language(&self) -> &str {
+        self.info.split(' ').next().unwrap_or_default()
+    }
+    /// What stands behind the language.
+    fn option(&self) -> &str {
+        self.info.split_once(' ').map_or("", |(_, option)| option)
+    }
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The documents, relative to the root.
+fn documents() -> Vec<String> {
+    let mut found = vec!["README.md".to_owned(), "README.ru.md".to_owned()];
+    let mut folders = vec![PathBuf::from("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).expect("docs are there") {
+            let path = folder.join(entry.expect("a readable folder").file_name());
+            if root().join(&path).is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                found.push(path.to_str().expect("a plain name").to_owned());
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn fences(text: &str) -> Vec<Fence> {
+    let mut found: Vec<Fence> = Vec::new();
+    let mut open = false;
+    let mut heading = String::new();
+    for (at, line) in text.lines().enumerate() {
+        if let Some(info) = line.strip_prefix("```") {
+            open = !open;
+            if open {
+                let info = info.trim().to_owned();
+                found.push(Fence { info, text: String::new(), line: at + 1, heading: heading.clone() });
+            }
+        } else if open {
+            let fence = found.last_mut().expect("one is open");
+            fence.text.push_str(line);
+            fence.text.push('\n');
+        } else if line.starts_with('#') {
+            heading = line.trim_start_matches('#').trim().to_owned();
+        }
+    }
+    assert!(!open, "a block is not closed");
+    found
+}
+
+fn blocks_of<'f>(fences: &'f [Fence], language: &str) -> Vec<&'f Fence> {
+    fences.iter().filter(|fence| fence.language() == language).collect()
+}
+
+/// A folder as a new user has it after a clone, without what would have to be built.
+struct Clone {
+    folder: tempfile::TempDir,
+}
+
+impl Clone {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for name in ["samples", "machine-profiles", "grammars", "tests/profiles"] {
+            copy(&root().join(name), &folder.path().join("project").join(name));
+        }
+        let tools = folder.path().join("tools");
+        std::fs::create_dir(&tools).expect("a new folder");
+        let stub = "#!/bin/sh\nexec \"$VPOST_UNDER_TEST\" \"$@\"\n";
+        let cargo = r#"#!/bin/sh
+case "$*" in
+  "run --release --quiet -- "*) shift 4; exec "$VPOST_UNDER_TEST" "$@" ;;
+  test*) exit 0 ;; # these are the tests
+  *) echo "this test does not know how to run: cargo $*" >&2; exit 99 ;;
+esac
+"#;
+        for (name, text) in [("vpost", stub), ("cargo", cargo)] {
+            write_executable(&tools.join(name), text);
+        }
+        Self { folder }
+    }
+
+    /// Runs a block: standard output, with standard error where it was written.
+    fn run(&self, script: &str) -> (Option<i32>, String) {
+        let path = std::env::var("PATH").unwrap_or_default();
+        let mut command = Command::new("bash");
+        command.args(["-e", "-o", "pipefail", "-c", &format!("exec 2>&1\n{script}")]);
+        command.current_dir(self.folder.path().join("project")).env_remove("NO_COLOR");
+        command.env("PATH", format!("{}:{path}", self.folder.path().join("tools").display()));
+        command.env("VPOST_UNDER_TEST", env!("CARGO_BIN_EXE_vpost")).stdin(Stdio::null());
+        let output: Output = command.output().expect("bash is there");
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+}
+
+#[cfg(unix)]
+fn write_executable(path: &Path, text: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::write(path, text).expect("a new file");
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("our own file");
+}
+
+fn copy(from: &Path, to: &Path) {
+    if from.is_dir() {
+        std::fs::create_dir_all(to).expect("a new folder");
+        for entry in std::fs::read_dir(from).expect("it is there") {
+            let name = entry.expect("a readable folder").file_name();
+            copy(&from.join(&name), &to.join(&name));
+        }
+    } else {
+        std::fs::copy(from, to).expect("a copy");
+    }
+}
+
+#[test]
+fn every_command_of_the_documents_runs_and_prints_what_they_show() {
+    let mut ran = 0;
+    let mut shown = 0;
+    let mut wrong = Vec::new();
+    for document in documents() {
+        let text = read(&document);
+        let fences = fences(&text);
+        if blocks_of(&fences, "sh").is_empty() {
+            continue;
+        }
+        // One folder a document: later blocks use what earlier ones made.
+        let clone = Clone::new();
+        let mut printed: Option<(String, &Fence)> = None;
+        for fence in &fences {
+            match fence.language() {
+                "sh" => {
+                    let (status, output) = clone.run(&fence.text);
+                    ran += 1;
+                    if status != Some(0) {
+                        wrong.push(format!("{document}:{}: exit {status:?}\n{output}", fence.line));
+                    }
+                    printed = Some((output, fence));
+                }
+                "text" => {
+                    if let Some((output, above)) = printed.take()
+                        && above.heading == fence.heading
+                    {
+                        shown += 1;
+                        if !same(&output, &fence.text) {
+                            wrong.push(format!(
+                                "{document}:{}: shown is not what line {} prints:\n{output}",
+                                fence.line, above.line
+                            ));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(ran > 20 && shown > 10, "{ran} blocks ran and {shown} outputs were compared");
+}
+
+/// Equal, spaces at line ends apart; a line `...` stands for any lines.
+fn same(printed: &str, shown: &str) -> bool {
+    let trimmed = |text: &str| text.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>();
+    let printed = trimmed(printed.trim_end());
+    let shown = trimmed(shown.trim_end());
+    let parts: Vec<&[String]> = shown.split(|line| line == "...").collect();
+    let mut at = 0;
+    for (k, part) in parts.iter().enumerate() {
+        let first = k == 0;
+        let last = k + 1 == parts.len();
+        let found = (at..=printed.len().saturating_sub(part.len())).find(|from| {
+            printed[*from..].starts_with(part)
+                && (!first || *from == 0)
+                && (!last || from + part.len() == printed.len())
+        });
+        match found {
+            Some(from) => at = from + part.len(),
+            None => return false,
+        }
+    }
+    true
+}
+
+#[test]
+fn comparison_of_outputs_can_fail() {
+    assert!(same("a \nb\n", "a\nb\n"));
+    assert!(same("a\nb\nc\nd\n", "a\n...\nd\n"));
+    assert!(same("a\nb\n", "...\nb\n"));
+    assert!(!same("a\nb\n", "a\n"));
+    assert!(!same("a\nb\nc\n", "a\n...\nb\n"));
+    assert!(!same("a\n", "a\n...\nb\n"));
+}
+
+#[test]
+fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
+    let text = read("README.md");
+    let fences = fences(&text);
+    let shell = blocks_of(&fences, "sh");
+    assert!(shell[0].text.starts_with("cargo run --release --quiet -- samples/"), "{}", shell[0].text);
+    assert_eq!(shell[0].text.lines().count(), 1, "one command builds and corrects");
+    assert_eq!(shell[1].text, "cargo test --workspace\n");
+    // Other blocks that a reader of the first two may take for commands must not come before.
+    let before: Vec<&str> =
+        fences.iter().map(Fence::language).take_while(|language| *language != "sh").collect();
+    assert!(
+        before.iter().all(|language| !matches!(*language, "" | "bash" | "console" | "shell")),
+        "{before:?}"
+    );
+}
+
+#[test]
+fn the_russian_readme_has_the_same_commands_and_outputs() {
+    let [english, russian] = ["README.md", "README.ru.md"].map(|name| {
+        let text = read(name);
+        let kept = |fence: &Fence| (fence.info.clone(), fence.text.clone());
+        fences(&text).iter().map(kept).collect::<Vec<_>>()
+    });
+    assert_eq!(english, russian);
+    let pictures = |name: &str| read(name).matches("docs/img/").count();
+    assert_eq!(pictures("README.md"), pictures("README.ru.md"));
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut dead = Vec::new();
+    for document in documents() {
+        let text = read(&document);
+        let folder = root().join(&document).parent().expect("a folder").to_path_buf();
+        let mut inside = false;
+        for (at, line) in text.lines().enumerate() {
+            inside ^= line.starts_with("```");
+            if inside {
+                continue;
+            }
+            for part in line.split("](").skip(1) {
+                let target = part.split(')').next().unwrap_or_default();
+                let file = target.split('#').next().unwrap_or_default();
+                if !file.is_empty() && !file.contains("://") && !folder.join(file).exists() {
+                    dead.push(format!("{document}:{}: {target}", at + 1));
+                }
+            }
+        }
+    }
+    assert!(dead.is_empty(), "{dead:#?}");
+}
+
+// ---- docs/reference.md -------------------------------------------------------------------------------
+
+/// Long options that a help text or a document line names first: `--json`, `-o, --output <FILE>`.
+fn first_option(line: &str) -> Option<String> {
+    let start = line.find("--")?;
+    let name: String = line[start..]
+        .chars()
+        .take_while(|c| *c == '-' || c.is_ascii_lowercase() || c.is_ascii_digit())
+        .collect();
+    (name.len() > 2).then_some(name)
+}
+
+fn help(command: &[&str]) -> String {
+    let output = vpost().args(command).arg("--help").output().expect("the command starts");
+    assert!(output.status.success(), "{command:?}: {}", messages(&output));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The names below `Commands:`.
+fn subcommands(help: &str) -> Vec<String> {
+    help.lines()
+        .skip_while(|line| *line != "Commands:")
+        .skip(1)
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.strip_prefix("  "))
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next())
+        .filter(|name| *name != "help")
+        .map(str::to_owned)
+        .collect()
+}
+
+fn options(help: &str) -> BTreeSet<String> {
+    help.lines()
+        .filter(|line| line.trim_start().starts_with('-') && line.starts_with("  ") && !line.contains("- "))
+        .filter_map(first_option)
+        .filter(|name| name != "--help" && name != "--version")
+        .collect()
+}
+
+#[test]
+fn the_reference_has_every_command_and_option_and_no_other() {
+    let reference = read("docs/reference.md");
+    // Heading → options of the tables below it.
+    let mut documented: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let mut section = String::new();
+    for line in reference.lines() {
+        if line.starts_with('#') {
+            section = line.trim_start_matches('#').trim().trim_matches('`').to_owned();
+            documented.entry(section.clone()).or_default();
+        } else if let Some(option) = line.strip_prefix("| `-").and_then(|_| first_option(line)) {
+            documented.entry(section.clone()).or_default().insert(option);
+        }
+    }
+    let shared = documented.get("Shared options").expect("a section on shared options").clone();
+    let mut commands: Vec<Vec<String>> = vec![vec![]];
+    let mut at = 0;
+    while at < commands.len() {
+        let command = commands[at].clone();
+        let words: Vec<&str> = command.iter().map(String::as_str).collect();
+        let text = help(&words);
+        for name in subcommands(&text) {
+            let mut next = command.clone();
+            next.push(name);
+            commands.push(next);
+        }
+        let title =
+            if words.is_empty() { "vpost IN.nc".to_owned() } else { format!("vpost {}", words.join(" ")) };
+        let described = documented.remove(&title);
+        let described = described.unwrap_or_else(|| panic!("docs/reference.md has no section `{title}`"));
+        let mut all = shared.clone();
+        all.extend(described);
+        assert_eq!(options(&text), all, "options of `{title}`: left is --help, right is docs/reference.md");
+        at += 1;
+    }
+    let left: Vec<&String> = documented.keys().filter(|title| title.starts_with("vpost ")).collect();
+    assert!(left.is_empty(), "docs/reference.md has sections of commands that do not exist: {left:?}");
+}
+
+// ---- docs/diagnostics.md -----------------------------------------------------------------------------
+
+/// Numbers of `Code(123)` in the sources of all crates.
+fn codes_in_sources() -> BTreeSet<u16> {
+    let mut codes = BTreeSet::new();
+    let mut folders = vec![root().join("crates")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("it is there") {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                // Tests of the crates make codes up.
+                if !path.ends_with("tests") {
+                    folders.push(path);
+                }
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                let text = std::fs::read_to_string(&path).expect("a readable file");
+                let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+                codes.extend(codes_of(text));
+            }
+        }
+    }
+    codes
+}
+
+fn codes_of(text: &str) -> BTreeSet<u16> {
+    let mut codes = BTreeSet::new();
+    for (at, _) in text.match_indices("Code(") {
+        let whole = !text[..at].ends_with(|c: char| c.is_alphanumeric());
+        let digits: String = text[at + 5..].chars().take_while(|c| c.is_ascii_digit()).collect();
+        if let (true, Ok(code)) = (whole, digits.parse()) {
+            codes.insert(code);
+        }
+    }
+    // Where the number is chosen first: lines that are a number alone.
+    if text.contains("Code(code)") {
+        codes.extend(text.lines().filter_map(|line| line.trim().strip_suffix(',')?.parse::<u16>().ok()));
+    }
+    codes
+}
+
+#[test]
+fn every_message_number_has_an_entry_and_every_entry_a_message() {
+    let page = read("docs/diagnostics.md");
+    let mut entries = BTreeSet::new();
+    for line in page.lines().filter_map(|line| line.strip_prefix("### VP")) {
+        let code: u16 = line[..4].parse().expect("four digits");
+        assert!(entries.insert(code), "VP{code:04} has two entries");
+        assert!(line.len() > 10, "VP{code:04} has no title");
+    }
+    let used = codes_in_sources();
+    assert!(used.len() > 60, "{} codes were found: the search is broken", used.len());
+    let show = |codes: Vec<&u16>| codes.iter().map(|code| format!("VP{code:04}")).collect::<Vec<_>>();
+    let missing = show(used.difference(&entries).collect());
+    let stale = show(entries.difference(&used).collect());
+    assert!(missing.is_empty() && stale.is_empty(), "no entry: {missing:?}; no such message: {stale:?}");
+}
+
+/// Each example below an entry is given to the command, which must answer with that number.
+///
+/// `nc D`: a program of dialect D for the STAN S500, with further options behind it; `toml`: a profile;
+/// `csv predict`, `csv diagnose`: a file for that job.
+#[test]
+fn the_examples_of_messages_cause_them() {
+    let page = read("docs/diagnostics.md");
+    let clone = Clone::new();
+    let project = clone.folder.path().join("project");
+    let mut tried = 0;
+    let mut wrong = Vec::new();
+    for fence in fences(&page) {
+        let Some(code) = fence.heading.strip_prefix("VP").map(|title| format!("[VP{}]", &title[..4])) else {
+            continue;
+        };
+        let (file, job) = match fence.language() {
+            "nc" => (
+                "example.nc",
+                format!("vpost example.nc -m machine-profiles/stan_s500.toml -d {}", fence.option()),
+            ),
+            "toml" => ("example.toml", "vpost profile check example.toml".to_owned()),
+            "csv" => (
+                "example.csv",
+                format!("vpost {} example.csv -m machine-profiles/stan_s500.toml", fence.option()),
+            ),
+            _ => continue,
+        };
+        std::fs::write(project.join(file), &fence.text).expect("a writable folder");
+        let (_, output) = clone.run(&job);
+        tried += 1;
+        if !output.contains(&code) {
+            wrong.push(format!("docs/diagnostics.md:{}: no {code} but\n{output}", fence.line));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(tried > 40, "only {tried} examples were found");
+}
+
+// ---- docs/dependencies.md ----------------------------------------------------------------------------
+
+#[test]
+fn every_dependency_has_its_reason() {
+    let workspace: toml::Table = read("Cargo.toml").parse().expect("TOML");
+    let table = workspace["workspace"]["dependencies"].as_table().expect("a table");
+    let taken: BTreeSet<&str> = table
+        .iter()
+        .filter(|(_, value)| value.get("path").is_none())
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let page = read("docs/dependencies.md");
+    let section = page.split("\n## ").find(|part| part.starts_with("Taken")).expect("a section `Taken`");
+    let explained: BTreeSet<&str> =
+        section.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    assert_eq!(taken, explained, "left is Cargo.toml, right is docs/dependencies.md");
+}
+
+// ---- others ------------------------------------------------------------------------------------------
+
+#[test]
+fn every_engine_of_the_readme_exists() {
+    let text = read("README.md");
+    let none = run(&["samples/plate_linuxcnc.nc", "-m", "machine-profiles/stan_s500.toml", "-e", "none"]);
+    let known = messages(&none);
+    let engines: Vec<&str> = text
+        .split("\n## ")
+        .find(|part| part.starts_with("Engines"))
+        .expect("a section on engines")
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `")?.split('`').next())
+        .collect();
+    assert!(engines.len() >= 6, "{engines:?}");
+    for engine in engines {
+        assert!(known.contains(engine), "{engine} is not in: {known}");
+    }
+}
