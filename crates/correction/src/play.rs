@@ -110,12 +110,15 @@ impl<'m> Corrector<'m> {
         if !self.model.depends_on_direction() || !block.frame.is_shift() {
             return None;
         }
-        let way = |i: usize| match self.standing[i] {
-            Some(standing) if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.step_mm(i) => {
-                if wanted[i] > standing { 1 } else { -1 }
-            }
-            _ => 0,
-        };
+        let way =
+            |i: usize| match self.standing[i] {
+                Some(standing)
+                    if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.step_mm(i) =>
+                {
+                    if wanted[i] > standing { 1 } else { -1 }
+                }
+                _ => 0,
+            };
         let found = [way(0), way(1), way(2)];
         (found != [0; 3]).then_some(found)
     }

@@ -128,11 +128,9 @@ impl PathModel for WithEffects {
 
     /// A sum leaves its chord by no more than its parts do.
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
-        self.terms
-            .iter()
-            .fold(self.base.chord_bound_mm(stretch), |sum, term| {
-                sum + term.chord_bound_mm(stretch, &self.conditions)
-            })
+        self.terms.iter().fold(self.base.chord_bound_mm(stretch), |sum, term| {
+            sum + term.chord_bound_mm(stretch, &self.conditions)
+        })
     }
 
     fn depends_on_direction(&self) -> bool {

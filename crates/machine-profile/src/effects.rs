@@ -20,7 +20,9 @@ pub enum EngineError {
     #[error(transparent)]
     Condition(#[from] UnknownCondition),
     /// An effect counts from the temperature of the calibration.
-    #[error("the effect {effect} counts from the temperature at which the machine was calibrated, which the profile does not give")]
+    #[error(
+        "the effect {effect} counts from the temperature at which the machine was calibrated, which the profile does not give"
+    )]
     ReferenceTemperature {
         /// The effect.
         effect: EffectKind,
@@ -43,7 +45,8 @@ impl Profile {
         for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&self.description.rotary) {
             *to = from.centre_mm;
         }
-        if let Some(temperature_c) = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c) {
+        if let Some(temperature_c) = self.calibrated.as_ref().and_then(|calibrated| calibrated.temperature_c)
+        {
             geometry.reference_temp_c = temperature_c;
         }
         geometry

@@ -96,7 +96,8 @@ fn the_samples_fit_into_the_calibrated_volume_of_the_stan_s500() {
             let program = Vector::new(pick(0, -3.0, 123.0), pick(1, -3.0, 83.0), pick(2, -1.0, 30.0));
             let at = program + offset + Vector::from(length);
             let tool = Vector::from(length) * -1.0;
-            let solution = profile.rigid_body_without_effects().solve(&command(at.into(), tool.into())).unwrap();
+            let solution =
+                profile.rigid_body_without_effects().solve(&command(at.into(), tool.into())).unwrap();
             assert!(solution.iterations <= 6, "{}", solution.iterations);
         }
     }

@@ -56,8 +56,7 @@ impl EffectTerm {
     /// Upper bound of |d²/ds²| of the displacement, mm; `None` where a condition is not known.
     fn second_derivative_mm(&self, stretch: &Move, conditions: &Conditions) -> Option<f64> {
         let (speed, acceleration) = (stretch.speed_mm, stretch.acceleration_mm);
-        let direct =
-            |axis: usize, growth: Growth| growth.second(speed[axis], acceleration[axis]);
+        let direct = |axis: usize, growth: Growth| growth.second(speed[axis], acceleration[axis]);
         let first = |index: usize| self.coefficients.get(index).copied().unwrap_or(0.0);
         let turning = |size: f64| size * Vector::from(acceleration).norm();
         Some(match self.kind {
