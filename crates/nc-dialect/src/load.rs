@@ -5,14 +5,15 @@ use std::ops::Range;
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    Action, CodeEntry, Command, CycleLevels, GCode, MCode, Numbers, Output, Paren, PointFree, Semicolon,
+    Action, CodeEntry, Command, CycleLevels, Flow, FrameRules, GCode, MCode, Macros, Numbers, OffsetL20, Output,
+    Paren, PointFree, Semicolon,
 };
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
-    CodeRow, CommandRow, Grammar, Levels, MRow, RoundBrackets, SemicolonRule, WithoutH, WithoutPoint,
+    CodeRow, CommandRow, Grammar, L20, Levels, MRow, MacroLanguage, RoundBrackets, SemicolonRule, WithoutH, WithoutPoint,
 };
 
 /// Reads a grammar.
@@ -78,7 +79,7 @@ fn dialect(
     commands: Vec<Command>,
     initial: Vec<GCode>,
 ) -> Dialect {
-    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, .. } = grammar;
+    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, .. } = grammar;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     Dialect {
@@ -113,12 +114,31 @@ fn dialect(
         m_codes,
         commands,
         initial,
+        flow: Flow {
+            macros: match flow.macros {
+                MacroLanguage::None => Macros::None,
+                MacroLanguage::Fanuc => Macros::Fanuc,
+                MacroLanguage::Linuxcnc => Macros::LinuxCnc,
+            },
+            packed_repeats: flow.packed_repeats,
+            full_circle_atan: flow.full_circle_atan,
+        },
         cycle_levels: match cycles.levels {
             Levels::Held => CycleLevels::Held,
             Levels::Reread => CycleLevels::Reread,
             Levels::Unstated => CycleLevels::Unstated,
         },
         length_of_loaded_tool: tool_length.without_h == WithoutH::LoadedTool,
+        frames: FrameRules {
+            p_selects_numbered: frames.p_selects_numbered,
+            l20: match frames.l20 {
+                L20::NumberedOffset => OffsetL20::Numbered,
+                L20::Position => OffsetL20::Position,
+            },
+            local_is_preset: frames.local_is_preset,
+            scaling_step: frames.scaling_step.into_inner(),
+            arc_turns: frames.arc_turns,
+        },
         output: Output {
             decimals_inch: output.decimals_inch.into_inner(),
             decimals_feed: output.decimals_feed.into_inner(),

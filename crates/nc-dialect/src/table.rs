@@ -15,8 +15,12 @@ pub(crate) struct Grammar {
     pub(crate) text: Text,
     pub(crate) numbers: NumberRules,
     pub(crate) start: Start,
+    #[serde(default)]
+    pub(crate) flow: FlowRules,
     pub(crate) cycles: Cycles,
     pub(crate) tool_length: ToolLength,
+    #[serde(default)]
+    pub(crate) frames: Frames,
     pub(crate) output: OutputRules,
     pub(crate) codes: BTreeMap<Spanned<String>, CodeRow>,
     #[serde(default)]
@@ -81,6 +85,27 @@ pub(crate) struct Start {
     pub(crate) codes: Vec<Spanned<String>>,
 }
 
+/// Variables, program flow and subprograms.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FlowRules {
+    #[serde(default)]
+    pub(crate) macros: MacroLanguage,
+    #[serde(default)]
+    pub(crate) packed_repeats: bool,
+    #[serde(default)]
+    pub(crate) full_circle_atan: bool,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum MacroLanguage {
+    #[default]
+    None,
+    Fanuc,
+    Linuxcnc,
+}
+
 /// Drilling cycles.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -110,6 +135,36 @@ pub(crate) struct ToolLength {
 pub(crate) enum WithoutH {
     Refused,
     LoadedTool,
+}
+
+/// Codes that move the frame, where controls differ. Left out: what refuses most.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Frames {
+    pub(crate) p_selects_numbered: bool,
+    pub(crate) l20: L20,
+    pub(crate) local_is_preset: bool,
+    pub(crate) scaling_step: Spanned<f64>,
+    pub(crate) arc_turns: bool,
+}
+
+impl Default for Frames {
+    fn default() -> Self {
+        Self {
+            p_selects_numbered: false,
+            l20: L20::NumberedOffset,
+            local_is_preset: false,
+            scaling_step: Spanned::new(0..0, 0.001),
+            arc_turns: false,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum L20 {
+    NumberedOffset,
+    Position,
 }
 
 /// What the control takes back.

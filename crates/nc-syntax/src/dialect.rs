@@ -101,6 +101,36 @@ pub enum Action {
     LengthOff,
     /// G54–G59: the name in the profile.
     WorkOffset(String),
+    /// G54.1, G154: the work offset that P numbers, `G54.1P1` in the profile.
+    WorkOffsetNumbered,
+    /// G10: work offsets written by the program (L2, L20); see [`FrameRules::l20`].
+    WriteOffset,
+    /// G52: shift of every work offset by the words.
+    LocalShift,
+    /// G92: shift of every work offset so that the axes stand at the words.
+    Preset,
+    /// G92.1: the shift of G92 is gone.
+    PresetCancel,
+    /// G92.2: the shift of G92 is off, and kept for G92.3.
+    PresetSuspend,
+    /// G92.3: the kept shift is on again.
+    PresetRestore,
+    /// G68: rotation in the plane about the words by R degrees.
+    RotationOn,
+    /// G69
+    RotationOff,
+    /// G51: scaling about the words by P, or I J K.
+    ScalingOn,
+    /// G50
+    ScalingOff,
+    /// G51.1: mirror of the axes named, about the words.
+    MirrorOn,
+    /// G50.1: no mirror of the axes named.
+    MirrorOff,
+    /// G43.1: the tool length is in the words.
+    LengthFromWords,
+    /// G4 of which only P is the time: axis words belong to the motion (LinuxCNC).
+    DwellP,
     /// G73, G74, G76, G81–G89
     Cycle(CycleCode),
     /// G80
@@ -175,6 +205,30 @@ pub enum CycleLevels {
     Unstated,
 }
 
+/// What `G10 L20 Pn` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OffsetL20 {
+    /// The numbered work offset G54.1 Pn (Fanuc).
+    Numbered,
+    /// Work offset n, so that the axes stand at the words (LinuxCNC).
+    Position,
+}
+
+/// How the codes that move the frame work together, where controls differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameRules {
+    /// `G54 P1` is `G54.1 P1` (Fanuc); where false a P beside a work offset is refused.
+    pub p_selects_numbered: bool,
+    /// What `G10 L20` writes.
+    pub l20: OffsetL20,
+    /// G52 and G92 are one shift (LinuxCNC); where false they add up (Fanuc).
+    pub local_is_preset: bool,
+    /// The factor of G51 that a P without a point counts.
+    pub scaling_step: f64,
+    /// P of an arc counts its turns (LinuxCNC).
+    pub arc_turns: bool,
+}
+
 /// One row of the dialect's code table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeEntry {
@@ -237,6 +291,30 @@ pub struct Output {
     pub chip_retreat_mm: f64,
 }
 
+/// Which language of variables, expressions and program flow the control has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Macros {
+    /// None that is known: a program that uses one is refused.
+    #[default]
+    None,
+    /// Fanuc's custom macro B: `#1`, `IF … GOTO`, `WHILE … DO1`, G65; M98 and M99.
+    Fanuc,
+    /// LinuxCNC's parameters and O-words; M98 and M99.
+    LinuxCnc,
+}
+
+/// Variables, program flow and subprograms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flow {
+    /// The language.
+    pub macros: Macros,
+    /// M98 without L takes the digits of P above the lowest four as the number of repetitions: `P31000`
+    /// calls O1000 three times.
+    pub packed_repeats: bool,
+    /// `ATAN[y]/[x]` lies between 0 and 360 degrees; where false between -180 and 180.
+    pub full_circle_atan: bool,
+}
+
 /// Everything that differs between controls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dialect {
@@ -268,10 +346,14 @@ pub struct Dialect {
     pub commands: Vec<Command>,
     /// State at the start of a program: codes as if they stood in a first block.
     pub initial: Vec<GCode>,
+    /// Variables, program flow and subprograms.
+    pub flow: Flow,
     /// How cycles carry R and Z on.
     pub cycle_levels: CycleLevels,
     /// G43 without H takes the length of the tool in the spindle (LinuxCNC); where false it needs H.
     pub length_of_loaded_tool: bool,
+    /// Codes that move the frame.
+    pub frames: FrameRules,
     /// Output.
     pub output: Output,
 }

@@ -1,7 +1,7 @@
 //! Dialects that tests read with.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{CycleLevels, Numbers, Output, Paren, PointFree, Semicolon};
+use nc_syntax::dialect::{CycleLevels, FrameRules, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon};
 
 /// A dialect without codes: reading needs none.
 pub(crate) fn dialect() -> Dialect {
@@ -26,7 +26,15 @@ pub(crate) fn dialect() -> Dialect {
         commands: Vec::new(),
         initial: Vec::new(),
         cycle_levels: CycleLevels::Unstated,
+        flow: nc_syntax::dialect::Flow::default(),
         length_of_loaded_tool: false,
+        frames: FrameRules {
+            p_selects_numbered: false,
+            l20: OffsetL20::Numbered,
+            local_is_preset: false,
+            scaling_step: 0.001,
+            arc_turns: false,
+        },
         output: Output {
             decimals_inch: 4,
             decimals_feed: 3,
