@@ -146,9 +146,11 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
     let mut ran = 0;
     let mut shown = 0;
     let mut wrong = Vec::new();
+    let update = std::env::var_os(UPDATE).is_some();
     for document in documents() {
         let text = read(&document);
         let fences = fences(&text);
+        let mut new = Vec::new();
         if blocks_of(&fences, "sh").is_empty() {
             continue;
         }
@@ -170,7 +172,9 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
                         && above.heading == fence.heading
                     {
                         shown += 1;
-                        if !same(&output, &fence.text) {
+                        if !same(&output, &fence.text) && update {
+                            new.push((fence, output));
+                        } else if !same(&output, &fence.text) {
                             wrong.push(format!(
                                 "{document}:{}: shown is not what line {} prints:\n{output}",
                                 fence.line, above.line
@@ -181,9 +185,37 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
                 _ => {}
             }
         }
+        if !new.is_empty() {
+            std::fs::write(root().join(&document), updated(&text, &new)).expect("a writable document");
+        }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let hint = format!(
+        "if that is how it should be: `{UPDATE}=1 cargo test -p vpost --test docs`, and read the diff"
+    );
+    assert!(wrong.is_empty(), "{}\n{hint}", wrong.join("\n"));
     assert!(ran > 20 && shown > 10, "{ran} blocks ran and {shown} outputs were compared");
+}
+
+/// Set, the documents take what their commands print.
+const UPDATE: &str = "VPOST_UPDATE_DOCS";
+
+/// The document with other texts in some of its blocks.
+fn updated(text: &str, new: &[(&Fence, String)]) -> String {
+    let mut lines: Vec<&str> = text.lines().collect();
+    for (fence, output) in new.iter().rev() {
+        // `line` counts from 1 and is the opening fence's.
+        let old = fence.line..fence.line + fence.text.lines().count();
+        lines.splice(old, output.trim_end().lines().map(str::trim_end));
+    }
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn updated_blocks_replace_their_lines_only() {
+    let text = "a\n```text\nold\nolder\n```\nb\n```text\nkept\n```\n";
+    let fences = fences(text);
+    let new = updated(text, &[(&fences[0], "new \n".to_owned()), (&fences[1], "1\n2\n".to_owned())]);
+    assert_eq!(new, "a\n```text\nnew\n```\nb\n```text\n1\n2\n```\n");
 }
 
 /// Equal, spaces at line ends apart; a line `...` stands for any lines.
