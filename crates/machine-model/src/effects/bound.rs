@@ -3,22 +3,32 @@
 use super::{Conditions, EffectKind, EffectTerm};
 use crate::{Command, Move, Range, Vector};
 
-/// Upper bounds over a range of one axis: of |f|, of |f'| per mm, of |f''| per mm².
+/// Upper bounds over a range of one axis: of |f|, of |f'| per mm, of |f''| per mm², and the sum of the jumps
+/// of f' inside, per mm: beyond its interval a polynomial keeps the value of the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Growth {
     value: f64,
     slope: f64,
     curvature: f64,
+    kinks: f64,
 }
 
 impl Growth {
     fn times(self, by: f64) -> Self {
-        Self { value: self.value * by, slope: self.slope * by, curvature: self.curvature * by }
+        Self {
+            value: self.value * by,
+            slope: self.slope * by,
+            curvature: self.curvature * by,
+            kinks: self.kinks * by,
+        }
     }
 
-    /// Upper bound of |d²f/ds²| where the axis moves with these bounds of |dq/ds| and |d²q/ds²|.
-    fn second(&self, speed: f64, acceleration: f64) -> f64 {
-        self.curvature * speed * speed + self.slope * acceleration
+    /// Upper bound of |d²f/ds²| where the axis moves with these bounds of |dq/ds| and |d²q/ds²|; a jump of the
+    /// first derivative counts twice, since it leaves the chord by a quarter where M leaves it by an eighth.
+    fn second(&self, speed: f64, acceleration: f64, passes: u8) -> f64 {
+        self.curvature * speed * speed
+            + self.slope * acceleration
+            + 2.0 * self.kinks * speed * f64::from(passes)
     }
 }
 
@@ -45,8 +55,8 @@ impl EffectTerm {
     /// Upper bound, mm, of the distance between the displacement along a stretch and its chord.
     ///
     /// The directions are those of `stretch.state`, the same all along; so are rotary axes, tool and conditions.
-    /// Every effect is then continuously differentiable in the commands, and a second derivative of at most M
-    /// leaves the chord by at most M/8. Holds wherever the effect is defined, inside its interval or beyond.
+    /// Every effect is then continuous in the commands and smooth but for the ends of its interval: a second
+    /// derivative of at most M leaves the chord by at most M/8, a jump J of the first by at most J/4.
     /// Conditions that are not known give an infinite bound.
     #[must_use]
     pub fn chord_bound_mm(&self, stretch: &Move, conditions: &Conditions) -> f64 {
@@ -56,7 +66,8 @@ impl EffectTerm {
     /// Upper bound of |d²/ds²| of the displacement, mm; `None` where a condition is not known.
     fn second_derivative_mm(&self, stretch: &Move, conditions: &Conditions) -> Option<f64> {
         let (speed, acceleration) = (stretch.speed_mm, stretch.acceleration_mm);
-        let direct = |axis: usize, growth: Growth| growth.second(speed[axis], acceleration[axis]);
+        let direct =
+            |axis: usize, growth: Growth| growth.second(speed[axis], acceleration[axis], stretch.passes);
         let first = |index: usize| self.coefficients.get(index).copied().unwrap_or(0.0);
         let turning = |size: f64| size * Vector::from(acceleration).norm();
         Some(match self.kind {
@@ -107,7 +118,7 @@ impl EffectTerm {
     /// Sum of the Legendre polynomials from order `from` on with the coefficients, on an interval.
     ///
     /// Between: value at the middle and, by the mean value theorem, half the interval times the bound of the
-    /// next derivative; `|P_n⁽ᵏ⁾(v)| ≤ P_n⁽ᵏ⁾(max(1, |v|))`.
+    /// next derivative; `|P_n⁽ᵏ⁾(v)| ≤ P_n⁽ᵏ⁾(1)` on the interval.
     fn polynomial(&self, from: usize, range: Range) -> Growth {
         let half_mm = 0.5 * (self.shape.to_mm - self.shape.from_mm);
         let centre_mm = 0.5 * (self.shape.to_mm + self.shape.from_mm);
@@ -119,16 +130,29 @@ impl EffectTerm {
                 ..Growth::default()
             };
         }
-        let (low, high) = ((range.low - centre_mm) / half_mm, (range.high - centre_mm) / half_mm);
+        let end = |q: f64| (q - centre_mm) / half_mm;
+        let kinks: f64 = [-1.0, 1.0]
+            .into_iter()
+            .filter(|at| end(range.low) < *at && *at < end(range.high))
+            .map(|at| {
+                let there = legendre_derivatives(at);
+                terms().map(|(k, c)| c * there[k + from][1]).sum::<f64>().abs() / half_mm
+            })
+            .sum();
+        let outside = end(range.high) <= -1.0 || 1.0 <= end(range.low);
+        let (low, high) = (end(range.low).clamp(-1.0, 1.0), end(range.high).clamp(-1.0, 1.0));
         let middle = legendre_derivatives(0.5 * (low + high));
-        let most = legendre_derivatives(low.abs().max(high.abs()).max(1.0));
+        let most = legendre_derivatives(1.0);
         let here = |order: usize| terms().map(|(k, c)| c * middle[k + from][order]).sum::<f64>().abs();
         let bound = |order: usize| terms().map(|(k, c)| c.abs() * most[k + from][order]).sum::<f64>();
         let reach = 0.5 * (high - low);
         let curvature = (here(2) + reach * bound(3)).min(bound(2));
         let slope = (here(1) + reach * curvature).min(bound(1));
         let value = (here(0) + reach * slope).min(bound(0));
-        Growth { value, slope: slope / half_mm, curvature: curvature / (half_mm * half_mm) }
+        if outside {
+            return Growth { value, ..Growth::default() };
+        }
+        Growth { value, slope: slope / half_mm, curvature: curvature / (half_mm * half_mm), kinks }
     }
 
     /// Three harmonics of the screw, each with an amplitude that may grow with the position.
@@ -137,10 +161,12 @@ impl EffectTerm {
         let centre_mm = 0.5 * (self.shape.to_mm + self.shape.from_mm);
         let (relative, per_mm) = if half_mm > 0.0 {
             let far = (range.low - centre_mm).abs().max((range.high - centre_mm).abs());
-            (far / half_mm, 1.0 / half_mm)
+            ((far / half_mm).min(1.0), 1.0 / half_mm)
         } else {
             (0.0, 0.0)
         };
+        let ends = [centre_mm - half_mm, centre_mm + half_mm];
+        let crossed = ends.into_iter().filter(|at| range.low < *at && *at < range.high).count() as f64;
         let amplitude = |index: usize| {
             let [sin, cos] = [index, index + 1].map(|k| self.coefficients.get(k).copied().unwrap_or(0.0));
             (sin * sin + cos * cos).sqrt()
@@ -153,6 +179,7 @@ impl EffectTerm {
             sum.value += size;
             sum.slope += size * omega + growing * per_mm;
             sum.curvature += size * omega * omega + 2.0 * growing * per_mm * omega;
+            sum.kinks += crossed * growing * per_mm;
         }
         sum
     }
@@ -163,13 +190,19 @@ impl EffectTerm {
         if length_mm <= 0.0 {
             return Growth { value: 0.5f64.powi(power), ..Growth::default() };
         }
-        let at = |q: f64| ((q - self.shape.from_mm) / length_mm).abs();
-        let most = at(range.low).max(at(range.high));
+        // Nothing before the support, 1 beyond the far end.
+        let at = |q: f64| (q - self.shape.from_mm) / length_mm;
+        let most = at(range.high).clamp(0.0, 1.0);
+        if most == 0.0 || at(range.low) >= 1.0 {
+            return Growth { value: most.powi(power), ..Growth::default() };
+        }
         let n = f64::from(power);
+        let crossed = at(range.low) < 1.0 && 1.0 < at(range.high);
         Growth {
             value: most.powi(power),
             slope: n * most.powi(power - 1) / length_mm,
             curvature: n * (n - 1.0) * most.powi(power - 2) / (length_mm * length_mm),
+            kinks: if crossed { n / length_mm } else { 0.0 },
         }
     }
 
@@ -180,7 +213,7 @@ impl EffectTerm {
             return Growth::default();
         }
         let per_mm = std::f64::consts::PI / half_mm;
-        Growth { value: 1.0, slope: 0.5 * per_mm, curvature: 0.5 * per_mm * per_mm }
+        Growth { value: 1.0, slope: 0.5 * per_mm, curvature: 0.5 * per_mm * per_mm, kinks: 0.0 }
     }
 
     /// A rotation by a function of one axis about a direction, times its lever: product rule.
@@ -189,7 +222,7 @@ impl EffectTerm {
         let fixed = at(Vector::zeros());
         let carried = at(Vector::repeat(1.0)) - fixed;
         let first = angle.slope * stretch.speed_mm[axis];
-        let second = angle.second(stretch.speed_mm[axis], stretch.acceleration_mm[axis]);
+        let second = angle.second(stretch.speed_mm[axis], stretch.acceleration_mm[axis], stretch.passes);
         let by_component = [(about + 1) % 3, (about + 2) % 3].map(|j| {
             let range = stretch.range_mm[j];
             let ends = [range.low, range.high].map(|q| (fixed[j] + carried[j] * q).abs());
