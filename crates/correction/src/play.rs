@@ -1,4 +1,4 @@
-//! Lost motion: an axis that is told to turn back stands still until its play is taken up.
+//! Lost motion: an axis that is told to turn back stands still until its play is taken up. Equation (25).
 //!
 //! A correction can tell an axis to creep a few micrometres against the direction it last came from while
 //! another axis feeds: along a bow, or where axes are out of square. With play the axis does not follow. So

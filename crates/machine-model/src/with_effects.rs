@@ -1,4 +1,4 @@
-//! The rigid-body model with effects beyond its tables: equation (22a) of `docs/equations.md`.
+//! The rigid-body model with effects beyond its tables: equation (23) of `docs/equations.md`.
 
 use nalgebra::Matrix3;
 

@@ -1,4 +1,4 @@
-//! How far the displacement by one effect can leave its chord: equations (23) and (24) of `docs/equations.md`.
+//! How far the displacement by one effect can leave its chord: equation (24) of `docs/equations.md`.
 
 use super::{Conditions, EffectKind, EffectTerm};
 use crate::{Command, Move, Range, Vector};
