@@ -10,8 +10,6 @@ pub(crate) struct Answer {
     pub(crate) places: Vec<Place>,
     pub(crate) causes: Vec<Cause>,
     #[serde(default)]
-    pub(crate) shrink_predicted: Option<Interval>,
-    #[serde(default)]
     pub(crate) holdout: Option<Holdout>,
 }
 

@@ -2,7 +2,7 @@
 
 use gap_lab::{Case, Kind, NoiseKind};
 
-use super::answer::Answer;
+use super::answer::{Answer, Cause};
 use super::transport::Transport;
 
 /// A case and what the command said.
@@ -41,10 +41,14 @@ impl Outcome {
         self.inside() && self.said().is_some_and(|a| a.verdict == "AMBIGUOUS")
     }
 
-    /// A cause was named where there is none. Where the instrument drifts, `instrument-drift` is no alarm.
+    /// A cause was named where there is none. Where the instrument drifts, a cause that is
+    /// `instrument-drift` or says it cannot be told from it is no alarm.
     pub(crate) fn false_alarm(&self) -> bool {
         let drifts = self.case.noise == NoiseKind::Drift;
-        self.said().is_some_and(|a| a.causes.iter().any(|c| !(drifts && c.effect == "instrument-drift")))
+        let owns_up = |c: &Cause| {
+            c.effect == "instrument-drift" || c.cannot_be_told_from.iter().any(|r| r == "instrument-drift")
+        };
+        self.said().is_some_and(|a| a.causes.iter().any(|c| !(drifts && owns_up(c))))
     }
 
     /// NAMED, and the first name is not a withheld effect.

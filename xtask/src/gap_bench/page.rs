@@ -10,7 +10,7 @@ use super::scores::{
     Rate, Shrinkage, component_right, covered, identifiable, of_kind, poor, quantile, shrinkage,
     shrinkage_by_lab,
 };
-use super::table::{confusion, misses};
+use super::table::{confusion, misses, numbers_off};
 
 /// Circumstances of a run.
 pub(crate) struct Run {
@@ -50,6 +50,8 @@ pub(crate) fn page(outcomes: &[Outcome], run: &Run) -> String {
     text.push_str(RULES);
     text.push_str("\n## Every miss\n");
     text.push_str(&misses(outcomes));
+    text.push_str("\n## Numbers that are off\n\n");
+    text.push_str(&numbers_off(outcomes));
     text
 }
 

@@ -87,14 +87,12 @@ pub(crate) fn shrinkage_by_lab(outcome: &Outcome) -> Option<Shrinkage> {
     Some(Shrinkage { predicted: 100.0 * predicted(outcome)?, achieved: 100.0 * transport.share })
 }
 
-/// The combined prediction; with one cause it is the cause's own.
+/// The prediction for all causes together: the last cause's, which counts those before it. Only where the
+/// answer claims its causes: under UNKNOWN and NOISE MODEL SUSPECT it does not.
 fn predicted(outcome: &Outcome) -> Option<f64> {
     let answer = outcome.said()?;
-    match (answer.shrink_predicted, answer.causes.as_slice()) {
-        (Some(all), [_, ..]) => all.mid,
-        (None, [one]) => one.shrink_predicted?.mid,
-        _ => None,
-    }
+    let claims = matches!(answer.verdict.as_str(), "NAMED" | "AMBIGUOUS" | "PARTIAL");
+    answer.causes.last().filter(|_| claims)?.shrink_predicted?.mid
 }
 
 /// Whether the parameter's 95 % interval holds the truth; only where both mean the same number: the

@@ -6,7 +6,7 @@ use gap_lab::Kind;
 
 use super::answer::Answer;
 use super::outcome::Outcome;
-use super::scores::{of_kind, shrinkage, shrinkage_by_lab};
+use super::scores::{Shrinkage, component_right, covered, of_kind, shrinkage, shrinkage_by_lab, snr};
 
 /// One line per case: truth, answer, right or not, reason.
 pub(crate) fn outcomes_csv(outcomes: &[Outcome]) -> String {
@@ -116,4 +116,49 @@ pub(crate) fn misses(outcomes: &[Outcome]) -> String {
         }
     }
     if text.is_empty() { "None.\n".into() } else { text }
+}
+
+/// Cases whose number is off although the name may be right: shrinkage, parameter, component.
+pub(crate) fn numbers_off(outcomes: &[Outcome]) -> String {
+    let mut text =
+        String::from("| case | plan, noise | hidden | said | what is off |\n|---|---|---|---|---|\n");
+    for o in outcomes {
+        let mut off = Vec::new();
+        let far = |s: &Shrinkage| (s.predicted - s.achieved).abs() > 5.0;
+        if let Some(s) = shrinkage(o).filter(far) {
+            off.push(format!("shrinkage predicted {:.0}, achieved {:.0}", s.predicted, s.achieved));
+        }
+        if let Some(s) = shrinkage_by_lab(o).filter(far) {
+            off.push(format!("shrinkage predicted {:.0}, by the lab {:.0}", s.predicted, s.achieved));
+        }
+        if covered(o) == Some(false) {
+            let truth = o.case.truth.effects[0].coefficient.map_or(f64::NAN, |(_, value)| value);
+            let found = o.said().and_then(|a| a.causes[0].parameters.iter().find(|p| p.u95.is_some()));
+            if let Some(p) = found {
+                let (value, u95) = (p.value.unwrap_or(f64::NAN), p.u95.unwrap_or(f64::NAN));
+                off.push(format!("{} {value:.3} ± {u95:.3}, truth {truth:.3}", p.name));
+            }
+        }
+        if o.case.kind == Kind::Single && snr(o) > 2.0 && component_right(o) == Some(false) {
+            off.push(format!("component, truth {:.2?}", o.case.truth.components));
+        }
+        if off.is_empty() {
+            continue;
+        }
+        let ids: Vec<String> =
+            o.case.truth.effects.iter().map(|e| format!("{} at {:.1}", e.id, e.snr)).collect();
+        let named: Vec<&str> =
+            o.said().map(|a| a.causes.iter().map(|c| c.effect.as_str()).collect()).unwrap_or_default();
+        let verdict = o.said().map_or("none", |a| a.verdict.as_str());
+        text.push_str(&format!(
+            "| `{}` | {}, {} | {} | {verdict} {} | {} |\n",
+            o.case.id,
+            o.case.plan.word(),
+            o.case.noise.word(),
+            ids.join(" + "),
+            named.join(" + "),
+            off.join("; ")
+        ));
+    }
+    text
 }
