@@ -67,21 +67,26 @@ pub(crate) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Rows that hold only the length of their displacement: what is left of it, µm.
-///
-/// `measured`: lengths; the displacement predicted by the model and the effects is compared as a length.
+/// What some terms displace every row, µm.
+#[must_use]
+pub(crate) fn displacements(data: &Measurements, terms: &[(Term, f64)]) -> Vec<Vector> {
+    let one = |row| {
+        terms
+            .iter()
+            .map(|(t, v)| t.displacement_um(row, &data.geometry) * *v)
+            .fold(Vector::zeros(), |a, b| a + b)
+    };
+    data.rows.iter().map(one).collect()
+}
+
+/// Rows that hold only the length of their displacement: measured minus modelled length, µm.
 #[must_use]
 pub(crate) fn magnitude_errors(data: &Measurements, taken_off: &[(Term, f64)]) -> Vec<f64> {
     data.rows
         .iter()
-        .filter_map(|row| match row.reading {
-            crate::observation::Reading::Magnitude(um) => {
-                let effects: Vector = taken_off
-                    .iter()
-                    .map(|(t, v)| t.displacement_um(row, &data.geometry) * *v)
-                    .fold(Vector::zeros(), |a, b| a + b);
-                Some(um - (1e3 * row.predicted_mm + effects).norm())
-            }
+        .zip(displacements(data, taken_off))
+        .filter_map(|(row, effects)| match row.reading {
+            crate::observation::Reading::Magnitude(um) => Some(um - (1e3 * row.predicted_mm + effects).norm()),
             _ => None,
         })
         .collect()

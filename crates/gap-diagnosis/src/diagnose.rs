@@ -12,7 +12,7 @@ use crate::engine::{Explained, f_tail, model_columns, source};
 use crate::gram::Gram;
 use crate::linear::explained;
 use crate::locate::places;
-use crate::noise::{Noise, NoiseSource, estimate};
+use crate::noise::{Noise, NoiseSource, estimate, tail_factor};
 use crate::observation::{Measurements, Scalar};
 use crate::remedy::remedy;
 use crate::rivals::{Rival, rivals};
@@ -430,17 +430,27 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
+    /// Mean square of the residual on unseen lines and its standard error, in units of the noise variance.
+    ///
+    /// With few runs a left-out run or stretch is an extrapolation, not a new line of the same kind: then the
+    /// residual itself is taken, per degree of freedom.
+    fn misfit(&self, count: usize) -> (f64, f64) {
         let model = self.model;
+        let noise = self.noise_variance().max(1e-12);
         let parts: Vec<Part> = self.ordered.iter().take(count).map(|r| r.part).collect();
+        if self.data.runs.len() < 8 {
+            let (square, rank) = self.square(&parts);
+            let degrees = (model.space.degrees - rank as f64).max(1.0);
+            let m = square / degrees / noise;
+            return (m, m * (2.0 / degrees).sqrt());
+        }
         let columns = model_columns(&model.library, &parts);
         let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
         let source = source(self.data, &model.scalars);
-        let folding = if self.data.runs.len() < 8 { Folding::Stretches } else { Folding::Runs };
-        let folds = Folds::new(&terms, model.library.nuisances, model.solution.rho, &source, folding);
-        let all: Vec<usize> = (0..terms.len() - model.library.nuisances).collect();
+        let nuisances = model.library.nuisances;
+        let folds = Folds::new(&terms, nuisances, model.solution.rho, &source, Folding::Runs);
+        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
         let losses = folds.losses(&all);
-        let noise = self.noise_variance().max(1e-12);
         let share = model.space.degrees / model.scalars.len() as f64;
         let m = losses.iter().sum::<f64>() / model.space.degrees / noise;
         let each: Vec<f64> = losses
@@ -451,14 +461,28 @@ impl<'a> Assembly<'a> {
             .collect();
         let mean = each.iter().sum::<f64>() / each.len().max(1) as f64;
         let spread = each.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
-        let m_error = (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt();
-        let data = self.strength(self.data, &model.scalars, count);
+        (m, (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt())
+    }
+
+    fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
+        let model = self.model;
+        let (m, m_error) = self.misfit(count);
+        let mut data = self.strength(self.data, &model.scalars, count);
+        if self.data.runs.len() < 8 {
+            // A residual does not contain the uncertainty of the numbers that were fitted to it.
+            data.spread = 0.0;
+        }
         let target = match holdout {
-            Some(h) if h.has_magnitudes() => None,
+            Some(h) if h.has_magnitudes() => {
+                let estimate = crate::align::displacements(h, &self.taken_off(count));
+                Some(self.strength(h, &h.scalars(Some(&estimate)), count))
+            }
             Some(h) => Some(self.strength(h, &h.scalars(None), count)),
             None => None,
         };
-        transported(m, m_error, &data, &target.unwrap_or(data))
+        let mut target = target.unwrap_or(data);
+        target.noise *= tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
+        transported(m, m_error, &data, &target)
     }
 
     fn holdout(&self, holdout: &Measurements) -> Holdout {

@@ -16,7 +16,7 @@ use crate::term::Term;
 /// Bonferroni-corrected level of the F test.
 pub(crate) const LEVEL: f64 = 1e-3;
 /// Least share of the reducible square that a cause must explain.
-pub(crate) const LEAST_SHARE: f64 = 0.05;
+pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Most causes named.
 const MOST_CAUSES: usize = 8;
 /// Passes of dropping outliers and searching again.
@@ -41,6 +41,8 @@ pub(crate) struct Explained {
     pub solution: Solution,
     /// Rows left out as outliers, ascending.
     pub outliers: Vec<usize>,
+    /// Residuals of the rows left out, µm.
+    pub dropped_residuals_um: Vec<f64>,
     /// The effect that would come next and why it did not.
     pub refused: Option<Refused>,
 }
@@ -75,6 +77,12 @@ pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[Effect
         let kept = scalars.iter().filter(|s| dropped.binary_search(&s.row).is_err()).copied().collect();
         result = explain_once(data, kept, without);
         result.outliers.clone_from(&dropped);
+    }
+    if !dropped.is_empty() {
+        let source = source(data, scalars);
+        let all = conditional_residuals(&result.model_gram(), &result.solution, &source);
+        let left_out = scalars.iter().zip(all).filter(|(s, _)| dropped.binary_search(&s.row).is_ok());
+        result.dropped_residuals_um = left_out.map(|(_, r)| r).collect();
     }
     result
 }
@@ -123,7 +131,7 @@ fn explain_once(data: &Measurements, scalars: Vec<Scalar>, without: &[EffectKind
     let rho = sub.best_rho(space.rho(fit.level));
     let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
     let solution = sub.solve(rho, &source);
-    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), refused, scalars }
+    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), dropped_residuals_um: Vec::new(), refused, scalars }
 }
 
 struct State<'a> {
@@ -215,6 +223,16 @@ impl<'a> State<'a> {
                     // The grid of the library asked already; a finer one asks at most that often again.
                     self.library.add_variants(kind, vec![Variant { columns, enriched: false }], asked.min(48));
                 }
+            }
+        }
+        for axis in 0..3 {
+            let kind = EffectKind::Local(axis);
+            if self.without.contains(&kind) || self.uses(kind) {
+                continue;
+            }
+            if let Some((centre, width, asked)) = propose::damage(self.source, &solution.residuals_um, axis) {
+                let variants = self.library.place(kind, centre, width);
+                self.library.add_variants(kind, variants, asked);
             }
         }
         self.refine_shapes(rho);

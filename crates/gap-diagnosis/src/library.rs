@@ -185,16 +185,16 @@ impl Library {
                 self.selections(kind, interval(a), &lists)
             }
             EffectKind::Sag(a) if travels(a) => {
-                // The overhang begins where the ram leaves its support: at the end of travel or later.
+                // The overhang begins where the ram leaves its support: at the end of travel, before or behind.
                 let (low, high) = seen.range[a];
-                [0.0, 0.2, 0.4, 0.6]
+                [0.0, -1.0, -0.4, 0.2, 0.4, 0.6]
                     .into_iter()
                     .flat_map(|share| {
                         let from_mm = low + share * (high - low);
                         let shape = Shape { from_mm, to_mm: high, ..Shape::default() };
                         let lists: &[&[usize]] = if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
                         let mut forms = self.selections(kind, shape, lists);
-                        forms.iter_mut().for_each(|f| f.enriched = share > 0.0);
+                        forms.iter_mut().for_each(|f| f.enriched = share != 0.0);
                         forms
                     })
                     .collect()

@@ -1,5 +1,6 @@
 //! Non-linear shapes: found on the residual, refined on the fit (variable projection).
 
+use machine_model::Vector;
 use machine_model::effects::{EffectKind, Shape};
 use units::math;
 
@@ -50,6 +51,9 @@ pub(crate) fn pitches(source: &Source<'_>, residuals_um: &[f64], axis: usize) ->
         for k in -count..=count {
             asked += 1;
             let pitch = nominal + step * f64::from(k);
+            if is_strobed(source, axis, pitch) {
+                continue;
+            }
             let power = power(&points, pitch);
             if best.is_none_or(|(_, p)| power > p) {
                 best = Some((pitch, power));
@@ -73,7 +77,7 @@ fn power(points: &[(f64, f64)], pitch_mm: f64) -> f64 {
     let (ss, sc, cc) = (ss - s * s / n, sc - s * c / n, cc - c * c / n);
     let (sy, cy) = (sy - s * y / n, cy - c * y / n);
     let determinant = ss * cc - sc * sc;
-    if determinant < 1e-4 * n * n {
+    if determinant < 0.02 * n * n {
         return 0.0;
     }
     (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
@@ -110,6 +114,73 @@ pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
         }
     }
     best.map(|(time, _)| (time, asked))
+}
+
+/// Place and width where a bump along one axis explains most of the residual, all components together; how many
+/// were looked at.
+#[must_use]
+pub(crate) fn damage(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, f64, usize)> {
+    const WIDTHS: [f64; 5] = [0.04, 0.07, 0.12, 0.18, 0.27];
+    let mut points: Vec<(f64, Vector, f64)> = thinned(source.scalars)
+        .into_iter()
+        .map(|i| (&source.scalars[i], residuals_um[i]))
+        .map(|(s, r)| (source.rows[s.row].command.linear_mm[axis], s.along, r))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (low, high) = (points.first()?.0, points.last()?.0);
+    let length = high - low;
+    if length <= 0.0 {
+        return None;
+    }
+    let (mut best, mut asked) = (None, 0);
+    let mut most = 0.0;
+    for share in WIDTHS {
+        let (width, step) = (share * length, share * length / 4.0);
+        let count = (length / step) as i32;
+        for k in 0..=count {
+            let centre = low + step * f64::from(k);
+            asked += 1;
+            let from = points.partition_point(|p| p.0 <= centre - 0.5 * width);
+            let to = points.partition_point(|p| p.0 < centre + 0.5 * width);
+            let (mut cross, mut square, mut different) = (Vector::zeros(), Vector::zeros(), 0);
+            let mut last = f64::NAN;
+            for (q, along, r) in &points[from..to] {
+                let wave = math::cos(std::f64::consts::PI * (q - centre) / width);
+                let bump = along * (wave * wave);
+                cross += bump * *r;
+                square += bump.component_mul(&bump);
+                different += i32::from(*q != last);
+                last = *q;
+            }
+            // One place alone could be anything.
+            if different < 2 {
+                continue;
+            }
+            let power: f64 =
+                (0..3).filter(|c| square[*c] > 1e-9).map(|c| cross[c] * cross[c] / square[c]).sum();
+            if power > most {
+                most = power;
+                best = Some((centre, width));
+            }
+        }
+    }
+    best.map(|(centre, width)| (centre, width, asked))
+}
+
+/// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
+fn is_strobed(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
+    let mut slow = 0;
+    let mut all = 0;
+    for pair in source.rows.windows(2) {
+        let step = (pair[1].command.linear_mm[axis] - pair[0].command.linear_mm[axis]).abs();
+        if pair[0].run != pair[1].run || step < 0.5 * pitch_mm {
+            continue;
+        }
+        let phase = step / pitch_mm;
+        all += 1;
+        slow += i32::from((phase - phase.round()).abs() < 0.12);
+    }
+    all > 8 && 10 * slow > 8 * all
 }
 
 /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude.
