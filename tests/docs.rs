@@ -10,6 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use machine_model::effects::EffectKind;
+
 use common::{messages, root, run, vpost};
 
 /// A fenced block of a document.
@@ -381,6 +383,61 @@ fn the_reference_has_every_command_and_option_and_no_other() {
     }
     let left: Vec<&String> = documented.keys().filter(|title| title.starts_with("vpost ")).collect();
     assert!(left.is_empty(), "docs/reference.md has sections of commands that do not exist: {left:?}");
+}
+
+/// The names of all properties in a JSON Schema.
+fn properties(schema: &serde_json::Value, names: &mut BTreeSet<String>) {
+    match schema {
+        serde_json::Value::Object(map) => {
+            if let Some(serde_json::Value::Object(own)) = map.get("properties") {
+                names.extend(own.keys().cloned());
+            }
+            map.values().for_each(|value| properties(value, names));
+        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| properties(value, names)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_reference_has_every_key_of_a_profile_and_its_example_is_one() {
+    let reference = read("docs/reference.md");
+    let schema: serde_json::Value =
+        serde_json::from_slice(&run(&["profile", "schema"]).stdout).expect("a JSON Schema");
+    let mut names = BTreeSet::new();
+    properties(&schema, &mut names);
+    assert!(names.len() > 30, "{names:?}");
+    let missing: Vec<&String> = names.iter().filter(|name| !reference.contains(name.as_str())).collect();
+    assert!(missing.is_empty(), "docs/reference.md lacks {missing:?}");
+
+    let fences = fences(&reference);
+    let example = blocks_of(&fences, "toml")[0];
+    let clone = Clone::new();
+    let project = clone.folder.path().join("project");
+    std::fs::write(project.join("example.toml"), &example.text).expect("a writable folder");
+    std::fs::write(project.join("errors_x.csv"), "position_mm,EXX_um\n0,0\n1000,5\n").expect("the same");
+    let (status, output) = clone.run("vpost profile check example.toml");
+    assert_eq!(status, Some(0), "{output}");
+}
+
+#[test]
+fn the_reference_has_every_effect_with_its_parameters() {
+    let reference = read("docs/reference.md");
+    let mut missing = Vec::new();
+    for kind in EffectKind::all() {
+        let family = kind.family();
+        let row = reference
+            .lines()
+            .find(|line| {
+                line.starts_with(&format!("| `{family}.")) || line.starts_with(&format!("| `{family}`"))
+            })
+            .unwrap_or_else(|| panic!("docs/reference.md has no effect {family}"));
+        let names = kind.coefficient_names().iter().chain(kind.shape_names());
+        missing.extend(
+            names.filter(|name| !row.contains(&format!("`{name}`"))).map(|name| format!("{kind}: {name}")),
+        );
+    }
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 // ---- docs/diagnostics.md -----------------------------------------------------------------------------
