@@ -82,6 +82,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
         ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
         ("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0),
+        ("scaling_step", &grammar.frames.scaling_step, 1.0),
     ] {
         let found = *length.get_ref();
         // Written so that NaN is refused too.
@@ -89,7 +90,7 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             report(
                 length.span(),
                 format!("{what} = {found} is out of range"),
-                &format!("expected above 0, up to {most} mm"),
+                &format!("expected above 0, up to {most}"),
             );
         }
     }

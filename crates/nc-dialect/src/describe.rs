@@ -46,7 +46,7 @@ pub const fn treatment(action: &Action) -> Treatment {
         | Action::ArcCounterClockwise
         | Action::Cycle(_) => Treatment::Corrected,
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
-        Action::Dwell | Action::Pass { .. } => Treatment::Passed,
+        Action::Dwell | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
         _ => Treatment::Followed,
     }
@@ -121,6 +121,20 @@ fn note(action: &Action) -> String {
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
         Action::Dwell => "X, U and P are a time".to_owned(),
+        Action::DwellP => "P is a time; axis words belong to the motion".to_owned(),
+        Action::WorkOffsetNumbered => "the work offset that P numbers: `G54.1P1` in the profile".to_owned(),
+        Action::WriteOffset => {
+            "L2 and L20: the program's value holds from here on; every other L and R refused".to_owned()
+        }
+        Action::LocalShift => "shifts every work offset by the words".to_owned(),
+        Action::Preset => "shifts every work offset so that the axes stand at the words".to_owned(),
+        Action::PresetCancel => "no shift".to_owned(),
+        Action::PresetSuspend => "no shift; kept for G92.3".to_owned(),
+        Action::PresetRestore => "the shift that this program set; refused where it set none".to_owned(),
+        Action::RotationOn => "in the plane, by R about both words of the plane; arcs stay arcs".to_owned(),
+        Action::ScalingOn => "about X, Y and Z by P, or by I, J and K without arcs; no cycles".to_owned(),
+        Action::MirrorOn => "about the words; G2 and G3 change places".to_owned(),
+        Action::LengthFromWords => "the tool length is in the words".to_owned(),
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
         Action::Pass { takes_words: false } => String::new(),
         other => action_name(other).replace('-', " "),

@@ -5,15 +5,16 @@ use std::ops::Range;
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    Action, CodeEntry, Command, CycleLevels, Flow, FrameRules, GCode, MCode, Macros, Numbers, OffsetL20, Output,
-    Paren, PointFree, Semicolon,
+    Action, CodeEntry, Command, CycleLevels, Flow, FrameRules, GCode, MCode, Macros, Numbers, OffsetL20,
+    Output, Paren, PointFree, Semicolon,
 };
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
-    CodeRow, CommandRow, Grammar, L20, Levels, MRow, MacroLanguage, RoundBrackets, SemicolonRule, WithoutH, WithoutPoint,
+    CodeRow, CommandRow, Grammar, L20, Levels, MRow, MacroLanguage, RoundBrackets, SemicolonRule, WithoutH,
+    WithoutPoint,
 };
 
 /// Reads a grammar.
@@ -79,7 +80,8 @@ fn dialect(
     commands: Vec<Command>,
     initial: Vec<GCode>,
 ) -> Dialect {
-    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, .. } = grammar;
+    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, .. } =
+        grammar;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     Dialect {

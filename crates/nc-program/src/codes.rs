@@ -68,3 +68,8 @@ pub const COMMAND: Code = Code(224);
 pub const STRAY_ARC_WORD: Code = Code(225);
 /// A rapid cannot be combined with what its block also does (tool change with motion, G53 in a cycle).
 pub const COMBINATION: Code = Code(226);
+/// A code that moves the frame (G10, G52, G92, G68, G51, G51.1…) cannot be honoured as it stands, or what
+/// comes after it depends on the control.
+pub const FRAME: Code = Code(227);
+/// Motion stands behind the end of the program: a second program in the same file, say. Remedy: a file for each.
+pub const AFTER_END: Code = Code(228);

@@ -2,14 +2,15 @@
 
 use nc_syntax::dialect::{CycleCode, CycleLevels};
 use smallvec::SmallVec;
-use toolpath::{Cycle, CycleKind, Hole, Motion, Position};
+use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
 
 use crate::codes;
+use crate::frames::settle;
 use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
 use crate::motion::{Motions, rate};
-use crate::position::{end, increment_base, require_known, require_shift};
+use crate::position::{end, increment_base, require_frame, require_known};
 use crate::settings::Environment;
-use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
+use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
 
 /// Levels that differ by less are the same.
 const SAME_LEVEL_MM: f64 = 1e-6;
@@ -66,14 +67,17 @@ pub(crate) fn holes(
             )
             .help("program G94 before it"));
     }
-    let shift = require_shift(env, words, state)?;
+    settle(words, state)?;
+    let frame = *require_frame(env, words, state)?;
     let [first, second, normal] = state.plane.axes();
+    no_scaling(words, state, normal, &cycle)?;
+    let shift = frame.offset_mm();
     read_words(words, state, &mut cycle, normal, &shift)?;
     state.cycle = Some(cycle);
     if count == 0 {
         return Ok(Motions::new());
     }
-    let ends = end(words, state, &shift)?;
+    let ends = end(words, state, &frame)?;
     if words.has(ROTARY_LETTERS) && ends.rotary != state.axes.rotary {
         return Err(words
             .refuse(
@@ -102,7 +106,7 @@ pub(crate) fn holes(
         let mut at_r = at;
         at_r.linear_mm[normal] = r_mm;
         for axis in [first, second] {
-            at_r.linear_mm[axis] = next(words, state, axis, at.linear_mm[axis], &ends);
+            at_r.linear_mm[axis] = next(words, state, &frame, axis, at.linear_mm[axis], &ends);
         }
         let hole = Hole {
             plane: state.plane,
@@ -121,11 +125,45 @@ pub(crate) fn holes(
 }
 
 /// Where an axis of the plane goes for the next hole: under G91 on from the last one.
-fn next(words: &Words<'_, '_, '_>, state: &Modal, axis: usize, from_mm: f64, ends: &Axes) -> f64 {
-    match (state.distance, words.coordinate(LINEAR[axis], state.units == Units::Inch)) {
-        (Distance::Incremental, Some(value)) => from_mm + value * state.units.mm(),
-        (_, _) => ends.linear[axis].known().unwrap_or(from_mm),
+fn next(
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    frame: &Frame,
+    axis: usize,
+    from_mm: f64,
+    ends: &Axes,
+) -> f64 {
+    if state.distance == Distance::Absolute {
+        return ends.linear[axis].known().unwrap_or(from_mm);
     }
+    let inch = state.units == Units::Inch;
+    let word = |i: usize| words.coordinate(LINEAR[i], inch).map(|value| value * state.units.mm());
+    let [first, second, _] = state.plane.axes();
+    let matrix = frame.matrix();
+    match (frame.is_shift(), word(axis)) {
+        (true, Some(value)) => from_mm + value,
+        (true, None) => from_mm,
+        (false, _) => {
+            from_mm + [first, second].iter().map(|i| matrix[axis][*i] * word(*i).unwrap_or(0.0)).sum::<f64>()
+        }
+    }
+}
+
+/// A cycle under a transformation: rotated about its axis and mirrored beside it, it is the same cycle.
+/// Scaled or mirrored along its depth, pecks and retreats are the control's affair.
+fn no_scaling(words: &Words<'_, '_, '_>, state: &Modal, normal: usize, cycle: &CycleState) -> Outcome<()> {
+    let shifts_aside = cycle.kind == CycleCode::Synchronised && words.has(Q.or(CENTRE_LETTERS));
+    if !state.transform.touches()[normal] && (state.transform.is_none() || !shifts_aside) {
+        return Ok(());
+    }
+    Err(words
+        .refuse(
+            codes::FRAME,
+            format!("a drilling cycle under {}", state.transform.name()),
+            words.span(AXIS_LETTERS.or(R).or(Q)),
+            "what becomes of its depth, pecks and shifts is told by no manual",
+        )
+        .help("scale or mirror the holes in the CAM"))
 }
 
 fn position(at: Position) -> Axes {

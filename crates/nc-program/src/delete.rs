@@ -23,7 +23,7 @@ pub(crate) fn merge(
     moved: bool,
 ) -> Outcome<Modal> {
     let line = words.block.line;
-    let mut both = *skipped;
+    let mut both = skipped.clone();
     if executed.motion != skipped.motion {
         both.motion = MotionMode::Undecided { line };
     }
@@ -42,6 +42,7 @@ pub(crate) fn merge(
             both.axes.rotary[i] = lost;
         }
     }
+    both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
     both.progress = Progress::Running;
     match difference(skipped, executed) {
@@ -113,7 +114,13 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
         pair(&with.tool_length, &without.tool_length, |v| match v {
             ToolLength::Off => "no tool length".to_owned(),
             ToolLength::On { number, .. } => format!("tool length H{number}"),
+            ToolLength::Written { .. } => "the tool length of this block".to_owned(),
         })
+    })
+    .or_else(|| pair(&with.transform, &without.transform, |v| v.name().to_owned()))
+    .or_else(|| pair(&with.shifts, &without.shifts, |v| format!("shift {:?} mm", v.preset_mm)))
+    .or_else(|| {
+        pair(&with.written, &without.written, |v| format!("{} work offset(s) of the program", v.len()))
     })
     .or_else(|| {
         pair(&with.work_offset, &without.work_offset, |v| {

@@ -2,7 +2,7 @@
 
 use diagnostic::Diagnostic;
 use nc_syntax::dialect::{Action, GCode};
-use nc_syntax::{Block, Dialect};
+use nc_syntax::{Block, Dialect, ItemKind, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Motion, Plane};
 
@@ -10,10 +10,9 @@ use crate::codes;
 use crate::delete;
 use crate::modal::{
     ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ReturnLevel,
-    ToolLength, Units, Why, WorkOffset,
+    Shifts, ToolLength, Transform, Units, Why, WorkOffset,
 };
 use crate::motion::{self, Moved};
-use crate::position;
 use crate::settings::{self, Environment};
 use crate::setup::Setup;
 use crate::words::{Outcome, Words};
@@ -27,6 +26,9 @@ pub struct Step {
     pub context: Context,
     /// The program has ended, with this block or before it.
     pub ends_program: bool,
+    /// The X, Y, Z words of this block say where the axes stand (G92, G10 L20), and a frame is made of it:
+    /// in an output whose axes stand elsewhere they must say so.
+    pub states_position: bool,
 }
 
 /// Everything correction and emission must know of a block's state, valid for its motions.
@@ -85,7 +87,12 @@ impl<'d> Interpreter<'d> {
             compensation: Compensation::Off,
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
-            work_offset: WorkOffset { code: None, zero_mm: None },
+            work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
+            shifts: Shifts::default(),
+            transform: Transform::None,
+            unsettled: [false; 3],
+            written: Vec::new(),
+            frame: None,
             axes: Axes {
                 linear: setup.start_mm.map_or([unknown; 3], |start| start.map(Axis::At)),
                 rotary: setup
@@ -113,13 +120,14 @@ impl<'d> Interpreter<'d> {
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
         let before = &self.modal;
-        let mut state = *before;
+        let mut state = before.clone();
         let mut moved = Moved { repeats: 1, ..Moved::default() };
         match run(&self.env, before, &mut state, &mut moved, block) {
             Ok(skip) => {
                 let step = Step {
                     context: context(&self.env, before, &state, &moved, skip.is_some()),
                     motions: moved.motions,
+                    states_position: moved.states_position,
                     ends_program: state.progress == Progress::Ended,
                 };
                 match skip {
@@ -150,7 +158,7 @@ fn run(
     block: &Block<'_>,
 ) -> Outcome<Option<Box<Modal>>> {
     if before.progress == Progress::Ended {
-        return Ok(None);
+        return after_end(block).map(|()| None);
     }
     let mut words = Words::new(block, env.dialect);
     words.read()?;
@@ -162,7 +170,7 @@ fn run(
         };
     }
     if words.is_idle() || state.progress == Progress::Ended {
-        return Ok(words.skip.then(|| Box::new(*state)));
+        return Ok(words.skip.then(|| Box::new(state.clone())));
     }
     state.progress = Progress::Running;
     let demand = settings::apply(env, &words, before, state)?;
@@ -175,6 +183,25 @@ fn run(
             .map(|both| Some(Box::new(both)));
     }
     Ok(None)
+}
+
+/// Behind M2, M30 or the closing `%` nothing is executed here, but on the control somebody may start it:
+/// a second program in the same file. Text passes, motion does not.
+fn after_end(block: &Block<'_>) -> Outcome<()> {
+    if block.items.iter().any(|item| matches!(item.kind, ItemKind::Invalid(_))) {
+        return Ok(());
+    }
+    let moves = |letter: u8| b"XYZABCUVW".contains(&letter);
+    let motion =
+        block.words().find(|word| moves(word.letter.to_ascii_uppercase()) && word.value != Value::Missing);
+    match motion {
+        None => Ok(()),
+        Some(word) => Err(Box::new(
+            Diagnostic::error(codes::AFTER_END, "motion behind the end of the program")
+                .at(block.file_span(word.span), "nothing before this line leads here, so it would stay uncorrected")
+                .help("put a second program or a subprogram in a file of its own; or delete these blocks, or write them as a comment"),
+        )),
+    }
 }
 
 /// M codes that the dialect's table names.
@@ -214,10 +241,11 @@ fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved, 
     let tool_mm = match state.tool_length {
         ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
         // Where G44 subtracts the vector, the tool points the other way.
-        ToolLength::On { applied_mm, .. } => applied_mm.map(|v| 0.0 - v),
+        ToolLength::Written { applied_mm: [0.0, 0.0, 0.0] } => env.setup.default_tool_mm,
+        ToolLength::On { applied_mm, .. } | ToolLength::Written { applied_mm } => applied_mm.map(|v| 0.0 - v),
     };
     Context {
-        frame: Frame::shift(position::shift_mm(state).unwrap_or([0.0; 3])),
+        frame: state.frame.unwrap_or_default(),
         unit_mm: state.units.mm(),
         incremental: state.distance == Distance::Incremental,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,

@@ -37,12 +37,14 @@ mod arc;
 pub mod codes;
 mod cycle;
 mod delete;
+mod frames;
 mod interpreter;
 pub mod modal;
 mod motion;
 mod position;
 mod settings;
 mod setup;
+mod transform;
 mod words;
 
 pub use interpreter::{Context, Interpreter, Step};

@@ -1,7 +1,9 @@
 //! The state of a program between two blocks: one enum per modal group.
 
 use nc_syntax::dialect::{CycleCode, GCode};
-use toolpath::{Partial, Plane};
+use toolpath::{Frame, Partial, Plane};
+
+pub use crate::transform::Transform;
 
 /// Sense of an arc, seen against the plane's normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +124,11 @@ pub enum ToolLength {
         /// What is added to axis commands, mm: the setup's vector, its negative under G44.
         applied_mm: [f64; 3],
     },
+    /// G43.1: the length stands in the program.
+    Written {
+        /// What is added to axis commands, mm.
+        applied_mm: [f64; 3],
+    },
 }
 
 impl ToolLength {
@@ -130,7 +137,7 @@ impl ToolLength {
     pub const fn applied_mm(&self) -> [f64; 3] {
         match self {
             Self::Off => [0.0; 3],
-            Self::On { applied_mm, .. } => *applied_mm,
+            Self::On { applied_mm, .. } | Self::Written { applied_mm } => *applied_mm,
         }
     }
 }
@@ -140,8 +147,24 @@ impl ToolLength {
 pub struct WorkOffset {
     /// The code that selected it; `None` where neither program nor dialect did.
     pub code: Option<GCode>,
-    /// Machine coordinate of its zero, mm; `None` where the setup does not say.
+    /// P of a numbered one.
+    pub number: Option<u32>,
+    /// Machine coordinate of its zero, mm; `None` where neither setup nor program says.
     pub zero_mm: Option<[f64; 3]>,
+    /// G10 wrote it while it was in force, and whether the control heeds that before it is chosen again
+    /// is not certain.
+    pub rewritten: bool,
+}
+
+/// What is added to every work offset, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shifts {
+    /// G52, where that is a shift of its own.
+    pub local_mm: [f64; 3],
+    /// G92; where G52 writes the same shift, that too.
+    pub preset_mm: [f64; 3],
+    /// What G92.3 brings back, once this program has set it.
+    pub kept_mm: Option<[f64; 3]>,
 }
 
 /// Since when, and why, nobody knows where an axis stands.
@@ -253,7 +276,7 @@ pub enum Progress {
 }
 
 /// All of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Modal {
     /// G0 G1 G2 G3.
     pub motion: MotionMode,
@@ -275,8 +298,18 @@ pub struct Modal {
     pub return_level: ReturnLevel,
     /// G43 G44 G49.
     pub tool_length: ToolLength,
-    /// G54–G59.
+    /// G54–G59, G54.1.
     pub work_offset: WorkOffset,
+    /// G52, G92.
+    pub shifts: Shifts,
+    /// G68, G51, G51.1.
+    pub transform: Transform,
+    /// Axes that the next motion must name, absolutely: the transformation changed.
+    pub unsettled: [bool; 3],
+    /// Work offsets that the program itself wrote, by name, mm.
+    pub written: Vec<(String, [f64; 3])>,
+    /// What all of these make of program coordinates; `None` where the work offset is not known.
+    pub frame: Option<Frame>,
     /// Where the axes are.
     pub axes: Axes,
     /// The last T.

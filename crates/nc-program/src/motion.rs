@@ -8,10 +8,12 @@ use toolpath::{Arc, Feed, FeedRate, Motion, Shape};
 use crate::arc::{self, Circle, Fault};
 use crate::codes;
 use crate::cycle;
+use crate::frames::{self, settle};
 use crate::modal::{
-    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Turn, Units, Why,
+    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, ToolLength, Turn,
+    Units, Why,
 };
-use crate::position::{end, known_axes, require_known, require_rotary, require_shift};
+use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY,
@@ -27,13 +29,14 @@ pub(crate) struct Moved {
     pub(crate) motions: Motions,
     pub(crate) arc_by_radius: bool,
     pub(crate) repeats: u32,
+    pub(crate) states_position: bool,
 }
 
 /// Executes the words of a block whose codes are already applied to `state`.
 pub(crate) fn execute(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
-    demand: &Demand,
+    demand: &Demand<'_>,
     before: &Modal,
     state: &mut Modal,
     moved: &mut Moved,
@@ -43,6 +46,13 @@ pub(crate) fn execute(
             known_axes(env, words)?;
             by_mode(env, words, before, state, moved)?;
         }
+        Owner::DwellP => {
+            known_axes(env, words)?;
+            dwell_beside(words, state)?;
+            by_mode(env, words, before, state, moved)?;
+        }
+        Owner::Frame => moved.states_position = frames::execute(env, words, demand, before, state)?,
+        Owner::Length => length_from_words(words, demand, before, state)?,
         Owner::Dwell => dwell(words, demand)?,
         Owner::Arguments => {
             if let (Some(motion), true) = (demand.written_motion, words.has(AXIS_LETTERS.or(ARC_LETTERS))) {
@@ -52,17 +62,20 @@ pub(crate) fn execute(
         Owner::Reference => {
             known_axes(env, words)?;
             no_cycle(words, state, demand)?;
+            untransformed(words, state, demand, true)?;
             lose(env, words, state, Why::Reference);
             moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
         }
         Owner::Probe => {
             known_axes(env, words)?;
             no_cycle(words, state, demand)?;
+            untransformed(words, state, demand, false)?;
             lose(env, words, state, Why::Probe);
             moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
         }
         Owner::MachineCoordinates => {
             known_axes(env, words)?;
+            untransformed(words, state, demand, false)?;
             if words.has(AXIS_LETTERS) {
                 machine_coordinates(env, words, state, demand)?;
                 moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
@@ -79,6 +92,68 @@ pub(crate) const fn rate(state: &Modal, value: f64) -> FeedRate {
         FeedMode::PerMinute => FeedRate::PerMinute,
         FeedMode::PerRevolution => FeedRate::PerRevolution,
     }
+}
+
+/// G53, probing and returns while a rotation, scaling or mirror is in force: manuals forbid them, or differ
+/// in what the words mean. A return of axes that it leaves alone is plain.
+fn untransformed(
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    demand: &Demand<'_>,
+    may_spare: bool,
+) -> Outcome<()> {
+    let touched = Letters::of_axes(state.transform.touches());
+    let spared = may_spare && words.has(LINEAR_LETTERS) && !words.has(touched);
+    match demand.owner_span {
+        Some(span) if !state.transform.is_none() && !spared => {
+            let message = format!("{} under {}", words.text(span), state.transform.name());
+            Err(words
+                .refuse(codes::FRAME, message, span, "controls forbid it, or differ in what it does")
+                .help("cancel the rotation, scaling or mirror before it"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// G4 P beside a motion (LinuxCNC): first the dwell, then the motion. P must be the dwell's alone.
+fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
+    let arc = matches!(state.motion, MotionMode::Arc(..)) && words.has(AXIS_LETTERS.or(ARC_LETTERS));
+    if state.cycle.is_some() || arc {
+        let span = words.span(Letters::of(b"P").or(AXIS_LETTERS));
+        return Err(words
+            .refuse(codes::WORDS_OF_TWO, "a dwell beside an arc or a cycle", span, "whose is P?")
+            .help("write the dwell in a block of its own"));
+    }
+    Ok(())
+}
+
+/// G43.1: the words are the length; axes left out keep what they had.
+fn length_from_words(
+    words: &Words<'_, '_, '_>,
+    demand: &Demand<'_>,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<()> {
+    let Some(span) = demand.owner_span else { return Ok(()) };
+    let others = ARC_LETTERS.or(ROTARY_LETTERS).or(SECONDARY_LETTERS).or(Letters::of(b"H"));
+    let message = if words.has(others) || !words.has(LINEAR_LETTERS) {
+        format!("{} takes X, Y and Z", words.text(span))
+    } else if demand.written_motion.is_some() || compensated(before, state) || state.cycle.is_some() {
+        format!("{} beside a motion, a cycle or cutter compensation", words.text(span))
+    } else {
+        let mut applied_mm = state.tool_length.applied_mm();
+        for i in 0..3 {
+            if let Some(value) = words.coordinate(LINEAR[i], state.units == Units::Inch) {
+                applied_mm[i] = value * state.units.mm();
+            }
+        }
+        state.tool_length = ToolLength::Written { applied_mm };
+        frames::refresh(state);
+        return Ok(());
+    };
+    Err(words
+        .refuse(codes::TOOL_LENGTH, message, span, "the length is in the words of this block")
+        .help("write it in a block of its own with X, Y and Z alone"))
 }
 
 fn by_mode(
@@ -158,9 +233,9 @@ fn straight(
     rapid: bool,
     motions: &mut Motions,
 ) -> Outcome<()> {
-    let shift = require_shift(env, words, state)?;
+    settle(words, state)?;
     let start = state.axes;
-    let end = end(words, state, &shift)?;
+    let end = end(words, state, require_frame(env, words, state)?)?;
     state.axes = end;
     let turns = words.has(ROTARY_LETTERS);
     if turns && (!words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary)) {
@@ -196,9 +271,10 @@ fn circular(
     turn: Turn,
     motions: &mut Motions,
 ) -> Outcome<()> {
-    let shift = require_shift(env, words, state)?;
+    settle(words, state)?;
+    let frame = *require_frame(env, words, state)?;
     let start = state.axes;
-    let end = end(words, state, &shift)?;
+    let end = end(words, state, &frame)?;
     let what = "the arc";
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
@@ -206,17 +282,25 @@ fn circular(
     if turning && env.setup.rotary_matters {
         return Err(simultaneous(words));
     }
-    if let Some(turns) = words.plain(b'P')
-        && (turns - 1.0).abs() > 1e-9
-    {
-        let span = words.span(Letters::of(b"P"));
-        return Err(words
-            .refuse(codes::ARC_WORDS, "an arc of several turns by P", span, "more than one turn")
-            .help("write one block for each turn"));
-    }
+    let turns = turns(env, words)?;
     let [first, second, _] = state.plane.axes();
     let plane = |point: &[f64; 3]| [point[first], point[second]];
-    let (start_2d, end_2d) = (plane(&from.linear_mm), plane(&to.linear_mm));
+    let Some(similarity) = frame.similarity(state.plane) else {
+        return Err(words
+            .refuse(
+                codes::FRAME,
+                format!("an arc under {}", state.transform.name()),
+                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+                "the frame makes it an ellipse or turns it out of its plane",
+            )
+            .help("let the CAM write the arc as lines, or scale all axes alike"));
+    };
+    // The words say the circle in program coordinates. A shifted frame has the same circle in axis
+    // commands; a turned or mirrored one must be asked.
+    let shift = frame.is_shift();
+    let local = |point: &[f64; 3]| plane(&if shift { *point } else { frame.to_program(*point) });
+    let (start_2d, end_2d) = (local(&from.linear_mm), local(&to.linear_mm));
+    let origin = if shift { plane(&frame.offset_mm()) } else { [0.0; 2] };
     let tolerance_mm = env.dialect.output.arc_radius_tolerance_mm;
     let inch = state.units == Units::Inch;
     let circle = match words.coordinate(b'R', inch) {
@@ -228,7 +312,7 @@ fn circular(
         }
         Some(radius) => arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance_mm),
         None => {
-            let centre = centre(words, state, start_2d, plane(&shift))?;
+            let centre = centre(words, state, start_2d, origin)?;
             arc::by_centre(start_2d, end_2d, centre, turn, tolerance_mm)
         }
     };
@@ -236,13 +320,51 @@ fn circular(
         circle.map_err(|fault| no_circle(words, state, fault, tolerance_mm))?;
     let rate = feed_rate(words, state)?;
     state.axes = end;
+    let centre_mm = if shift {
+        centre_mm
+    } else {
+        let mut centre = frame.to_program(from.linear_mm);
+        (centre[first], centre[second]) = (centre_mm[0], centre_mm[1]);
+        plane(&frame.to_machine(centre))
+    };
+    let whole = f64::from(turns - 1) * std::f64::consts::TAU;
+    let sweep_rad = sweep_rad + whole.copysign(sweep_rad);
+    let sweep_rad = if similarity.mirrored { -sweep_rad } else { sweep_rad };
     let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
     let may_split = !compensated(before, state) && !turning;
     motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, may_split }));
     Ok(())
 }
 
-/// The centre by I J K, axis commands in mm.
+/// P of an arc: its turns, where the dialect has that; the first need not be whole.
+fn turns(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<u32> {
+    const P: Letters = Letters::of(b"P");
+    /// More than any thread has.
+    const MOST: u32 = 1000;
+    if env.dialect.frames.arc_turns {
+        let turns = words.whole(b'P')?.unwrap_or(1);
+        if (1..=MOST).contains(&turns) {
+            return Ok(turns);
+        }
+        let message = format!("an arc of {turns} turns");
+        return Err(words
+            .refuse(codes::ARC_WORDS, message, words.span(P), format!("1 to {MOST} were expected"))
+            .help("write P1, or no P, for an arc of at most one turn"));
+    }
+    match words.plain(b'P') {
+        Some(turns) if (turns - 1.0).abs() > 1e-9 => Err(words
+            .refuse(
+                codes::ARC_WORDS,
+                "P beside an arc",
+                words.span(P),
+                "turns on some controls, nothing on others",
+            )
+            .help("write one block for each turn")),
+        _ => Ok(1),
+    }
+}
+
+/// The centre by I J K, mm, where the program's zero is `shift_mm`.
 fn centre(
     words: &Words<'_, '_, '_>,
     state: &Modal,
@@ -389,7 +511,7 @@ fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
 }
 
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.
-fn dwell(words: &Words<'_, '_, '_>, demand: &Demand) -> Outcome<()> {
+fn dwell(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
     const TIME: Letters = Letters::of(b"XU");
     let times = TIME.or(Letters::of(b"P"));
     let others = AXIS_LETTERS.or(ARC_LETTERS).or(SECONDARY_LETTERS).without(TIME);
@@ -409,7 +531,7 @@ fn machine_coordinates(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     state: &mut Modal,
-    demand: &Demand,
+    demand: &Demand<'_>,
 ) -> Outcome<()> {
     if let Some(span) = demand.owner_span
         && (state.cycle.is_some() || matches!(state.motion, MotionMode::Arc(..)))
@@ -459,7 +581,7 @@ fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why
     }
 }
 
-fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand) -> Outcome<()> {
+fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand<'_>) -> Outcome<()> {
     match demand.owner_span {
         Some(span) if state.cycle.is_some() => Err(words
             .refuse(
@@ -473,7 +595,7 @@ fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand) -> Outcom
     }
 }
 
-fn whose(words: &Words<'_, '_, '_>, demand: &Demand, motion: Span) -> Box<Diagnostic> {
+fn whose(words: &Words<'_, '_, '_>, demand: &Demand<'_>, motion: Span) -> Box<Diagnostic> {
     let owner = demand.owner_span.map_or_else(String::new, |span| words.text(span));
     let message = format!("{owner} and {} both take the axis words of this block", words.text(motion));
     words

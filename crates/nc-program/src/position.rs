@@ -3,39 +3,41 @@
 use diagnostic::Diagnostic;
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
-use toolpath::{AXIS_NAMES, Position};
+use toolpath::{AXIS_NAMES, Frame, Position};
 
-use crate::codes;
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, Units, Why};
 use crate::settings::{Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY, ROTARY_LETTERS, Words};
+use crate::{codes, frames};
 
-/// From program coordinates to axis commands, mm: work offset plus tool length.
-///
-/// `None` where the work offset in force is not given.
+/// From program coordinates to axis commands, mm: refused where the work offset in force is not given.
 #[inline]
-pub(crate) fn shift_mm(state: &Modal) -> Option<[f64; 3]> {
-    let zero = state.work_offset.zero_mm?;
-    let applied = state.tool_length.applied_mm();
-    Some([0, 1, 2].map(|i| zero[i] + applied[i]))
-}
-
-/// The same, refused where there is none.
-#[inline]
-pub(crate) fn require_shift(
+pub(crate) fn require_frame<'s>(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
-    state: &Modal,
-) -> Outcome<[f64; 3]> {
-    if let Some(shift) = shift_mm(state) {
-        return Ok(shift);
+    state: &'s Modal,
+) -> Outcome<&'s Frame> {
+    match &state.frame {
+        Some(frame) => Ok(frame),
+        None => Err(no_frame(env, words, state)),
     }
+}
+
+#[cold]
+fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> Box<Diagnostic> {
     let span = words.span(AXIS_LETTERS);
+    if state.work_offset.rewritten {
+        let name = frames::active_name(env, state).unwrap_or_default();
+        let message = format!("G10 wrote work offset {name} while it was in force");
+        return words
+            .refuse(codes::FRAME, message, span, "in force at once or not? controls differ")
+            .help(format!("write {name} again after the G10 block"));
+    }
     match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {
-        Some(Action::WorkOffset(name)) => Err(missing_offset(words, name, span)),
-        _ => Err(words
+        Some(Action::WorkOffset(name)) => missing_offset(words, name, span),
+        _ => words
             .refuse(codes::WORK_OFFSET, "no work offset is in force", span, "coordinates of which zero?")
-            .help("program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`")),
+            .help("program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`"),
     }
 }
 
@@ -75,11 +77,15 @@ pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Ou
 /// # Errors
 /// An increment from an unknown position.
 #[inline]
-pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, shift_mm: &[f64; 3]) -> Outcome<Axes> {
+pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Outcome<Axes> {
     let mut end = state.axes;
     let inch = state.units == Units::Inch;
     let unit_mm = state.units.mm();
-    for i in 0..3 {
+    let shift_mm = frame.offset_mm();
+    if !frame.is_shift() {
+        end.linear = turned_end(words, state, frame)?;
+    }
+    for i in 0..if frame.is_shift() { 3 } else { 0 } {
         if let Some(value) = words.coordinate(LINEAR[i], inch) {
             let value_mm = value * unit_mm;
             end.linear[i] = Axis::At(match state.distance {
@@ -97,6 +103,44 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, shift_mm: &[f64; 3])
                 });
             }
         }
+    }
+    Ok(end)
+}
+
+/// The linear axes after the words of the block where a rotation, scaling or mirror is in force.
+///
+/// An axis that no word reaches through the matrix stays; one that is reached needs every program
+/// coordinate that reaches it: named, or known from where the axes stand.
+fn turned_end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Outcome<[Axis; 3]> {
+    let inch = state.units == Units::Inch;
+    let unit_mm = state.units.mm();
+    let value = LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * unit_mm));
+    let matrix = frame.matrix();
+    let reaches = |axis: usize, program: usize| matrix[axis][program] != 0.0;
+    let mut end = state.axes.linear;
+    if state.distance == Distance::Incremental {
+        for axis in 0..3 {
+            if (0..3).any(|i| value[i].is_some() && reaches(axis, i)) {
+                let step: f64 = (0..3).map(|i| matrix[axis][i] * value[i].unwrap_or(0.0)).sum();
+                end[axis] = Axis::At(increment_base(words, state.axes.linear[axis], axis)? + step);
+            }
+        }
+        return Ok(end);
+    }
+    let standing = state.axes.linear.map(|axis| axis.known().unwrap_or(0.0));
+    let current = frame.to_program(standing);
+    let target = frame.to_machine([0, 1, 2].map(|i| value[i].unwrap_or(current[i])));
+    for axis in 0..3 {
+        if !(0..3).any(|i| value[i].is_some() && reaches(axis, i)) {
+            continue;
+        }
+        for i in (0..3).filter(|i| value[*i].is_none() && reaches(axis, *i)) {
+            // The coordinate that was left out must follow from where the axes stand.
+            for j in (0..3).filter(|j| frame.inverse()[i][*j] != 0.0) {
+                increment_base(words, state.axes.linear[j], j)?;
+            }
+        }
+        end[axis] = Axis::At(target[axis]);
     }
     Ok(end)
 }

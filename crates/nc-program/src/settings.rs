@@ -6,11 +6,12 @@ use toolpath::Plane;
 
 use crate::codes;
 use crate::modal::{
-    ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, ToolLength,
-    Turn, Units, WorkOffset,
+    ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts,
+    ToolLength, Turn, Units, WorkOffset,
 };
 use crate::setup::Setup;
 use crate::words::{Letters, Outcome, Words};
+use crate::{frames, transform::Transform};
 
 /// What a program is read against.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +33,12 @@ pub(crate) enum Owner {
     Reference,
     /// G53.
     MachineCoordinates,
+    /// G52, G92, G10, G68…
+    Frame,
+    /// G4 whose time is P alone: the axis words are the motion's.
+    DwellP,
+    /// G43.1
+    Length,
     /// G31 and the like.
     Probe,
     /// A code that moves nothing.
@@ -40,12 +47,14 @@ pub(crate) enum Owner {
 
 /// What the block asks for beyond its settings.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Demand {
+pub(crate) struct Demand<'d> {
     pub(crate) owner: Owner,
     /// The code that owns the words, where it is not the motion.
     pub(crate) owner_span: Option<Span>,
     /// The motion or cycle code written in this block.
     pub(crate) written_motion: Option<Span>,
+    /// The code that moves the frame by its words.
+    pub(crate) frame: Option<&'d Action>,
 }
 
 /// How the tool length is asked to change.
@@ -62,27 +71,38 @@ struct Wanted<'d> {
     cycle: Option<(CycleCode, GCode, u8)>,
     cancel_group: Option<u8>,
     probe_group: Option<u8>,
-    offset: Option<(GCode, &'d str, Span)>,
+    offset: Option<(GCode, Option<&'d str>, Span)>,
+    /// G69, G50.
+    transform_off: Option<(&'d Action, Span)>,
+    /// G92.1, G92.2, G92.3 where they take no words.
+    shift: Option<(&'d Action, Span)>,
     length: Option<(Length, Span)>,
 }
 
 /// Applies the codes of a block to the state.
 ///
 /// `state` comes in equal to `before`.
-pub(crate) fn apply(
-    env: &Environment<'_>,
-    words: &Words<'_, '_, '_>,
+pub(crate) fn apply<'d>(
+    env: &Environment<'d>,
+    words: &Words<'_, '_, 'd>,
     before: &Modal,
     state: &mut Modal,
-) -> Outcome<Demand> {
+) -> Outcome<Demand<'d>> {
     const ONE_LETTER_SETTINGS: Letters = Letters::of(b"HT");
-    let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None };
+    let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None, frame: None };
     if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(ONE_LETTER_SETTINGS) {
         return Ok(demand);
     }
     let mut wanted = Wanted::default();
     for code in &words.codes {
-        let owner = set(&code.entry.action, code.entry.code, code.entry.group, code.span, state, &mut wanted);
+        let action = &code.entry.action;
+        let owner = match (action, &env.dialect.frames) {
+            (Action::PresetCancel, rules) if rules.local_is_preset => {
+                wanted.shift = Some((action, code.span));
+                Owner::Motion
+            }
+            _ => set(action, code.entry.code, code.entry.group, code.span, state, &mut wanted),
+        };
         match owner {
             Owner::Motion => {
                 if wanted.motion.is_some() || wanted.cycle.is_some() {
@@ -102,6 +122,9 @@ pub(crate) fn apply(
                 }
                 demand.owner = owner;
                 demand.owner_span = Some(code.span);
+                if owner == Owner::Frame {
+                    demand.frame = Some(action);
+                }
             }
         }
         if let Action::Refuse { reason, help } = &code.entry.action {
@@ -112,19 +135,145 @@ pub(crate) fn apply(
         }
     }
     tool(words, state);
-    if let Some((code, name, span)) = wanted.offset {
-        let zero_mm = env.setup.work_offset(name);
-        if zero_mm.is_none() {
-            return Err(missing_offset(words, name, span));
-        }
-        state.work_offset = WorkOffset { code: Some(code), zero_mm };
+    if let Some(offset) = wanted.offset {
+        let other = takes_p(env, words, state, &demand, &wanted);
+        work_offset(env, words, state, offset, other)?;
     }
     length(env, words, state, wanted.length)?;
+    switches(words, state, &wanted)?;
     motion(env, state, &wanted);
+    if !before.transform.is_none() && before.transform == state.transform {
+        transformed(words, before, state)?;
+    }
+    frames::refresh(state);
     if before.cycle.is_some() && state.cycle.is_some() {
         cycle_frame(words, before, state)?;
     }
     Ok(demand)
+}
+
+/// True where P may be another code's than a work offset's: G4, G10, a cycle, an arc of several turns or
+/// an M code.
+fn takes_p(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &Modal,
+    demand: &Demand<'_>,
+    wanted: &Wanted<'_>,
+) -> bool {
+    let arc = matches!(wanted.motion.unwrap_or(state.motion), MotionMode::Arc(..));
+    let cycle = wanted.cycle.is_some() || (state.cycle.is_some() && wanted.motion.is_none());
+    demand.owner != Owner::Motion
+        || cycle
+        || !words.m_codes.is_empty()
+        || (arc && env.dialect.frames.arc_turns)
+}
+
+/// G54 and its like; `other`: a P may be another code's.
+fn work_offset(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    (code, name, span): (GCode, Option<&str>, Span),
+    other: bool,
+) -> Outcome<()> {
+    const P: Letters = Letters::of(b"P");
+    const FIRST: GCode = GCode(540);
+    let may_be_numbered = name.is_none() || (env.dialect.frames.p_selects_numbered && code == FIRST);
+    let number = match words.number(b'P') {
+        None if name.is_none() => {
+            let message = format!("{} without P", words.text(span));
+            return Err(words
+                .refuse(codes::WORK_OFFSET, message, span, "which of the numbered work offsets?")
+                .help("write P1 for the first"));
+        }
+        None => None,
+        Some(_) if other && !may_be_numbered => None,
+        Some(_) if other => {
+            let message = format!("P beside {} may belong to two codes", words.text(span));
+            return Err(words
+                .refuse(
+                    codes::WORDS_OF_TWO,
+                    message,
+                    words.span(P),
+                    "a work offset's number, or another code's P?",
+                )
+                .help(format!("write {} and its P in a block of their own", words.text(span))));
+        }
+        Some(_) if may_be_numbered => words.whole(b'P')?,
+        Some(_) => {
+            let message = format!("P beside {} has no meaning here", words.text(span));
+            return Err(words
+                .refuse(codes::FRAME, message, words.span(P), "another work offset on some controls")
+                .help("remove P, or write the numbered work offset in the form this control has"));
+        }
+    };
+    if number == Some(0) {
+        return Err(words
+            .refuse(codes::WORK_OFFSET, "there is no work offset P0", words.span(P), "they count from 1")
+            .help("write the number of the work offset"));
+    }
+    let name = match (number, name) {
+        (Some(number), _) => frames::numbered(number),
+        (None, name) => name.unwrap_or_default().to_owned(),
+    };
+    let zero_mm = frames::offset(env, state, &name);
+    if zero_mm.is_none() {
+        return Err(missing_offset(words, &name, span));
+    }
+    state.work_offset = WorkOffset { code: Some(code), number, zero_mm, rewritten: false };
+    Ok(())
+}
+
+/// G69, G50, and G92.1 to G92.3 where they take no words: done before the motion of their block.
+fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -> Outcome<()> {
+    let off = match (wanted.transform_off, &state.transform) {
+        (Some((Action::RotationOff, span)), Transform::Rotation { .. })
+        | (Some((Action::ScalingOff, span)), Transform::Scaling { .. }) => Some(span),
+        _ => None,
+    };
+    let Some(span) = off.or(wanted.shift.map(|(_, span)| span)) else { return Ok(()) };
+    if state.compensation == Compensation::On {
+        let message = format!("{} under cutter compensation", words.text(span));
+        return Err(words
+            .refuse(codes::FRAME, message, span, "the compensated path jumps with it")
+            .help("cancel the compensation with G40 before it"));
+    }
+    if off.is_some() {
+        frames::unsettle(state, Transform::None);
+    }
+    let Some((action, span)) = wanted.shift else { return Ok(()) };
+    let shifts = &mut state.shifts;
+    match (action, shifts.kept_mm) {
+        (Action::PresetCancel, _) => (shifts.preset_mm, shifts.kept_mm) = ([0.0; 3], Some([0.0; 3])),
+        (Action::PresetSuspend, _) => (shifts.preset_mm, shifts.kept_mm) = ([0.0; 3], Some(shifts.preset_mm)),
+        (_, Some(kept)) => shifts.preset_mm = kept,
+        (_, None) => {
+            let message = format!("{} without a shift of this program", words.text(span));
+            return Err(words
+                .refuse(codes::FRAME, message, span, "brings back what an earlier program left")
+                .help("write the shift with G92 or G52, or use a work offset"));
+        }
+    }
+    Ok(())
+}
+
+/// What may not change while a rotation, scaling or mirror is in force.
+fn transformed(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
+    let what = if before.plane != after.plane {
+        "plane"
+    } else if before.units != after.units {
+        "unit"
+    } else if before.work_offset != after.work_offset {
+        "work offset"
+    } else {
+        return Ok(());
+    };
+    let message = format!("the {what} changes under {}", before.transform.name());
+    let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
+    Err(words
+        .refuse(codes::FRAME, message, span, "controls differ in what the centre means then")
+        .help("cancel the rotation, scaling or mirror before, and write it again afterwards"))
 }
 
 /// Applies the dialect's state at the start of a program. A work offset that the setup lacks is
@@ -136,9 +285,11 @@ pub(crate) fn initial(env: &Environment<'_>, state: &mut Modal) {
         set(&entry.action, entry.code, entry.group, nowhere, state, &mut wanted);
     }
     if let Some((code, name, _)) = wanted.offset {
-        state.work_offset = WorkOffset { code: Some(code), zero_mm: env.setup.work_offset(name) };
+        let zero_mm = name.and_then(|name| env.setup.work_offset(name));
+        state.work_offset = WorkOffset { code: Some(code), number: None, zero_mm, rewritten: false };
     }
     motion(env, state, &wanted);
+    frames::refresh(state);
 }
 
 /// One code: sets what it sets at once, or notes what must wait; says whose the axis words are.
@@ -165,7 +316,32 @@ fn set<'d>(
         Action::LengthOn => wanted.length = Some((Length::On { negative: false }, span)),
         Action::LengthOnNegative => wanted.length = Some((Length::On { negative: true }, span)),
         Action::LengthOff => wanted.length = Some((Length::Off, span)),
-        Action::WorkOffset(name) => wanted.offset = Some((code, name, span)),
+        Action::WorkOffset(name) => wanted.offset = Some((code, Some(name), span)),
+        Action::WorkOffsetNumbered => wanted.offset = Some((code, None, span)),
+        Action::RotationOff | Action::ScalingOff => {
+            // Several may stand together; the one that ends what is in force counts.
+            let ends = matches!(
+                (action, &state.transform),
+                (Action::RotationOff, Transform::Rotation { .. })
+                    | (Action::ScalingOff, Transform::Scaling { .. })
+            );
+            if ends {
+                wanted.transform_off = Some((action, span));
+            }
+        }
+        Action::MirrorOff if !matches!(state.transform, Transform::Mirror(_)) => return Owner::Arguments,
+        Action::PresetCancel if state.shifts == Shifts::default() => return Owner::Arguments,
+        Action::PresetSuspend | Action::PresetRestore => wanted.shift = Some((action, span)),
+        Action::WriteOffset
+        | Action::LocalShift
+        | Action::Preset
+        | Action::PresetCancel
+        | Action::RotationOn
+        | Action::ScalingOn
+        | Action::MirrorOn
+        | Action::MirrorOff => return Owner::Frame,
+        Action::LengthFromWords => return Owner::Length,
+        Action::DwellP => return Owner::DwellP,
         Action::Cycle(kind) => wanted.cycle = Some((*kind, code, group)),
         Action::CycleCancel => wanted.cancel_group = Some(group),
         Action::ReturnInitial => state.return_level = ReturnLevel::Initial,
@@ -234,7 +410,7 @@ fn length(
             }
         },
         (None, ToolLength::On { number, .. }) => number,
-        (None, ToolLength::Off) => {
+        (None, ToolLength::Off | ToolLength::Written { .. }) => {
             let message = "tool length without H";
             return Err(words
                 .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")
@@ -298,6 +474,8 @@ fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
         "work offset"
     } else if before.tool_length != after.tool_length {
         "tool length"
+    } else if before.shifts != after.shifts || before.transform != after.transform {
+        "frame"
     } else {
         return Ok(());
     };

@@ -27,6 +27,24 @@ impl Letters {
         }
         Self(bits)
     }
+    /// Linear axes by index.
+    pub(crate) fn of_axes(axes: [bool; 3]) -> Self {
+        let mut all = Self::NONE;
+        for (letter, is_in) in LINEAR.iter().zip(axes) {
+            if is_in {
+                all = all.or(Self::of(&[*letter]));
+            }
+        }
+        all
+    }
+    /// As text: `X, Z`.
+    pub(crate) fn names(self) -> String {
+        let names: Vec<String> = (b'A'..=b'Z')
+            .filter(|letter| self.any(Self::of(&[*letter])))
+            .map(|letter| (letter as char).to_string())
+            .collect();
+        names.join(", ")
+    }
     pub(crate) const fn any(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
@@ -109,7 +127,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         for (index, item) in block.items.iter().enumerate() {
             match item.kind {
                 ItemKind::Word { letter, .. } if !letter.is_ascii_uppercase() => {
-                    return Err(words.unreadable(item.span, Invalid::Text));
+                    return Err(Box::new(block.unreadable_at(Invalid::Text, item.span)));
                 }
                 ItemKind::Word { letter, value: Value::Number(number) } => match letter {
                     b'G' => words.preparatory(number, item.span)?,
@@ -154,7 +172,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 ItemKind::Flow => {
                     return Err(words.not_static(item.span, "this"));
                 }
-                ItemKind::Invalid(reason) => return Err(words.unreadable(item.span, reason)),
+                ItemKind::Invalid(reason) => return Err(Box::new(block.unreadable_at(reason, item.span))),
             }
         }
         Ok(())
@@ -230,12 +248,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
 
     /// The letters of a set that stand in the block, as text: `X, Z`.
     pub(crate) fn names(&self, letters: Letters) -> String {
-        let present = self.letters.and(letters);
-        let names: Vec<String> = (b'A'..=b'Z')
-            .filter(|letter| present.any(Letters::of(&[*letter])))
-            .map(|letter| (letter as char).to_string())
-            .collect();
-        names.join(", ")
+        self.letters.and(letters).names()
     }
 
     pub(crate) fn text(&self, span: Span) -> String {
@@ -327,23 +340,6 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         let message = format!("{what} is known only while the program runs");
         self.refuse(codes::NOT_STATIC, message, span, "a plain number was expected")
             .help("post the program without variables and flow; values must be static")
-    }
-
-    fn unreadable(&self, span: Span, reason: Invalid) -> Box<Diagnostic> {
-        let (message, help) = match reason {
-            Invalid::Number => ("a number cannot be read", "write it as digits with at most one point"),
-            Invalid::TooManyDigits => {
-                ("a number has more than 15 digits", "round it to what the control can move")
-            }
-            Invalid::UnclosedComment => ("a comment has no end", "close it in the same block"),
-            Invalid::UnclosedBracket => ("a bracket has no partner", "close it in the same block"),
-            Invalid::TooLong => ("a block of more than 65536 bytes", "is this an NC program?"),
-            Invalid::Text => (
-                "this is neither a word nor a comment",
-                "is it another dialect (`--dialect`)? else correct or remove it",
-            ),
-        };
-        self.refuse(codes::UNREADABLE, message, span, "not understood").help(help)
     }
 }
 

@@ -110,10 +110,15 @@ fn blocks() {
       1: `G251` it may move an axis or the frame
       help: if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`
     "#);
-    insta::assert_snapshot!(message("fanuc", "G68 X1. Y1. R30.\n"), @r#"
-    error[VP0208]: G68 is refused: rotates the program
-      1: `G68` not understood
-      help: rotate in the CAM and delete G68 and G69
+    insta::assert_snapshot!(message("fanuc", "G68.2 X1. Y1. Z1. I0 J0 K30.\n"), @r#"
+    error[VP0208]: G68.2 is refused: tilts the working plane
+      1: `G68.2` not understood
+      help: post without tilted planes
+    "#);
+    insta::assert_snapshot!(message("fanuc", "G0 X0 Y0 Z0\nG68 X0 Y0 R30.\nG1 X5. F9\n"), @r#"
+    error[VP0227]: the first motion after a rotation, scaling or mirror was switched must be absolute and whole
+      3: `X5.` X, Y were expected, in G90: controls differ in where they start otherwise
+      help: write X, Y in this block, in G90
     "#);
     insta::assert_snapshot!(message("fanuc", "M98 P1000\n"), @r#"
     error[VP0208]: M98 is refused: calls a subprogram
@@ -126,9 +131,9 @@ fn blocks() {
       help: post the program without variables and flow; values must be static
     "#);
     insta::assert_snapshot!(message("fanuc", "G1 Xnan\n"), @r#"
-    error[VP0201]: a number cannot be read
-      1: `Xnan` not understood
-      help: write it as digits with at most one point
+    error[VP0101]: `Xnan` is not a number a control reads
+      1: `Xnan` expected a sign, digits and one decimal point
+      help: write it like `X-12.5`: no exponent, one sign, a point and not a comma
     "#);
     insta::assert_snapshot!(message("fanuc", "G0 X1. R2.\n"), @r#"
     error[VP0225]: R has no meaning here

@@ -34,7 +34,7 @@ fn transcript(name: &str, setup: &Setup, text: &str) -> String {
     let mut block = Block::default();
     let mut said = String::new();
     while reader.next(&mut block) {
-        let before = *interpreter.modal();
+        let before = interpreter.modal().clone();
         let result = interpreter.step(&block);
         if let Ok(step) = &result {
             for motion in &step.motions {
@@ -150,9 +150,9 @@ proptest! {
         let mut interpreter = Interpreter::new(dialect, &setup);
         let mut block = Block::default();
         while reader.next(&mut block) {
-            let before = *interpreter.modal();
+            let before = interpreter.modal().clone();
             if interpreter.step(&block).is_err() {
-                prop_assert_eq!(*interpreter.modal(), before);
+                prop_assert_eq!(interpreter.modal(), &before);
             }
         }
     }

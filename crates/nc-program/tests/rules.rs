@@ -59,13 +59,13 @@ fn not_every_x_is_a_coordinate() {
         ("G4 U2.\n", 0),
         ("G4 P2000\n", 0),
         ("G5.1 Q1 X0 Y0\n", 0),
-        ("G10 L2 P1 X5.\n", 208),
+        ("G10 L10 P1 R5.\n", 227),
         ("G65 P9810 X10.\n", 208),
-        ("G52 X5.\n", 208),
-        ("G92 X5.\n", 208),
-        ("G68 X0 Y0 R30.\n", 208),
-        ("G51 X0 Y0 P2.\n", 208),
-        ("G54.1 P12\n", 208),
+        ("G52 X5.\n", 0),
+        ("G92 X5.\n", 0),
+        ("G68 X0 Y0 R30.\n", 0),
+        ("G51 X0 Y0 Z0 P2.\n", 0),
+        ("G54.1 P12\n", 214),
         ("G43.4 H1\n", 208),
         ("M98 P1000 L3\n", 208),
         ("G4 X2. Y3.\n", 223),
@@ -301,7 +301,7 @@ fn what_is_not_understood_is_refused() {
         ("fanuc", "IF[#1EQ2]GOTO10\n", 202),
         ("linuxcnc", "O100 sub\n", 202),
         ("fanuc", "G1 X\n", 211),
-        ("fanuc", "G1 X1.2.3\n", 201),
+        ("fanuc", "G1 X1.2.3\n", 101),
         ("fanuc", "G0 X1.,R5.\n", 225),
         ("fanuc", "G0 X1. R5.\n", 225),
         ("fanuc", "G1 I1.\n", 225),
@@ -334,7 +334,7 @@ fn g80_gives_back_the_motion_code_where_it_has_a_group_of_its_own() {
 #[test]
 fn the_program_ends_once() {
     for end in ["M2\n", "M30\n", "G1 X1. M30\n"] {
-        let run = run("fanuc", &after(&format!("{end}G251 X#1 M98\nG1 X9.\n%\n(((\n")));
+        let run = run("fanuc", &after(&format!("{end}G251 M98\nG1 S9.\n%\n(((\n")));
         assert!(run.refused.is_none(), "{:?}", run.refused);
         assert_eq!(run.modal.progress, Progress::Ended);
         let ended: Vec<bool> = run.steps.iter().map(|step| step.ends_program).collect();
@@ -342,7 +342,11 @@ fn the_program_ends_once() {
         assert!(ended[2..].iter().all(|ended| *ended));
         assert!(run.steps[2..].iter().all(|step| step.motions.is_empty()));
     }
-    let run = run("fanuc", "leader text\n%\nO1\nG0 X1.\n%\nG251 after\n");
+    // A second program in the file is not left uncorrected in silence.
+    for behind in ["M30\n%\nO2\nG0 X1.\n%\n", "M30\nO2\nX#1\nM99\n%\n", "%\nO2\nG91 G1 Z-1.\nM30\n%\n"] {
+        assert_eq!(refusal("fanuc", &format!("%\nO1\nG0 X1.\n{behind}")).0, 228, "{behind}");
+    }
+    let run = run("fanuc", "leader text\n%\nO1\nG0 X1.\n%\nG251 X5. after\n");
     assert!(run.refused.is_none(), "{:?}", run.refused);
     assert_eq!(run.steps.iter().filter(|step| !step.motions.is_empty()).count(), 1);
     assert_eq!(run.modal.progress, Progress::Ended);

@@ -1,3 +1,14 @@
+use crate::Plane;
+
+/// What a frame makes of circles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    /// Radius by axis commands over radius in the program.
+    pub scale: f64,
+    /// G2 of the program turns the axes the way G3 does.
+    pub mirrored: bool,
+}
+
 /// How program coordinates (millimetres) become axis commands: `axis = matrix · program + offset`.
 ///
 /// Without G68, G51 or G51.1 the matrix is the identity and the frame a mere shift: work offset plus
@@ -54,6 +65,45 @@ impl Frame {
         self.matrix == IDENTITY
     }
 
+    /// Rows of the matrix; the identity for a shift.
+    #[must_use]
+    pub const fn matrix(&self) -> &[[f64; 3]; 3] {
+        &self.matrix
+    }
+
+    /// Rows of the inverse: program coordinates by axis commands.
+    #[must_use]
+    pub const fn inverse(&self) -> &[[f64; 3]; 3] {
+        &self.inverse
+    }
+
+    /// How circles of a plane are mapped; `None` where they become ellipses or leave the plane.
+    #[must_use]
+    pub fn similarity(&self, plane: Plane) -> Option<Similarity> {
+        if self.is_shift() {
+            return Some(Similarity { scale: 1.0, mirrored: false });
+        }
+        let m = &self.matrix;
+        let [u, v, n] = plane.axes();
+        let (a, b, c, d) = (m[u][u], m[u][v], m[v][u], m[v][v]);
+        let near = |x: f64, y: f64| (x - y).abs() <= 1e-12 * (x.abs() + y.abs()).max(1e-3);
+        let in_plane = m[n][u] == 0.0 && m[n][v] == 0.0 && m[u][n] == 0.0 && m[v][n] == 0.0;
+        let turned = near(a, d) && near(b, -c);
+        let mirrored = near(a, -d) && near(b, c);
+        (in_plane && (turned || mirrored))
+            .then(|| Similarity { scale: (a * a + c * c).sqrt(), mirrored: a * d - b * c < 0.0 })
+    }
+
+    /// The largest factor by which the matrix lengthens a program axis; 1 for a shift.
+    #[must_use]
+    pub fn largest_scale(&self) -> f64 {
+        let column = |c: usize| {
+            let [x, y, z] = [0, 1, 2].map(|r| self.matrix[r][c]);
+            (x * x + y * y + z * z).sqrt()
+        };
+        if self.is_shift() { 1.0 } else { column(0).max(column(1)).max(column(2)) }
+    }
+
     /// Axis command of a program point.
     #[must_use]
     pub fn to_machine(&self, program_mm: [f64; 3]) -> [f64; 3] {
@@ -85,5 +135,17 @@ mod tests {
         assert_eq!(frame.to_machine(p), [7.5, 8.5, 10.0]);
         assert_eq!(frame.to_program(frame.to_machine(p)), p);
         assert!(Frame::affine([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]).is_none());
+    }
+
+    #[test]
+    fn circles_stay_circles_under_turns_mirrors_and_even_scaling() {
+        let of = |m: [[f64; 3]; 3], plane| Frame::affine(m, [0.0; 3]).unwrap().similarity(plane);
+        let turned = of([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]], Plane::Xy).unwrap();
+        assert!((turned.scale - 1.0).abs() < 1e-15 && !turned.mirrored);
+        let mirror = [[-2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+        assert_eq!(of(mirror, Plane::Xy), Some(Similarity { scale: 2.0, mirrored: true }));
+        assert_eq!(of(mirror, Plane::Yz), Some(Similarity { scale: 2.0, mirrored: false }));
+        assert_eq!(of([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]], Plane::Xy), None);
+        assert_eq!(of([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]], Plane::Zx), None);
     }
 }

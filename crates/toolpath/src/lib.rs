@@ -8,7 +8,7 @@ mod frame;
 mod motion;
 mod plane;
 
-pub use frame::Frame;
+pub use frame::{Frame, Similarity};
 pub use motion::{Arc, Cycle, CycleKind, Feed, FeedRate, Hole, Motion, Partial, Position, Shape};
 pub use plane::Plane;
 

@@ -33,7 +33,7 @@ pub(crate) fn run_with(dialect: &Dialect, setup: &Setup, text: &str) -> Run {
     let mut steps = Vec::new();
     let mut refused = None;
     while reader.next(&mut block) {
-        let before = *interpreter.modal();
+        let before = interpreter.modal().clone();
         match interpreter.step(&block) {
             Ok(step) => steps.push(step),
             Err(diagnostics) => {
@@ -43,7 +43,7 @@ pub(crate) fn run_with(dialect: &Dialect, setup: &Setup, text: &str) -> Run {
             }
         }
     }
-    Run { steps, modal: *interpreter.modal(), refused }
+    Run { steps, modal: interpreter.modal().clone(), refused }
 }
 
 pub(crate) fn run(name: &str, text: &str) -> Run {

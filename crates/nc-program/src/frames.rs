@@ -1,0 +1,492 @@
+//! Codes that move the frame: G10, G52, G92 and their like, G68, G51, G51.1.
+//!
+//! All of them end in [`toolpath::Frame`]: axis = T(word) + zero + shifts + tool length, T being the
+//! rotation, scaling or mirror in force. What a manual leaves open is refused.
+
+use nc_syntax::Span;
+use nc_syntax::dialect::{Action, OffsetL20};
+
+use crate::codes;
+use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
+use crate::position::{increment_base, require_frame};
+use crate::settings::{Demand, Environment};
+use crate::transform::Transform;
+use crate::words::{
+    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY_LETTERS,
+    Refusal, SECONDARY_LETTERS, Words,
+};
+
+const P: Letters = Letters::of(b"P");
+const R: Letters = Letters::of(b"R");
+const L: Letters = Letters::of(b"L");
+
+/// Makes the frame of the settings, where they give one.
+pub(crate) fn refresh(state: &mut Modal) {
+    let applied = state.tool_length.applied_mm();
+    state.frame = state.work_offset.zero_mm.and_then(|zero| {
+        let shifts = state.shifts;
+        let shift = |i: usize| zero[i] + applied[i] + (shifts.local_mm[i] + shifts.preset_mm[i]);
+        state.transform.frame([0, 1, 2].map(shift))
+    });
+}
+
+/// The name of a numbered work offset.
+pub(crate) fn numbered(number: u32) -> String {
+    format!("G54.1P{number}")
+}
+
+/// Executes a code whose words move the frame; says whether they state where the axes stand.
+pub(crate) fn execute(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    demand: &Demand<'_>,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<bool> {
+    let (Some(action), Some(span)) = (demand.frame, demand.owner_span) else { return Ok(false) };
+    if let Some(motion) = demand.written_motion {
+        let message = format!("{} and {} in one block", words.text(span), words.text(motion));
+        return Err(words
+            .refuse(codes::FRAME, message, span, "moves the frame: before or after the motion?")
+            .help("write the two codes in two blocks"));
+    }
+    if words.has(ROTARY_LETTERS.or(SECONDARY_LETTERS)) {
+        let letters = ROTARY_LETTERS.or(SECONDARY_LETTERS);
+        let message = format!("{} shifts an axis that is not X, Y or Z", words.text(span));
+        return Err(words
+            .refuse(codes::FRAME, message, words.span(letters), "no offset of such an axis is known")
+            .help("remove the word where it is zero; else set the offset on the control"));
+    }
+    if before.compensation == Compensation::On || state.compensation == Compensation::On {
+        return Err(refuse(words, span, "under cutter compensation", "the compensated path jumps with it")
+            .help("cancel the compensation with G40 before it"));
+    }
+    if state.cycle.is_some() {
+        return Err(refuse(words, span, "while a drilling cycle is in force", "a cycle is running here")
+            .help("cancel the cycle with G80 before, and write it again with R and Z afterwards"));
+    }
+    if before.work_offset != state.work_offset || before.tool_length != state.tool_length {
+        return Err(refuse(words, span, "beside another offset", "in which order? controls differ")
+            .help("write the two codes in two blocks"));
+    }
+    let turns =
+        matches!(action, Action::RotationOn | Action::ScalingOn | Action::MirrorOn | Action::MirrorOff);
+    if !turns && !state.transform.is_none() {
+        let under = format!("under {}", state.transform.name());
+        return Err(refuse(words, span, &under, "its words may be turned, scaled or not")
+            .help("cancel the rotation, scaling or mirror before it"));
+    }
+    let mut states_position = false;
+    match action {
+        Action::LocalShift => local_shift(env, words, span, state)?,
+        Action::Preset => {
+            states_position = true;
+            preset(env, words, span, state)?;
+        }
+        Action::PresetCancel => cancel_preset(env, words, span, state)?,
+        Action::PresetSuspend | Action::PresetRestore => {
+            no_words(words, span)?;
+            if *action == Action::PresetSuspend {
+                state.shifts.kept_mm = Some(state.shifts.preset_mm);
+                state.shifts.preset_mm = [0.0; 3];
+            } else {
+                let Some(kept) = state.shifts.kept_mm else {
+                    return Err(refuse(
+                        words,
+                        span,
+                        "without a shift of this program",
+                        "brings back what an earlier program left",
+                    )
+                    .help("write the shift with G92 or G52, or use a work offset"));
+                };
+                state.shifts.preset_mm = kept;
+            }
+        }
+        Action::WriteOffset => states_position = write_offset(env, words, span, state)?,
+        Action::RotationOn | Action::ScalingOn | Action::MirrorOn => {
+            let transform = transform(env, words, span, action, state)?;
+            unsettle(state, transform);
+        }
+        Action::MirrorOff => mirror_off(words, span, state)?,
+        _ => {}
+    }
+    refresh(state);
+    Ok(states_position)
+}
+
+/// Puts a transformation in force; the axes it touches, or touched, must be said anew.
+pub(crate) fn unsettle(state: &mut Modal, transform: Transform) {
+    let (was, is) = (state.transform.touches(), transform.touches());
+    (0..3).for_each(|i| state.unsettled[i] |= was[i] || is[i]);
+    state.transform = transform;
+}
+
+/// The first motion after a change of rotation, scaling or mirror says where it goes in all axes that
+/// were touched, in G90: what a left-out axis or an increment starts from differs between controls.
+pub(crate) fn settle(words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    if state.unsettled == [false; 3] {
+        return Ok(());
+    }
+    let open = Letters::of_axes(state.unsettled);
+    if !words.has(open) {
+        return Ok(());
+    }
+    if state.distance == Distance::Absolute && words.letters.and(open) == open {
+        state.unsettled = [false; 3];
+        return Ok(());
+    }
+    let names = open.names();
+    let message =
+        "the first motion after a rotation, scaling or mirror was switched must be absolute and whole";
+    let label = format!("{names} were expected, in G90: controls differ in where they start otherwise");
+    Err(words
+        .refuse(codes::FRAME, message, words.span(AXIS_LETTERS), label)
+        .help(format!("write {names} in this block, in G90")))
+}
+
+fn refuse(words: &Words<'_, '_, '_>, span: Span, what: &str, label: &str) -> Refusal {
+    words.refuse(codes::FRAME, format!("{} {what}", words.text(span)), span, label)
+}
+
+fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
+    let letters = AXIS_LETTERS.or(ARC_LETTERS);
+    if words.has(letters) {
+        let message = format!("{} takes no words", words.text(span));
+        return Err(words
+            .refuse(codes::FRAME, message, words.span(letters), "whose are they?")
+            .help("write them in a block of their own"));
+    }
+    Ok(())
+}
+
+/// Words of X, Y, Z in mm; at least one.
+fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<[Option<f64>; 3]> {
+    if words.has(ARC_LETTERS) {
+        let message = format!("{} takes no {}", words.text(span), words.names(ARC_LETTERS));
+        return Err(words
+            .refuse(codes::FRAME, message, words.span(ARC_LETTERS), "X, Y and Z were expected")
+            .help("remove the word"));
+    }
+    if !words.has(LINEAR_LETTERS) {
+        return Err(refuse(words, span, "without X, Y or Z", "shifts what, by how much?")
+            .help("write the axes and their values, or remove the code"));
+    }
+    let inch = state.units == Units::Inch;
+    Ok(LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm())))
+}
+
+fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
+    if state.distance == Distance::Incremental {
+        return Err(
+            refuse(words, span, "under G91", "added or set? controls differ").help("write G90 before it")
+        );
+    }
+    Ok(())
+}
+
+/// G52: the words are the shift; LinuxCNC keeps it where it keeps G92's.
+fn local_shift(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    state: &mut Modal,
+) -> Outcome<()> {
+    absolute(words, span, state)?;
+    let shift = shift_words(words, span, state)?;
+    let one = env.dialect.frames.local_is_preset;
+    if !one && state.shifts.preset_mm != [0.0; 3] {
+        return Err(refuse(words, span, "after G92", "whether the two shifts add up depends on the control")
+            .help("use one of the two"));
+    }
+    let target = if one { &mut state.shifts.preset_mm } else { &mut state.shifts.local_mm };
+    for i in 0..3 {
+        target[i] = shift[i].unwrap_or(target[i]);
+    }
+    if one {
+        state.shifts.kept_mm = Some(state.shifts.preset_mm);
+    }
+    Ok(())
+}
+
+/// Program coordinate of an axis whose position must be known, mm; no transformation is in force.
+fn stands_at(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal, axis: usize) -> Outcome<f64> {
+    let frame = require_frame(env, words, state)?;
+    Ok(increment_base(words, state.axes.linear[axis], axis)? - frame.offset_mm()[axis])
+}
+
+/// G92: the frame moves so that the axes stand at the words.
+fn preset(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &mut Modal) -> Outcome<()> {
+    let wanted = shift_words(words, span, state)?;
+    let rules = &env.dialect.frames;
+    if !rules.local_is_preset && state.shifts.local_mm != [0.0; 3] {
+        return Err(refuse(words, span, "after G52", "whether the two shifts add up depends on the control")
+            .help("use one of the two"));
+    }
+    if !rules.local_is_preset && state.tool_length.applied_mm() != [0.0; 3] {
+        return Err(refuse(
+            words,
+            span,
+            "with a tool length in force",
+            "with or without the length? a parameter decides",
+        )
+        .help("write G49 before it, or use a work offset"));
+    }
+    let mut preset = state.shifts.preset_mm;
+    for i in 0..3 {
+        if let Some(value) = wanted[i] {
+            preset[i] += stands_at(env, words, state, i)? - value;
+        }
+    }
+    state.shifts.preset_mm = preset;
+    state.shifts.kept_mm = Some(preset);
+    Ok(())
+}
+
+/// G92.1: with words on Fanuc, where it also ends G52; without on LinuxCNC.
+fn cancel_preset(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    state: &mut Modal,
+) -> Outcome<()> {
+    if env.dialect.frames.local_is_preset {
+        no_words(words, span)?;
+        state.shifts.preset_mm = [0.0; 3];
+        state.shifts.kept_mm = Some([0.0; 3]);
+        return Ok(());
+    }
+    let shifted = state.shifts.preset_mm != [0.0; 3] || state.shifts.local_mm != [0.0; 3];
+    if !words.has(LINEAR_LETTERS) && shifted {
+        return Err(refuse(words, span, "without axes", "which axes lose their shift?")
+            .help("write X0 Y0 Z0 beside it"));
+    }
+    for i in 0..3 {
+        if words.has(Letters::of(&[LINEAR[i]])) {
+            state.shifts.preset_mm[i] = 0.0;
+            state.shifts.local_mm[i] = 0.0;
+        }
+    }
+    Ok(())
+}
+
+/// G10 L2 and L20; true where its words state where the axes stand.
+fn write_offset(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    state: &mut Modal,
+) -> Outcome<bool> {
+    let l = words.whole(b'L')?;
+    if !matches!(l, Some(2 | 20)) {
+        let at = if words.has(L) { words.span(L) } else { span };
+        return Err(words
+            .refuse(codes::FRAME, format!("{} that writes no work offset", words.text(span)), at, "L2 or L20 was expected")
+            .help("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block"));
+    }
+    if words.has(R) {
+        return Err(words
+            .refuse(codes::FRAME, "a work offset with a rotation", words.span(R), "turns the frame")
+            .help("rotate in the CAM, or align the workpiece, and remove R"));
+    }
+    let Some(p) = words.whole(b'P')? else {
+        return Err(
+            refuse(words, span, "without P", "which work offset?").help("write P1 for G54, P2 for G55")
+        );
+    };
+    let values = shift_words(words, span, state)?;
+    let rules = &env.dialect.frames;
+    let by_position = l == Some(20) && rules.l20 == OffsetL20::Position;
+    let name = match (l, p) {
+        (Some(20), _) if !by_position => numbered(p),
+        (_, 0) if rules.l20 == OffsetL20::Position => match active_name(env, state) {
+            Some(name) => name,
+            None => {
+                return Err(refuse(words, span, "without a work offset in force", "P0 is the one in force")
+                    .help("write P1 for G54, or G54 before it"));
+            }
+        },
+        (_, 0) => {
+            return Err(words
+                .refuse(
+                    codes::FRAME,
+                    "writes the external work offset",
+                    words.span(P),
+                    "shifts all work offsets",
+                )
+                .help("add it to the work offsets, which P1 to P6 write"));
+        }
+        (_, p) => match offset_of_number(env, p) {
+            Some(name) => name,
+            None => {
+                let message = format!("there is no work offset P{p}");
+                return Err(words
+                    .refuse(codes::FRAME, message, words.span(P), "P1 is G54, P2 is G55 and so on")
+                    .help("write the number of a work offset of this control"));
+            }
+        },
+    };
+    let old = offset(env, state, &name);
+    let active = active_name(env, state).as_deref() == Some(name.as_str());
+    let mut zero = [0.0; 3];
+    for i in 0..3 {
+        // Fanuc adds under G91; LinuxCNC never does.
+        let adds = state.distance == Distance::Incremental && rules.l20 == OffsetL20::Numbered;
+        zero[i] = match (values[i], old) {
+            (Some(value), _) if by_position => {
+                let tool = state.tool_length.applied_mm()[i];
+                increment_base(words, state.axes.linear[i], i)? - tool - state.shifts.preset_mm[i] - value
+            }
+            (Some(value), Some(old)) if adds => old[i] + value,
+            (Some(value), _) if !adds => value,
+            (None, Some(old)) => old[i],
+            _ => {
+                let message = format!("work offset {name} is written in part, and the rest is not given");
+                return Err(words
+                    .refuse(codes::WORK_OFFSET, message, span, "the axes left out keep what nobody said")
+                    .help(format!("write X, Y and Z here, or give it with `--work-offset {name}=X,Y,Z`")));
+            }
+        };
+    }
+    match state.written.iter_mut().find(|(known, _)| *known == name) {
+        Some(entry) => entry.1 = zero,
+        None => state.written.push((name, zero)),
+    }
+    if active {
+        // LinuxCNC takes it at once. Where that is not certain, no motion until the offset is chosen again.
+        state.work_offset.zero_mm = (rules.l20 == OffsetL20::Position).then_some(zero);
+        state.work_offset.rewritten = rules.l20 != OffsetL20::Position;
+    }
+    Ok(by_position)
+}
+
+/// The zero of a work offset: what the program wrote, else what was given.
+pub(crate) fn offset(env: &Environment<'_>, state: &Modal, name: &str) -> Option<[f64; 3]> {
+    let written = state.written.iter().find(|(known, _)| known == name).map(|(_, zero)| *zero);
+    written.or_else(|| env.setup.work_offset(name))
+}
+
+/// The name of the work offset in force.
+pub(crate) fn active_name(env: &Environment<'_>, state: &Modal) -> Option<String> {
+    let WorkOffset { code, number, .. } = state.work_offset;
+    match (number, env.dialect.code(code?).map(|entry| &entry.action)) {
+        (Some(number), _) => Some(numbered(number)),
+        (None, Some(Action::WorkOffset(name))) => Some(name.clone()),
+        _ => None,
+    }
+}
+
+/// G10's P: the work offset codes of the table in order, G54 being the first.
+fn offset_of_number(env: &Environment<'_>, p: u32) -> Option<String> {
+    let mut names = env.dialect.codes.iter().filter_map(|entry| match &entry.action {
+        Action::WorkOffset(name) => Some(name),
+        _ => None,
+    });
+    names.nth(usize::try_from(p).ok()?.checked_sub(1)?).cloned()
+}
+
+/// G68, G51, G51.1.
+fn transform(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    action: &Action,
+    state: &Modal,
+) -> Outcome<Transform> {
+    absolute(words, span, state)?;
+    let again = matches!((action, state.transform), (Action::MirrorOn, Transform::Mirror(_)));
+    if !state.transform.is_none() && !again {
+        let under = format!("under {}", state.transform.name());
+        return Err(refuse(words, span, &under, "in which order? controls and parameters differ")
+            .help("cancel the one before it, or do one of the two in the CAM"));
+    }
+    let inch = state.units == Units::Inch;
+    let unit_mm = state.units.mm();
+    let at = |letter: u8| words.coordinate(letter, inch).map(|value| value * unit_mm);
+    match action {
+        Action::RotationOn => {
+            let [u, v, n] = state.plane.axes();
+            let across = CENTRE_LETTERS.or(Letters::of(&[LINEAR[n]]));
+            if words.has(across) {
+                return Err(words
+                    .refuse(
+                        codes::FRAME,
+                        "a rotation out of the plane",
+                        words.span(across),
+                        "tilts the frame",
+                    )
+                    .help("select the plane with G17, G18 or G19; post tilted planes as plain axes"));
+            }
+            let (Some(first), Some(second)) = (at(LINEAR[u]), at(LINEAR[v])) else {
+                let names = Letters::of(&[LINEAR[u], LINEAR[v]]).names();
+                let message = format!("a rotation without {names}");
+                return Err(words
+                    .refuse(codes::FRAME, message, span, "about which point?")
+                    .help(format!("write {names} of the centre, and R")));
+            };
+            let Some(angle_deg) = words.coordinate(b'R', false) else {
+                return Err(words
+                    .refuse(codes::FRAME, "a rotation without R", span, "by a parameter's angle")
+                    .help("write the angle as R"));
+            };
+            Ok(Transform::Rotation { plane: state.plane, centre_mm: [first, second], angle_deg })
+        }
+        Action::ScalingOn => {
+            let (Some(x), Some(y), Some(z)) = (at(b'X'), at(b'Y'), at(b'Z')) else {
+                return Err(words
+                    .refuse(codes::FRAME, "a scaling without X, Y and Z", span, "about which point?")
+                    .help("write X, Y and Z of the centre"));
+            };
+            let factor = |letter: u8| {
+                let (number, _) = words.number(letter)?;
+                let step = if number.has_point { 1.0 } else { env.dialect.frames.scaling_step };
+                Some(number.decimal.to_f64() * step)
+            };
+            let factors = match (factor(b'P'), [b'I', b'J', b'K'].map(factor)) {
+                (Some(p), [None, None, None]) if p > 0.0 => [p; 3],
+                (None, [Some(i), Some(j), Some(k)]) if i * j * k != 0.0 => [i, j, k],
+                _ => {
+                    return Err(words
+                        .refuse(
+                            codes::FRAME,
+                            "a scaling without its factor",
+                            span,
+                            "P above zero, or I, J and K, were expected",
+                        )
+                        .help("write P2. to double; negative factors are mirrors: G51.1"));
+                }
+            };
+            Ok(Transform::Scaling { centre_mm: [x, y, z], factors })
+        }
+        _ => {
+            let about = shift_words(words, span, state)?;
+            let mut all = if let Transform::Mirror(all) = state.transform { all } else { [None; 3] };
+            for i in 0..3 {
+                if about[i].is_some() && all[i].is_some() {
+                    let message = format!("{} is mirrored already", LINEAR[i] as char);
+                    return Err(words
+                        .refuse(codes::FRAME, message, span, "twice, or anew? controls differ")
+                        .help("cancel the mirror with G50.1 before it"));
+                }
+                all[i] = about[i].or(all[i]);
+            }
+            Ok(Transform::Mirror(all))
+        }
+    }
+}
+
+/// G50.1: the axes named are no longer mirrored.
+fn mirror_off(words: &Words<'_, '_, '_>, span: Span, state: &mut Modal) -> Outcome<()> {
+    let Transform::Mirror(mut about) = state.transform else { return Ok(()) };
+    if !words.has(LINEAR_LETTERS) {
+        return Err(refuse(words, span, "without axes", "which axes are no longer mirrored?")
+            .help("write the mirrored axes beside it, as in G50.1 X0 Y0"));
+    }
+    for i in 0..3 {
+        if words.has(Letters::of(&[LINEAR[i]])) {
+            about[i] = None;
+        }
+    }
+    let rest = if about == [None; 3] { Transform::None } else { Transform::Mirror(about) };
+    unsettle(state, rest);
+    Ok(())
+}
