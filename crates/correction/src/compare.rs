@@ -155,11 +155,19 @@ fn project(curve: &Curve, place: &Vector, near: f64) -> f64 {
             let square = step.norm_squared();
             if square > 0.0 { (place - a).dot(&step) / square } else { 1.0 }
         }
-        Curve::Arc { axes: [u, v, _], centre, angle, sweep, .. } => {
+        Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
             let here = units::math::atan2(place[*v] - centre[1], place[*u] - centre[0]);
             let expected = angle + sweep * near;
             let turns = ((expected - here) / std::f64::consts::TAU).round();
-            (here + turns * std::f64::consts::TAU - angle) / sweep
+            let by_angle = (here + turns * std::f64::consts::TAU - angle) / sweep;
+            // A steep helix is known by its height rather than by its angle: each weighs by the way it makes.
+            let rise = normal[1] - normal[0];
+            if rise == 0.0 {
+                return by_angle;
+            }
+            let by_height = (place[*n] - normal[0]) / rise;
+            let around = 0.5 * (radius[0] + radius[1]) * sweep;
+            (by_angle * around * around + by_height * rise * rise) / (around * around + rise * rise)
         }
     }
 }

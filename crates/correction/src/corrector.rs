@@ -298,6 +298,12 @@ impl<'m> Corrector<'m> {
         words
     }
 
+    /// Where the output has brought the axes, axis commands in mm.
+    #[must_use]
+    pub const fn standing_mm(&self) -> [Option<f64>; 3] {
+        self.standing
+    }
+
     /// Where the axes stand, or the nominal place for an axis that is not known.
     pub(crate) fn standing_or(&self, nominal: &Vector) -> Vector {
         [0, 1, 2].map(|i| self.standing[i].unwrap_or(nominal[i])).into()
@@ -325,7 +331,9 @@ impl<'m> Corrector<'m> {
             };
             match feed.shape {
                 Shape::Line => self.follow_line(&mut follow, &part)?,
-                Shape::Arc(_) if block.frame.is_shift() => self.follow_arc(&mut follow, &part)?,
+                Shape::Arc(arc) if block.frame.similarity(arc.plane).is_some() => {
+                    self.follow_arc(&mut follow, &part)?;
+                }
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
         }

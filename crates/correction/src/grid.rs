@@ -76,7 +76,8 @@ impl Block {
     /// Length of the vector of half output steps, mm: the rounding that the path promise allows.
     pub fn rounding_mm(&self) -> f64 {
         let half = [0, 1, 2].map(|i| 0.5 * self.step_mm(i));
-        (half[0] * half[0] + half[1] * half[1] + half[2] * half[2]).sqrt()
+        // A scaled frame scales what a word is rounded by.
+        self.frame.largest_scale() * (half[0] * half[0] + half[1] * half[1] + half[2] * half[2]).sqrt()
     }
 
     /// Chooses the word of one axis and says where the axis then stands, in program mm.
