@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use machine_model::Vector;
+use toolpath::{Plane, Similarity};
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
@@ -32,6 +33,13 @@ impl Candidate {
             Centre::Radius(word) => word == AxisWord::Keep,
         }
     }
+}
+
+/// What the block's frame makes of the circle; `None` for what is no arc, or no circle in the program.
+fn in_plane(part: &Curve, block: &Block) -> Option<Similarity> {
+    let Curve::Arc { axes, .. } = *part else { return None };
+    let plane = [Plane::Xy, Plane::Zx, Plane::Yz].into_iter().find(|plane| plane.axes() == axes)?;
+    block.frame.similarity(plane)
 }
 
 impl<'m> Corrector<'m> {
@@ -69,6 +77,8 @@ impl<'m> Corrector<'m> {
         let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else {
             return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
         };
+        // A mirrored frame turns the other way in the program.
+        let clockwise = (sweep < 0.0) != in_plane(part, follow.block).is_some_and(|map| map.mirrored);
         let nominal_end = part.at(1.0);
         let wanted = self.solve(&follow.machine, nominal_end)?;
         let before = self.standing;
@@ -90,7 +100,7 @@ impl<'m> Corrector<'m> {
             let pair = Pair { wanted: part, commanded: &candidate.curve, in_step: follow.in_step };
             match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
                 Verdict::Within(bound) => {
-                    let kind = PieceKind::Arc { clockwise: sweep < 0.0, centre: candidate.words };
+                    let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
                     self.note_end(&follow.machine, nominal_end, wanted);
@@ -126,14 +136,21 @@ impl<'m> Corrector<'m> {
         } else {
             block.letters.contains(b'R') || !block.centre_words
         };
-        let step = block.step_mm(u).max(block.step_mm(v));
+        let scale = in_plane(part, block).map_or(1.0, |map| map.scale);
+        let step = scale * block.step_mm(u).max(block.step_mm(v));
         // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
         // words may bring more of their own.
-        let allowed =
-            (2.0 * step + (radius[1] - radius[0]).abs()).min(block.arc_radius_tolerance_mm.max(2.0 * step));
+        let allowed = (2.0 * step + (radius[1] - radius[0]).abs())
+            .min((scale * block.arc_radius_tolerance_mm).max(2.0 * step));
         let mut found = Vec::new();
         let mut push = |words: Centre, at: [f64; 2]| {
-            let curve = Curve::from_centre(from, to, axes, at, clockwise);
+            let mut curve = Curve::from_centre(from, to, axes, at, clockwise);
+            if let Curve::Arc { sweep: turned, .. } = &mut curve
+                && follow.alone
+            {
+                // The block's own P counts the whole turns before the last one.
+                *turned += ((sweep - *turned) / TAU).round() * TAU;
+            }
             let Curve::Arc { radius: [r0, r1], sweep: turned, .. } = curve else { return };
             // A centre that makes the short way the long way is another arc altogether.
             let radii_apart = (r1 - r0).abs();
@@ -154,7 +171,7 @@ impl<'m> Corrector<'m> {
         }
         let fitted = self.fit_centre(follow, part, from, to)?;
         if by_radius {
-            let own = (radius[0], follow.alone && block.letters.contains(b'R'));
+            let own = (radius[0], follow.alone && block.letters.contains(b'R'), scale);
             self.radius_candidates(block, axes, from, to, sweep, fitted, own, &mut push);
         }
         if block.centre_words {
@@ -212,7 +229,7 @@ impl<'m> Corrector<'m> {
         to: Vector,
         sweep: f64,
         fitted: [f64; 2],
-        (own_radius, may_keep): (f64, bool),
+        (own_radius, may_keep, scale): (f64, bool, f64),
         push: &mut impl FnMut(Centre, [f64; 2]),
     ) {
         // Near a half turn the centre runs away with the last digit of R, near a full one R says nothing.
@@ -235,12 +252,12 @@ impl<'m> Corrector<'m> {
             Some([0.5 * (from[u] + to[u]) - chord[1] * k, 0.5 * (from[v] + to[v]) + chord[0] * k])
         };
         let (ru, rv) = (from[u] - fitted[0], from[v] - fitted[1]);
-        let counts = block.to_counts(u, (ru * ru + rv * rv).sqrt());
+        let counts = block.to_counts(u, (ru * ru + rv * rv).sqrt() / scale);
         if may_keep && let Some(centre) = centre_of(own_radius) {
             push(Centre::Radius(AxisWord::Keep), centre);
         }
         for d in [0, 1, -1] {
-            if let Some(centre) = centre_of(block.from_counts(u, counts + d)) {
+            if let Some(centre) = centre_of(block.from_counts(u, counts + d) * scale) {
                 let signed = if major { -(counts + d) } else { counts + d };
                 push(Centre::Radius(AxisWord::Write(signed)), centre);
             }
