@@ -1,1 +1,220 @@
+//! Programs with flow to plain programs.
+//!
+//! A pre-pass: [`expand`] executes what is known before the program runs (variables, expressions,
+//! conditions, loops, jumps, subprograms) and writes every block that is reached, with its numbers, one after the
+//! other. What remains is a plain program for `nc-program`. A program without flow is returned as it is,
+//! borrowed.
+//!
+//! # What the flat program holds
+//!
+//! * Blocks that compute nothing: their bytes. A block reached again loses its N word, so that no number
+//!   repeats; so do all blocks of other files.
+//! * Blocks with computed words: the source line as a comment, then the block with numbers in place of
+//!   expressions. Lengths get a point and 6 decimals at most (Fanuc), 9 (LinuxCNC, which does not round);
+//!   codes and counts are whole.
+//! * Assignments, conditions, loops and calls: the line as a comment, where it is reached the first time. Each
+//!   pass of a called program opens with a comment such as `(O1000 CALL 2 OF 3)`.
+//!
+//! # What is refused
+//!
+//! What decides a motion and is known only on the machine: system variables, variables nobody set,
+//! comparisons that the control's rounding decides, labels and programs that are not there; loops and calls
+//! beyond [`Limits`]. See [`codes`].
+//!
+//! Common variables (`#100` and up) keep what an earlier program left in them: unset, they are unknown, not
+//! empty. A value that is unknown may be assigned and passed on; only its use in a word or a condition is
+//! refused, naming the variable it came from.
+
+mod call;
 pub mod codes;
+mod evaluate;
+mod expression;
+mod faults;
+mod o_word;
+mod output;
+mod program;
+mod run;
+mod statement;
+mod value;
+mod variables;
+
+use std::borrow::Cow;
+use std::io;
+use std::ops::Range;
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Dialect, Macros};
+use nc_syntax::{Block, Reader};
+
+use output::Segment;
+pub use variables::Preset;
+
+/// Where work ends that would not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Executions of blocks that were executed before, parts of long expressions counted.
+    pub steps: u64,
+    /// Bytes that the flat program may have beyond three times the source.
+    pub output_bytes: u64,
+    /// Calls inside one another. LinuxCNC and Fanuc allow 10.
+    pub depth: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { steps: 5_000_000, output_bytes: 64 << 20, depth: 10 }
+    }
+}
+
+/// What the program cannot say of itself.
+pub struct Environment<'e> {
+    /// Values of variables.
+    pub variables: &'e [Preset],
+    /// Reads a subprogram's file by its name, which holds no folder.
+    pub read_external: &'e dyn Fn(&str) -> io::Result<Vec<u8>>,
+    /// Where work ends that would not.
+    pub limits: Limits,
+}
+
+/// A program that could not be expanded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// Why.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Name and bytes of the file they speak of; `None`: the program itself.
+    pub file: Option<(String, Vec<u8>)>,
+}
+
+/// A plain program.
+#[derive(Clone, Debug)]
+pub struct Expanded<'a> {
+    text: Cow<'a, [u8]>,
+    /// Called files: name and bytes.
+    files: Vec<(String, Vec<u8>)>,
+    segments: Vec<Segment>,
+    warnings: Vec<Diagnostic>,
+}
+
+/// A place in a source file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// 0: the program itself; n: [`Expanded::file`] n.
+    pub file: usize,
+    /// Bytes of that file.
+    pub span: Range<u64>,
+}
+
+impl Expanded<'_> {
+    /// The plain program's bytes.
+    #[must_use]
+    pub fn text(&self) -> &[u8] {
+        &self.text
+    }
+
+    /// True where the program had flow; else its text is the source's.
+    #[must_use]
+    pub const fn changed(&self) -> bool {
+        matches!(self.text, Cow::Owned(_))
+    }
+
+    /// What the user should know; places are in the program itself.
+    #[must_use]
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Name and bytes of a called file, from 1.
+    #[must_use]
+    pub fn file(&self, index: usize) -> Option<(&str, &[u8])> {
+        self.files.get(index.checked_sub(1)?).map(|(name, text)| (name.as_str(), text.as_slice()))
+    }
+
+    /// Where bytes of the plain program come from: the same bytes where they were copied, else the block
+    /// they stand for.
+    #[must_use]
+    pub fn origin(&self, span: &Range<u64>) -> Origin {
+        if !self.changed() {
+            return Origin { file: 0, span: span.clone() };
+        }
+        let after = self.segments.partition_point(|segment| segment.flat <= span.start);
+        let Some(segment) = after.checked_sub(1).and_then(|at| self.segments.get(at)) else {
+            return Origin { file: 0, span: 0..0 };
+        };
+        let end = segment.source + segment.length;
+        let span = if segment.exact {
+            let shift = |at: u64| (segment.source + (at - segment.flat)).min(end);
+            shift(span.start)..shift(span.end.max(span.start))
+        } else {
+            segment.source..end
+        };
+        Origin { file: usize::from(segment.file), span }
+    }
+
+    /// The line of the source that a line of the plain program comes from, with its file.
+    ///
+    /// * `offset` – bytes of the plain program before the block
+    /// * `line` – the block's line in the plain program
+    #[must_use]
+    pub fn source_line(&self, offset: u64, line: u64) -> (usize, u64) {
+        let after = self.segments.partition_point(|segment| segment.flat <= offset);
+        match after.checked_sub(1).and_then(|at| self.segments.get(at)) {
+            Some(segment) if segment.exact => {
+                let below = line.saturating_sub(u64::from(segment.flat_line));
+                (usize::from(segment.file), u64::from(segment.line) + below)
+            }
+            Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
+            None => (0, line),
+        }
+    }
+
+    /// Puts the places of diagnostics about the plain program into the source files: by file, in order.
+    #[must_use]
+    pub fn settle(&self, diagnostics: Vec<Diagnostic>) -> Vec<(usize, Vec<Diagnostic>)> {
+        let mut settled: Vec<(usize, Vec<Diagnostic>)> = Vec::new();
+        for mut diagnostic in diagnostics {
+            let origin = diagnostic.span.as_ref().map(|span| self.origin(span));
+            let file = origin.as_ref().map_or(0, |origin| origin.file);
+            diagnostic.span = origin.map(|origin| origin.span);
+            match settled.last_mut().filter(|(last, _)| *last == file) {
+                Some((_, same)) => same.push(diagnostic),
+                None => settled.push((file, vec![diagnostic])),
+            }
+        }
+        settled
+    }
+}
+
+/// Expands a program.
+///
+/// # Errors
+/// What cannot be told before the program runs, with the way out ([`codes`]).
+pub fn expand<'a>(
+    text: &'a [u8],
+    dialect: &Dialect,
+    environment: &Environment<'_>,
+) -> Result<Expanded<'a>, Refusal> {
+    if !flows(text, dialect) {
+        return Ok(Expanded {
+            text: Cow::Borrowed(text),
+            files: Vec::new(),
+            segments: Vec::new(),
+            warnings: Vec::new(),
+        });
+    }
+    run::run(text, dialect, environment)
+}
+
+/// True where some block computes, jumps or calls.
+fn flows(text: &[u8], dialect: &Dialect) -> bool {
+    if dialect.flow.macros == Macros::None {
+        return false;
+    }
+    let mut reader = Reader::new(text, dialect);
+    let mut block = Block::default();
+    while reader.next(&mut block) {
+        if statement::needs_work(&block, dialect) {
+            return true;
+        }
+    }
+    false
+}

@@ -1,0 +1,387 @@
+//! Calls: M98, G65, O-words.
+
+use std::borrow::Cow;
+use std::io::ErrorKind;
+use std::rc::Rc;
+
+use nc_syntax::dialect::{Macros, PointFree};
+
+use crate::codes;
+use crate::faults::{self, Stop, say, whole};
+use crate::o_word::{Label, OStatement, OWord};
+use crate::program::Source;
+use crate::run::{CallKind, Place, Run};
+use crate::statement::{Call, Control, Kind, Statement};
+use crate::value::{NameId, Value};
+
+impl<'a> Run<'a, '_> {
+    /// M98 and G65.
+    pub(crate) fn call(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        call: &Call,
+        place: Place,
+    ) -> Result<(), Stop> {
+        let mut program = whole("the number of a program", self.known(&call.program)?)?;
+        let mut passes = match &call.repeats {
+            Some(repeats) => whole("the count of a call", self.known(repeats)?)?,
+            None => 1,
+        };
+        let packed = call.repeats.is_none() && call.arguments.is_none() && program > 9999;
+        if packed && self.dialect.flow.packed_repeats {
+            if u32::try_from(program).is_ok_and(|number| source.programs.contains_key(&number)) {
+                return Err(say(
+                    codes::COMBINATION,
+                    format!("P{program} is a program of this file, and {} times O{:04}", program / 10_000, program % 10_000),
+                    "controls differ",
+                    "write the count as an L word",
+                ));
+            }
+            (passes, program) = (program / 10_000, program % 10_000);
+        }
+        let arguments = match &call.arguments {
+            None => None,
+            Some(words) => Some(self.arguments(words)?),
+        };
+        if arguments.is_some() && passes > 1 {
+            return Err(say(
+                codes::ARGUMENT,
+                format!("G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told"),
+                "repeated with its own variables",
+                "write the call as often as it shall run",
+            ));
+        }
+        if passes == 0 {
+            return Ok(());
+        }
+        let number = u32::try_from(program).unwrap_or(u32::MAX);
+        let start = self.find_program(source, place.file, number)?;
+        self.enter(start, CallKind::Number(number), passes, arguments.as_deref(), statement.section, place)
+    }
+
+    /// Arguments of G65 as local variables.
+    ///
+    /// I, J and K may come more than once: I1 J1 K1 I2 … are #4 #5 #6 #7 …; where two arguments name one variable,
+    /// the later counts.
+    fn arguments(&self, words: &[(u8, crate::expression::Expression, bool)]) -> Result<Vec<(u32, Value)>, Stop> {
+        let mut arguments = Vec::with_capacity(words.len());
+        let (mut group, mut last) = (0_u32, None);
+        for (letter, value, point) in words {
+            let variable = match letter {
+                b'I' | b'J' | b'K' => {
+                    let order = u32::from(letter - b'I');
+                    if last.is_some_and(|last| order <= last) {
+                        group += 1;
+                    }
+                    last = Some(order);
+                    4 + 3 * group + order
+                }
+                _ => match argument_variable(*letter) {
+                    Some(variable) => variable,
+                    None => {
+                        return Err(say(
+                            codes::ARGUMENT,
+                            format!("{} is no argument of a macro", *letter as char),
+                            "G, L, N, O and P are the call's own",
+                            "pass the value with another letter",
+                        ));
+                    }
+                },
+            };
+            if variable > 33 {
+                return Err(say(codes::ARGUMENT, "more than ten groups of I, J and K", "too many", "pass fewer arguments"));
+            }
+            let mut value = self.evaluate(value)?;
+            if let (false, Value::Number(number)) = (*point, value) {
+                value = Value::Number(self.scaled(*letter, number)?);
+            }
+            arguments.push((variable, value));
+        }
+        Ok(arguments)
+    }
+
+    /// An argument without a point counts what its letter counts in a motion block.
+    fn scaled(&self, letter: u8, number: f64) -> Result<f64, Stop> {
+        if number == 0.0 || self.dialect.numbers.point_free == PointFree::Unit {
+            return Ok(number);
+        }
+        match letter {
+            b'D' | b'H' | b'M' | b'S' | b'T' => Ok(number),
+            b'B' | b'E' | b'F' => Err(say(
+                codes::ARGUMENT,
+                format!("argument {}{number} has no point: parameters of the control say what it counts", letter as char),
+                "0.001, 0.01 or 1?",
+                format!("write `{}{number}.`", letter as char),
+            )),
+            _ => {
+                let numbers = &self.dialect.numbers;
+                let decimals =
+                    if self.inch() { numbers.least_increment_decimals_inch } else { numbers.least_increment_decimals_mm };
+                Ok(number / f64::from(10_u32.pow(u32::from(decimals.min(9)))))
+            }
+        }
+    }
+
+    /// Where a program with an O number starts.
+    fn find_program(&mut self, source: &Source<'a>, file: usize, number: u32) -> Result<Place, Stop> {
+        let behind = |file: usize, statement: u32| Place { file, statement: statement + 1 };
+        if let Some(statement) = source.programs.get(&number) {
+            return Ok(behind(file, *statement));
+        }
+        for (file, source) in self.sources.iter().enumerate() {
+            if let Some(statement) = source.programs.get(&number) {
+                return Ok(behind(file, *statement));
+            }
+        }
+        let names = if self.dialect.flow.macros == Macros::LinuxCnc {
+            vec![format!("{number}.ngc")]
+        } else {
+            let mut names = Vec::new();
+            for stem in [format!("O{number:04}"), format!("o{number:04}"), format!("{number:04}"), format!("{number}")] {
+                for ending in ["", ".nc", ".NC", ".tap", ".txt", ".cnc"] {
+                    names.push(format!("{stem}{ending}"));
+                }
+            }
+            names
+        };
+        let file = self.external(&names, &format!("O{number:04}"))?;
+        let source = Rc::clone(&self.sources[file]);
+        if let Some(statement) = source.programs.get(&number) {
+            return Ok(behind(file, *statement));
+        }
+        if source.programs.is_empty() {
+            let first = source.statements.iter().position(|statement| !matches!(statement.kind, Kind::Percent));
+            return Ok(Place { file, statement: first.unwrap_or(0) as u32 });
+        }
+        Err(say(
+            codes::PROGRAM_MISSING,
+            format!("file {} holds no O{number:04}", source.name),
+            "called here",
+            "correct the O number in that file",
+        ))
+    }
+
+    /// Reads a called file; each name is asked for once.
+    fn external(&mut self, names: &[String], what: &str) -> Result<usize, Stop> {
+        for name in names {
+            match self.externals.get(name) {
+                Some(Some(file)) => return Ok(*file),
+                Some(None) => continue,
+                None => {}
+            }
+            match (self.environment.read_external)(name) {
+                Err(error) if error.kind() == ErrorKind::NotFound => {
+                    self.externals.insert(name.clone(), None);
+                }
+                Err(error) if error.kind() == ErrorKind::InvalidInput => return Err(leaves(name)),
+                Err(error) => {
+                    return Err(say(
+                        codes::UNREADABLE_FILE,
+                        format!("subprogram file {name} cannot be read: {error}"),
+                        "called here",
+                        "check the file in the folder given with `--include`",
+                    ));
+                }
+                Ok(text) => {
+                    if let Err(diagnostic) = nc_syntax::looks_like_program(&text) {
+                        return Err(say(
+                            codes::UNREADABLE_FILE,
+                            format!("subprogram file {name}: {}", diagnostic.message),
+                            "called here",
+                            diagnostic.help.unwrap_or_default(),
+                        ));
+                    }
+                    let read = Source::read(name.clone(), Cow::Owned(text), self.dialect, &mut self.names);
+                    let source =
+                        read.map_err(|(diagnostic, text)| Stop::InFile(diagnostic, name.clone(), text))?;
+                    let file = self.add(source);
+                    self.externals.insert(name.clone(), Some(file));
+                    return Ok(file);
+                }
+            }
+        }
+        let looked = match names {
+            [one] => one.clone(),
+            [first, .., last] => format!("{first} … {last}"),
+            [] => String::new(),
+        };
+        Err(say(
+            codes::PROGRAM_MISSING,
+            format!("subprogram {what} is not in this file, and no file {looked} was found"),
+            "called here",
+            "`--include DIR` with the folder that holds it",
+        ))
+    }
+
+    /// An O-word.
+    pub(crate) fn o_word(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        o: &OStatement,
+        place: Place,
+    ) -> Result<(), Stop> {
+        match &o.word {
+            OWord::Sub => self.at.statement = o.next + 1,
+            OWord::EndSub(value) | OWord::Return(value) => {
+                let value = match value {
+                    Some(value) => Some(self.evaluate(value)?),
+                    None => None,
+                };
+                if !matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
+                    return Err(faults::no_call("`return` outside a subroutine"));
+                }
+                self.leave(true);
+                let returned = value.is_some();
+                for (name, value) in [
+                    (&b"_value"[..], value.unwrap_or(Value::Number(0.0))),
+                    (b"_value_returned", Value::Number(f64::from(u8::from(returned)))),
+                ] {
+                    let id = self.names.id(name);
+                    self.store.learn(&self.names);
+                    self.store.set_named(id, value);
+                }
+            }
+            OWord::Call(arguments) => {
+                let mut values = Vec::with_capacity(arguments.len());
+                for (number, argument) in (1..).zip(arguments) {
+                    values.push((number, self.evaluate(argument)?));
+                }
+                let label = match &o.label {
+                    Label::Known(label) => *label,
+                    Label::Computed(number) => {
+                        let number = whole("the label of a call", self.known(number)?)?;
+                        self.names.id(number.to_string().as_bytes())
+                    }
+                };
+                let start = self.find_subroutine(source, place.file, label)?;
+                self.enter(start, CallKind::Name(label), 1, Some(&values), statement.section, place)?;
+            }
+            OWord::If(condition) => {
+                if !self.holds(condition)? {
+                    self.next_branch(source, o.next)?;
+                }
+            }
+            OWord::ElseIf(_) | OWord::Else => self.at.statement = o.end + 1,
+            OWord::EndIf | OWord::Do => {}
+            OWord::While(condition) => match (o.foot, self.holds(condition)?) {
+                (true, true) | (false, false) => self.at.statement = o.next + 1,
+                (true, false) | (false, true) => {}
+            },
+            OWord::EndWhile => self.at.statement = o.next,
+            OWord::Repeat(count) => {
+                let count = self.known(count)?.round();
+                if count >= 1.0 {
+                    self.repeats.push((place.statement, count.min(9e15) as u64));
+                } else {
+                    self.at.statement = o.next + 1;
+                }
+            }
+            OWord::EndRepeat => {
+                if let Some((_, left)) = self.repeats.last_mut().filter(|(head, _)| *head == o.next) {
+                    *left -= 1;
+                    if *left > 0 {
+                        self.at.statement = o.next + 1;
+                    } else {
+                        self.repeats.pop();
+                    }
+                }
+            }
+            OWord::Break | OWord::Continue => {
+                let head = match source.statements.get(o.end as usize).map(|end| &end.kind) {
+                    Some(Kind::Complex(complex)) => match &complex.control {
+                        Some(Control::O(end)) => end.next,
+                        _ => 0,
+                    },
+                    _ => 0,
+                };
+                let stays = matches!(o.word, OWord::Continue);
+                self.repeats.retain(|(open, _)| *open < head || (stays && *open == head));
+                self.at.statement = if stays { o.end } else { o.end + 1 };
+            }
+        }
+        Ok(())
+    }
+
+    /// The first branch whose condition holds.
+    fn next_branch(&mut self, source: &Source<'a>, mut branch: u32) -> Result<(), Stop> {
+        loop {
+            let o = match source.statements.get(branch as usize).map(|statement| &statement.kind) {
+                Some(Kind::Complex(complex)) => match &complex.control {
+                    Some(Control::O(o)) => o,
+                    _ => break,
+                },
+                _ => break,
+            };
+            match &o.word {
+                OWord::ElseIf(condition) if !self.holds(condition)? => {
+                    self.spend(1)?;
+                    branch = o.next;
+                }
+                _ => break,
+            }
+        }
+        self.at.statement = branch + 1;
+        Ok(())
+    }
+
+    fn find_subroutine(&mut self, source: &Source<'a>, file: usize, label: NameId) -> Result<Place, Stop> {
+        if let Some(statement) = source.subroutines.get(&label) {
+            return Ok(Place { file, statement: statement + 1 });
+        }
+        for (file, source) in self.sources.iter().enumerate() {
+            if let Some(statement) = source.subroutines.get(&label) {
+                return Ok(Place { file, statement: statement + 1 });
+            }
+        }
+        let name = self.names.name(label).to_owned();
+        if name.contains(['/', '\\', ':', '\0']) || name.starts_with('.') {
+            return Err(leaves(&name));
+        }
+        let file = self.external(&[format!("{name}.ngc")], &format!("o<{name}>"))?;
+        match self.sources[file].subroutines.get(&label) {
+            Some(statement) => Ok(Place { file, statement: statement + 1 }),
+            None => Err(say(
+                codes::PROGRAM_MISSING,
+                format!("file {name}.ngc holds no o<{name}> sub"),
+                "called here",
+                "the subroutine must have the name of its file",
+            )),
+        }
+    }
+}
+
+fn leaves(name: &str) -> Stop {
+    say(
+        codes::PATH,
+        format!("subprogram {name} leads out of the folder it is looked for in"),
+        "called here",
+        "name the file only, and give its folder with `--include DIR`",
+    )
+}
+
+/// The local variable of an argument's letter.
+const fn argument_variable(letter: u8) -> Option<u32> {
+    Some(match letter {
+        b'A' => 1,
+        b'B' => 2,
+        b'C' => 3,
+        b'D' => 7,
+        b'E' => 8,
+        b'F' => 9,
+        b'H' => 11,
+        b'M' => 13,
+        b'Q' => 17,
+        b'R' => 18,
+        b'S' => 19,
+        b'T' => 20,
+        b'U' => 21,
+        b'V' => 22,
+        b'W' => 23,
+        b'X' => 24,
+        b'Y' => 25,
+        b'Z' => 26,
+        _ => return None,
+    })
+}

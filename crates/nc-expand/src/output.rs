@@ -1,0 +1,177 @@
+//! The flat text, and where each byte of it comes from.
+
+use nc_syntax::Dialect;
+use nc_syntax::dialect::{Paren, Semicolon};
+use units::decimal::{self, Spelling};
+
+/// A stretch of the flat text.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment {
+    /// Where it starts.
+    pub(crate) flat: u64,
+    /// Where it comes from.
+    pub(crate) source: u64,
+    /// Bytes of the source.
+    pub(crate) length: u64,
+    pub(crate) line: u32,
+    /// Line of the flat text, from 1.
+    pub(crate) flat_line: u32,
+    pub(crate) file: u16,
+    /// Byte for byte the same.
+    pub(crate) exact: bool,
+}
+
+/// Where a stretch comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct From {
+    pub(crate) file: u16,
+    pub(crate) offset: u64,
+    pub(crate) length: u64,
+    pub(crate) line: u32,
+}
+
+/// Writes the flat text.
+#[derive(Debug)]
+pub(crate) struct Output {
+    pub(crate) text: Vec<u8>,
+    pub(crate) segments: Vec<Segment>,
+    line_ending: &'static [u8],
+    open: &'static [u8],
+    close: &'static [u8],
+    longest: usize,
+    /// Line ends written.
+    lines: u32,
+}
+
+impl Output {
+    pub(crate) fn new(dialect: &Dialect, source: &[u8]) -> Self {
+        let (open, close): (&[u8], &[u8]) = if matches!(dialect.paren, Paren::Comment { .. }) {
+            (b"(", b")")
+        } else if dialect.semicolon == Semicolon::Comment {
+            (b"; ", b"")
+        } else {
+            (b"", b"")
+        };
+        Self {
+            text: Vec::with_capacity(source.len() + 256),
+            segments: Vec::new(),
+            line_ending: line_ending(source),
+            open,
+            close,
+            longest: dialect.output.max_block_bytes as usize,
+            lines: 0,
+        }
+    }
+
+    fn segment(&mut self, from: From, exact: bool) {
+        let flat = self.text.len() as u64;
+        if let Some(last) = self.segments.last_mut() {
+            let follows = last.source + (flat - last.flat) == from.offset;
+            if exact && last.exact && last.file == from.file && follows && last.source + last.length == from.offset {
+                last.length += from.length;
+                return;
+            }
+        }
+        let From { file, offset, length, line } = from;
+        let flat_line = self.lines + 1;
+        self.segments.push(Segment { flat, source: offset, length, line, flat_line, file, exact });
+    }
+
+    /// Bytes as they are.
+    pub(crate) fn copy(&mut self, bytes: &[u8], from: From) {
+        self.segment(from, true);
+        self.push(bytes);
+    }
+
+    /// Bytes that stand for a stretch of the source.
+    pub(crate) fn write(&mut self, bytes: &[u8], from: From) {
+        self.segment(from, false);
+        self.push(bytes);
+    }
+
+    /// Starts a new line unless one was just started.
+    pub(crate) fn fresh_line(&mut self) {
+        if self.text.last().is_some_and(|byte| !matches!(byte, b'\n' | b'\r')) {
+            self.push(self.line_ending);
+        }
+    }
+
+    fn push(&mut self, bytes: &[u8]) {
+        self.lines = self.lines.saturating_add(line_ends(bytes));
+        self.text.extend_from_slice(bytes);
+    }
+
+    /// A comment on a line of its own. Nothing where the dialect has no comments.
+    ///
+    /// Marks that would end it, or start something in some control, are replaced.
+    pub(crate) fn comment(&mut self, bytes: &[u8], from: From) {
+        if self.open.is_empty() {
+            return;
+        }
+        let start = bytes.iter().position(|byte| *byte > b' ').unwrap_or(bytes.len());
+        let bytes = bytes[start..].trim_ascii_end();
+        if bytes.is_empty() {
+            return;
+        }
+        self.fresh_line();
+        self.segment(from, false);
+        self.text.extend_from_slice(self.open);
+        let room = if self.longest == 0 { usize::MAX } else { self.longest - self.open.len() - self.close.len() };
+        self.text.extend(bytes.iter().take(room).map(|byte| match byte {
+            b'(' | b'{' => b'[',
+            b')' | b'}' => b']',
+            b'%' | b':' | b';' => b'-',
+            byte if *byte < b' ' || *byte == 0x7F => b' ',
+            byte => *byte,
+        }));
+        self.text.extend_from_slice(self.close);
+        self.push(self.line_ending);
+    }
+}
+
+/// Line ends in whole blocks: LF, CR, CRLF, CR CR LF.
+fn line_ends(bytes: &[u8]) -> u32 {
+    let mut count = 0;
+    for (at, byte) in bytes.iter().enumerate() {
+        let alone = !matches!(bytes.get(at + 1), Some(b'\n' | b'\r'));
+        count += u32::from(*byte == b'\n' || (*byte == b'\r' && alone));
+    }
+    count
+}
+
+/// The line ending a text uses, by its first; `\n` where it has none.
+fn line_ending(text: &[u8]) -> &'static [u8] {
+    match text.iter().position(|byte| matches!(byte, b'\n' | b'\r')).map_or(&[][..], |at| &text[at..]) {
+        [b'\r', b'\r', b'\n', ..] => b"\r\r\n",
+        [b'\r', b'\n', ..] => b"\r\n",
+        [b'\r', ..] => b"\r",
+        _ => b"\n",
+    }
+}
+
+/// How the number of a word is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Style {
+    /// A whole number without a point.
+    Whole,
+    /// With a point and this many decimals at most.
+    Decimals(u8),
+}
+
+/// Writes a letter with its number; `None` where the value has no such form.
+pub(crate) fn word(out: &mut Vec<u8>, letter: u8, value: f64, style: Style) -> Option<()> {
+    out.push(letter);
+    match style {
+        Style::Whole => {
+            let counts = decimal::counts(value, 1.0)?;
+            decimal::write(out, counts, 0, Spelling { trailing_point: false, ..Spelling::FIXED });
+        }
+        Style::Decimals(decimals) => {
+            let steps = f64::from(10_u32.pow(u32::from(decimals.min(9))));
+            // 15 digits are what a reader of programs takes.
+            let counts = decimal::counts(value, steps).filter(|counts| counts.abs() < 1_000_000_000_000_000)?;
+            decimal::write(out, counts, decimals, Spelling { trailing_zeros: false, ..Spelling::FIXED });
+        }
+    }
+    Some(())
+}

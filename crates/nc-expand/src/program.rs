@@ -1,0 +1,310 @@
+//! A file as statements, with what its labels and ends belong to.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Dialect, Macros};
+use nc_syntax::{Block, ItemKind, Reader};
+
+use crate::codes;
+use crate::o_word::{Label, OStatement, OWord};
+use crate::statement::{Compiler, Control, Flags, Kind, Statement};
+use crate::value::{NameId, Names};
+
+/// A file.
+#[derive(Clone, Debug)]
+pub(crate) struct Source<'a> {
+    /// Its name, empty for the main program.
+    pub(crate) name: String,
+    pub(crate) text: Cow<'a, [u8]>,
+    pub(crate) statements: Vec<Statement>,
+    /// (section, N number, statement), sorted.
+    labels: Vec<(u32, u64, u32)>,
+    /// O-word subroutines by name.
+    pub(crate) subroutines: BTreeMap<NameId, u32>,
+    /// O-number programs.
+    pub(crate) programs: BTreeMap<u32, u32>,
+}
+
+/// What a label leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    Statement(u32),
+    Missing,
+    Twice,
+}
+
+impl<'a> Source<'a> {
+    /// Reads a file.
+    pub(crate) fn read(
+        name: String,
+        text: Cow<'a, [u8]>,
+        dialect: &Dialect,
+        names: &mut Names,
+    ) -> Result<Self, (Box<Diagnostic>, Vec<u8>)> {
+        let mut statements = Vec::new();
+        let mut labels = Vec::new();
+        let mut programs = BTreeMap::new();
+        let mut section = 0;
+        {
+            let mut compiler = Compiler { dialect, names };
+            let mut reader = Reader::new(&text, dialect);
+            let mut block = Block::default();
+            let mut percents = 0;
+            while reader.next(&mut block) {
+                let at = u32::try_from(statements.len()).unwrap_or(u32::MAX);
+                let (mut kind, flags) = compiler.kind(&block);
+                if dialect.flow.macros == Macros::LinuxCnc && aborts(&block) {
+                    kind = Kind::Broken(Box::new(
+                        Diagnostic::error(codes::ALARM, "the program stops itself here")
+                            .at(block.file_span(crate::statement::whole(&block)), "reached with the values given")
+                            .help("give other values with `--set`, or remove the line"),
+                    ));
+                }
+                match kind {
+                    Kind::Percent => percents += 1,
+                    Kind::Program(number) => {
+                        section += 1;
+                        programs.entry(number).or_insert(at);
+                    }
+                    _ => {}
+                }
+                if flags.number.is_some()
+                    && dialect.flow.macros == Macros::Fanuc
+                    && let Some(number) = block.word(b'N').and_then(|word| word.number()?.integer())
+                {
+                    labels.push((section, u64::try_from(number).unwrap_or(u64::MAX), at));
+                }
+                statements.push(Statement {
+                    offset: block.offset,
+                    length: u32::try_from(block.bytes.len()).unwrap_or(u32::MAX),
+                    line: u32::try_from(block.line).unwrap_or(u32::MAX),
+                    section,
+                    flags,
+                    kind,
+                });
+                // Behind the second `%` nothing is executed.
+                if percents > 1 && !block.items.iter().any(|item| item.kind == ItemKind::Percent) {
+                    continue;
+                }
+            }
+        }
+        labels.sort_unstable();
+        let mut source = Self { name, text, statements, labels, subroutines: BTreeMap::new(), programs };
+        match source.link(names) {
+            Ok(()) => Ok(source),
+            Err(diagnostic) => Err((diagnostic, source.text.into_owned())),
+        }
+    }
+
+    /// The statement with an N number.
+    pub(crate) fn label(&self, section: u32, number: u64) -> Found {
+        let from = self.labels.partition_point(|(s, n, _)| (*s, *n) < (section, number));
+        let same = |at: usize| self.labels.get(at).filter(|(s, n, _)| (*s, *n) == (section, number));
+        match (same(from), same(from + 1)) {
+            (None, _) => Found::Missing,
+            (Some(_), Some(_)) => Found::Twice,
+            (Some((_, _, statement)), None) => Found::Statement(*statement),
+        }
+    }
+
+    /// Bytes of the file of a statement.
+    pub(crate) fn bytes(&self, statement: &Statement) -> &[u8] {
+        let start = usize::try_from(statement.offset).unwrap_or(usize::MAX).min(self.text.len());
+        let end = start.saturating_add(statement.length as usize).min(self.text.len());
+        &self.text[start..end]
+    }
+
+    /// The statement's bytes of the file, without its end.
+    pub(crate) fn span(&self, statement: &Statement) -> std::ops::Range<u64> {
+        let trimmed = self.bytes(statement).trim_ascii_end().len() as u64;
+        statement.offset..statement.offset + trimmed
+    }
+
+    /// Finds the end of every loop, branch and subroutine.
+    fn link(&mut self, names: &Names) -> Result<(), Box<Diagnostic>> {
+        let mut open: Vec<Open> = Vec::new();
+        let mut loops: Vec<(u32, u32)> = Vec::new();
+        let mut section = 0;
+        for at in 0..self.statements.len() {
+            let index = at as u32;
+            let statement = &self.statements[at];
+            if statement.section != section {
+                section = statement.section;
+                if let Some((start, _)) = loops.pop() {
+                    return Err(self.unmatched(start, "this loop has no END in its program"));
+                }
+            }
+            let Kind::Complex(complex) = &statement.kind else { continue };
+            match &complex.control {
+                Some(Control::While { number, .. }) => loops.push((index, *number)),
+                Some(Control::EndWhile { number, .. }) => {
+                    let Some((start, _)) = loops.pop().filter(|(_, n)| n == number) else {
+                        return Err(self.unmatched(index, "this END closes no loop"));
+                    };
+                    if let Some(Control::While { end, .. }) = control(&mut self.statements[start as usize]) {
+                        *end = index;
+                    }
+                    if let Some(Control::EndWhile { start: back, .. }) = control(&mut self.statements[at]) {
+                        *back = start;
+                    }
+                }
+                Some(Control::O(o)) => {
+                    let o = o.clone();
+                    self.link_o(index, &o, &mut open, names)?;
+                }
+                _ => {}
+            }
+        }
+        if let Some((start, _)) = loops.pop() {
+            return Err(self.unmatched(start, "this loop has no END in its program"));
+        }
+        match open.pop() {
+            None => Ok(()),
+            Some(left) => Err(self.unmatched(left.head, "this O-word has no end in its file")),
+        }
+    }
+
+    fn link_o(
+        &mut self,
+        index: u32,
+        o: &OStatement,
+        open: &mut Vec<Open>,
+        names: &Names,
+    ) -> Result<(), Box<Diagnostic>> {
+        let Label::Known(label) = o.label else { return Ok(()) };
+        let matches = |open: &[Open], kind: Construct| {
+            open.last().is_some_and(|top| top.label == label && top.kind == kind)
+        };
+        match o.word {
+            OWord::Call(_) | OWord::Return(_) => {}
+            OWord::Sub => {
+                if self.subroutines.insert(label, index).is_some() {
+                    let message = format!("subroutine {} is defined twice", names.name(label));
+                    return Err(self.unmatched(index, &message));
+                }
+                open.push(Open::new(label, Construct::Sub, index));
+            }
+            OWord::If(_) => open.push(Open::new(label, Construct::If, index)),
+            OWord::Repeat(_) => open.push(Open::new(label, Construct::Repeat, index)),
+            OWord::Do => open.push(Open::new(label, Construct::Do, index)),
+            OWord::While(_) if !matches(open, Construct::Do) => {
+                open.push(Open::new(label, Construct::While, index));
+            }
+            OWord::ElseIf(_) | OWord::Else => {
+                if !matches(open, Construct::If) {
+                    return Err(self.unmatched(index, "this branch belongs to no `if` that is open here"));
+                }
+                if let Some(top) = open.last_mut() {
+                    let before = std::mem::replace(&mut top.last, index);
+                    top.parts.push(index);
+                    self.set(before, |o| o.next = index);
+                }
+            }
+            OWord::Break | OWord::Continue => {
+                let Some(around) = open.iter_mut().rev().find(|o| o.label == label && o.kind.is_loop()) else {
+                    return Err(self.unmatched(index, "this belongs to no loop that is open here"));
+                };
+                around.parts.push(index);
+            }
+            OWord::While(_) | OWord::EndSub(_) | OWord::EndIf | OWord::EndWhile | OWord::EndRepeat => {
+                let kind = match o.word {
+                    OWord::While(_) => Construct::Do,
+                    OWord::EndSub(_) => Construct::Sub,
+                    OWord::EndIf => Construct::If,
+                    OWord::EndWhile => Construct::While,
+                    _ => Construct::Repeat,
+                };
+                if !matches(open, kind) {
+                    return Err(self.unmatched(index, "this closes nothing that is open here"));
+                }
+                if let Some(top) = open.pop() {
+                    self.set(top.last, |o| o.next = index);
+                    for part in top.parts.iter().chain([&top.head]) {
+                        self.set(*part, |o| o.end = index);
+                    }
+                    self.set(index, |o| {
+                        o.next = top.head;
+                        o.foot = kind == Construct::Do;
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, at: u32, change: impl FnOnce(&mut OStatement)) {
+        if let Some(Control::O(o)) = self.statements.get_mut(at as usize).and_then(control) {
+            change(o);
+        }
+    }
+
+    fn unmatched(&self, at: u32, message: &str) -> Box<Diagnostic> {
+        let span = self.statements.get(at as usize).map_or(0..0, |statement| self.span(statement));
+        Box::new(
+            Diagnostic::error(codes::STRUCTURE, message)
+                .at(span, "without its partner")
+                .help("loops, branches and subroutines end where they begin: in the same file, inside one another"),
+        )
+    }
+}
+
+fn control(statement: &mut Statement) -> Option<&mut Control> {
+    if let Kind::Complex(complex) = &mut statement.kind { complex.control.as_mut() } else { None }
+}
+
+/// LinuxCNC: `(ABORT, text)` ends the program with an error.
+fn aborts(block: &Block<'_>) -> bool {
+    block.items.iter().any(|item| {
+        item.kind == ItemKind::Comment && {
+            let text = block.text(item.span);
+            let start: Vec<u8> = text[1..]
+                .iter()
+                .filter(|byte| !byte.is_ascii_whitespace())
+                .take(6)
+                .map(u8::to_ascii_lowercase)
+                .collect();
+            start == b"abort,"
+        }
+    })
+}
+
+/// What is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Construct {
+    Sub,
+    If,
+    While,
+    Do,
+    Repeat,
+}
+
+impl Construct {
+    const fn is_loop(self) -> bool {
+        matches!(self, Self::While | Self::Do | Self::Repeat)
+    }
+}
+
+struct Open {
+    label: NameId,
+    kind: Construct,
+    head: u32,
+    /// The last branch.
+    last: u32,
+    /// Branches, breaks, continues.
+    parts: Vec<u32>,
+}
+
+impl Open {
+    const fn new(label: NameId, kind: Construct, head: u32) -> Self {
+        Self { label, kind, head, last: head, parts: Vec::new() }
+    }
+}
+
+/// Facts of a block that is not there.
+impl Default for Statement {
+    fn default() -> Self {
+        Self { offset: 0, length: 0, line: 0, section: 0, flags: Flags::default(), kind: Kind::Copy }
+    }
+}

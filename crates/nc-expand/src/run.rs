@@ -1,0 +1,688 @@
+//! Executes a program block by block and writes what is reached.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use nc_syntax::dialect::{Action, Dialect, GCode, Macros};
+
+use crate::evaluate::{Rules, Variables, number};
+use crate::expression::Expression;
+use crate::faults::{self, Stop};
+use crate::output::{self, From, Output, Style};
+use crate::program::{Found, Source};
+use crate::statement::{ComputedWord, Complex, Control, Kind, Statement};
+use crate::value::{NameId, Names, Value, Variable};
+use crate::variables::{Saved, Store};
+use crate::{Environment, Expanded, Refusal};
+
+/// Where the program stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) file: usize,
+    pub(crate) statement: u32,
+}
+
+/// A call that has not returned.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    pub(crate) back: Place,
+    pub(crate) start: Place,
+    /// Passes still to come.
+    pub(crate) left: u64,
+    pub(crate) passes: u64,
+    pub(crate) kind: CallKind,
+    /// The caller's variables, where the called program has its own.
+    saved: Option<Saved>,
+    repeats: Vec<(u32, u64)>,
+    /// Section of the caller.
+    section: u32,
+}
+
+/// How a program was called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CallKind {
+    /// M98, G65: M99 returns.
+    Number(u32),
+    /// `o<name> call`: `endsub` and `return` return.
+    Name(NameId),
+}
+
+pub(crate) struct Run<'a, 'e> {
+    pub(crate) dialect: &'e Dialect,
+    pub(crate) environment: &'e Environment<'e>,
+    pub(crate) names: Names,
+    pub(crate) store: Store,
+    pub(crate) sources: Vec<Rc<Source<'a>>>,
+    /// A bit for each statement that was executed.
+    visited: Vec<Vec<u64>>,
+    pub(crate) out: Output,
+    pub(crate) frames: Vec<Frame>,
+    /// Running `repeat` loops of the running program: head and turns left.
+    pub(crate) repeats: Vec<(u32, u64)>,
+    pub(crate) at: Place,
+    previous: Option<Place>,
+    steps: u64,
+    most_bytes: u64,
+    inch: bool,
+    cycle: bool,
+    /// A block with words was executed.
+    started: bool,
+    /// How often each subroutine was called.
+    pub(crate) calls: BTreeMap<(usize, u32), u64>,
+    /// File names that were looked for, and what was found.
+    pub(crate) externals: BTreeMap<String, Option<usize>>,
+    first_output: Option<std::ops::Range<u64>>,
+    first_kept: Option<(std::ops::Range<u64>, u32)>,
+}
+
+/// Whether the program goes on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Next {
+    On,
+    Ended,
+}
+
+/// Executes the program.
+pub(crate) fn run<'a>(
+    text: &'a [u8],
+    dialect: &Dialect,
+    environment: &Environment<'_>,
+) -> Result<Expanded<'a>, Refusal> {
+    let mut names = Names::default();
+    let main = Source::read(String::new(), Cow::Borrowed(text), dialect, &mut names)
+        .map_err(|(diagnostic, _)| Refusal { diagnostics: vec![*diagnostic], file: None })?;
+    let mut store = Store::new(dialect.flow.macros, &mut names, environment.variables);
+    store.learn(&names);
+    let inch = dialect
+        .initial
+        .iter()
+        .filter_map(|code| dialect.code(*code))
+        .any(|row| row.action == Action::Inch);
+    let mut run = Run {
+        dialect,
+        environment,
+        names,
+        store,
+        visited: vec![vec![0; main.statements.len() / 64 + 1]],
+        sources: vec![Rc::new(main)],
+        out: Output::new(dialect, text),
+        frames: Vec::new(),
+        repeats: Vec::new(),
+        at: Place { file: 0, statement: 0 },
+        previous: None,
+        steps: 0,
+        most_bytes: environment.limits.output_bytes.saturating_add(3 * text.len() as u64),
+        inch,
+        cycle: false,
+        started: false,
+        calls: BTreeMap::new(),
+        externals: BTreeMap::new(),
+        first_output: None,
+        first_kept: None,
+    };
+    run.units(inch);
+    match run.all() {
+        Ok(()) => Ok(run.finish()),
+        Err(stop) => Err(run.refusal(&stop)),
+    }
+}
+
+impl<'a> Run<'a, '_> {
+    fn all(&mut self) -> Result<(), Stop> {
+        loop {
+            let file = self.at.file;
+            let source = Rc::clone(&self.sources[file]);
+            while self.at.file == file {
+                let Some(statement) = source.statements.get(self.at.statement as usize) else {
+                    if let Some(frame) = self.frames.last() {
+                        return Err(faults::no_return(&self.names, frame.kind));
+                    }
+                    return Ok(());
+                };
+                if self.step(&source, statement)? == Next::Ended {
+                    return Ok(());
+                }
+            }
+        }
+    }
+
+    /// Executes one block and moves on.
+    fn step(&mut self, source: &Source<'a>, statement: &Statement) -> Result<Next, Stop> {
+        let place = self.at;
+        let again = self.visit(place);
+        self.at.statement += 1;
+        match &statement.kind {
+            Kind::Copy => {
+                self.copy(source, statement, place, again);
+                self.note(statement);
+                if again {
+                    self.spend(1)?;
+                }
+                self.bounded()?;
+                if statement.flags.ends && !statement.flags.skip {
+                    return Ok(Next::Ended);
+                }
+            }
+            Kind::Complex(complex) => {
+                if again {
+                    self.spend(1 + u64::from(complex.cost) / 16)?;
+                }
+                self.started = true;
+                self.complex(source, statement, complex, place, again)?;
+                self.bounded()?;
+                if statement.flags.ends && !statement.flags.skip {
+                    return Ok(Next::Ended);
+                }
+            }
+            Kind::Percent => {
+                if let Some(frame) = self.frames.last() {
+                    return Err(faults::no_return(&self.names, frame.kind));
+                }
+                self.copy(source, statement, place, again);
+                if self.started {
+                    return Ok(Next::Ended);
+                }
+            }
+            Kind::Program(number) => {
+                if let Some(frame) = self.frames.last() {
+                    return Err(faults::no_return(&self.names, frame.kind));
+                }
+                if self.started {
+                    return Err(faults::runs_into(*number));
+                }
+                self.copy(source, statement, place, again);
+            }
+            Kind::Broken(diagnostic) => return Err(Stop::Diagnostic(diagnostic.clone())),
+        }
+        Ok(Next::On)
+    }
+
+    /// Notes an execution; true where it is not the first.
+    fn visit(&mut self, place: Place) -> bool {
+        let (word, bit) = (place.statement as usize / 64, 1_u64 << (place.statement % 64));
+        let Some(slot) = self.visited.get_mut(place.file).and_then(|bits| bits.get_mut(word)) else {
+            return true;
+        };
+        let again = *slot & bit != 0;
+        *slot |= bit;
+        again
+    }
+
+    pub(crate) fn spend(&mut self, steps: u64) -> Result<(), Stop> {
+        self.steps += steps;
+        if self.steps > self.environment.limits.steps {
+            return Err(faults::too_many_steps(self.environment.limits.steps));
+        }
+        Ok(())
+    }
+
+    fn bounded(&self) -> Result<(), Stop> {
+        if self.out.text.len() as u64 > self.most_bytes {
+            return Err(faults::too_long(self.most_bytes));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn from(&self, statement: &Statement, place: Place) -> From {
+        From {
+            file: u16::try_from(place.file).unwrap_or(u16::MAX),
+            offset: statement.offset,
+            length: u64::from(statement.length),
+            line: statement.line,
+        }
+    }
+
+    /// Modal facts that computing needs.
+    fn note(&mut self, statement: &Statement) {
+        self.started |= statement.flags.words;
+        if let Some(inch) = statement.flags.inch {
+            self.units(inch);
+        }
+        if let Some(cycle) = statement.flags.cycle {
+            self.cycle = cycle;
+        }
+    }
+
+    pub(crate) const fn inch(&self) -> bool {
+        self.inch
+    }
+
+    fn units(&mut self, inch: bool) {
+        self.inch = inch;
+        if self.dialect.flow.macros == Macros::LinuxCnc {
+            for (name, holds) in [(&b"_imperial"[..], inch), (b"_metric", !inch)] {
+                let id = self.names.id(name);
+                self.store.learn(&self.names);
+                self.store.set_named(id, Value::Number(f64::from(u8::from(holds))));
+            }
+        }
+    }
+
+    /// A new line where the block does not follow the one before in its file.
+    fn join(&mut self, place: Place) {
+        let follows = self.previous.is_some_and(|previous| {
+            previous.file == place.file && previous.statement + 1 == place.statement
+        });
+        if !follows {
+            self.out.fresh_line();
+        }
+        self.previous = Some(place);
+    }
+
+    fn copy(&mut self, source: &Source<'a>, statement: &Statement, place: Place, again: bool) {
+        self.join(place);
+        let bytes = source.bytes(statement);
+        let from = self.from(statement, place);
+        match statement.flags.number.filter(|_| again || place.file > 0) {
+            None => self.out.copy(bytes, from),
+            Some(number) => {
+                let rest = [&bytes[..number.start as usize], &bytes[number.end as usize..]].concat();
+                self.out.write(&rest, from);
+            }
+        }
+    }
+
+    fn complex(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        complex: &Complex,
+        place: Place,
+        again: bool,
+    ) -> Result<(), Stop> {
+        if statement.flags.skip && (complex.control.is_some() || !complex.assignments.is_empty()) {
+            return Err(faults::block_delete());
+        }
+        let bytes = source.bytes(statement);
+        let from = self.from(statement, place);
+        let shown = bytes.trim_ascii_end();
+        let shown = shown.strip_suffix(b";").unwrap_or(shown);
+        if complex.has_words {
+            let base: &[u8] = complex.residual.as_deref().unwrap_or(bytes);
+            let text = self.edited(statement, complex, base, again || place.file > 0)?;
+            self.join(place);
+            self.out.comment(shown, from);
+            self.out.write(&text, from);
+        } else if !again {
+            self.join(place);
+            self.out.comment(shown, from);
+        }
+        self.note(statement);
+        let mut values = Vec::with_capacity(complex.assignments.len());
+        for (target, value) in &complex.assignments {
+            values.push((self.target(target)?, self.evaluate(value)?));
+        }
+        for (variable, value) in values {
+            self.assign(variable, value, source, statement, place)?;
+        }
+        match &complex.control {
+            None => Ok(()),
+            Some(Control::IfThen(condition, assignments)) => {
+                if self.holds(condition)? {
+                    for (target, value) in assignments {
+                        let (variable, value) = (self.target(target)?, self.evaluate(value)?);
+                        self.assign(variable, value, source, statement, place)?;
+                    }
+                }
+                Ok(())
+            }
+            Some(Control::Output) => {
+                if place.file == 0 {
+                    self.first_output.get_or_insert_with(|| source.span(statement));
+                }
+                Ok(())
+            }
+            Some(control) => self.control(source, statement, control, place),
+        }
+    }
+
+    fn control(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        control: &Control,
+        place: Place,
+    ) -> Result<(), Stop> {
+        match control {
+            Control::Goto(label) => self.goto(source, statement.section, label),
+            Control::IfGoto(condition, label) => {
+                if self.holds(condition)? { self.goto(source, statement.section, label) } else { Ok(()) }
+            }
+            Control::While { condition, end, .. } => {
+                if let Some(condition) = condition
+                    && !self.holds(condition)?
+                {
+                    self.at.statement = end + 1;
+                }
+                Ok(())
+            }
+            Control::EndWhile { start, .. } => {
+                self.at.statement = *start;
+                Ok(())
+            }
+            Control::Call(call) => self.call(source, statement, call, place),
+            Control::Return { to } => self.return_by_number(source, statement, to.as_ref()),
+            Control::O(o) => self.o_word(source, statement, o, place),
+            Control::IfThen(..) | Control::Output => Ok(()),
+        }
+    }
+
+    fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {
+        let value = self.known(label)?;
+        let number = faults::whole("a block number", value)?;
+        match source.label(section, number) {
+            Found::Statement(statement) => {
+                self.at.statement = statement;
+                Ok(())
+            }
+            Found::Missing => Err(faults::label(number, "there is no such block in this program")),
+            Found::Twice => Err(faults::label(number, "the number stands before more than one block")),
+        }
+    }
+
+    /// M99.
+    fn return_by_number(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        to: Option<&Expression>,
+    ) -> Result<(), Stop> {
+        if self.frames.is_empty() {
+            return match to {
+                Some(label) => self.goto(source, statement.section, label),
+                None => Err(faults::endless()),
+            };
+        }
+        if matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
+            return Err(faults::no_call("M99 in a subroutine that an O-word called"));
+        }
+        let to = match to {
+            Some(label) => Some(self.known(label)?),
+            None => None,
+        };
+        let section = self.frames.last().map_or(0, |frame| frame.section);
+        let jump = to.is_some();
+        if !self.leave(jump) {
+            return Ok(());
+        }
+        if let Some(number) = to {
+            let caller = Rc::clone(&self.sources[self.at.file]);
+            return self.goto(&caller, section, &Expression::Number(number));
+        }
+        Ok(())
+    }
+
+    /// Ends a pass of the running call; false where another one begins.
+    pub(crate) fn leave(&mut self, for_good: bool) -> bool {
+        let Some(mut frame) = self.frames.pop() else { return true };
+        if frame.left > 0 && !for_good {
+            frame.left -= 1;
+            self.at = frame.start;
+            self.repeats.clear();
+            self.announce(frame.kind, frame.passes - frame.left, Some(frame.passes), frame.back);
+            self.frames.push(frame);
+            return false;
+        }
+        if let Some(saved) = frame.saved {
+            self.store.leave(saved);
+        }
+        self.repeats = frame.repeats;
+        self.at = frame.back;
+        true
+    }
+
+    /// Starts a call.
+    pub(crate) fn enter(
+        &mut self,
+        start: Place,
+        kind: CallKind,
+        passes: u64,
+        arguments: Option<&[(u32, Value)]>,
+        section: u32,
+        caller: Place,
+    ) -> Result<(), Stop> {
+        let limit = self.environment.limits.depth;
+        if self.frames.len() >= limit {
+            return Err(faults::too_deep(limit));
+        }
+        let back = self.at;
+        let saved = arguments.map(|arguments| self.store.enter(arguments));
+        let repeats = std::mem::take(&mut self.repeats);
+        let count = self.calls.entry((start.file, start.statement)).or_insert(0);
+        *count += 1;
+        let (number, of) = match kind {
+            CallKind::Number(_) => (1, Some(passes)),
+            CallKind::Name(_) => (*count, None),
+        };
+        self.announce(kind, number, of, caller);
+        self.frames.push(Frame { back, start, left: passes - 1, passes, kind, saved, repeats, section });
+        self.at = start;
+        Ok(())
+    }
+
+    /// `(O1000 CALL 2 OF 3)`
+    fn announce(&mut self, kind: CallKind, number: u64, of: Option<u64>, caller: Place) {
+        let name = match kind {
+            CallKind::Number(program) => format!("O{program:04}"),
+            CallKind::Name(id) => format!("O<{}>", self.names.name(id)),
+        };
+        let text = match of {
+            Some(passes) => format!("{name} CALL {number} OF {passes}"),
+            None => format!("{name} CALL {number}"),
+        };
+        let source = Rc::clone(&self.sources[caller.file]);
+        let at = (caller.statement as usize).min(source.statements.len().saturating_sub(1));
+        if let Some(statement) = source.statements.get(at) {
+            let from = self.from(statement, caller);
+            self.out.comment(text.as_bytes(), from);
+        }
+        self.previous = None;
+    }
+
+    /// The block's words with their numbers.
+    fn edited(
+        &mut self,
+        statement: &Statement,
+        complex: &Complex,
+        base: &[u8],
+        drop_number: bool,
+    ) -> Result<Vec<u8>, Stop> {
+        let mut text = Vec::with_capacity(base.len() + 32);
+        let mut from = 0_usize;
+        let mut number = complex.number.filter(|_| drop_number);
+        let cycle = statement.flags.cycle.unwrap_or(self.cycle);
+        for word in &complex.words {
+            if let Some(span) = number.filter(|span| span.end <= word.span.start) {
+                text.extend_from_slice(&base[from..span.start as usize]);
+                from = span.end as usize;
+                number = None;
+            }
+            text.extend_from_slice(&base[from..word.span.start as usize]);
+            from = word.span.end as usize;
+            self.word(&mut text, word, cycle)?;
+        }
+        if let Some(span) = number {
+            text.extend_from_slice(&base[from..span.start as usize]);
+            from = span.end as usize;
+        }
+        text.extend_from_slice(&base[from..]);
+        Ok(text)
+    }
+
+    /// One word with its number; an empty variable leaves no word.
+    fn word(&mut self, text: &mut Vec<u8>, word: &ComputedWord, cycle: bool) -> Result<(), Stop> {
+        let fanuc = self.dialect.flow.macros == Macros::Fanuc;
+        let numbers = &self.dialect.numbers;
+        let decimals =
+            if self.inch { numbers.least_increment_decimals_inch } else { numbers.least_increment_decimals_mm };
+        let rules = Rules { flow: self.dialect.flow, round_decimals: fanuc.then_some(decimals) };
+        let value = match rules.evaluate(&word.value, &self.store).map_err(Stop::Fault)? {
+            Value::Number(value) => value,
+            Value::Null => return Ok(()),
+            Value::Unknown(variable) => return Err(Stop::Unknown(variable)),
+        };
+        if word.comma {
+            text.push(b',');
+        }
+        let slack = if fanuc { 1e-7 } else { 1e-4 };
+        let near = (value - value.round()).abs() <= slack;
+        let letter = word.letter as char;
+        let style = match word.letter {
+            b'G' => {
+                let tenths = (value * 10.0).round();
+                if (value * 10.0 - tenths).abs() > 10.0 * slack || !(0.0..65536.0).contains(&tenths) {
+                    return Err(faults::no_code(letter, value));
+                }
+                self.computed_g(GCode(tenths as u16), value)?;
+                if tenths % 10.0 == 0.0 { Style::Whole } else { Style::Decimals(1) }
+            }
+            b'M' if near && (fanuc || self.dialect.m_code(value.round() as u16).is_some_and(|row| row.ends_program))
+                && self.decides_flow(value.round()) =>
+            {
+                return Err(faults::no_code(letter, value));
+            }
+            b'M' | b'N' | b'O' | b'T' | b'H' | b'D' | b'L' if !near => {
+                return Err(faults::no_code(letter, value));
+            }
+            b'M' | b'N' | b'O' | b'T' | b'H' | b'D' | b'L' => Style::Whole,
+            b'K' if cycle && near => Style::Whole,
+            b'P' | b'S' if near && value.round() == value => Style::Whole,
+            b'P' | b'S' if fanuc => return Err(faults::no_code(letter, value)),
+            _ => Style::Decimals(if fanuc { 6 } else { 9 }),
+        };
+        let length = text.len();
+        let styles: &[Style] =
+            if let Style::Decimals(2..) = style { &[style, Style::Decimals(6), Style::Decimals(3)] } else { &[style] };
+        for style in styles {
+            if output::word(text, word.letter, value, *style).is_some() {
+                return Ok(());
+            }
+            text.truncate(length);
+        }
+        Err(faults::too_large(letter, value))
+    }
+
+    /// True for M codes that end, call or return.
+    fn decides_flow(&self, code: f64) -> bool {
+        let row = self.dialect.m_code(code.clamp(0.0, 65535.0) as u16);
+        matches!(code, 98.0 | 99.0 | 198.0) || row.is_some_and(|row| row.ends_program || row.refuse.is_some())
+    }
+
+    /// A G code from a variable sets what it sets.
+    fn computed_g(&mut self, code: GCode, value: f64) -> Result<(), Stop> {
+        if self.dialect.flow.macros == Macros::Fanuc && matches!(code.0, 650..=669) {
+            return Err(faults::no_code('G', value));
+        }
+        match self.dialect.code(code).map(|row| &row.action) {
+            Some(Action::Inch) => self.units(true),
+            Some(Action::Millimetre) => self.units(false),
+            Some(Action::Cycle(_)) => self.cycle = true,
+            Some(Action::CycleCancel | Action::Rapid | Action::Line) => self.cycle = false,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    pub(crate) fn evaluate(&self, expression: &Expression) -> Result<Value, Stop> {
+        Rules { flow: self.dialect.flow, round_decimals: None }
+            .evaluate(expression, &self.store)
+            .map_err(Stop::Fault)
+    }
+
+    /// A value that must be known; an empty variable counts as 0.
+    pub(crate) fn known(&self, expression: &Expression) -> Result<f64, Stop> {
+        match self.evaluate(expression)? {
+            Value::Unknown(variable) => Err(Stop::Unknown(variable)),
+            value => Ok(number(value)),
+        }
+    }
+
+    pub(crate) fn holds(&self, condition: &Expression) -> Result<bool, Stop> {
+        Ok(self.known(condition)? != 0.0)
+    }
+
+    /// The variable on the left of `=`.
+    fn target(&self, target: &Expression) -> Result<Variable, Stop> {
+        match target {
+            Expression::Variable(variable) => Ok(*variable),
+            Expression::Indirect(index) => {
+                let value = self.known(index)?;
+                Rules { flow: self.dialect.flow, round_decimals: None }.index(value).map_err(Stop::Fault)
+            }
+            _ => Err(Stop::Fault(crate::evaluate::Fault::NoVariable(0.0))),
+        }
+    }
+
+    fn assign(
+        &mut self,
+        variable: Variable,
+        value: Value,
+        source: &Source<'a>,
+        statement: &Statement,
+        place: Place,
+    ) -> Result<(), Stop> {
+        // A variable that does not exist is found out by reading it.
+        self.store.value(variable).map_err(Stop::Fault)?;
+        self.store.set(variable, value).map_err(|protected| faults::protected(protected, variable, &self.names))?;
+        if let (Some(kept), None, 0) = (self.store.kept, &self.first_kept, place.file) {
+            self.first_kept = Some((source.span(statement), kept));
+        }
+        Ok(())
+    }
+
+    /// The trailer of the file, and the result.
+    fn finish(mut self) -> Expanded<'a> {
+        let main = Rc::clone(&self.sources[0]);
+        let closing = main.statements.iter().rposition(|statement| matches!(statement.kind, Kind::Percent));
+        if let Some(closing) = closing {
+            for at in closing..main.statements.len() {
+                let place = Place { file: 0, statement: at as u32 };
+                if at == closing && self.visit(place) && self.previous != Some(place) {
+                    break;
+                }
+                if self.previous != Some(place) {
+                    self.copy(&main, &main.statements[at], place, false);
+                }
+            }
+        }
+        let mut warnings = Vec::new();
+        if let Some((span, number)) = self.first_kept {
+            warnings.push(faults::lost_assignment(span, number));
+        }
+        if let Some(span) = self.first_output {
+            warnings.push(faults::lost_output(span));
+        }
+        let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
+        let Output { text, segments, .. } = self.out;
+        Expanded { text: Cow::Owned(text), files, segments, warnings }
+    }
+
+    fn refusal(&self, stop: &Stop) -> Refusal {
+        // `at` is one past the statement that stopped, unless the file was at its end.
+        let place = self.previous_statement();
+        let source = &self.sources[place.file];
+        let span = source.statements.get(place.statement as usize).map_or(0..0, |s| source.span(s));
+        let diagnostic = faults::diagnostic(stop, span, &self.names, self.dialect.flow.macros);
+        let file = (place.file > 0).then(|| (source.name.clone(), source.text.to_vec()));
+        match stop {
+            Stop::InFile(diagnostic, name, text) => Refusal {
+                diagnostics: vec![(**diagnostic).clone()],
+                file: Some((name.clone(), text.clone())),
+            },
+            _ => Refusal { diagnostics: vec![diagnostic], file },
+        }
+    }
+
+    fn previous_statement(&self) -> Place {
+        Place { file: self.at.file, statement: self.at.statement.saturating_sub(1) }
+    }
+
+    /// Adds a file.
+    pub(crate) fn add(&mut self, source: Source<'a>) -> usize {
+        self.visited.push(vec![0; source.statements.len() / 64 + 1]);
+        self.sources.push(Rc::new(source));
+        self.store.learn(&self.names);
+        self.sources.len() - 1
+    }
+}

@@ -1,0 +1,594 @@
+//! Blocks as statements: what is copied, what is computed, where it goes on.
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, Macros};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
+
+use crate::codes;
+use crate::expression::{Expression, Parser};
+use crate::o_word::{self, OStatement};
+use crate::value::Names;
+
+/// A block of a program.
+#[derive(Clone, Debug)]
+pub(crate) struct Statement {
+    /// Bytes of the file before it.
+    pub(crate) offset: u64,
+    pub(crate) length: u32,
+    pub(crate) line: u32,
+    /// Which of the programs in the file it belongs to: O numbers count up.
+    pub(crate) section: u32,
+    pub(crate) flags: Flags,
+    pub(crate) kind: Kind,
+}
+
+/// Facts that are asked for at every execution.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Flags {
+    pub(crate) skip: bool,
+    /// M2, M30.
+    pub(crate) ends: bool,
+    pub(crate) inch: Option<bool>,
+    /// A drilling cycle starts or ends: K counts then.
+    pub(crate) cycle: Option<bool>,
+    /// The N word, with the blanks behind it.
+    pub(crate) number: Option<Span>,
+    /// It has words besides N and O.
+    pub(crate) words: bool,
+}
+
+/// What a block is.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// Bytes as they are.
+    Copy,
+    /// `%`
+    Percent,
+    /// `O1000` that starts a program.
+    Program(u32),
+    /// Something to do.
+    Complex(Box<Complex>),
+    /// Cannot be read; told when it is reached.
+    Broken(Box<Diagnostic>),
+}
+
+/// A block that computes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Complex {
+    pub(crate) assignments: Vec<(Expression, Expression)>,
+    /// The block without assignments and calls, where that is not the block itself.
+    pub(crate) residual: Option<Vec<u8>>,
+    /// Words with values to put in, in the residual's or the block's bytes.
+    pub(crate) words: Vec<ComputedWord>,
+    /// What is left besides N and comments.
+    pub(crate) has_words: bool,
+    /// The N word of the residual, with the blanks behind it.
+    pub(crate) number: Option<Span>,
+    pub(crate) control: Option<Control>,
+    /// How many parts its expressions have.
+    pub(crate) cost: u32,
+}
+
+/// A word whose number is computed.
+#[derive(Clone, Debug)]
+pub(crate) struct ComputedWord {
+    pub(crate) letter: u8,
+    pub(crate) comma: bool,
+    pub(crate) span: Span,
+    pub(crate) value: Expression,
+}
+
+/// Where the program goes on.
+#[derive(Clone, Debug)]
+pub(crate) enum Control {
+    Goto(Expression),
+    IfGoto(Expression, Expression),
+    IfThen(Expression, Vec<(Expression, Expression)>),
+    /// `WHILE … DO1`; the end's place.
+    While { condition: Option<Expression>, number: u32, end: u32 },
+    /// `END1`; the loop's place.
+    EndWhile { number: u32, start: u32 },
+    Call(Box<Call>),
+    Return { to: Option<Expression> },
+    O(Box<OStatement>),
+    /// DPRNT and the like.
+    Output,
+}
+
+/// M98 and G65.
+#[derive(Clone, Debug)]
+pub(crate) struct Call {
+    pub(crate) program: Expression,
+    pub(crate) repeats: Option<Expression>,
+    /// G65: letters in the order written, and whether the number has a point.
+    pub(crate) arguments: Option<Vec<(u8, Expression, bool)>>,
+}
+
+/// Blocks to statements.
+pub(crate) struct Compiler<'d, 'n> {
+    pub(crate) dialect: &'d Dialect,
+    pub(crate) names: &'n mut Names,
+}
+
+type Fault = Box<Diagnostic>;
+
+impl Compiler<'_, '_> {
+    /// What a block is.
+    pub(crate) fn kind(&mut self, block: &Block<'_>) -> (Kind, Flags) {
+        let flags = self.flags(&block.items, block.bytes);
+        let kind = if block.items.iter().any(|item| item.kind == ItemKind::Percent) {
+            Kind::Percent
+        } else if needs_work(block, self.dialect) {
+            match self.complex(block) {
+                Ok(complex) => Kind::Complex(Box::new(complex)),
+                Err(diagnostic) => Kind::Broken(diagnostic),
+            }
+        } else {
+            match block.word(b'O').and_then(|word| word.number()?.integer()) {
+                Some(number) => Kind::Program(u32::try_from(number).unwrap_or(u32::MAX)),
+                None => Kind::Copy,
+            }
+        };
+        (kind, flags)
+    }
+
+    fn flags(&self, items: &[Item], bytes: &[u8]) -> Flags {
+        let mut flags = Flags::default();
+        for item in items {
+            flags.words |= !matches!(
+                item.kind,
+                ItemKind::Comment
+                    | ItemKind::Name
+                    | ItemKind::Percent
+                    | ItemKind::Word { letter: b'N' | b'O', .. }
+            );
+            match item.kind {
+                ItemKind::Skip => flags.skip = true,
+                ItemKind::Word { letter: b'N', .. } => {
+                    let behind = &bytes[item.span.end as usize..];
+                    let blanks = behind.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count() as u32;
+                    flags.number = Some(Span { start: item.span.start, end: item.span.end + blanks });
+                }
+                ItemKind::Word { letter: b'M', value: WordValue::Number(number) } => {
+                    let row = number.integer().and_then(|n| self.dialect.m_code(u16::try_from(n).ok()?));
+                    flags.ends |= row.is_some_and(|row| row.ends_program);
+                }
+                ItemKind::Word { letter: b'G', value: WordValue::Number(number) } => {
+                    let row = number.tenths().and_then(|t| self.dialect.code(nc_syntax::dialect::GCode(t)));
+                    match row.map(|row| &row.action) {
+                        Some(Action::Inch) => flags.inch = Some(true),
+                        Some(Action::Millimetre) => flags.inch = Some(false),
+                        Some(Action::Cycle(_)) => flags.cycle = Some(true),
+                        Some(
+                            Action::CycleCancel
+                            | Action::Rapid
+                            | Action::Line
+                            | Action::ArcClockwise
+                            | Action::ArcCounterClockwise,
+                        ) => flags.cycle = Some(false),
+                        _ => {}
+                    }
+                }
+                _ => {}
+            }
+        }
+        flags
+    }
+
+    fn complex(&mut self, block: &Block<'_>) -> Result<Complex, Fault> {
+        let mut complex = Complex::default();
+        // Flow first: what it leaves is read again as words.
+        let mut cut: Vec<Span> = Vec::new();
+        for item in &block.items {
+            if item.kind == ItemKind::Flow {
+                self.flow(block, item.span, &mut complex, &mut cut)?;
+            }
+        }
+        if cut.is_empty() {
+            self.words(block, block, &mut complex, None)?;
+        } else {
+            let text = without(block.bytes, &cut);
+            let mut reader = Reader::new(&text, self.dialect);
+            let mut rest = Block::default();
+            reader.next(&mut rest);
+            self.words(&rest, block, &mut complex, Some(&text))?;
+            if complex.residual.is_none() {
+                complex.residual = Some(text);
+            }
+        }
+        if let Some(text) = &complex.residual {
+            let mut reader = Reader::new(text, self.dialect);
+            let mut rest = Block::default();
+            reader.next(&mut rest);
+            complex.number = self.flags(&rest.items, rest.bytes).number;
+        } else {
+            complex.number = self.flags(&block.items, block.bytes).number;
+        }
+        if complex.control.is_some() && !complex.assignments.is_empty() {
+            return Err(wrong(block, whole(block), "an assignment beside flow cannot be read"));
+        }
+        if self.dialect.flow.macros == Macros::Fanuc && complex.has_words && !complex.assignments.is_empty() {
+            let message = "an assignment and words stand in one block";
+            return Err(Box::new(
+                Diagnostic::error(codes::COMBINATION, message)
+                    .at(block.file_span(whole(block)), "which comes first?")
+                    .help("write them in two blocks"),
+            ));
+        }
+        Ok(complex)
+    }
+
+    /// The words of `rest`, which is `block` without what was read already.
+    fn words(
+        &mut self,
+        rest: &Block<'_>,
+        block: &Block<'_>,
+        complex: &mut Complex,
+        text: Option<&[u8]>,
+    ) -> Result<(), Fault> {
+        let call = self.call_words(rest, block, complex)?;
+        let mut cut: Vec<Span> = Vec::new();
+        for item in &rest.items {
+            let (letter, comma, value) = match item.kind {
+                ItemKind::Word { letter, value } => (letter, false, value),
+                ItemKind::CommaWord { letter, value } => (letter, true, value),
+                ItemKind::Comment | ItemKind::Skip | ItemKind::Name => continue,
+                _ => {
+                    complex.has_words = true;
+                    continue;
+                }
+            };
+            if call.is_some_and(|taken| taken.contains(letter, comma, rest.text(item.span))) {
+                cut.push(item.span);
+                continue;
+            }
+            complex.has_words |= letter != b'N';
+            if value == WordValue::Expression {
+                let value = self.word_value(rest.text(item.span), comma, complex);
+                let value = value.map_err(|fault| wrong_at(block, rest, item.span, &fault))?;
+                complex.words.push(ComputedWord { letter, comma, span: item.span, value });
+            }
+        }
+        if !cut.is_empty() {
+            // Computed words move to the left by what is cut before them.
+            for word in &mut complex.words {
+                let shift: u32 =
+                    cut.iter().filter(|span| span.end <= word.span.start).map(|span| span.end - span.start).sum();
+                word.span = Span { start: word.span.start - shift, end: word.span.end - shift };
+            }
+            complex.residual = Some(without(text.unwrap_or(rest.bytes), &cut));
+        }
+        Ok(())
+    }
+
+    /// The expression of a word, behind its letter.
+    fn word_value(
+        &mut self,
+        text: &[u8],
+        comma: bool,
+        complex: &mut Complex,
+    ) -> Result<Expression, String> {
+        let letter = if comma {
+            1 + text[1..].iter().position(u8::is_ascii_alphabetic).unwrap_or(0) + 1
+        } else {
+            1
+        };
+        let mut parser = Parser::new(&text[letter..], self.dialect.flow.macros, self.names);
+        let value = parser.operand()?;
+        parser.end()?;
+        complex.cost += parser.cost;
+        Ok(value)
+    }
+
+    /// M98, M99, G65: notes the call, and says which words are its own.
+    fn call_words(
+        &mut self,
+        rest: &Block<'_>,
+        block: &Block<'_>,
+        complex: &mut Complex,
+    ) -> Result<Option<Taken>, Fault> {
+        let Some(kind) = call_of(rest) else { return Ok(None) };
+        let conflict = |message: &str, help: &str| {
+            Err(Box::new(
+                Diagnostic::error(codes::COMBINATION, message.to_owned())
+                    .at(block.file_span(whole(block)), "whose are the words?")
+                    .help(help),
+            ))
+        };
+        if complex.control.is_some() {
+            return conflict("a call stands beside flow", "write them in two blocks");
+        }
+        if kind != Taken::Macro {
+            // P and L beside a code that takes them too.
+            for word in rest.words().filter(|word| word.letter == b'G') {
+                let action = word.g_code().and_then(|code| self.dialect.code(code)).map(|row| &row.action);
+                let simple = matches!(
+                    action,
+                    Some(
+                        Action::Rapid
+                            | Action::Line
+                            | Action::Absolute
+                            | Action::Incremental
+                            | Action::Plane(_)
+                            | Action::WorkOffset(_)
+                            | Action::Inch
+                            | Action::Millimetre
+                    )
+                );
+                if !simple {
+                    return conflict("a subprogram is called beside another code", "write them in two blocks");
+                }
+            }
+            if self.dialect.flow.macros == Macros::LinuxCnc
+                && rest.words().any(|word| !b"NMPL".contains(&word.letter))
+            {
+                return conflict("a subprogram is called beside other words", "write them in two blocks");
+            }
+        }
+        let mut program = None;
+        let mut repeats = None;
+        let mut arguments = Vec::new();
+        for word in rest.words() {
+            if word.letter == b'G' || word.letter == b'N' || (word.letter == b'M' && kind != Taken::Macro) {
+                if kind == Taken::Macro && word.letter == b'G' && word.g_code() != Some(nc_syntax::dialect::GCode(650)) {
+                    return conflict("a macro is called beside another code", "write them in two blocks");
+                }
+                continue;
+            }
+            let mut point = true;
+            let value = match word.value {
+                WordValue::Number(number) => {
+                    point = number.has_point;
+                    Expression::Number(number.to_f64())
+                }
+                WordValue::Expression => self
+                    .word_value(rest.text(word.span), false, complex)
+                    .map_err(|fault| wrong_at(block, rest, word.span, &fault))?,
+                WordValue::Missing => {
+                    return Err(wrong(block, whole(block), "a letter has no number"));
+                }
+            };
+            match word.letter {
+                b'P' => program = Some(value),
+                b'L' => repeats = Some(value),
+                b'O' => {}
+                letter if kind == Taken::Macro => arguments.push((letter, value, point)),
+                _ => {}
+            }
+        }
+        complex.control = Some(match kind {
+            Taken::Return => {
+                if repeats.is_some() {
+                    return conflict("M99 with L changes the count of its call", "write M99 without L");
+                }
+                Control::Return { to: program }
+            }
+            _ => {
+                let Some(program) = program else {
+                    return Err(Box::new(
+                        Diagnostic::error(codes::SYNTAX, "a call without P: which program?")
+                            .at(block.file_span(whole(block)), "a P word was expected")
+                            .help("write the number of the program, as in `M98 P1000`"),
+                    ));
+                };
+                let arguments = (kind == Taken::Macro).then_some(arguments);
+                Control::Call(Box::new(Call { program, repeats, arguments }))
+            }
+        });
+        Ok(Some(kind))
+    }
+
+    /// A flow item: assignments, conditions, loops, O-words. Notes in `cut` what is no words.
+    fn flow(
+        &mut self,
+        block: &Block<'_>,
+        span: Span,
+        complex: &mut Complex,
+        cut: &mut Vec<Span>,
+    ) -> Result<(), Fault> {
+        let text = block.text(span);
+        let fanuc = self.dialect.flow.macros == Macros::Fanuc;
+        let mut parser = Parser::new(text, self.dialect.flow.macros, self.names);
+        let mut read = || -> Result<Option<Control>, String> {
+            if parser.peek() == Some(b'#') {
+                while parser.peek() == Some(b'#') {
+                    let start = parser.at;
+                    complex.assignments.push(assignment(&mut parser)?);
+                    cut.push(Span { start: span.start + start as u32, end: span.start + parser.at as u32 });
+                    if fanuc {
+                        parser.end()?;
+                    }
+                    // Words and further assignments: words are read again, so only find the next `#`.
+                    while parser.peek().is_some_and(|byte| byte != b'#') {
+                        skip_word(&mut parser)?;
+                    }
+                }
+                return Ok(None);
+            }
+            cut.push(span);
+            let control = if parser.peek() == Some(b'O') && !fanuc {
+                Some(Control::O(Box::new(o_word::parse(&mut parser)?)))
+            } else if fanuc {
+                Some(fanuc_flow(&mut parser)?)
+            } else {
+                return Err("this is no statement of this dialect".to_owned());
+            };
+            parser.end()?;
+            Ok(control)
+        };
+        let control = read();
+        complex.cost += parser.cost;
+        match control {
+            Ok(None) => Ok(()),
+            Ok(found) => {
+                if complex.control.is_some() {
+                    return Err(wrong(block, span, "two statements stand in one block"));
+                }
+                complex.control = found;
+                Ok(())
+            }
+            Err(fault) => Err(wrong(block, span, &fault)),
+        }
+    }
+}
+
+/// `#1=…`
+fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), String> {
+    let target = parser.variable()?;
+    parser.expect(b'=')?;
+    let value =
+        if parser.macros == Macros::Fanuc { parser.expression()? } else { parser.operand()? };
+    Ok((target, value))
+}
+
+/// Passes over a letter with its value.
+fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), String> {
+    match parser.peek() {
+        Some(b'A'..=b'Z') => {
+            parser.at += 1;
+            parser.operand().map(|_| ())
+        }
+        Some(b'/') => {
+            parser.at += 1;
+            Ok(())
+        }
+        other => Err(format!("`{}` starts no word", other.map_or(' ', |byte| byte as char))),
+    }
+}
+
+/// Statements of custom macro B.
+fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String> {
+    if parser.word(b"IF") {
+        let condition = parser.bracketed()?;
+        if parser.word(b"GOTO") {
+            return Ok(Control::IfGoto(condition, parser.operand()?));
+        }
+        if parser.word(b"THEN") {
+            return Ok(Control::IfThen(condition, vec![assignment(parser)?]));
+        }
+        return Err("GOTO or THEN was expected".to_owned());
+    }
+    if parser.word(b"GOTO") {
+        return Ok(Control::Goto(parser.operand()?));
+    }
+    if parser.word(b"WHILE") {
+        let condition = Some(parser.bracketed()?);
+        if !parser.word(b"DO") {
+            return Err("DO was expected".to_owned());
+        }
+        return Ok(Control::While { condition, number: loop_number(parser)?, end: 0 });
+    }
+    if parser.word(b"DO") {
+        return Ok(Control::While { condition: None, number: loop_number(parser)?, end: 0 });
+    }
+    if parser.word(b"END") {
+        return Ok(Control::EndWhile { number: loop_number(parser)?, start: 0 });
+    }
+    for word in [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"] {
+        if parser.word(word) {
+            parser.at = parser.text.len();
+            return Ok(Control::Output);
+        }
+    }
+    Err("this is no statement of this dialect".to_owned())
+}
+
+fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, String> {
+    match parser.operand()? {
+        Expression::Number(number @ (1.0 | 2.0 | 3.0)) => Ok(number as u32),
+        _ => Err("DO and END take 1, 2 or 3".to_owned()),
+    }
+}
+
+/// Which words of a block belong to its call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Taken {
+    /// M98: itself, P, L.
+    Sub,
+    /// M99: itself, P.
+    Return,
+    /// G65: everything.
+    Macro,
+}
+
+impl Taken {
+    fn contains(self, letter: u8, comma: bool, text: &[u8]) -> bool {
+        let code = |number: &[u8]| {
+            let digits: Vec<u8> = text[1..].iter().copied().filter(u8::is_ascii_digit).collect();
+            let at = digits.iter().position(|digit| *digit != b'0').unwrap_or(0);
+            digits[at..].starts_with(number)
+        };
+        match (self, letter) {
+            _ if comma => false,
+            (_, b'N') => false,
+            (Self::Macro, _) => true,
+            (_, b'P' | b'L') => true,
+            (Self::Sub, b'M') => code(b"98"),
+            (Self::Return, b'M') => code(b"99"),
+            _ => false,
+        }
+    }
+}
+
+fn call_of(block: &Block<'_>) -> Option<Taken> {
+    block.words().find_map(|word| {
+        let number = word.number()?;
+        match (word.letter, number.tenths()?) {
+            (b'M', 980) => Some(Taken::Sub),
+            (b'M', 990) => Some(Taken::Return),
+            (b'G', 650) => Some(Taken::Macro),
+            _ => None,
+        }
+    })
+}
+
+/// True where a block is more than bytes to copy.
+pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
+    let linuxcnc = dialect.flow.macros == Macros::LinuxCnc;
+    block.items.iter().any(|item| match item.kind {
+        ItemKind::Flow => true,
+        ItemKind::Word { value: WordValue::Expression, .. }
+        | ItemKind::CommaWord { value: WordValue::Expression, .. } => true,
+        ItemKind::Word { letter: b'M', value: WordValue::Number(number) } => {
+            matches!(number.tenths(), Some(980 | 990))
+        }
+        ItemKind::Word { letter: b'G', value: WordValue::Number(number) } => {
+            !linuxcnc && number.tenths() == Some(650)
+        }
+        _ => false,
+    })
+}
+
+/// All of the block but its end.
+pub(crate) fn whole(block: &Block<'_>) -> Span {
+    let start = block.items.first().map_or(0, |item| item.span.start);
+    let end = block.items.last().map_or(0, |item| item.span.end);
+    Span { start, end }
+}
+
+fn wrong(block: &Block<'_>, span: Span, fault: &str) -> Fault {
+    let found: String = String::from_utf8_lossy(block.text(span)).chars().take(60).collect();
+    Box::new(
+        Diagnostic::error(codes::SYNTAX, format!("`{}` cannot be read: {fault}", found.trim()))
+            .at(block.file_span(span), "not understood")
+            .help("write it as the control's manual does, or post the program without variables and flow"),
+    )
+}
+
+/// The same where the words were read from a copy: the place is the block.
+fn wrong_at(block: &Block<'_>, rest: &Block<'_>, span: Span, fault: &str) -> Fault {
+    let own = std::ptr::eq(block, rest);
+    if own { wrong(block, span, fault) } else { wrong(block, whole(block), fault) }
+}
+
+/// The bytes without some spans, which are in order.
+fn without(bytes: &[u8], cut: &[Span]) -> Vec<u8> {
+    let mut text = Vec::with_capacity(bytes.len());
+    let mut from = 0;
+    for span in cut {
+        text.extend_from_slice(&bytes[from..span.start as usize]);
+        from = span.end as usize;
+    }
+    text.extend_from_slice(&bytes[from..]);
+    text
+}

@@ -1,0 +1,67 @@
+//! What a variable can hold.
+
+/// Which variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Variable {
+    /// `#500`
+    Numbered(u32),
+    /// `#<name>`, by its place in [`Names`].
+    Named(NameId),
+}
+
+/// A value as far as it is known before the program runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Value {
+    /// A number.
+    Number(f64),
+    /// Fanuc's empty variable: 0 in arithmetic, and a word with it is not there.
+    Null,
+    /// Known on the machine only, because this variable is.
+    Unknown(Variable),
+}
+
+/// A name's place in [`Names`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct NameId(pub(crate) u32);
+
+/// Names of variables and O-words: lower case, without blanks.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Names {
+    names: Vec<String>,
+    places: std::collections::BTreeMap<String, NameId>,
+}
+
+impl Names {
+    /// The place of a name as written.
+    pub(crate) fn id(&mut self, written: &[u8]) -> NameId {
+        let name: String = String::from_utf8_lossy(written)
+            .chars()
+            .filter(|c| !c.is_whitespace())
+            .map(|c| c.to_ascii_lowercase())
+            .collect();
+        if let Some(id) = self.places.get(&name) {
+            return *id;
+        }
+        let id = NameId(u32::try_from(self.names.len()).unwrap_or(u32::MAX));
+        self.names.push(name.clone());
+        self.places.insert(name, id);
+        id
+    }
+
+    pub(crate) fn name(&self, id: NameId) -> &str {
+        self.names.get(id.0 as usize).map_or("", String::as_str)
+    }
+
+    /// LinuxCNC: a name that starts with `_` is known everywhere.
+    pub(crate) fn is_global(&self, id: NameId) -> bool {
+        self.name(id).starts_with('_')
+    }
+
+    /// As it is written in a program.
+    pub(crate) fn show(&self, variable: Variable) -> String {
+        match variable {
+            Variable::Numbered(number) => format!("#{number}"),
+            Variable::Named(id) => format!("#<{}>", self.name(id)),
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What the tests of this crate share.
+
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+use std::io;
+
+use nc_expand::{Environment, Expanded, Limits, Preset, Refusal, expand};
+
+/// No file is there.
+pub(crate) fn nothing(_: &str) -> io::Result<Vec<u8>> {
+    Err(io::Error::from(io::ErrorKind::NotFound))
+}
+
+/// Expands a program of a dialect with presets and files.
+pub(crate) fn expanded<'a>(
+    dialect: &str,
+    text: &'a str,
+    set: &[&str],
+    files: &[(&str, &str)],
+) -> Result<Expanded<'a>, Refusal> {
+    let variables: Vec<Preset> = set.iter().map(|text| Preset::parse(text).expect("a preset")).collect();
+    let read = |name: &str| match files.iter().find(|(known, _)| *known == name) {
+        Some((_, text)) => Ok(text.as_bytes().to_vec()),
+        None => nothing(name),
+    };
+    let environment = Environment { variables: &variables, read_external: &read, limits: Limits::default() };
+    expand(text.as_bytes(), nc_dialect::builtin(dialect).expect("a dialect"), &environment)
+}
+
+/// The plain program's text.
+pub(crate) fn flat(dialect: &str, text: &str, set: &[&str], files: &[(&str, &str)]) -> String {
+    match expanded(dialect, text, set, files) {
+        Ok(expanded) => String::from_utf8(expanded.text().to_vec()).expect("text"),
+        Err(refusal) => panic!("{text}\n{refusal:#?}"),
+    }
+}
+
+/// Only the lines that are no comment.
+pub(crate) fn blocks(flat: &str) -> Vec<&str> {
+    flat.lines().filter(|line| !line.starts_with('(')).collect()
+}
+
+pub(crate) fn fanuc(text: &str) -> String {
+    flat("fanuc", text, &[], &[])
+}
+
+pub(crate) fn linuxcnc(text: &str) -> String {
+    flat("linuxcnc", text, &[], &[])
+}
+
+/// The message of a refused program: code, text, what it stands at, help.
+pub(crate) fn refused(dialect: &str, text: &str) -> String {
+    match expanded(dialect, text, &[], &[]) {
+        Ok(expanded) => format!("not refused: {}", String::from_utf8_lossy(expanded.text())),
+        Err(refusal) => {
+            let diagnostic = &refusal.diagnostics[0];
+            let span = diagnostic.span.clone().expect("every message has a place");
+            let found = &text[span.start as usize..span.end as usize];
+            let help = diagnostic.help.as_deref().expect("every message has a way out");
+            format!("{diagnostic}\nat `{found}`: {}\nhelp: {help}", diagnostic.label)
+        }
+    }
+}
