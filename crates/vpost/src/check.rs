@@ -18,6 +18,8 @@ struct Program {
     /// Words that are not motion, in order, with their lines: M, S, T, H, D and G codes that set something.
     events: Vec<(String, u64)>,
     inch: bool,
+    /// What G51 makes of the output step.
+    scale: f64,
 }
 
 /// The JSON of `vpost check --json`.
@@ -43,7 +45,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let model = settings.path_model()?;
     let wanted = program(&arguments.input, &settings)?;
     let commanded = program(&arguments.output, &settings)?;
-    let limit_mm = settings.options.tolerance_mm + rounding_mm(&settings, wanted.inch);
+    let limit_mm = settings.options.tolerance_mm + wanted.scale * rounding_mm(&settings, wanted.inch);
     let comparison = compare(model, &wanted.steps, &commanded.steps, limit_mm);
     let findings = findings(&comparison, &wanted, &commanded);
     let passed = findings.is_empty();
@@ -104,12 +106,15 @@ fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failu
     let text = file::read(path)?;
     let refuse = |diagnostics: Vec<Diagnostic>| Failure::refused(&file::name(path), &text, diagnostics);
     nc_syntax::looks_like_program(&text).map_err(|diagnostic| refuse(vec![diagnostic]))?;
-    let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false };
+    let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false, scale: 1.0 };
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
     let mut reader = Reader::new(&text, &settings.dialect);
     let mut block = Block::default();
     while reader.next(&mut block) {
         let step = interpreter.step(&block).map_err(refuse)?;
+        if !step.motions.is_empty() {
+            program.scale = program.scale.max(step.context.frame.largest_scale());
+        }
         program.inch |= step.context.unit_mm != 1.0 && !step.motions.is_empty();
         for motion in &step.motions {
             program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line: block.line });

@@ -180,6 +180,9 @@ impl Run<'_> {
                 self.dwell = Some(number.decimal);
             }
         }
+        if step.states_position {
+            return self.state_position(block, context);
+        }
         let info = self.info(context, letters);
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
         let before = self.corrector.clone();
@@ -211,6 +214,54 @@ impl Run<'_> {
             self.emitter.rewrite(block, &pieces, &mut self.out).map_err(|diagnostic| vec![diagnostic])?;
         }
         self.note(block, context, &step.motions, &corrections, pieces.len().max(1), self.out.len() > length);
+        Ok(())
+    }
+
+    /// G92 and its like: the block says where the axes stand. In the output they stand at the corrected
+    /// place, so it must say that, or the correction would move into the frame.
+    fn state_position(&mut self, block: &Block<'_>, context: &Context) -> Result<(), Vec<Diagnostic>> {
+        let nominal = self.interpreter.modal().axes.linear;
+        let standing = self.corrector.standing_mm();
+        let inch = context.unit_mm != 1.0;
+        let decimals = self.info(context, correction::Letters::default()).decimals;
+        let mut words = Vec::new();
+        for (i, letter) in b"XYZ".iter().enumerate() {
+            let (Some(word), Some(nominal), Some(standing)) =
+                (block.word(*letter), nominal[i].known(), standing[i])
+            else {
+                continue;
+            };
+            let Some(number) = word.number() else { continue };
+            let away = (standing - nominal) / context.unit_mm;
+            if away.abs() < 1e-7 {
+                continue;
+            }
+            let value = self.job.dialect.numbers.length(number, inch).to_f64() + away;
+            // Both are decimal numbers: the sum is one, with as many decimals as the longer.
+            let exact = (decimals[i]..=7).find_map(|decimals| {
+                let counts = (value * f64::from(10u32.pow(u32::from(decimals)))).round();
+                let near = (counts / f64::from(10u32.pow(u32::from(decimals))) - value).abs() < 1e-8;
+                near.then_some((counts as i64, decimals))
+            });
+            let Some((counts, decimals)) = exact else {
+                return Err(vec![
+                    Diagnostic::error(
+                        nc_program::codes::FRAME,
+                        format!("{} cannot say where the corrected axis stands", *letter as char),
+                    )
+                    .at(block.file_span(word.span), "the place is no whole number of output steps")
+                    .help("write the shift as a work offset (G54 to G59), or approach it with G0 in millimetres"),
+                ]);
+            };
+            words.push((*letter, nc_emit::WordEdit::Write { counts, decimals }));
+        }
+        if words.is_empty() {
+            self.emitter.pass(block, &mut self.out);
+        } else {
+            let piece = nc_emit::Piece { motion: None, words };
+            self.emitter.rewrite(block, &[piece], &mut self.out).map_err(|diagnostic| vec![diagnostic])?;
+        }
+        self.figures.blocks_out += 1;
         Ok(())
     }
 
