@@ -4,6 +4,9 @@
 //! every option, message number, dependency and link in the documents exists, and every one that exists
 //! is in the documents. How blocks are marked: `docs/testing.md`.
 
+// The blocks are written for a POSIX shell.
+#![cfg(unix)]
+
 mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -124,7 +127,6 @@ esac
     }
 }
 
-#[cfg(unix)]
 fn write_executable(path: &Path, text: &str) {
     use std::os::unix::fs::PermissionsExt;
     std::fs::write(path, text).expect("a new file");
