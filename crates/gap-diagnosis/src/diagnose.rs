@@ -240,7 +240,7 @@ impl<'a> Assembly<'a> {
             visible: model.library.candidates.len(),
             causes: causes.len(),
             instrument_causes: causes.iter().filter(|c| c.term.kind().is_instrument()).count(),
-            ambiguous: self.ordered.iter().any(|r| r.told().next().is_some()),
+            ambiguous: self.ordered.iter().any(|r| !self.told(r).is_empty()),
             phi: leftover.phi,
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
@@ -267,6 +267,19 @@ impl<'a> Assembly<'a> {
     /// The cause and its rival that most need to be told apart.
     fn worst_pair(&self) -> Option<(usize, Part)> {
         self.ordered.iter().find_map(|r| r.told().next().map(|rival| (r.place, rival.part)))
+    }
+
+    /// Names of what cannot be told from a cause.
+    fn told(&self, ranked: &Ranked) -> Vec<String> {
+        let named: Vec<EffectKind> =
+            self.ordered.iter().map(|r| self.model.library.candidates[r.part.candidate].kind).collect();
+        let mut kinds: Vec<EffectKind> = ranked.told().map(|r| r.kind).collect();
+        if self.ordered.first().is_some_and(|first| first.place == ranked.place) {
+            kinds.extend(&self.model.equally_good);
+        }
+        let mut seen: Vec<EffectKind> = Vec::new();
+        kinds.retain(|k| !named.contains(k) && !seen.contains(k) && { seen.push(*k); true });
+        kinds.iter().map(ToString::to_string).collect()
     }
 
     fn noise_ratio(&self) -> Option<f64> {
@@ -332,7 +345,7 @@ impl<'a> Assembly<'a> {
                     share_unique: ranked.unique,
                     share_alone: ranked.alone,
                     p: ranked.p,
-                    cannot_be_told_from: ranked.told().map(|r| r.kind.to_string()).collect(),
+                    cannot_be_told_from: self.told(ranked),
                     nearest: ranked.nearest(),
                     rms_before_um,
                     rms_after_um,
@@ -368,7 +381,10 @@ impl<'a> Assembly<'a> {
         let solution = &self.model.solution;
         let positions = self.positions(place);
         let quantile = StudentsT::new(0.0, 1.0, self.degrees()).map_or(1.96, |d| d.inverse_cdf(0.975));
-        let deviation = |i: usize| (solution.unit_covariance[(i, i)] * self.variance()).max(0.0).sqrt();
+        // Leaving out the far end of a heavy tail makes the rest look better than it is.
+        let tail =
+            tail_factor(&self.model.scalars, &solution.residuals_um, &self.model.dropped_residuals_um);
+        let deviation = |i: usize| (solution.unit_covariance[(i, i)] * self.variance() * tail).max(0.0).sqrt();
         let kind = self.model.library.candidates[self.model.parts[place].candidate].kind;
         let names = kind.coefficient_names();
         let mut parameters = Vec::new();
@@ -409,7 +425,7 @@ impl<'a> Assembly<'a> {
         let gram = Gram::new(terms, &source);
         let align = scalars.len() >= 24 && !data.has_magnitudes();
         let (whitened, _) = gram.whitened(if align { FREE_OFFSETS } else { 0.0 });
-        let (products, rank) = crate::gram::eliminate(&whitened, if align { nuisances } else { 0 });
+        let (products, rank) = crate::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
         let offset = products.nrows() - 1 - own.len();
         let covariance = &self.model.solution.unit_covariance;
         let (mut square, mut spread) = (0.0, 0.0);

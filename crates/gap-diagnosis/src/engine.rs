@@ -41,6 +41,8 @@ pub(crate) struct Explained {
     pub solution: Solution,
     /// Rows left out as outliers, ascending.
     pub outliers: Vec<usize>,
+    /// Effects of other explanations that are as good (readings that are lengths only).
+    pub equally_good: Vec<EffectKind>,
     /// Residuals of the rows left out, µm.
     pub dropped_residuals_um: Vec<f64>,
     /// The effect that would come next and why it did not.
@@ -131,7 +133,7 @@ fn explain_once(data: &Measurements, scalars: Vec<Scalar>, without: &[EffectKind
     let rho = sub.best_rho(space.rho(fit.level));
     let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
     let solution = sub.solve(rho, &source);
-    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), dropped_residuals_um: Vec::new(), refused, scalars }
+    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), dropped_residuals_um: Vec::new(), equally_good: Vec::new(), refused, scalars }
 }
 
 struct State<'a> {
@@ -205,7 +207,9 @@ impl<'a> State<'a> {
             let (found, asked) = propose::pitches(self.source, &solution.residuals_um, axis);
             let range = self.data.range_mm(axis);
             for pitch in found {
-                let variants = propose::pitch_variants(&mut self.library, axis, pitch, range);
+                let mut variants = propose::pitch_variants(&mut self.library, axis, pitch, range);
+                let coarse = propose::is_coarse(self.source, axis, pitch);
+                variants.iter_mut().for_each(|v| v.only_rival = coarse);
                 self.library.add_variants(kind, variants, asked);
             }
         }
@@ -221,7 +225,7 @@ impl<'a> State<'a> {
                     let shape = Shape { time_s, ..Shape::default() };
                     let columns = self.library.add_columns(kind, shape, &[0]);
                     // The grid of the library asked already; a finer one asks at most that often again.
-                    self.library.add_variants(kind, vec![Variant { columns, enriched: false }], asked.min(48));
+                    self.library.add_variants(kind, vec![Variant { columns, enriched: false, only_rival: false }], asked.min(48));
                 }
             }
         }
@@ -264,7 +268,7 @@ impl<'a> State<'a> {
                 EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
                 _ => {
                     let columns = self.library.add_columns(kind, better, &indices);
-                    vec![Variant { columns, enriched: false }]
+                    vec![Variant { columns, enriched: false, only_rival: false }]
                 }
             };
             self.library.add_variants(kind, variants, 0);

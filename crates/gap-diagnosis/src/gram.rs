@@ -241,16 +241,18 @@ fn partial(
 
 /// Eliminates the first `count` columns (rank-revealing Cholesky) from a matrix of products and returns the
 /// rest: products of what the eliminated columns cannot explain.
+///
+/// `reference` holds the squares of the columns before whitening: a set-up column of which next to nothing is
+/// left (a ball bar does not see itself turned) must not be fitted to that nothing.
 #[must_use]
-pub(crate) fn eliminate(products: &DMatrix<f64>, count: usize) -> (DMatrix<f64>, usize) {
+pub(crate) fn eliminate(products: &DMatrix<f64>, count: usize, reference: &[f64]) -> (DMatrix<f64>, usize) {
     let size = products.nrows();
     let mut work = products.clone();
-    let reference: Vec<f64> = (0..size).map(|i| products[(i, i)]).collect();
     let mut done = vec![false; count];
     let mut rank = 0;
     for _ in 0..count {
         let best = (0..count)
-            .filter(|i| !done[*i] && work[(*i, *i)] > 1e-9 * reference[*i])
+            .filter(|i| !done[*i] && work[(*i, *i)] > crate::linear::RANK_TOLERANCE * reference[*i])
             .max_by(|i, j| (work[(*i, *i)] / reference[*i]).total_cmp(&(work[(*j, *j)] / reference[*j])));
         let Some(pivot) = best else { break };
         done[pivot] = true;

@@ -12,6 +12,9 @@ pub(crate) struct Variant {
     pub columns: Vec<usize>,
     /// True for forms that only bend the textbook form.
     pub enriched: bool,
+    /// True for forms that these rows sample too coarsely to be named: a wave seen at less than two places per
+    /// period can be any curve. They stay rivals.
+    pub only_rival: bool,
 }
 
 /// One effect with all its forms.
@@ -60,9 +63,8 @@ struct Seen {
     time: Option<(f64, f64)>,
     load: bool,
     feed: bool,
-    /// Different loads, different feeds.
+    /// Different loads.
     loads: usize,
-    feeds: usize,
     rotary: [bool; 3],
 }
 
@@ -85,7 +87,6 @@ impl Seen {
             load: varies(&|r| r.conditions.load_kg),
             feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
             loads: distinct(rows, &|r| r.conditions.load_kg),
-            feeds: distinct(rows, &|r| r.conditions.feed_mm_min),
             rotary: [0, 1, 2].map(|a| {
                 data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))
             }),
@@ -158,6 +159,7 @@ impl Library {
         let pick = |(place, list): (usize, &&[usize])| Variant {
             columns: list.iter().map(at).collect(),
             enriched: place > 0,
+            only_rival: false,
         };
         lists.iter().enumerate().map(pick).collect()
     }
@@ -199,25 +201,28 @@ impl Library {
                     })
                     .collect()
             }
-            // With two feeds a line and a parabola can be any two values: a bend needs three.
+            // With two loads a line and a parabola can be any two values: a bend needs three. A lag bent over
+            // the feed could be a backlash, so lags stay straight.
             EffectKind::Load(_) if seen.load => {
                 self.selections(kind, none, if seen.loads > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
             }
             EffectKind::ServoLag(a) if seen.feed && seen.direction[a] => {
-                self.selections(kind, none, if seen.feeds > 2 { &[&[0], &[1], &[0, 2]] } else { &[&[0], &[1]] })
+                self.selections(kind, none, &[&[0], &[1]])
             }
             EffectKind::ServoMismatch(a, b) if seen.feed && seen.direction[a] && seen.direction[b] => {
-                self.selections(kind, none, if seen.feeds > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
+                self.selections(kind, none, &[&[0]])
             }
             EffectKind::Rotary { axis, .. } if seen.rotary[axis] => self.selections(kind, none, &[&[0]]),
             EffectKind::Eccentricity(axis) if seen.rotary[axis] => {
                 self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]])
             }
             EffectKind::ProbeLobing if seen.direction[0] && seen.direction[1] => {
-                self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3]])
+                self.selections(kind, none, &[&[0, 1], &[0, 1, 4], &[0, 1, 2, 3, 4]])
             }
             EffectKind::InstrumentDrift if seen.time.is_some() => {
-                self.selections(kind, none, &[&[0, 1, 2], &[0, 1, 2, 3, 4, 5]])
+                let lists: [&[usize]; 8] =
+                    [&[0, 1, 2], &[0], &[1], &[2], &[0, 3], &[1, 4], &[2, 5], &[0, 1, 2, 3, 4, 5]];
+                self.selections(kind, none, &lists)
             }
             EffectKind::Step(_) => self.steps(kind, seen),
             EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a]),
@@ -232,9 +237,9 @@ impl Library {
             .iter()
             .flat_map(|tau| self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0]))
             .collect();
-        let single = columns.iter().map(|c| Variant { columns: vec![*c], enriched: false });
+        let single = columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false });
         let double = columns.iter().zip(columns.iter().skip(2));
-        let double = double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true });
+        let double = double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
         single.chain(double).collect()
     }
 
@@ -244,7 +249,7 @@ impl Library {
             .map(|k| {
                 let time_s = start + (end - start) * k as f64 / (STEP_TIMES + 1) as f64;
                 let columns = self.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
-                Variant { columns, enriched: false }
+                Variant { columns, enriched: false, only_rival: false }
             })
             .collect()
     }
@@ -263,8 +268,8 @@ impl Library {
     pub(crate) fn place(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
         let columns = self.add_columns(kind, Shape { centre_mm, width_mm, ..Shape::default() }, &[0, 1, 2]);
         let mut variants: Vec<Variant> =
-            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false }).collect();
-        variants.push(Variant { columns, enriched: true });
+            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false }).collect();
+        variants.push(Variant { columns, enriched: true, only_rival: false });
         variants
     }
 

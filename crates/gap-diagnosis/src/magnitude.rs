@@ -13,10 +13,12 @@ use crate::library::Library;
 use crate::observation::{Measurements, Reading, Scalar};
 use crate::term::Term;
 
-/// Starts that are followed to the end.
-const STARTS: usize = 4;
+/// Starts that are followed to the end, each a different effect.
+const STARTS: usize = 5;
 /// Linearisations per start.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
+/// Two ends are equally good within this difference of score.
+const CLOSE: f64 = 10.0;
 
 /// Equations of a file and its explanation; the notes say what the lengths leave open.
 #[must_use]
@@ -40,18 +42,21 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explain
         // Every column bought must be worth its price in lengths, too.
         let score = data.rows.len() as f64 * units::math::ln(misfit.max(1e-9))
             + model.fit.rank as f64 * units::math::ln(data.rows.len() as f64);
-        scores.push(score);
+        let kinds: Vec<EffectKind> =
+            model.parts.iter().map(|p| model.library.candidates[p.candidate].kind).collect();
+        scores.push((score, kinds));
         if best.as_ref().is_none_or(|(s, _)| score < *s) {
             best = Some((score, model));
         }
     }
-    let close = best.as_ref().map_or(0, |(s, _)| scores.iter().filter(|o| **o < s + 10.0).count());
-    let mut notes =
+    let close: Vec<EffectKind> = best.as_ref().map_or_else(Vec::new, |(score, _)| {
+        let near = scores.iter().filter(|(s, _)| *s < score + CLOSE);
+        near.flat_map(|(_, kinds)| kinds.iter().copied()).collect()
+    });
+    let notes =
         vec!["Only lengths of displacements were measured: where the model alone predicts none, the sign of a cause is open.".to_owned()];
-    if close > 1 {
-        notes.push(format!("{close} starts end equally well; they may differ in sign."));
-    }
-    let model = best.map_or_else(|| explain(data, &[], without), |(_, model)| model);
+    let mut model = best.map_or_else(|| explain(data, &[], without), |(_, model)| model);
+    model.equally_good = close;
     (model, notes)
 }
 
@@ -64,7 +69,7 @@ fn starts(data: &Measurements, without: &[EffectKind]) -> Vec<Vec<Vector>> {
         .iter()
         .map(|r| if let Reading::Magnitude(um) = r.reading { um } else { 0.0 })
         .collect();
-    let mut tried: Vec<(f64, Vec<Vector>)> = Vec::new();
+    let mut tried: Vec<(f64, EffectKind, Vec<Vector>)> = Vec::new();
     for candidate in &library.candidates {
         for variant in candidate.variants.iter().filter(|v| v.columns.len() <= 2) {
             for column in &variant.columns {
@@ -74,13 +79,21 @@ fn starts(data: &Measurements, without: &[EffectKind]) -> Vec<Vec<Vector>> {
                     .map(|r| library.terms[*column].displacement_um(r, &data.geometry))
                     .collect();
                 for sign in [1.0, -1.0] {
-                    tried.extend(amplitude(&measured, &predicted, &unit, sign));
+                    let found = amplitude(&measured, &predicted, &unit, sign);
+                    tried.extend(found.map(|(left, estimate)| (left, candidate.kind, estimate)));
                 }
             }
         }
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut starts: Vec<Vec<Vector>> = tried.into_iter().take(STARTS).map(|(_, s)| s).collect();
+    let mut kinds: Vec<EffectKind> = Vec::new();
+    let mut starts: Vec<Vec<Vector>> = Vec::new();
+    for (_, kind, estimate) in tried {
+        if starts.len() < STARTS && !kinds.contains(&kind) {
+            kinds.push(kind);
+            starts.push(estimate);
+        }
+    }
     if predicted.iter().any(|p| p.norm() > 0.0) {
         starts.push(vec![Vector::zeros(); data.rows.len()]);
     }

@@ -7,6 +7,7 @@ use units::math;
 use crate::gram::{Gram, Source};
 use crate::library::{Library, Variant};
 use crate::linear::explained;
+use crate::noise::median;
 use crate::observation::Scalar;
 use crate::term::Term;
 
@@ -167,6 +168,15 @@ pub(crate) fn damage(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> 
     best.map(|(centre, width)| (centre, width, asked))
 }
 
+/// True where the places measured along the axis lie further apart than half a period.
+#[must_use]
+pub(crate) fn is_coarse(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
+    let mut places: Vec<f64> = source.rows.iter().map(|r| r.command.linear_mm[axis]).collect();
+    places.sort_by(f64::total_cmp);
+    let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).filter(|s| *s > 1e-3).collect();
+    median(&mut steps).is_none_or(|step| step > 0.5 * pitch_mm)
+}
+
 /// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
 fn is_strobed(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
     let mut slow = 0;
@@ -190,11 +200,11 @@ pub(crate) fn pitch_variants(library: &mut Library, axis: usize, pitch_mm: f64, 
     let columns = library.add_columns(EffectKind::Pitch(axis), shape, &all);
     let pick = |list: &[usize]| list.iter().map(|i| columns[*i]).collect::<Vec<_>>();
     vec![
-        Variant { columns: pick(&[0, 1]), enriched: false },
-        Variant { columns: pick(&[0, 1, 2, 3]), enriched: true },
-        Variant { columns: pick(&[0, 1, 6, 7]), enriched: true },
-        Variant { columns: pick(&[0, 1, 2, 3, 4, 5]), enriched: true },
-        Variant { columns, enriched: true },
+        Variant { columns: pick(&[0, 1]), enriched: false, only_rival: false },
+        Variant { columns: pick(&[0, 1, 2, 3]), enriched: true, only_rival: false },
+        Variant { columns: pick(&[0, 1, 6, 7]), enriched: true, only_rival: false },
+        Variant { columns: pick(&[0, 1, 2, 3, 4, 5]), enriched: true, only_rival: false },
+        Variant { columns, enriched: true, only_rival: false },
     ]
 }
 

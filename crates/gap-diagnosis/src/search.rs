@@ -63,7 +63,7 @@ impl Space {
             .iter()
             .map(|rho| {
                 let (whitened, log_determinant) = gram.whitened(*rho);
-                let (products, this) = eliminate(&whitened, nuisances);
+                let (products, this) = eliminate(&whitened, nuisances, &gram.squares());
                 rank = this.max(rank);
                 Level { rho: *rho, products, log_determinant }
             })
@@ -139,9 +139,16 @@ impl Space {
         Fit { score, residual, level, rank }
     }
 
-    /// Judges `base` plus every form of every effect not in it (or only of `only`), each in turn.
+    /// Judges `base` plus every form of every effect not in it (or only of `only`), each in turn; with `rivals`
+    /// also the forms that cannot be named.
     #[must_use]
-    pub(crate) fn scan(&self, library: &Library, base: &[Part], only: Option<usize>) -> Vec<(Part, Fit)> {
+    pub(crate) fn scan(
+        &self,
+        library: &Library,
+        base: &[Part],
+        only: Option<usize>,
+        rivals: bool,
+    ) -> Vec<(Part, Fit)> {
         let columns = self.columns(library, base);
         let base_price: f64 = base
             .iter()
@@ -170,7 +177,7 @@ impl Space {
             if base.iter().any(|p| p.candidate == candidate) || only.is_some_and(|o| o != candidate) {
                 continue;
             }
-            for variant in 0..entry.variants.len() {
+            for variant in (0..entry.variants.len()).filter(|v| rivals || !entry.variants[*v].only_rival) {
                 let part = Part { candidate, variant };
                 let own: Vec<usize> = entry.variants[variant].columns.iter().map(|c| c - self.nuisances).collect();
                 let mut best: Option<Fit> = None;
@@ -240,7 +247,7 @@ pub(crate) fn next_move(space: &Space, library: &Library, parts: &[Part], score:
         if fit.score < score - WORTH {
             return Move::Change(rest, fit);
         }
-        let refined = best(&space.scan(library, &rest, Some(part.candidate)));
+        let refined = best(&space.scan(library, &rest, Some(part.candidate), false));
         if let Some((new, fit)) = refined.filter(|(_, fit)| fit.score < score - WORTH) {
             return Move::Change(replaced(parts, place, new), fit);
         }
@@ -248,7 +255,7 @@ pub(crate) fn next_move(space: &Space, library: &Library, parts: &[Part], score:
     let mut swap: Option<(Vec<Part>, Fit)> = None;
     for place in 0..parts.len() {
         let rest = without(parts, place);
-        if let Some((new, fit)) = best(&space.scan(library, &rest, None)) {
+        if let Some((new, fit)) = best(&space.scan(library, &rest, None, false)) {
             let better = swap.as_ref().map_or(score - WORTH, |(_, f)| f.score);
             if fit.score < better {
                 swap = Some((replaced(parts, place, new), fit));
@@ -258,7 +265,7 @@ pub(crate) fn next_move(space: &Space, library: &Library, parts: &[Part], score:
     if let Some((changed, fit)) = swap {
         return Move::Change(changed, fit);
     }
-    match best(&space.scan(library, parts, None)) {
+    match best(&space.scan(library, parts, None, false)) {
         Some((part, fit)) if fit.score < score - WORTH => Move::Add(part, fit),
         _ => Move::Stop,
     }

@@ -121,7 +121,7 @@ impl EffectKind {
                 "radial_sin2_um",
                 "radial_cos2_um",
             ],
-            Self::ProbeLobing => &["cos3_um", "sin3_um", "cos2_um", "sin2_um"],
+            Self::ProbeLobing => &["cos3_um", "sin3_um", "cos2_um", "sin2_um", "pole_um"],
             Self::InstrumentDrift => {
                 &["x_um_per_h", "y_um_per_h", "z_um_per_h", "x_um_per_h2", "y_um_per_h2", "z_um_per_h2"]
             }
@@ -247,6 +247,11 @@ impl EffectKind {
                 let norm = direction.norm();
                 if norm == 0.0 {
                     return Ok(Vector::zeros());
+                }
+                if index == 4 {
+                    // Pushed along the stylus it triggers otherwise than sideways.
+                    let share = direction.z * direction.z / (norm * norm);
+                    return Ok(direction * (1e-3 * share / norm));
                 }
                 let angle = math::atan2(direction.y, direction.x) * if index < 2 { 3.0 } else { 2.0 };
                 let (sin, cos) = math::sin_cos(angle);
