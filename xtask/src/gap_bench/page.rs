@@ -170,12 +170,17 @@ fn figures(all: &[Outcome]) -> String {
         line(t, &format!("{word}: recall"), goal_word, recall, |s| s >= goal);
         line(t, &format!("{word}: precision"), goal_word, precision, |s| s >= goal);
     }
-    shrink_lines(t, "hold-out block of the answer", &all.iter().filter_map(shrinkage).collect::<Vec<_>>());
-    shrink_lines(
-        t,
-        "the lab's own account of the written profile",
-        &all.iter().filter_map(shrinkage_by_lab).collect::<Vec<_>>(),
-    );
+    let named = |o: &&Outcome| o.said().is_some_and(|a| a.verdict != "PARTIAL");
+    let magnitude = |o: &&Outcome| o.case.kind == Kind::Magnitude;
+    let claims = || all.iter().filter(|o| named(o) && !magnitude(o));
+    let partly = all.iter().filter(|o| !named(o) && !magnitude(o));
+    let list: Vec<Shrinkage> = claims().filter_map(shrinkage).collect();
+    shrink_lines(t, "NAMED or AMBIGUOUS: hold-out block of the answer", Some(0.9), &list);
+    let list: Vec<Shrinkage> = claims().filter_map(shrinkage_by_lab).collect();
+    shrink_lines(t, "NAMED or AMBIGUOUS: the lab's own account of the written profile", Some(0.9), &list);
+    shrink_lines(t, "PARTIAL: hold-out block", None, &partly.filter_map(shrinkage).collect::<Vec<_>>());
+    let list: Vec<Shrinkage> = all.iter().filter(magnitude).filter_map(shrinkage).collect();
+    shrink_lines(t, "magnitude only: hold-out block", None, &list);
     let mut coverage = Rate::default();
     all.iter().filter_map(covered).for_each(|hit| coverage.add(hit));
     line(t, "parameter inside its 95 % interval", "90–98 %", coverage, |s| (0.9..=0.98).contains(&s));
@@ -225,20 +230,22 @@ fn figures(all: &[Outcome]) -> String {
     text
 }
 
-fn shrink_lines(t: &mut String, source: &str, list: &[Shrinkage]) {
+/// Shrinkage within five points, and the bias; with a goal or, where nothing was promised, without.
+fn shrink_lines(t: &mut String, source: &str, goal: Option<f64>, list: &[Shrinkage]) {
     let mut near = Rate::default();
     list.iter().for_each(|s| near.add((s.predicted - s.achieved).abs() <= 5.0));
-    line(
-        t,
-        &format!("predicted shrinkage within ±5 points of achieved ({source})"),
-        "≥ 90 %",
-        near,
-        |s| s >= 0.9,
-    );
+    let word = if goal.is_some() { "≥ 90 %" } else { "" };
+    let name = format!("predicted shrinkage within ±5 points of achieved ({source})");
+    line(t, &name, word, near, |s| goal.is_none_or(|g| s >= g));
     if !list.is_empty() {
-        let bias = list.iter().map(|s| s.predicted - s.achieved).sum::<f64>() / list.len() as f64;
-        let verdict = if bias.abs() <= 1.0 { "" } else { "**not met**" };
-        writeln!(t, "| — bias, points | ≤ 1 | {bias:+.2} | | {verdict} |")
+        let off = || list.iter().map(|s| s.predicted - s.achieved);
+        let (mean, middle) = (off().sum::<f64>() / list.len() as f64, quantile(off().collect(), 0.5));
+        let (word, met) = match goal {
+            Some(_) if mean.abs() > 1.0 => ("≤ 1", "**not met**"),
+            Some(_) => ("≤ 1", ""),
+            None => ("", ""),
+        };
+        writeln!(t, "| — bias, points: mean (median) | {word} | {mean:+.2} ({middle:+.2}) | | {met} |")
             .expect("writing to a string cannot fail");
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use gap_lab::Case;
+use gap_lab::{Case, Kind};
 
 use super::answer::Answer;
 use super::attempt;
@@ -38,7 +38,8 @@ const UNCONDITIONAL: [&str; 10] = [
 pub(crate) fn check(vpost: &Path, folder: &Path, case: &Case, answer: &Answer) -> Option<Transport> {
     let unconditional = |id: &str| UNCONDITIONAL.contains(&id.split('.').next().unwrap_or(id));
     let all = !answer.causes.is_empty() && answer.causes.iter().all(|c| unconditional(&c.effect));
-    if !all || !folder.join("found.toml").is_file() {
+    // A magnitude has no sign: the machine with the opposite error is as good an answer.
+    if case.kind == Kind::Magnitude || !all || !folder.join("found.toml").is_file() {
         return None;
     }
     std::fs::write(folder.join("points.csv"), case.fresh.points_csv()).ok()?;
