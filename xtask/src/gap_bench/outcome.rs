@@ -134,3 +134,80 @@ impl Outcome {
         truth.filter(|id| !named.contains(id)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use gap_lab::catalogue;
+
+    use super::*;
+
+    /// A case of a kind with an answer made of a verdict and causes (`first|rival|rival`).
+    fn outcome(kind: Kind, noise: Option<NoiseKind>, verdict: &str, causes: &[&str]) -> Outcome {
+        let list = catalogue(1200, 1);
+        let fits = |k: Kind, n: NoiseKind| k == kind && noise.is_none_or(|wanted| n == wanted);
+        let case = list.iter().find(|s| fits(s.kind, s.noise)).unwrap().build();
+        let truth = case.truth.effects.first().map_or("none".to_owned(), |e| e.id.clone());
+        let causes: Vec<String> = causes
+            .iter()
+            .map(|names| {
+                let names = names.replace("TRUTH", &truth);
+                let mut names = names.split('|');
+                let effect = names.next().unwrap();
+                let rivals: Vec<String> = names.map(|n| format!("\"{n}\"")).collect();
+                format!(r#"{{ "effect": "{effect}", "cannot_be_told_from": [{}] }}"#, rivals.join(","))
+            })
+            .collect();
+        let text = format!(r#"{{ "verdict": "{verdict}", "causes": [{}] }}"#, causes.join(","));
+        Outcome { case, answer: Ok(serde_json::from_str(&text).unwrap()), seconds: 0.0, transport: None }
+    }
+
+    #[test]
+    fn a_single_effect_is_right_only_when_it_comes_first() {
+        let single = |verdict: &str, causes: &[&str]| outcome(Kind::Single, None, verdict, causes);
+        assert!(single("NAMED", &["TRUTH"]).right_first());
+        assert!(single("AMBIGUOUS", &["TRUTH|step.Z"]).right_first());
+        let second = single("NAMED", &["step.Z", "TRUTH"]);
+        assert!(!second.right_first() && second.inside() && second.confidently_wrong());
+        let rival = single("AMBIGUOUS", &["step.Z|TRUTH"]);
+        assert!(!rival.right_first() && rival.inside() && !rival.confidently_wrong());
+        let silent = single("NO GAP", &[]);
+        assert!(!silent.right() && !silent.inside() && !silent.confidently_wrong());
+    }
+
+    #[test]
+    fn a_null_with_a_name_is_an_alarm_unless_the_drift_owns_up() {
+        let plain = |causes: &[&str]| outcome(Kind::Null, Some(NoiseKind::Plain), "NAMED", causes);
+        assert!(plain(&[]).right() && !plain(&[]).false_alarm());
+        assert!(plain(&["instrument-drift"]).false_alarm() && plain(&["step.X"]).confidently_wrong());
+        let drift = |causes: &[&str]| outcome(Kind::Null, Some(NoiseKind::Drift), "AMBIGUOUS", causes);
+        assert!(!drift(&["instrument-drift"]).false_alarm());
+        assert!(!drift(&["warmup.X|instrument-drift"]).false_alarm());
+        assert!(drift(&["warmup.X"]).false_alarm());
+        assert!(drift(&["instrument-drift", "step.X"]).false_alarm());
+    }
+
+    #[test]
+    fn what_has_no_name_must_stay_unknown() {
+        for kind in [Kind::Outside, Kind::Removed] {
+            assert!(outcome(kind, None, "PARTIAL", &["step.X"]).right());
+            assert!(outcome(kind, None, "UNKNOWN", &[]).right());
+            assert!(outcome(kind, None, "NAMED", &["step.X"]).confidently_wrong());
+            assert!(!outcome(kind, None, "NO GAP", &[]).right());
+        }
+    }
+
+    #[test]
+    fn an_aliased_effect_wants_both_the_verdict_and_the_truth() {
+        let aliased = |verdict: &str, causes: &[&str]| outcome(Kind::Aliased, None, verdict, causes);
+        assert!(aliased("AMBIGUOUS", &["step.X|TRUTH"]).honest());
+        assert!(!aliased("NAMED", &["TRUTH"]).honest());
+        assert!(!aliased("AMBIGUOUS", &["step.X|step.Y"]).honest());
+    }
+
+    #[test]
+    fn several_effects_must_be_named_exactly() {
+        let case = outcome(Kind::Multiple, None, "NAMED", &["TRUTH"]);
+        assert_eq!(case.missed().len(), case.case.truth.effects.len() - 1);
+        assert!(!case.right() && !case.confidently_wrong());
+    }
+}
