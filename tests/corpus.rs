@@ -5,7 +5,7 @@ mod common;
 
 use common::{files, messages, root, run};
 
-const DIALECTS: [&str; 3] = ["fanuc", "perspektiva", "linuxcnc"];
+const DIALECTS: [&str; 6] = ["fanuc", "perspektiva", "linuxcnc", "balt-system", "sinumerik", "centroid"];
 /// Crooked in everything a 3-axis machine can be, with offsets and tools for every program of the corpus.
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const ENDINGS: [&str; 2] = ["nc", "ngc"];

@@ -11,7 +11,7 @@ use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
 
 /// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused, command.
-const DECIDED_HERE: [u16; 5] = [201, 202, 207, 208, 224];
+const DECIDED_HERE: [u16; 10] = [101, 102, 103, 104, 105, 106, 202, 207, 208, 224];
 
 /// Name and bytes of every program in a folder, in alphabetical order.
 fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
@@ -31,7 +31,7 @@ fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
     while reader.next(&mut block) {
         for item in &block.items {
             let found = match item.kind {
-                ItemKind::Invalid(_) => Some(201),
+                ItemKind::Invalid(why) => Some(block.unreadable_at(why, item.span).code.0),
                 ItemKind::Flow | ItemKind::Word { value: Value::Expression, .. } => Some(202),
                 ItemKind::BracketCommand => match dialect.command(block.text(item.span)) {
                     Some(command) if command.refuse.is_none() => None,

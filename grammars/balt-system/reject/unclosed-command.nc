@@ -1,4 +1,4 @@
-;expect VP0201
+;expect VP0104
 G17 G71 G90
 G0 X10 Y10 Z60
 (UAO,1

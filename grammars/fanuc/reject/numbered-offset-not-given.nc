@@ -1,10 +1,10 @@
 %
 O0001
-(expect VP0208)
+(expect VP0214: G54 P2 and the profile has none)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
-G68 X0. Y0. R30.
+G54 P2
 G1 X20. F200.
-G69
+G0 Z60.
 M30
 %

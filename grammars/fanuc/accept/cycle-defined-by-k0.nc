@@ -1,0 +1,12 @@
+%
+O0001
+(K0 only defines the cycle)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G99 G81 Z30. R55. F100. K0
+X20. Y20.
+X40. Y30.
+G80
+G0 Z60.
+M30
+%

@@ -1,0 +1,18 @@
+%
+O0001
+(G52 X.. is a shift, no position)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G52 X100. Y-20. Z5.
+G1 X20. Y20.
+X80. Y60. Z48.
+G55
+X20. Y20.
+G52 X0 Y0 Z0
+X30. Y30.
+G54
+X20. Y20.
+G0 Z60.
+M30
+%

@@ -1,0 +1,16 @@
+%
+O0001
+(G18 names Z before X, in rotation as in arcs)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G18 G68 X50. Z20. R-20.
+G0 X10. Z60.
+G1 X100. Z50. F200.
+G2 X100. Z10. I0 K-20.
+X60. Z50. R40.
+G69
+G17
+G0 X20. Y20. Z60.
+G0 Z60.
+M30
+%

@@ -1,0 +1,19 @@
+%
+O0001
+(G68 X0 Y0 R30.: a centre and an angle, no position; arcs stay arcs)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G68 X50. Y40. R30.
+G0 X10. Y10.
+G1 Z50. F200.
+X200. Y10.
+G3 X200. Y110. I0 J50.
+G2 X150. Y160. R50.
+G1 X10. Y160. Z45.
+G91 X-20. Y-30.
+G90 Y10.
+G69
+X20. Y20. Z50.
+G0 Z60.
+M30
+%

@@ -1,0 +1,17 @@
+%
+O0001
+(tool length is added after rotation)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G43 H1 Z60.
+G68 X50. Y40. R30.
+G0 X10. Y10.
+G1 Z50. F200.
+X200. Y10.
+G69
+X20. Y20.
+G49
+G0 X20. Y20. Z200.
+G0 Z60.
+M30
+%

@@ -1,0 +1,11 @@
+%
+O0001
+(expect VP0227: an arc becomes an ellipse)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G51 X0 Y0 Z50. I500 J2000 K1000
+G1 X20. Y0 Z50. F200.
+G2 X0 Y20. R20.
+G0 Z60.
+M30
+%

@@ -1,0 +1,9 @@
+%
+O0001
+(expect VP0227: G10 L2 P0 shifts all work offsets)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G10 L2 P0 X5. Y5. Z5.
+G0 Z60.
+M30
+%

@@ -1,0 +1,10 @@
+%
+O0001
+(expect VP0227: G53 in a rotated frame)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G68 X0 Y0 R30.
+G53 G0 Z300.
+G0 Z60.
+M30
+%

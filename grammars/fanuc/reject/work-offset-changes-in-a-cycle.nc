@@ -1,0 +1,10 @@
+%
+O0001
+(expect VP0217: what becomes of R and Z?)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G81 X1. Y1. Z30. R55. F100.
+G55 X10.
+G0 Z60.
+M30
+%

@@ -1,0 +1,11 @@
+%
+(G4 P1 G1 X..: P is the dwell's alone, X the motion's)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+G4 P0.2 G1 X60 Y70
+G4 P0.1 X20 Y20
+G4 P0.1
+G0 Z60
+M2
+%

@@ -1,0 +1,18 @@
+%
+(G28 by way of a point, and back by naming every axis)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+X20
+G28 Z60
+G28
+G0 X15 Y15 Z60
+G1 Z50
+X40
+G30 X50 Y50 Z60
+G0 X15 Y15 Z60
+G1 Z50
+X60 Y60
+G0 Z60
+M2
+%

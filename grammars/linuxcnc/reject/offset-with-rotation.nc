@@ -1,0 +1,8 @@
+%
+(expect VP0227: G10 L2 R turns the frame)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10 Y10 Z60
+G10 L2 P1 X0 Y0 R10
+G0 Z60
+M2
+%

@@ -1,0 +1,9 @@
+%
+(expect VP0208: G43.2 adds a second offset)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10 Y10 Z60
+G43 H1
+G43.2 H2
+G0 Z60
+M2
+%
