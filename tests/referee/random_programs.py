@@ -208,9 +208,7 @@ def main():
             else:
                 try:
                     resolution_um = 0.1 * INCH if program.inch else 1.0
-                    # Where a cycle stops between R and its depth is the control's: those levels follow R.
-                    tolerance_um = 1.5 if "G73" in program.text or "G83" in program.text else 1.0
-                    failures = judge(program.text.encode(), done.stdout, machine, tolerance_um, resolution_um)["failures"]
+                    failures = judge(program.text.encode(), done.stdout, machine, 1.0, resolution_um)["failures"]
                 except (Unreadable, OutsideVolume) as error:
                     failures = [f"{type(error).__name__}: {error}"]
             table["FAILED" if failures else "held"] += 1

@@ -17,6 +17,9 @@ const SHORTEST_CHORD_STEPS: f64 = 30.0;
 /// Two ends nearer than this are one place: far below every output step, far above rounding of `f64`.
 const SAME_PLACE_MM: f64 = 1e-9;
 
+/// Ends nearer than this after more than half a turn are not left to the control to tell apart.
+const NEARLY_MEETING_MM: f64 = 0.1;
+
 /// A centre to try: the words and what the control makes of them.
 struct Candidate {
     words: Centre,
@@ -129,6 +132,13 @@ impl<'m> Corrector<'m> {
         if full && sweep.abs() < 1.0 {
             return Ok(Vec::new());
         }
+        // All but a full turn: where the ends all but meet, the last digit decides between the whole circle
+        // and nothing, and controls have their own idea of what still counts as meeting.
+        let gap = Vector::new(to[u] - from[u], to[v] - from[v], 0.0).norm();
+        let moved = (part.at(0.0) - from - (part.at(1.0) - to)).norm() > SAME_PLACE_MM;
+        if !full && moved && sweep.abs() > TAU / 2.0 && gap < NEARLY_MEETING_MM {
+            return Ok(Vec::new());
+        }
         let letters = [u, v].map(|axis| b"IJK"[axis]);
         let has_centre = letters.map(|letter| block.letters.contains(letter));
         let by_radius = if has_centre.contains(&true) {
@@ -147,9 +157,11 @@ impl<'m> Corrector<'m> {
             let mut curve = Curve::from_centre(from, to, axes, at, clockwise);
             if let Curve::Arc { sweep: turned, .. } = &mut curve
                 && follow.alone
+                && block.letters.contains(b'P')
             {
-                // The block's own P counts the whole turns before the last one.
-                *turned += ((sweep - *turned) / TAU).round() * TAU;
+                // The block's own P counts the whole turns before the last one; it never makes one of a
+                // last turn that came out as nothing.
+                *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
             }
             let Curve::Arc { radius: [r0, r1], sweep: turned, .. } = curve else { return };
             // A centre that makes the short way the long way is another arc altogether.

@@ -196,8 +196,21 @@ impl<'m> Corrector<'m> {
         let mut end_bottom = at_r;
         end_bottom[normal] = hole.bottom_mm;
         let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
-        let verdict = Pair { wanted: &wanted, commanded: &commanded, in_step: false }
-            .verdict(machine, self.limit_mm(block));
+        let limit = self.limit_mm(block);
+        let mut verdict =
+            Pair { wanted: &wanted, commanded: &commanded, in_step: false }.verdict(machine, limit);
+        if let (Verdict::Within(_), CycleKind::PeckFull | CycleKind::PeckChip, Some(_)) =
+            (verdict, hole.cycle.kind, hole.cycle.peck_mm)
+        {
+            // The control counts its pecks from R by Q, whatever the depth: where they end counts too.
+            let mut unscaled = from;
+            unscaled[normal] += hole.bottom_mm - at_r[normal];
+            let pecks = Curve::Line(from, unscaled);
+            let counted = Pair { wanted: &wanted, commanded: &pecks, in_step: true }.verdict(machine, limit);
+            if matches!(counted, Verdict::Beyond { .. }) {
+                verdict = counted;
+            }
+        }
         let mut end = from;
         if hole.cycle.return_to_initial {
             end[normal] = initial_mm;

@@ -527,3 +527,34 @@ fn an_upright_hole_stays_a_cycle() {
     // 40 mm in a frame shifted by 10: 30 programmed, 40/1.001 - 10 needed.
     assert_eq!(piece.axes, [AxisWord::Write(29_960), AxisWord::Keep, AxisWord::Keep]);
 }
+
+/// A full turn of a helix on a machine that leans ends micrometres beside its start. One block would leave it
+/// to the last digit whether the control makes a turn or none (found by random programs against LinuxCNC).
+#[test]
+fn a_full_turn_whose_ends_no_longer_meet_is_cut() {
+    let mut matrix = nalgebra::Matrix3::zeros();
+    for (sx, sy) in [(4e-4, 4e-4), (-4e-4, 4e-4), (4e-4, -4e-4), (-4e-4, -4e-4)] {
+        matrix[(0, 2)] = sx;
+        matrix[(1, 2)] = sy;
+        let model = Wavy { matrix, amplitude_mm: 0.0, wavelength_mm: 1.0 };
+        for turn in [std::f64::consts::TAU, -std::f64::consts::TAU] {
+            let mut corrector = Corrector::new(&model, OPTIONS);
+            let (start, mut end) = (Vector::new(1.2, -0.1, 0.0), Vector::new(1.2, -0.1, 0.0));
+            end.z = -5.0;
+            let mut control = begin(&mut corrector, start);
+            let shape = Shape::Arc(Arc { plane: Plane::Xy, centre_mm: [0.0, 0.0], sweep_rad: turn });
+            let ran = feed(&mut corrector, &mut control, start, end, shape, &block("ZIJ", false));
+            assert!(ran.corrected.pieces.len() >= 2, "{:?}", ran.corrected.pieces);
+            let swept: f64 = ran
+                .curves
+                .iter()
+                .map(|curve| match curve {
+                    Curve::Arc { sweep, .. } => *sweep,
+                    Curve::Line(..) => 0.0,
+                })
+                .sum();
+            assert!((swept - turn).abs() < 0.02, "{swept}");
+            assert!(worst(&model, &Curve::new(start, end, &shape), &ran.curves) <= ALLOWED_MM);
+        }
+    }
+}
