@@ -143,6 +143,7 @@ fn corrected(
     Ok(result.map_err(refused)?.text)
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "the form `map_err` asks for")]
 fn refused(diagnostics: Vec<Diagnostic>) -> anyhow::Error {
     let words: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
     anyhow::anyhow!("{PROGRAM}: {}", words.join("; "))

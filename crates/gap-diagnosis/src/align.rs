@@ -86,7 +86,9 @@ pub(crate) fn magnitude_errors(data: &Measurements, taken_off: &[(Term, f64)]) -
         .iter()
         .zip(displacements(data, taken_off))
         .filter_map(|(row, effects)| match row.reading {
-            crate::observation::Reading::Magnitude(um) => Some(um - (1e3 * row.predicted_mm + effects).norm()),
+            crate::observation::Reading::Magnitude(um) => {
+                Some(um - (1e3 * row.predicted_mm + effects).norm())
+            }
             _ => None,
         })
         .collect()

@@ -33,7 +33,13 @@ const ENOUGH: f64 = 0.02;
 impl Folds {
     /// Products of `nuisances` (first) and effects, fold by fold, at a run-offset ratio.
     #[must_use]
-    pub(crate) fn new(terms: &[Term], nuisances: usize, rho: f64, source: &Source<'_>, folding: Folding) -> Self {
+    pub(crate) fn new(
+        terms: &[Term],
+        nuisances: usize,
+        rho: f64,
+        source: &Source<'_>,
+        folding: Folding,
+    ) -> Self {
         let names = fold_of(source, folding);
         let folds = names.iter().copied().max().map_or(0, |m| m + 1);
         let mut parts: Vec<Vec<Scalar>> = vec![Vec::new(); folds];
@@ -67,7 +73,12 @@ impl Folds {
         let total = project(&total);
         let reference =
             (0..kept).map(|i| (total[(i, i)] * ENOUGH / crate::linear::RANK_TOLERANCE).max(1e-300)).collect();
-        Self { each: whitened.iter().map(project).collect(), counts: parts.iter().map(Vec::len).collect(), total, reference }
+        Self {
+            each: whitened.iter().map(project).collect(),
+            counts: parts.iter().map(Vec::len).collect(),
+            total,
+            reference,
+        }
     }
 
     /// Squared error of every fold, predicted from the others with `columns` (positions behind the set-up).

@@ -3,7 +3,7 @@
 use machine_model::effects::{EffectKind, EffectTerm, Shape};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use crate::align::{aligned, magnitude_errors, rms, row_lengths, FREE_OFFSETS};
+use crate::align::{FREE_OFFSETS, aligned, magnitude_errors, rms, row_lengths};
 use crate::crossval::{Folding, Folds};
 use crate::diagnosis::{
     Cause, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, Parameter, Setup, Shrinkage, Verdict,
@@ -47,7 +47,10 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
     let mut missing = Vec::new();
     let runs = data.runs.len();
     if scalars.len() < 24 {
-        missing.push(format!("{} readings, at least 24 are needed beside the six set-up parameters", scalars.len()));
+        missing.push(format!(
+            "{} readings, at least 24 are needed beside the six set-up parameters",
+            scalars.len()
+        ));
     }
     if runs < 2 {
         missing.push(format!("{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each"));
@@ -224,7 +227,8 @@ impl<'a> Assembly<'a> {
         let mut lengths = row_lengths(&model.scalars, &before);
         let gap_rms = rms(&lengths);
         lengths.sort_by(f64::total_cmp);
-        let quantile = |q: f64| lengths.get(((lengths.len() as f64 - 1.0) * q).round() as usize).copied().unwrap_or(0.0);
+        let quantile =
+            |q: f64| lengths.get(((lengths.len() as f64 - 1.0) * q).round() as usize).copied().unwrap_or(0.0);
         let gap = Gap {
             rows: lengths.len(),
             rms_um: gap_rms,
@@ -253,7 +257,12 @@ impl<'a> Assembly<'a> {
             sentence: crate::sentence::sentence(verdict, &gap, &causes, &leftover),
             gap,
             places: places(self.data, &model.scalars, &before, self.noise_variance(), options.seed),
-            next_measurement: crate::next::next_measurement(self.data, model, self.worst_pair(), self.noise_variance().sqrt()),
+            next_measurement: crate::next::next_measurement(
+                self.data,
+                model,
+                self.worst_pair(),
+                self.noise_variance().sqrt(),
+            ),
             causes,
             setup: self.setup(),
             leftover,
@@ -278,7 +287,12 @@ impl<'a> Assembly<'a> {
             kinds.extend(&self.model.equally_good);
         }
         let mut seen: Vec<EffectKind> = Vec::new();
-        kinds.retain(|k| !named.contains(k) && !seen.contains(k) && { seen.push(*k); true });
+        kinds.retain(|k| {
+            !named.contains(k) && !seen.contains(k) && {
+                seen.push(*k);
+                true
+            }
+        });
         kinds.iter().map(ToString::to_string).collect()
     }
 
@@ -297,7 +311,9 @@ impl<'a> Assembly<'a> {
             Some(_) => {}
         }
         if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
-            notes.push(format!("The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used."));
+            notes.push(format!(
+                "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used."
+            ));
         }
         if let Some(refused) = &self.model.refused {
             notes.push(format!("{} was considered next and not named: {}.", refused.kind, refused.reason));
@@ -323,10 +339,9 @@ impl<'a> Assembly<'a> {
         } else {
             Vec::new()
         };
-        let absorber = model
-            .refused
-            .as_ref()
-            .map(|r| format!("{} would absorb {:.0} % of what is left ({})", r.kind, 100.0 * r.share, r.reason));
+        let absorber = model.refused.as_ref().map(|r| {
+            format!("{} would absorb {:.0} % of what is left ({})", r.kind, 100.0 * r.share, r.reason)
+        });
         Leftover { rms_um: rms(&lengths), phi, lack_of_fit_p, correlates_with, absorber }
     }
 
@@ -382,34 +397,44 @@ impl<'a> Assembly<'a> {
         let positions = self.positions(place);
         let quantile = StudentsT::new(0.0, 1.0, self.degrees()).map_or(1.96, |d| d.inverse_cdf(0.975));
         // Leaving out the far end of a heavy tail makes the rest look better than it is.
-        let tail =
-            tail_factor(&self.model.scalars, &solution.residuals_um, &self.model.dropped_residuals_um);
-        let deviation = |i: usize| (solution.unit_covariance[(i, i)] * self.variance() * tail).max(0.0).sqrt();
+        let tail = tail_factor(&self.model.scalars, &solution.residuals_um, &self.model.dropped_residuals_um);
+        let deviation =
+            |i: usize| (solution.unit_covariance[(i, i)] * self.variance() * tail).max(0.0).sqrt();
         let kind = self.model.library.candidates[self.model.parts[place].candidate].kind;
         let names = kind.coefficient_names();
         let mut parameters = Vec::new();
-        let waves = matches!(kind, EffectKind::Pitch(_) | EffectKind::Eccentricity(_) | EffectKind::ProbeLobing);
+        let waves =
+            matches!(kind, EffectKind::Pitch(_) | EffectKind::Eccentricity(_) | EffectKind::ProbeLobing);
         if waves && positions.len() >= 2 {
             let (s, c) = (solution.coefficients[positions.start], solution.coefficients[positions.start + 1]);
             let amplitude = units::math::hypot(s, c);
             let (us, uc) = (deviation(positions.start), deviation(positions.start + 1));
             let u = units::math::hypot(s * us, c * uc) / amplitude.max(1e-12);
             let unit = if matches!(kind, EffectKind::Eccentricity(_)) { "urad" } else { "um" };
-            parameters.push(Parameter { name: format!("amplitude_{unit}"), value: amplitude, u95: Some(quantile * u) });
+            parameters.push(Parameter {
+                name: format!("amplitude_{unit}"),
+                value: amplitude,
+                u95: Some(quantile * u),
+            });
         }
         for i in positions {
             if let Term::Effect { index, .. } = solution.terms[i] {
                 let u95 = Some(quantile * deviation(i));
-                parameters.push(Parameter { name: names[index].to_owned(), value: solution.coefficients[i], u95 });
+                parameters.push(Parameter {
+                    name: names[index].to_owned(),
+                    value: solution.coefficients[i],
+                    u95,
+                });
             }
         }
         let shapes = kind.shape_names();
         let entry = self.term(place).entry();
         parameters.extend(
-            entry
-                .into_iter()
-                .filter(|(n, _)| shapes.contains(n))
-                .map(|(name, value)| Parameter { name: name.to_owned(), value, u95: None }),
+            entry.into_iter().filter(|(n, _)| shapes.contains(n)).map(|(name, value)| Parameter {
+                name: name.to_owned(),
+                value,
+                u95: None,
+            }),
         );
         parameters
     }
@@ -417,7 +442,8 @@ impl<'a> Assembly<'a> {
     /// What the first causes do to some commands, alignment taken out.
     fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Strength {
         let own: Vec<(Term, f64)> = self.taken_off(count);
-        let positions: Vec<usize> = self.ordered.iter().take(count).flat_map(|r| self.positions(r.place)).collect();
+        let positions: Vec<usize> =
+            self.ordered.iter().take(count).flat_map(|r| self.positions(r.place)).collect();
         let mut terms = self.set_up_terms().to_vec();
         let nuisances = terms.len();
         terms.extend(own.iter().map(|(t, _)| *t));
@@ -425,7 +451,8 @@ impl<'a> Assembly<'a> {
         let gram = Gram::new(terms, &source);
         let align = scalars.len() >= 24 && !data.has_magnitudes();
         let (whitened, _) = gram.whitened(if align { FREE_OFFSETS } else { 0.0 });
-        let (products, rank) = crate::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
+        let (products, rank) =
+            crate::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
         let offset = products.nrows() - 1 - own.len();
         let covariance = &self.model.solution.unit_covariance;
         let (mut square, mut spread) = (0.0, 0.0);
@@ -497,13 +524,17 @@ impl<'a> Assembly<'a> {
             None => None,
         };
         let mut target = target.unwrap_or(data);
-        target.noise *= tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
+        target.noise *=
+            tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
         transported(m, m_error, &data, &target)
     }
 
     fn holdout(&self, holdout: &Measurements) -> Holdout {
         let all = self.taken_off(self.ordered.len());
         let (before, after) = if holdout.has_magnitudes() {
+            // Lengths cannot be aligned: they are taken in the measuring frame that was found.
+            let terms = self.model.solution.terms.iter().copied();
+            let all: Vec<(Term, f64)> = terms.zip(self.model.solution.coefficients.iter().copied()).collect();
             (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
         } else {
             let scalars = holdout.scalars(None);

@@ -133,7 +133,19 @@ fn explain_once(data: &Measurements, scalars: Vec<Scalar>, without: &[EffectKind
     let rho = sub.best_rho(space.rho(fit.level));
     let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
     let solution = sub.solve(rho, &source);
-    Explained { library, gram, space, parts, fit, solution, outliers: Vec::new(), dropped_residuals_um: Vec::new(), equally_good: Vec::new(), refused, scalars }
+    Explained {
+        library,
+        gram,
+        space,
+        parts,
+        fit,
+        solution,
+        outliers: Vec::new(),
+        dropped_residuals_um: Vec::new(),
+        equally_good: Vec::new(),
+        refused,
+        scalars,
+    }
 }
 
 struct State<'a> {
@@ -225,7 +237,11 @@ impl<'a> State<'a> {
                     let shape = Shape { time_s, ..Shape::default() };
                     let columns = self.library.add_columns(kind, shape, &[0]);
                     // The grid of the library asked already; a finer one asks at most that often again.
-                    self.library.add_variants(kind, vec![Variant { columns, enriched: false, only_rival: false }], asked.min(48));
+                    self.library.add_variants(
+                        kind,
+                        vec![Variant { columns, enriched: false, only_rival: false }],
+                        asked.min(48),
+                    );
                 }
             }
         }
@@ -256,7 +272,9 @@ impl<'a> State<'a> {
             let Some((shape, indices)) = self.shape_of(&columns) else { continue };
             let rest = model_columns(&self.library, &without(&self.parts, place));
             let others: Vec<Term> = rest.iter().map(|c| self.library.terms[*c]).collect();
-            let Some(better) = propose::refined(self.source, &others, kind, &shape, &indices, rho) else { continue };
+            let Some(better) = propose::refined(self.source, &others, kind, &shape, &indices, rho) else {
+                continue;
+            };
             if better == shape {
                 continue;
             }
@@ -303,7 +321,9 @@ impl<'a> State<'a> {
         let ratio = gain / columns / (fit.residual / degrees).max(1e-12);
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
-        let p = 2.0 * self.library.questions() as f64 * f_tail(ratio, columns, effective).min(self.within_runs(&with));
+        let p = 2.0
+            * self.library.questions() as f64
+            * f_tail(ratio, columns, effective).min(self.within_runs(&with));
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
@@ -345,7 +365,10 @@ impl<'a> State<'a> {
         let columns = self.space.columns(&self.library, &[part]);
         let last_level = crate::search::RHO_GRID.len() - 1;
         let information = |l: usize| -> f64 {
-            columns.iter().map(|c| self.space.products(l)[(*c, *c)] / self.space.reference()[*c].max(1e-300)).sum()
+            columns
+                .iter()
+                .map(|c| self.space.products(l)[(*c, *c)] / self.space.reference()[*c].max(1e-300))
+                .sum()
         };
         let (here, free) = (information(level), information(last_level));
         let share = if here > 0.0 { (free / here).clamp(0.0, 1.0) } else { 1.0 };
@@ -359,9 +382,8 @@ impl<'a> State<'a> {
         let terms: Vec<Term> = columns.iter().map(|c| self.library.terms[*c]).collect();
         let nuisances = self.library.nuisances;
         let all: Vec<usize> = (0..terms.len() - nuisances).collect();
-        let own = with
-            .last()
-            .map_or(0, |p| self.library.candidates[p.candidate].variants[p.variant].columns.len());
+        let own =
+            with.last().map_or(0, |p| self.library.candidates[p.candidate].variants[p.variant].columns.len());
         let (base, added) = all.split_at(all.len() - own);
         let rho = self.space.rho(level);
         let passes = |folding| {

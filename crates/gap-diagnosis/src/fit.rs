@@ -48,10 +48,7 @@ impl Gram {
     /// Offsets that free run offsets amount to: directions that each run sees.
     #[must_use]
     pub(crate) fn offsets_fitted(&self) -> f64 {
-        self.run_information
-            .iter()
-            .map(|u| (0..3).filter(|c| u[(*c, *c)] > 1e-9).count() as f64)
-            .sum()
+        self.run_information.iter().map(|u| (0..3).filter(|c| u[(*c, *c)] > 1e-9).count() as f64).sum()
     }
 
     /// Squares of the columns, nothing taken out.

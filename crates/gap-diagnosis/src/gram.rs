@@ -96,18 +96,15 @@ impl Gram {
                 continue;
             }
             // Columns that can be anything but zero in this class; the gap (index terms.len()) last.
-            let mut active: Vec<usize> = (0..terms.len())
-                .filter(|i| class == 3 || terms[*i].touches(class))
-                .collect();
+            let mut active: Vec<usize> =
+                (0..terms.len()).filter(|i| class == 3 || terms[*i].touches(class)).collect();
             active.push(size - 1);
             let is_fresh: Vec<bool> = active.iter().map(|i| fresh[*i]).collect();
             if !is_fresh.iter().any(|f| *f) {
                 continue;
             }
-            let groups: Vec<Vec<&Scalar>> = scalars
-                .chunks(CHUNK * (1 + scalars.len() / (CHUNK * 64)))
-                .map(<[&Scalar]>::to_vec)
-                .collect();
+            let groups: Vec<Vec<&Scalar>> =
+                scalars.chunks(CHUNK * (1 + scalars.len() / (CHUNK * 64))).map(<[&Scalar]>::to_vec).collect();
             let partials: Vec<Partial> =
                 groups.par_iter().map(|group| partial(group, &terms, &active, &is_fresh, source)).collect();
             for part in partials {
@@ -202,9 +199,8 @@ fn partial(
             let root = scalar.weight.sqrt();
             let lane_values = &mut values[lane * width..(lane + 1) * width];
             for (to, index) in lane_values.iter_mut().zip(active) {
-                let value = terms
-                    .get(*index)
-                    .map_or(scalar.gap_um, |term| term.value(scalar, row, source.geometry));
+                let value =
+                    terms.get(*index).map_or(scalar.gap_um, |term| term.value(scalar, row, source.geometry));
                 *to = root * value;
             }
             if runs.last().is_none_or(|(run, _)| *run != row.run) {

@@ -30,8 +30,8 @@ mod verdict;
 
 pub use diagnose::{Options, diagnose, underpowered};
 pub use diagnosis::{
-    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter, Setup, Shrinkage,
-    Verdict,
+    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter, Setup,
+    Shrinkage, Verdict,
 };
 pub use observation::{Measurements, Reading, Row};
 pub use remedy::remedy;

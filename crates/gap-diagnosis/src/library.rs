@@ -87,9 +87,8 @@ impl Seen {
             load: varies(&|r| r.conditions.load_kg),
             feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
             loads: distinct(rows, &|r| r.conditions.load_kg),
-            rotary: [0, 1, 2].map(|a| {
-                data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))
-            }),
+            rotary: [0, 1, 2]
+                .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
         }
     }
 }
@@ -112,7 +111,8 @@ impl Library {
     #[must_use]
     pub(crate) fn new(data: &Measurements, without: &[EffectKind]) -> Self {
         let seen = Seen::new(data);
-        let mut terms: Vec<Term> = (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
+        let mut terms: Vec<Term> =
+            (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
         if data.has_lengths() {
             terms.push(Term::BarLength);
         }
@@ -166,7 +166,8 @@ impl Library {
 
     fn forms(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
         let travels = |a: usize| seen.range[a].1 - seen.range[a].0 > 1e-6;
-        let interval = |a: usize| Shape { from_mm: seen.range[a].0, to_mm: seen.range[a].1, ..Shape::default() };
+        let interval =
+            |a: usize| Shape { from_mm: seen.range[a].0, to_mm: seen.range[a].1, ..Shape::default() };
         let none = Shape::default();
         match kind {
             EffectKind::Scale(a) if travels(a) => self.selections(kind, none, &[&[0]]),
@@ -194,7 +195,8 @@ impl Library {
                     .flat_map(|share| {
                         let from_mm = low + share * (high - low);
                         let shape = Shape { from_mm, to_mm: high, ..Shape::default() };
-                        let lists: &[&[usize]] = if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
+                        let lists: &[&[usize]] =
+                            if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
                         let mut forms = self.selections(kind, shape, lists);
                         forms.iter_mut().for_each(|f| f.enriched = share != 0.0);
                         forms
@@ -235,11 +237,15 @@ impl Library {
         let taus = TAU_SHARES.map(|share| share * (end - start));
         let columns: Vec<usize> = taus
             .iter()
-            .flat_map(|tau| self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0]))
+            .flat_map(|tau| {
+                self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0])
+            })
             .collect();
-        let single = columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false });
+        let single =
+            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false });
         let double = columns.iter().zip(columns.iter().skip(2));
-        let double = double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
+        let double =
+            double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
         single.chain(double).collect()
     }
 
@@ -267,8 +273,10 @@ impl Library {
     /// Damage at one place: along one direction or all three.
     pub(crate) fn place(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
         let columns = self.add_columns(kind, Shape { centre_mm, width_mm, ..Shape::default() }, &[0, 1, 2]);
-        let mut variants: Vec<Variant> =
-            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false }).collect();
+        let mut variants: Vec<Variant> = columns
+            .iter()
+            .map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false })
+            .collect();
         variants.push(Variant { columns, enriched: true, only_rival: false });
         variants
     }

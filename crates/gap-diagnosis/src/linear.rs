@@ -67,9 +67,9 @@ impl Factor {
     #[must_use]
     pub(crate) fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut x: Vec<f64> = Vec::with_capacity(b.len());
-        for i in 0..self.rank() {
+        for (i, value) in b.iter().enumerate().take(self.rank()) {
             let sum: f64 = x.iter().enumerate().map(|(k, v)| self.lower[(i, k)] * v).sum();
-            x.push((b[i] - sum) / self.lower[(i, i)]);
+            x.push((value - sum) / self.lower[(i, i)]);
         }
         x
     }

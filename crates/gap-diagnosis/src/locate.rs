@@ -47,10 +47,11 @@ pub(crate) fn places(
         let observed = sums(&family, &squares, 0);
         let mean = total / scalars.len() as f64;
         // Excess over an even spread, on the scale of its own scatter.
-        let excess = |sum: f64, count: f64| if count > 0.0 { (sum - mean * count) / count.sqrt() } else { f64::NEG_INFINITY };
-        let score = |sums: &[f64]| -> Vec<f64> {
-            sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect()
+        let excess = |sum: f64, count: f64| {
+            if count > 0.0 { (sum - mean * count) / count.sqrt() } else { f64::NEG_INFINITY }
         };
+        let score =
+            |sums: &[f64]| -> Vec<f64> { sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect() };
         let own = score(&observed);
         let share = |sum: f64, count: f64| {
             let own = (sum - noise_variance * count).max(0.0);
@@ -97,13 +98,20 @@ fn families(data: &Measurements, scalars: &[Scalar]) -> Vec<Family> {
     let mut all = Vec::new();
     if scalars.iter().any(|s| s.class < 3) {
         let names = ["dx", "dy", "dz", "along the bar"].map(str::to_owned).to_vec();
-        all.push(Family { by: "component".to_owned(), names, label: scalars.iter().map(|s| s.class).collect() });
+        all.push(Family {
+            by: "component".to_owned(),
+            names,
+            label: scalars.iter().map(|s| s.class).collect(),
+        });
     }
     for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
         let (low, high) = data.range_mm(axis);
         if high > low {
             let names = segments(low, high, SEGMENTS, "");
-            let label = scalars.iter().map(|s| segment(row(s).command.linear_mm[axis], low, high, SEGMENTS)).collect();
+            let label = scalars
+                .iter()
+                .map(|s| segment(row(s).command.linear_mm[axis], low, high, SEGMENTS))
+                .collect();
             all.push(Family { by: name.to_owned(), names, label });
         }
     }
@@ -198,6 +206,7 @@ fn by_name(
         *slot = place;
     }
     let names = index.keys().map(|k| (*k).to_owned()).collect();
-    let label = scalars.iter().filter_map(|s| of_row[s.row].as_deref().and_then(|n| index.get(n).copied())).collect();
+    let label =
+        scalars.iter().filter_map(|s| of_row[s.row].as_deref().and_then(|n| index.get(n).copied())).collect();
     Some(Family { by: by.to_owned(), names, label })
 }

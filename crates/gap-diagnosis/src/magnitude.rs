@@ -64,11 +64,8 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explain
 fn starts(data: &Measurements, without: &[EffectKind]) -> Vec<Vec<Vector>> {
     let library = Library::new(data, without);
     let predicted: Vec<Vector> = data.rows.iter().map(|r| 1e3 * r.predicted_mm).collect();
-    let measured: Vec<f64> = data
-        .rows
-        .iter()
-        .map(|r| if let Reading::Magnitude(um) = r.reading { um } else { 0.0 })
-        .collect();
+    let measured: Vec<f64> =
+        data.rows.iter().map(|r| if let Reading::Magnitude(um) = r.reading { um } else { 0.0 }).collect();
     let mut tried: Vec<(f64, EffectKind, Vec<Vector>)> = Vec::new();
     for candidate in &library.candidates {
         for variant in candidate.variants.iter().filter(|v| v.columns.len() <= 2) {
@@ -101,7 +98,12 @@ fn starts(data: &Measurements, without: &[EffectKind]) -> Vec<Vec<Vector>> {
 }
 
 /// Best amplitude of one column with one sign, by repeated linearisation, and the misfit it leaves.
-fn amplitude(measured: &[f64], predicted: &[Vector], unit: &[Vector], sign: f64) -> Option<(f64, Vec<Vector>)> {
+fn amplitude(
+    measured: &[f64],
+    predicted: &[Vector],
+    unit: &[Vector],
+    sign: f64,
+) -> Option<(f64, Vec<Vector>)> {
     let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let lengths: Vec<f64> = unit.iter().map(|u| u.norm()).collect();
     if size(&lengths) <= 0.0 {

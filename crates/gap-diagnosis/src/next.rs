@@ -32,12 +32,12 @@ pub(crate) fn next_measurement(
 ) -> Option<NextMeasurement> {
     let (place, rival) = pair?;
     let nuisances = model.library.nuisances;
-    let rest = without(&model.parts, place);
-    let mut explaining = rest.clone();
+    let mut explaining = without(&model.parts, place);
     explaining.push(rival);
     let mut columns = model_columns(&model.library, &explaining);
     let explained_by = columns.len();
-    let own = &model.library.candidates[model.parts[place].candidate].variants[model.parts[place].variant].columns;
+    let own =
+        &model.library.candidates[model.parts[place].candidate].variants[model.parts[place].variant].columns;
     columns.extend(own);
     let values: Vec<f64> = own_coefficients(model, place);
     let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
@@ -61,7 +61,10 @@ pub(crate) fn next_measurement(
     let name = |part: Part| model.library.candidates[part.candidate].kind.to_string();
     let separates = [name(model.parts[place]), name(rival)];
     let text = if expected_sigma < now + 1.0 {
-        format!("No simple line tells {} from {}: a different kind of measurement is needed.", separates[0], separates[1])
+        format!(
+            "No simple line tells {} from {}: a different kind of measurement is needed.",
+            separates[0], separates[1]
+        )
     } else {
         format!("Measure {text}: it tells {} from {}.", separates[0], separates[1])
     };
@@ -95,11 +98,16 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let Some(typical) = data.rows.get(data.rows.len() / 2).copied() else { return Vec::new() };
     let range = [0, 1, 2].map(|a| data.range_mm(a));
     let travels: Vec<usize> = (0..3).filter(|a| range[*a].1 > range[*a].0).collect();
-    let time = data.rows.iter().filter_map(|r| r.conditions.time_s).fold(None, |m: Option<f64>, t| {
-        Some(m.map_or(t, |m| m.max(t)))
-    });
+    let time = data
+        .rows
+        .iter()
+        .filter_map(|r| r.conditions.time_s)
+        .fold(None, |m: Option<f64>, t| Some(m.map_or(t, |m| m.max(t))));
     let base = Row {
-        conditions: machine_model::effects::Conditions { time_s: time.map(|t| t + 60.0), ..typical.conditions },
+        conditions: machine_model::effects::Conditions {
+            time_s: time.map(|t| t + 60.0),
+            ..typical.conditions
+        },
         predicted_mm: Vector::zeros(),
         u_um: None,
         reading: Reading::Displacement([Some(0.0); 3]),
@@ -135,7 +143,10 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let plain = all.clone();
     let mut vary = |words: &str, changed: &Row| {
         for (text, from, to) in &plain {
-            lines.push(Line { text: format!("{text}, both ways, {words}"), rows: both_ways(*from, *to, changed) });
+            lines.push(Line {
+                text: format!("{text}, both ways, {words}"),
+                rows: both_ways(*from, *to, changed),
+            });
         }
     };
     let c = base.conditions;
@@ -174,7 +185,13 @@ fn both_ways(from: Vector, to: Vector, base: &Row) -> Vec<Row> {
         row.command.linear_mm = from + (to - from) * share;
         row.command.direction = std::array::from_fn(|a| {
             let step = sign * (to[a] - from[a]);
-            if step > 0.0 { 1 } else if step < 0.0 { -1 } else { 0 }
+            if step > 0.0 {
+                1
+            } else if step < 0.0 {
+                -1
+            } else {
+                0
+            }
         });
         row
     };

@@ -16,6 +16,8 @@ const NOMINAL_PITCHES_MM: [f64; 17] =
     [2.0, 2.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 30.0, 32.0, 40.0, 50.0];
 /// Damage at a place is narrower than this share of the axis.
 const LOCAL_WIDEST: f64 = 0.3;
+/// So many places at uneven distances show a wave even where they lie further apart than half its period.
+const ENOUGH_PLACES: usize = 24;
 /// How far from a nominal pitch is still a neighbour.
 const NEIGHBOURHOOD: f64 = 0.025;
 /// Equations that a scan over shapes looks at; more are thinned evenly.
@@ -68,7 +70,8 @@ pub(crate) fn pitches(source: &Source<'_>, residuals_um: &[f64], axis: usize) ->
 
 /// Square explained by a sine and a cosine of this period beside a constant.
 fn power(points: &[(f64, f64)], pitch_mm: f64) -> f64 {
-    let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y) =
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (q, r) in points {
         let (sin, cos) = math::sin_cos(std::f64::consts::TAU * q / pitch_mm);
         (s, c, ss, sc, cc) = (s + sin, c + cos, ss + sin * sin, sc + sin * cos, cc + cos * cos);
@@ -174,7 +177,7 @@ pub(crate) fn is_coarse(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool
     let mut places: Vec<f64> = source.rows.iter().map(|r| r.command.linear_mm[axis]).collect();
     places.sort_by(f64::total_cmp);
     let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).filter(|s| *s > 1e-3).collect();
-    median(&mut steps).is_none_or(|step| step > 0.5 * pitch_mm)
+    steps.len() < ENOUGH_PLACES && median(&mut steps).is_none_or(|step| step > 0.5 * pitch_mm)
 }
 
 /// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
@@ -194,7 +197,12 @@ fn is_strobed(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
 }
 
 /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude.
-pub(crate) fn pitch_variants(library: &mut Library, axis: usize, pitch_mm: f64, range: (f64, f64)) -> Vec<Variant> {
+pub(crate) fn pitch_variants(
+    library: &mut Library,
+    axis: usize,
+    pitch_mm: f64,
+    range: (f64, f64),
+) -> Vec<Variant> {
     let shape = Shape { pitch_mm, from_mm: range.0, to_mm: range.1, ..Shape::default() };
     let all: Vec<usize> = (0..12).collect();
     let columns = library.add_columns(EffectKind::Pitch(axis), shape, &all);
@@ -324,7 +332,8 @@ fn step_time(source: &Source<'_>, shape: &Shape, gain: impl Fn(&Shape) -> f64) -
     for pass_stride in [stride, 1] {
         let span = if pass_stride == stride { reach } else { stride };
         for k in (centre.saturating_sub(span)..=centre + span).step_by(pass_stride) {
-            let (Some(before), Some(after)) = (k.checked_sub(1).and_then(|b| times.get(b)), times.get(k)) else {
+            let (Some(before), Some(after)) = (k.checked_sub(1).and_then(|b| times.get(b)), times.get(k))
+            else {
                 continue;
             };
             let time_s = 0.5 * (before + after);

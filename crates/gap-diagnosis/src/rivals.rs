@@ -39,8 +39,11 @@ pub(crate) fn rivals(model: &Explained, place: usize) -> Vec<Rival> {
     let rest = without(&model.parts, place);
     let own = model.parts[place];
     let scanned = model.space.scan(&model.library, &rest, None, true);
-    let own_score =
-        scanned.iter().filter(|(p, _)| p.candidate == own.candidate).map(|(_, f)| f.score).fold(f64::INFINITY, f64::min);
+    let own_score = scanned
+        .iter()
+        .filter(|(p, _)| p.candidate == own.candidate)
+        .map(|(_, f)| f.score)
+        .fold(f64::INFINITY, f64::min);
     let left = left_over(model, &rest);
     let contribution = contribution(model, &left, own);
     let mut found: Vec<Rival> = Vec::new();

@@ -150,10 +150,7 @@ impl Space {
         rivals: bool,
     ) -> Vec<(Part, Fit)> {
         let columns = self.columns(library, base);
-        let base_price: f64 = base
-            .iter()
-            .map(|p| self.price(library, *p))
-            .sum();
+        let base_price: f64 = base.iter().map(|p| self.price(library, *p)).sum();
         let sweeps: Vec<(f64, usize, Vec<Vec<f64>>)> = self
             .levels
             .iter()
@@ -179,7 +176,8 @@ impl Space {
             }
             for variant in (0..entry.variants.len()).filter(|v| rivals || !entry.variants[*v].only_rival) {
                 let part = Part { candidate, variant };
-                let own: Vec<usize> = entry.variants[variant].columns.iter().map(|c| c - self.nuisances).collect();
+                let own: Vec<usize> =
+                    entry.variants[variant].columns.iter().map(|c| c - self.nuisances).collect();
                 let mut best: Option<Fit> = None;
                 for (index, (residual, rank, over)) in sweeps.iter().enumerate() {
                     let (gain, own_rank) = self.gain(index, &own, over, entry.kind.is_one_sided());
@@ -218,7 +216,8 @@ impl Space {
         }
         let count = own.len();
         let at = |k: usize| if k < count { own[k] } else { last };
-        let small = DMatrix::from_fn(count + 1, count + 1, |i, j| products[(at(i), at(j))] - dot(at(i), at(j)));
+        let small =
+            DMatrix::from_fn(count + 1, count + 1, |i, j| products[(at(i), at(j))] - dot(at(i), at(j)));
         let reference: Vec<f64> = own.iter().map(|c| self.reference[*c]).collect();
         let all: Vec<usize> = (0..count).collect();
         crate::linear::explained(&small, &all, &reference)

@@ -11,7 +11,9 @@ pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: 
     let after = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
     match verdict {
         Verdict::NoGap => format!("Model and machine agree within the noise of {:.2} µm.", gap.noise_um),
-        Verdict::Named => format!("The gap of {size} comes from {list}; with it in the model {after:.1} µm remain."),
+        Verdict::Named => {
+            format!("The gap of {size} comes from {list}; with it in the model {after:.1} µm remain.")
+        }
         Verdict::Ambiguous => {
             let open = causes.iter().find(|c| !c.cannot_be_told_from.is_empty());
             let open = open.map_or_else(String::new, |c| {
@@ -24,7 +26,9 @@ pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: 
             100.0 * leftover.phi
         ),
         Verdict::Unknown => {
-            let absorber = names.first().map_or_else(String::new, |n| format!(" (the nearest, {n}, only absorbs part of it)"));
+            let absorber = names
+                .first()
+                .map_or_else(String::new, |n| format!(" (the nearest, {n}, only absorbs part of it)"));
             format!("There is a gap of {size} that no effect of the library explains{absorber}.")
         }
         Verdict::NoiseModelSuspect => {

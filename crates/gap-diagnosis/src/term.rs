@@ -37,7 +37,11 @@ impl Term {
             Self::SetupRotation(axis) => unit(*axis).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
             Self::BarLength => Vector::zeros(),
             Self::UnknownApproach(axis) => {
-                if row.command.direction[*axis] == 0 { unit(*axis) } else { Vector::zeros() }
+                if row.command.direction[*axis] == 0 {
+                    unit(*axis)
+                } else {
+                    Vector::zeros()
+                }
             }
             Self::Effect { kind, index, shape } => kind
                 .unit_displacement_mm(*index, shape, &row.command, &row.conditions, geometry)
@@ -82,7 +86,13 @@ impl Term {
                 EffectKind::Angular { about, .. } => about != component,
                 EffectKind::Local(_) => index == component,
                 EffectKind::InstrumentDrift => index % 3 == component,
-                EffectKind::Sag(a) => if index < 3 { component == 2 } else { component != 1 - a },
+                EffectKind::Sag(a) => {
+                    if index < 3 {
+                        component == 2
+                    } else {
+                        component != 1 - a
+                    }
+                }
                 EffectKind::ProbeLobing | EffectKind::Rotary { .. } | EffectKind::Eccentricity(_) => true,
             },
         }

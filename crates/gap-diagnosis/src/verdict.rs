@@ -51,8 +51,8 @@ pub(crate) fn verdict(e: &Evidence) -> Verdict {
     if structured {
         return if e.phi > PHI_UNKNOWN { Verdict::Unknown } else { Verdict::Partial };
     }
-    if e.instrument_causes == e.causes {
-        return Verdict::NoiseModelSuspect;
+    if e.ambiguous {
+        return Verdict::Ambiguous;
     }
-    if e.ambiguous { Verdict::Ambiguous } else { Verdict::Named }
+    if e.instrument_causes == e.causes { Verdict::NoiseModelSuspect } else { Verdict::Named }
 }

@@ -260,8 +260,8 @@ fn cancel_preset(
         return Err(refuse(words, span, "without axes", "which axes lose their shift?")
             .help("write X0 Y0 Z0 beside it"));
     }
-    for i in 0..3 {
-        if words.has(Letters::of(&[LINEAR[i]])) {
+    for (i, letter) in LINEAR.into_iter().enumerate() {
+        if words.has(Letters::of(&[letter])) {
             state.shifts.preset_mm[i] = 0.0;
             state.shifts.local_mm[i] = 0.0;
         }
