@@ -82,7 +82,6 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),
         ("chip_retreat_mm", &cycles.chip_retreat_mm, 100.0),
         ("arc_radius_tolerance_mm", &output.arc_radius_tolerance_mm, 10.0),
-        ("scaling_step", &grammar.frames.scaling_step, 1.0),
     ] {
         let found = *length.get_ref();
         // Written so that NaN is refused too.
@@ -90,9 +89,17 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             report(
                 length.span(),
                 format!("{what} = {found} is out of range"),
-                &format!("expected above 0, up to {most}"),
+                &format!("expected above 0, up to {most} mm"),
             );
         }
+    }
+    let scaling_step = &grammar.frames.scaling_step;
+    if !(*scaling_step.get_ref() > 0.0 && *scaling_step.get_ref() <= 1.0) {
+        report(
+            scaling_step.span(),
+            format!("scaling_step = {} is out of range", scaling_step.get_ref()),
+            "expected above 0, up to 1",
+        );
     }
     if *output.max_block_number.get_ref() == 0 {
         report(

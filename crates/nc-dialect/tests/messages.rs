@@ -22,16 +22,16 @@ fn a_misspelt_action() {
     insta::assert_snapshot!(changed(r#"does = "inch""#, r#"does = "inches""#), @r#"
     error[VP0804]: `inches` is not something a code does
       at `"inches"`: G20 cannot do this
-      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, pass, pass-with-words
+      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 
 #[test]
 fn an_action_nothing_is_near_to() {
-    insta::assert_snapshot!(changed(r#"does = "dwell""#, r#"does = "warten""#), @r#"
+    insta::assert_snapshot!(changed(r#"does = "dwell-p""#, r#"does = "warten""#), @r#"
     error[VP0804]: `warten` is not something a code does
       at `"warten"`: G4 cannot do this
-      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, pass, pass-with-words
+      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 
@@ -64,7 +64,7 @@ fn no_code() {
 
 #[test]
 fn neither_done_nor_refused() {
-    insta::assert_snapshot!(changed(r#"{ group = 0, does = "dwell" }"#, "{ group = 0 }"), @r#"
+    insta::assert_snapshot!(changed(r#"{ group = 0, does = "dwell-p" }"#, "{ group = 0 }"), @r#"
     error[VP0805]: G4 says neither what it does nor why it is refused
       at `G4`: expected `does`, or `refuse` with `help`
       help: write `G4 = { group = 0, does = "pass" }` if it moves nothing
@@ -91,15 +91,15 @@ fn an_unknown_field() {
 
 #[test]
 fn a_start_that_cannot_be() {
-    insta::assert_snapshot!(changed(r#"["G17", "G21", "#, r#"["G17", "G18", "G4", "G52", "G6", "#), @r#"
+    insta::assert_snapshot!(changed(r#"["G17", "G21", "#, r#"["G17", "G18", "G4", "G33", "G6", "#), @r#"
     error[VP0807]: `G18` excludes G17, of the same group: it cannot hold at the start
       at `"G18"`: expected a modal code of the table
       help: write codes as the table writes them: `G17`, not `G017`
     error[VP0807]: `G4` holds for one block only (group 0): it cannot hold at the start
       at `"G4"`: expected a modal code of the table
       help: write codes as the table writes them: `G17`, not `G017`
-    error[VP0807]: `G52` is a refused code: it cannot hold at the start
-      at `"G52"`: expected a modal code of the table
+    error[VP0807]: `G33` is a refused code: it cannot hold at the start
+      at `"G33"`: expected a modal code of the table
       help: write codes as the table writes them: `G17`, not `G017`
     error[VP0807]: `G6` has no row in [codes]: it cannot hold at the start
       at `"G6"`: expected a modal code of the table

@@ -2,9 +2,6 @@
 
 use diagnostic::Code;
 
-/// Bytes of the block are neither a word nor a comment. Cause: a damaged file, or another dialect.
-/// Remedy: correct the text or choose the dialect with `--dialect`.
-pub const UNREADABLE: Code = Code(201);
 /// A variable, an expression or program flow stands where a number is needed. Cause: a macro program.
 /// Remedy: post the program with plain numbers.
 pub const NOT_STATIC: Code = Code(202);
