@@ -33,7 +33,11 @@ impl<'a> Run<'a, '_> {
             if u32::try_from(program).is_ok_and(|number| source.programs.contains_key(&number)) {
                 return Err(say(
                     codes::COMBINATION,
-                    format!("P{program} is a program of this file, and {} times O{:04}", program / 10_000, program % 10_000),
+                    format!(
+                        "P{program} is a program of this file, and {} times O{:04}",
+                        program / 10_000,
+                        program % 10_000
+                    ),
                     "controls differ",
                     "write the count as an L word",
                 ));
@@ -47,7 +51,9 @@ impl<'a> Run<'a, '_> {
         if arguments.is_some() && passes > 1 {
             return Err(say(
                 codes::ARGUMENT,
-                format!("G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told"),
+                format!(
+                    "G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told"
+                ),
                 "repeated with its own variables",
                 "write the call as often as it shall run",
             ));
@@ -64,7 +70,10 @@ impl<'a> Run<'a, '_> {
     ///
     /// I, J and K may come more than once: I1 J1 K1 I2 … are #4 #5 #6 #7 …; where two arguments name one variable,
     /// the later counts.
-    fn arguments(&self, words: &[(u8, crate::expression::Expression, bool)]) -> Result<Vec<(u32, Value)>, Stop> {
+    fn arguments(
+        &self,
+        words: &[(u8, crate::expression::Expression, bool)],
+    ) -> Result<Vec<(u32, Value)>, Stop> {
         let mut arguments = Vec::with_capacity(words.len());
         let (mut group, mut last) = (0_u32, None);
         for (letter, value, point) in words {
@@ -90,7 +99,12 @@ impl<'a> Run<'a, '_> {
                 },
             };
             if variable > 33 {
-                return Err(say(codes::ARGUMENT, "more than ten groups of I, J and K", "too many", "pass fewer arguments"));
+                return Err(say(
+                    codes::ARGUMENT,
+                    "more than ten groups of I, J and K",
+                    "too many",
+                    "pass fewer arguments",
+                ));
             }
             let mut value = self.evaluate(value)?;
             if let (false, Value::Number(number)) = (*point, value) {
@@ -110,14 +124,20 @@ impl<'a> Run<'a, '_> {
             b'D' | b'H' | b'M' | b'S' | b'T' => Ok(number),
             b'B' | b'E' | b'F' => Err(say(
                 codes::ARGUMENT,
-                format!("argument {}{number} has no point: parameters of the control say what it counts", letter as char),
+                format!(
+                    "argument {}{number} has no point: parameters of the control say what it counts",
+                    letter as char
+                ),
                 "0.001, 0.01 or 1?",
                 format!("write `{}{number}.`", letter as char),
             )),
             _ => {
                 let numbers = &self.dialect.numbers;
-                let decimals =
-                    if self.inch() { numbers.least_increment_decimals_inch } else { numbers.least_increment_decimals_mm };
+                let decimals = if self.inch() {
+                    numbers.least_increment_decimals_inch
+                } else {
+                    numbers.least_increment_decimals_mm
+                };
                 Ok(number / f64::from(10_u32.pow(u32::from(decimals.min(9)))))
             }
         }
@@ -138,7 +158,12 @@ impl<'a> Run<'a, '_> {
             vec![format!("{number}.ngc")]
         } else {
             let mut names = Vec::new();
-            for stem in [format!("O{number:04}"), format!("o{number:04}"), format!("{number:04}"), format!("{number}")] {
+            for stem in [
+                format!("O{number:04}"),
+                format!("o{number:04}"),
+                format!("{number:04}"),
+                format!("{number}"),
+            ] {
                 for ending in ["", ".nc", ".NC", ".tap", ".txt", ".cnc"] {
                     names.push(format!("{stem}{ending}"));
                 }
@@ -151,7 +176,8 @@ impl<'a> Run<'a, '_> {
             return Ok(behind(file, *statement));
         }
         if source.programs.is_empty() {
-            let first = source.statements.iter().position(|statement| !matches!(statement.kind, Kind::Percent));
+            let first =
+                source.statements.iter().position(|statement| !matches!(statement.kind, Kind::Percent));
             return Ok(Place { file, statement: first.unwrap_or(0) as u32 });
         }
         Err(say(
@@ -306,21 +332,14 @@ impl<'a> Run<'a, '_> {
 
     /// The first branch whose condition holds.
     fn next_branch(&mut self, source: &Source<'a>, mut branch: u32) -> Result<(), Stop> {
-        loop {
-            let o = match source.statements.get(branch as usize).map(|statement| &statement.kind) {
-                Some(Kind::Complex(complex)) => match &complex.control {
-                    Some(Control::O(o)) => o,
-                    _ => break,
-                },
-                _ => break,
-            };
-            match &o.word {
-                OWord::ElseIf(condition) if !self.holds(condition)? => {
-                    self.spend(1)?;
-                    branch = o.next;
-                }
-                _ => break,
-            }
+        while let Some(Kind::Complex(complex)) =
+            source.statements.get(branch as usize).map(|statement| &statement.kind)
+            && let Some(Control::O(o)) = &complex.control
+            && let OWord::ElseIf(condition) = &o.word
+            && !self.holds(condition)?
+        {
+            self.spend(1)?;
+            branch = o.next;
         }
         self.at.statement = branch + 1;
         Ok(())

@@ -50,7 +50,11 @@ impl Rules {
     }
 
     /// The value of an expression.
-    pub(crate) fn evaluate(self, expression: &Expression, variables: &impl Variables) -> Result<Value, Fault> {
+    pub(crate) fn evaluate(
+        self,
+        expression: &Expression,
+        variables: &impl Variables,
+    ) -> Result<Value, Fault> {
         let value = match expression {
             Expression::Number(number) => return Ok(Value::Number(*number)),
             Expression::Variable(variable) => return variables.value(*variable),

@@ -260,8 +260,11 @@ impl<'t, 'n> Parser<'t, 'n> {
                 while self.peek().is_some_and(|byte| byte.is_ascii_digit()) {
                     self.at += 1;
                 }
-                let digits: String =
-                    self.text[start..self.at].iter().filter(|b| b.is_ascii_digit()).map(|b| *b as char).collect();
+                let digits: String = self.text[start..self.at]
+                    .iter()
+                    .filter(|b| b.is_ascii_digit())
+                    .map(|b| *b as char)
+                    .collect();
                 let number =
                     digits.parse().map_err(|_| format!("#{digits} is no variable of any control"))?;
                 Ok(Expression::Variable(Variable::Numbered(number)))
@@ -311,7 +314,8 @@ impl<'t, 'n> Parser<'t, 'n> {
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
             return Err(format!("`{shown}` is no function"));
         };
-        let fanuc_only = matches!(function, Function::Bcd | Function::Bin) || matches!(&name[..], b"ATN" | b"SQR" | b"RND");
+        let fanuc_only = matches!(function, Function::Bcd | Function::Bin)
+            || matches!(&name[..], b"ATN" | b"SQR" | b"RND");
         if fanuc_only && self.macros != Macros::Fanuc {
             return Err(format!("`{shown}` is no function of this dialect"));
         }

@@ -68,9 +68,11 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
 
 fn arithmetic(fault: &Fault, span: Range<u64>) -> Diagnostic {
     match fault {
-        Fault::Arithmetic(what) => Diagnostic::error(codes::ARITHMETIC, format!("{what}: this has no result"))
-            .at(span, "computed here")
-            .help("correct the expression, or the values given with `--set`"),
+        Fault::Arithmetic(what) => {
+            Diagnostic::error(codes::ARITHMETIC, format!("{what}: this has no result"))
+                .at(span, "computed here")
+                .help("correct the expression, or the values given with `--set`")
+        }
         Fault::TooClose(a, b) => Diagnostic::error(
             codes::TOO_CLOSE,
             format!("{a} and {b} differ by rounding only: the control's own rounding decides"),
@@ -127,7 +129,12 @@ pub(crate) fn too_deep(limit: usize) -> Stop {
 }
 
 pub(crate) fn label(number: u64, why: &str) -> Stop {
-    say(codes::LABEL, format!("N{number} cannot be gone to: {why}"), "leads there", "correct the block number")
+    say(
+        codes::LABEL,
+        format!("N{number} cannot be gone to: {why}"),
+        "leads there",
+        "correct the block number",
+    )
 }
 
 pub(crate) fn endless() -> Stop {

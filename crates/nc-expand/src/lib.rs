@@ -151,12 +151,9 @@ impl Expanded<'_> {
     }
 
     /// The line of the source that a line of the plain program comes from, with its file.
-    ///
-    /// * `offset` – bytes of the plain program before the block
-    /// * `line` – the block's line in the plain program
     #[must_use]
-    pub fn source_line(&self, offset: u64, line: u64) -> (usize, u64) {
-        let after = self.segments.partition_point(|segment| segment.flat <= offset);
+    pub fn source_line(&self, line: u64) -> (usize, u64) {
+        let after = self.segments.partition_point(|segment| u64::from(segment.flat_line) <= line);
         match after.checked_sub(1).and_then(|at| self.segments.get(at)) {
             Some(segment) if segment.exact => {
                 let below = line.saturating_sub(u64::from(segment.flat_line));

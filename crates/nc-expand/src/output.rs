@@ -67,7 +67,12 @@ impl Output {
         let flat = self.text.len() as u64;
         if let Some(last) = self.segments.last_mut() {
             let follows = last.source + (flat - last.flat) == from.offset;
-            if exact && last.exact && last.file == from.file && follows && last.source + last.length == from.offset {
+            if exact
+                && last.exact
+                && last.file == from.file
+                && follows
+                && last.source + last.length == from.offset
+            {
                 last.length += from.length;
                 return;
             }
@@ -116,7 +121,8 @@ impl Output {
         self.fresh_line();
         self.segment(from, false);
         self.text.extend_from_slice(self.open);
-        let room = if self.longest == 0 { usize::MAX } else { self.longest - self.open.len() - self.close.len() };
+        let room =
+            if self.longest == 0 { usize::MAX } else { self.longest - self.open.len() - self.close.len() };
         self.text.extend(bytes.iter().take(room).map(|byte| match byte {
             b'(' | b'{' => b'[',
             b')' | b'}' => b']',
@@ -169,7 +175,8 @@ pub(crate) fn word(out: &mut Vec<u8>, letter: u8, value: f64, style: Style) -> O
         Style::Decimals(decimals) => {
             let steps = f64::from(10_u32.pow(u32::from(decimals.min(9))));
             // 15 digits are what a reader of programs takes.
-            let counts = decimal::counts(value, steps).filter(|counts| counts.abs() < 1_000_000_000_000_000)?;
+            let counts =
+                decimal::counts(value, steps).filter(|counts| counts.abs() < 1_000_000_000_000_000)?;
             decimal::write(out, counts, decimals, Spelling { trailing_zeros: false, ..Spelling::FIXED });
         }
     }

@@ -58,7 +58,10 @@ impl<'a> Source<'a> {
                 if dialect.flow.macros == Macros::LinuxCnc && aborts(&block) {
                     kind = Kind::Broken(Box::new(
                         Diagnostic::error(codes::ALARM, "the program stops itself here")
-                            .at(block.file_span(crate::statement::whole(&block)), "reached with the values given")
+                            .at(
+                                block.file_span(crate::statement::whole(&block)),
+                                "reached with the values given",
+                            )
                             .help("give other values with `--set`, or remove the line"),
                     ));
                 }
@@ -203,7 +206,8 @@ impl<'a> Source<'a> {
                 }
             }
             OWord::Break | OWord::Continue => {
-                let Some(around) = open.iter_mut().rev().find(|o| o.label == label && o.kind.is_loop()) else {
+                let Some(around) = open.iter_mut().rev().find(|o| o.label == label && o.kind.is_loop())
+                else {
                     return Err(self.unmatched(index, "this belongs to no loop that is open here"));
                 };
                 around.parts.push(index);
@@ -242,11 +246,9 @@ impl<'a> Source<'a> {
 
     fn unmatched(&self, at: u32, message: &str) -> Box<Diagnostic> {
         let span = self.statements.get(at as usize).map_or(0..0, |statement| self.span(statement));
-        Box::new(
-            Diagnostic::error(codes::STRUCTURE, message)
-                .at(span, "without its partner")
-                .help("loops, branches and subroutines end where they begin: in the same file, inside one another"),
-        )
+        Box::new(Diagnostic::error(codes::STRUCTURE, message).at(span, "without its partner").help(
+            "loops, branches and subroutines end where they begin: in the same file, inside one another",
+        ))
     }
 }
 

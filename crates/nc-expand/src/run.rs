@@ -11,7 +11,7 @@ use crate::expression::Expression;
 use crate::faults::{self, Stop};
 use crate::output::{self, From, Output, Style};
 use crate::program::{Found, Source};
-use crate::statement::{ComputedWord, Complex, Control, Kind, Statement};
+use crate::statement::{Complex, ComputedWord, Control, Kind, Statement};
 use crate::value::{NameId, Names, Value, Variable};
 use crate::variables::{Saved, Store};
 use crate::{Environment, Expanded, Refusal};
@@ -94,11 +94,8 @@ pub(crate) fn run<'a>(
         .map_err(|(diagnostic, _)| Refusal { diagnostics: vec![*diagnostic], file: None })?;
     let mut store = Store::new(dialect.flow.macros, &mut names, environment.variables);
     store.learn(&names);
-    let inch = dialect
-        .initial
-        .iter()
-        .filter_map(|code| dialect.code(*code))
-        .any(|row| row.action == Action::Inch);
+    let inch =
+        dialect.initial.iter().filter_map(|code| dialect.code(*code)).any(|row| row.action == Action::Inch);
     let mut run = Run {
         dialect,
         environment,
@@ -261,9 +258,9 @@ impl<'a> Run<'a, '_> {
 
     /// A new line where the block does not follow the one before in its file.
     fn join(&mut self, place: Place) {
-        let follows = self.previous.is_some_and(|previous| {
-            previous.file == place.file && previous.statement + 1 == place.statement
-        });
+        let follows = self
+            .previous
+            .is_some_and(|previous| previous.file == place.file && previous.statement + 1 == place.statement);
         if !follows {
             self.out.fresh_line();
         }
@@ -274,7 +271,7 @@ impl<'a> Run<'a, '_> {
         self.join(place);
         let bytes = source.bytes(statement);
         let from = self.from(statement, place);
-        match statement.flags.number.filter(|_| again || place.file > 0) {
+        match statement.flags.number.filter(|_| again || !self.frames.is_empty()) {
             None => self.out.copy(bytes, from),
             Some(number) => {
                 let rest = [&bytes[..number.start as usize], &bytes[number.end as usize..]].concat();
@@ -300,7 +297,7 @@ impl<'a> Run<'a, '_> {
         let shown = shown.strip_suffix(b";").unwrap_or(shown);
         if complex.has_words {
             let base: &[u8] = complex.residual.as_deref().unwrap_or(bytes);
-            let text = self.edited(statement, complex, base, again || place.file > 0)?;
+            let text = self.edited(statement, complex, base, again || !self.frames.is_empty())?;
             self.join(place);
             self.out.comment(shown, from);
             self.out.write(&text, from);
@@ -347,7 +344,11 @@ impl<'a> Run<'a, '_> {
         match control {
             Control::Goto(label) => self.goto(source, statement.section, label),
             Control::IfGoto(condition, label) => {
-                if self.holds(condition)? { self.goto(source, statement.section, label) } else { Ok(()) }
+                if self.holds(condition)? {
+                    self.goto(source, statement.section, label)
+                } else {
+                    Ok(())
+                }
             }
             Control::While { condition, end, .. } => {
                 if let Some(condition) = condition
@@ -514,8 +515,11 @@ impl<'a> Run<'a, '_> {
     fn word(&mut self, text: &mut Vec<u8>, word: &ComputedWord, cycle: bool) -> Result<(), Stop> {
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
         let numbers = &self.dialect.numbers;
-        let decimals =
-            if self.inch { numbers.least_increment_decimals_inch } else { numbers.least_increment_decimals_mm };
+        let decimals = if self.inch {
+            numbers.least_increment_decimals_inch
+        } else {
+            numbers.least_increment_decimals_mm
+        };
         let rules = Rules { flow: self.dialect.flow, round_decimals: fanuc.then_some(decimals) };
         let value = match rules.evaluate(&word.value, &self.store).map_err(Stop::Fault)? {
             Value::Number(value) => value,
@@ -537,7 +541,9 @@ impl<'a> Run<'a, '_> {
                 self.computed_g(GCode(tenths as u16), value)?;
                 if tenths % 10.0 == 0.0 { Style::Whole } else { Style::Decimals(1) }
             }
-            b'M' if near && (fanuc || self.dialect.m_code(value.round() as u16).is_some_and(|row| row.ends_program))
+            b'M' if near
+                && (fanuc
+                    || self.dialect.m_code(value.round() as u16).is_some_and(|row| row.ends_program))
                 && self.decides_flow(value.round()) =>
             {
                 return Err(faults::no_code(letter, value));
@@ -552,8 +558,11 @@ impl<'a> Run<'a, '_> {
             _ => Style::Decimals(if fanuc { 6 } else { 9 }),
         };
         let length = text.len();
-        let styles: &[Style] =
-            if let Style::Decimals(2..) = style { &[style, Style::Decimals(6), Style::Decimals(3)] } else { &[style] };
+        let styles: &[Style] = if let Style::Decimals(2..) = style {
+            &[style, Style::Decimals(6), Style::Decimals(3)]
+        } else {
+            &[style]
+        };
         for style in styles {
             if output::word(text, word.letter, value, *style).is_some() {
                 return Ok(());
@@ -624,7 +633,9 @@ impl<'a> Run<'a, '_> {
     ) -> Result<(), Stop> {
         // A variable that does not exist is found out by reading it.
         self.store.value(variable).map_err(Stop::Fault)?;
-        self.store.set(variable, value).map_err(|protected| faults::protected(protected, variable, &self.names))?;
+        self.store
+            .set(variable, value)
+            .map_err(|protected| faults::protected(protected, variable, &self.names))?;
         if let (Some(kept), None, 0) = (self.store.kept, &self.first_kept, place.file) {
             self.first_kept = Some((source.span(statement), kept));
         }

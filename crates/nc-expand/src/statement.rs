@@ -85,11 +85,20 @@ pub(crate) enum Control {
     IfGoto(Expression, Expression),
     IfThen(Expression, Vec<(Expression, Expression)>),
     /// `WHILE … DO1`; the end's place.
-    While { condition: Option<Expression>, number: u32, end: u32 },
+    While {
+        condition: Option<Expression>,
+        number: u32,
+        end: u32,
+    },
     /// `END1`; the loop's place.
-    EndWhile { number: u32, start: u32 },
+    EndWhile {
+        number: u32,
+        start: u32,
+    },
     Call(Box<Call>),
-    Return { to: Option<Expression> },
+    Return {
+        to: Option<Expression>,
+    },
     O(Box<OStatement>),
     /// DPRNT and the like.
     Output,
@@ -252,8 +261,11 @@ impl Compiler<'_, '_> {
         if !cut.is_empty() {
             // Computed words move to the left by what is cut before them.
             for word in &mut complex.words {
-                let shift: u32 =
-                    cut.iter().filter(|span| span.end <= word.span.start).map(|span| span.end - span.start).sum();
+                let shift: u32 = cut
+                    .iter()
+                    .filter(|span| span.end <= word.span.start)
+                    .map(|span| span.end - span.start)
+                    .sum();
                 word.span = Span { start: word.span.start - shift, end: word.span.end - shift };
             }
             complex.residual = Some(without(text.unwrap_or(rest.bytes), &cut));
@@ -262,17 +274,9 @@ impl Compiler<'_, '_> {
     }
 
     /// The expression of a word, behind its letter.
-    fn word_value(
-        &mut self,
-        text: &[u8],
-        comma: bool,
-        complex: &mut Complex,
-    ) -> Result<Expression, String> {
-        let letter = if comma {
-            1 + text[1..].iter().position(u8::is_ascii_alphabetic).unwrap_or(0) + 1
-        } else {
-            1
-        };
+    fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, String> {
+        let letter =
+            if comma { 1 + text[1..].iter().position(u8::is_ascii_alphabetic).unwrap_or(0) + 1 } else { 1 };
         let mut parser = Parser::new(&text[letter..], self.dialect.flow.macros, self.names);
         let value = parser.operand()?;
         parser.end()?;
@@ -316,7 +320,10 @@ impl Compiler<'_, '_> {
                     )
                 );
                 if !simple {
-                    return conflict("a subprogram is called beside another code", "write them in two blocks");
+                    return conflict(
+                        "a subprogram is called beside another code",
+                        "write them in two blocks",
+                    );
                 }
             }
             if self.dialect.flow.macros == Macros::LinuxCnc
@@ -330,7 +337,10 @@ impl Compiler<'_, '_> {
         let mut arguments = Vec::new();
         for word in rest.words() {
             if word.letter == b'G' || word.letter == b'N' || (word.letter == b'M' && kind != Taken::Macro) {
-                if kind == Taken::Macro && word.letter == b'G' && word.g_code() != Some(nc_syntax::dialect::GCode(650)) {
+                if kind == Taken::Macro
+                    && word.letter == b'G'
+                    && word.g_code() != Some(nc_syntax::dialect::GCode(650))
+                {
                     return conflict("a macro is called beside another code", "write them in two blocks");
                 }
                 continue;
@@ -436,8 +446,7 @@ impl Compiler<'_, '_> {
 fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), String> {
     let target = parser.variable()?;
     parser.expect(b'=')?;
-    let value =
-        if parser.macros == Macros::Fanuc { parser.expression()? } else { parser.operand()? };
+    let value = if parser.macros == Macros::Fanuc { parser.expression()? } else { parser.operand()? };
     Ok((target, value))
 }
 

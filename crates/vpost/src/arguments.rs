@@ -69,6 +69,12 @@ pub struct Shared {
     /// Where the axes stand at the start of the program, machine coordinates, mm.
     #[arg(long = "start-at", value_name = "X,Y,Z", global = true, allow_hyphen_values = true)]
     pub start_at: Option<String>,
+    /// Value of a variable that the program does not set itself: "#500=12.5", "#<depth>=2", "#1=#0" for empty (repeatable).
+    #[arg(long, value_name = "#N=VALUE", global = true, allow_hyphen_values = true)]
+    pub set: Vec<String>,
+    /// Folder of subprograms that the program calls by number or name (repeatable).
+    #[arg(long, value_name = "DIR", global = true)]
+    pub include: Vec<PathBuf>,
     /// Conditions that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min (repeatable).
     #[arg(long = "at", value_name = "NAME=VALUE,…", global = true, allow_hyphen_values = true)]
     pub at: Vec<String>,
@@ -153,7 +159,7 @@ pub struct Predict {
     /// Commanded points (CSV); - for standard input.
     #[arg(value_name = "POINTS.csv")]
     pub points: PathBuf,
-    /// Give positions in the measuring frame: apply the profile's [setup].
+    /// Give positions in the measuring frame: apply the profile's `[setup]`.
     #[arg(long)]
     pub include_setup: bool,
 }

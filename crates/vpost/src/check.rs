@@ -8,6 +8,7 @@ use nc_syntax::{Block, ItemKind, Reader};
 use serde::Serialize;
 
 use crate::arguments::{Check, Shared};
+use crate::expand;
 use crate::file;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
@@ -103,23 +104,28 @@ fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
 }
 
 fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failure> {
-    let text = file::read(path)?;
-    let refuse = |diagnostics: Vec<Diagnostic>| Failure::refused(&file::name(path), &text, diagnostics);
-    nc_syntax::looks_like_program(&text).map_err(|diagnostic| refuse(vec![diagnostic]))?;
+    let text = file::read_program(path)?;
+    let name = file::name(path);
+    nc_syntax::looks_like_program(&text)
+        .map_err(|diagnostic| Failure::refused(&name, &text, vec![diagnostic]))?;
+    let expanded = expand::expanded(&text, &name, settings)?;
+    let refuse =
+        |diagnostics: Vec<Diagnostic>| Failure::Refused(expand::reports(&expanded, &name, &text, diagnostics));
     let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false, scale: 1.0 };
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
-    let mut reader = Reader::new(&text, &settings.dialect);
+    let mut reader = Reader::new(expanded.text(), &settings.dialect);
     let mut block = Block::default();
     while reader.next(&mut block) {
         let step = interpreter.step(&block).map_err(refuse)?;
+        let line = expanded.source_line(block.line).1;
         if !step.motions.is_empty() {
             program.scale = program.scale.max(step.context.frame.largest_scale());
         }
         program.inch |= step.context.unit_mm != 1.0 && !step.motions.is_empty();
         for motion in &step.motions {
-            program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line: block.line });
+            program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line });
         }
-        events(&block, settings, &mut program.events);
+        events(&block, line, settings, &mut program.events);
         if step.ends_program {
             break;
         }
@@ -128,7 +134,7 @@ fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failu
 }
 
 /// What a block says besides where to go.
-fn events(block: &Block<'_>, settings: &Settings, events: &mut Vec<(String, u64)>) {
+fn events(block: &Block<'_>, line: u64, settings: &Settings, events: &mut Vec<(String, u64)>) {
     for item in &block.items {
         let ItemKind::Word { letter, .. } = item.kind else { continue };
         let counts = match letter {
@@ -143,7 +149,7 @@ fn events(block: &Block<'_>, settings: &Settings, events: &mut Vec<(String, u64)
         if counts {
             let text: String =
                 block.text(item.span).iter().map(|byte| byte.to_ascii_uppercase() as char).collect();
-            events.push((text, block.line));
+            events.push((text, line));
         }
     }
 }

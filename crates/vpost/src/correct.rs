@@ -16,8 +16,9 @@ use toolpath::{Feed, FeedRate, Motion};
 use units::decimal::Decimal;
 
 use crate::arguments::{self, Shared};
+use crate::expand;
 use crate::file::{self, Interrupt};
-use crate::message::{Failure, Messages, Report, Source};
+use crate::message::{Failure, Messages};
 use crate::settings::Settings;
 use crate::summary::Summary;
 use crate::words::{Editing, MotionCodes, Original, letters};
@@ -99,13 +100,8 @@ pub fn correct<E: From<Vec<Diagnostic>>>(
     mut progress: impl FnMut(u64) -> Result<(), E>,
 ) -> Result<Corrected, E> {
     nc_syntax::looks_like_program(text).map_err(|diagnostic| vec![diagnostic])?;
-    if let (Some(span), false) = (nc_emit::find_provenance(text), job.force) {
-        return Err(vec![
-            Diagnostic::error(CORRECTED_BEFORE, "this program was corrected before")
-                .at(span, "its mark")
-                .help("correct the program as posted, not its corrected copy; `--force` corrects once more"),
-        ]
-        .into());
+    if let (Some(diagnostic), false) = (corrected_before(text), job.force) {
+        return Err(vec![diagnostic].into());
     }
     let mut numbers = BlockNumbers::new();
     if job.dialect.output.number_inserted_blocks {
@@ -126,7 +122,7 @@ pub fn correct<E: From<Vec<Diagnostic>>>(
     let mut block = Block::default();
     while reader.next(&mut block) {
         run.block(&block)?;
-        if run.figures.blocks_in % 4096 == 0 {
+        if run.figures.blocks_in.is_multiple_of(4096) {
             progress(block.offset)?;
         }
     }
@@ -145,6 +141,15 @@ pub fn correct<E: From<Vec<Diagnostic>>>(
     }
     figures.warnings = notices.diagnostics();
     Ok(Corrected { text: out, figures })
+}
+
+/// The refusal of a program that bears the mark of an earlier correction.
+pub(crate) fn corrected_before(text: &[u8]) -> Option<Diagnostic> {
+    nc_emit::find_provenance(text).map(|span| {
+        Diagnostic::error(CORRECTED_BEFORE, "this program was corrected before")
+            .at(span, "its mark")
+            .help("correct the program as posted, not its corrected copy; `--force` corrects once more")
+    })
 }
 
 /// Reads every block once.
@@ -175,10 +180,10 @@ impl Run<'_> {
         let step = self.interpreter.step(block)?;
         let letters = letters(block);
         let context = &step.context;
-        if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_))) {
-            if let Some(number) = block.word(b'P').and_then(|word| word.number()) {
-                self.dwell = Some(number.decimal);
-            }
+        if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
+            && let Some(number) = block.word(b'P').and_then(|word| word.number())
+        {
+            self.dwell = Some(number.decimal);
         }
         if step.states_position {
             return self.state_position(block, context);
@@ -493,18 +498,6 @@ fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<D
     vec![diagnostic]
 }
 
-impl From<Vec<Diagnostic>> for PipelineEnd {
-    fn from(diagnostics: Vec<Diagnostic>) -> Self {
-        Self::Refused(diagnostics)
-    }
-}
-
-/// Why a pipeline ended early.
-enum PipelineEnd {
-    Refused(Vec<Diagnostic>),
-    Failed(Failure),
-}
-
 /// `vpost IN.nc -m PROFILE`
 pub(crate) fn run(
     arguments: &arguments::Correct,
@@ -513,27 +506,20 @@ pub(crate) fn run(
 ) -> Result<(), Failure> {
     let input = arguments.input.as_deref().unwrap_or(Path::new("-"));
     let settings = Settings::load(shared, messages)?;
-    let text = file::read(input)?;
+    let text = file::read_program(input)?;
     let interrupt = Interrupt::listen();
-    let provenance = settings.provenance();
-    let job = settings.job(arguments.force, &provenance)?;
-    let total = text.len().max(1) as u64;
-    let mut reported = None;
-    let result = correct(&text, &job, |done| {
-        interrupt.check().map_err(PipelineEnd::Failed)?;
-        let percent = done * 100 / total;
-        if arguments.progress.is_some() && reported != Some(percent) {
-            messages.note(&format!("FILTER_PROGRESS={percent}"));
-            reported = Some(percent);
-        }
-        Ok(())
-    });
     let name = file::name(input);
-    let corrected = match result {
-        Ok(corrected) => corrected,
-        Err(PipelineEnd::Refused(diagnostics)) => return Err(Failure::refused(&name, &text, diagnostics)),
-        Err(PipelineEnd::Failed(failure)) => return Err(failure),
-    };
+    let mut reported = None;
+    let expand::Done { corrected, warnings } =
+        expand::correct(&text, &name, &settings, arguments.force, |done| {
+            interrupt.check()?;
+            let percent = (done * 100.0) as u64;
+            if arguments.progress.is_some() && reported != Some(percent) {
+                messages.note(&format!("FILTER_PROGRESS={percent}"));
+                reported = Some(percent);
+            }
+            Ok(())
+        })?;
     interrupt.check()?;
     match &arguments.output {
         Some(path) => file::write(path, &corrected.text)?,
@@ -543,9 +529,8 @@ pub(crate) fn run(
         let summary = Summary::new(&name, &text, &settings, &corrected);
         file::write(path, &summary.json())?;
     }
-    if !corrected.figures.warnings.is_empty() {
-        let source = Some(Source { name, bytes: text });
-        messages.report(&Report { source, diagnostics: corrected.figures.warnings.clone() });
+    for report in &warnings {
+        messages.report(report);
     }
     if shared.verbose > 0 {
         messages.note(&Summary::line(&corrected.figures));

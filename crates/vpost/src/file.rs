@@ -5,7 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use diagnostic::{Code, Diagnostic};
+
 use crate::message::Failure;
+
+/// A block is longer than any that is read.
+const TOO_LONG: Code = Code(106);
 
 /// The name of a path in messages.
 pub(crate) fn name(path: &Path) -> String {
@@ -21,6 +26,48 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
         std::fs::read(path)
     };
     result.map_err(|error| Failure::file(&name(path), "read", &error))
+}
+
+/// No block is longer, padding apart: what has no line end for so long is no part program.
+const LONGEST_LINE: usize = 1 << 20;
+
+/// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows.
+pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, Failure> {
+    let fail = |error: std::io::Error| Failure::file(&name(path), "read", &error);
+    if path.as_os_str() == "-" {
+        read_lines(std::io::stdin().lock(), path)
+    } else {
+        read_lines(std::fs::File::open(path).map_err(fail)?, path)
+    }
+}
+
+fn read_lines(mut source: impl Read, path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    loop {
+        let start = bytes.len();
+        let read = source
+            .by_ref()
+            .take(LONGEST_LINE as u64)
+            .read_to_end(&mut bytes)
+            .map_err(|error| Failure::file(&name(path), "read", &error))?;
+        if read < LONGEST_LINE {
+            return Ok(bytes);
+        }
+        let part = &bytes[start..];
+        let ends = part.iter().any(|byte| matches!(byte, b'\n' | b'\r'));
+        let padding = part.iter().all(|byte| matches!(byte, 0 | b' ' | 0x7F));
+        if !ends && !padding {
+            // A binary file is told as what it is.
+            if let Err(diagnostic) = nc_syntax::looks_like_program(&bytes) {
+                return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
+            }
+            let span = start as u64..start as u64 + 120;
+            let diagnostic = Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
+                .at(span, "no line end within a megabyte")
+                .help("check that this is a part program and that its line ends arrived with it");
+            return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
+        }
+    }
 }
 
 /// Writes a file so that it is there whole or, where that fails, an earlier one is left as it was.

@@ -8,6 +8,7 @@ mod check;
 mod conditions;
 pub mod correct;
 pub mod diagnose;
+mod expand;
 mod file;
 mod grammar;
 mod message;

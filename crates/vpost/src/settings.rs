@@ -10,6 +10,7 @@ use nc_syntax::Dialect;
 
 use crate::arguments::{self, Shared};
 use crate::correct::Job;
+use crate::expand::Flow;
 use crate::message::{Failure, Messages, Report, Source};
 use crate::{conditions, file, profile};
 
@@ -22,6 +23,7 @@ pub(crate) struct Settings {
     pub setup: Setup,
     pub engine: Box<dyn Engine>,
     pub options: Options,
+    pub flow: Flow,
 }
 
 impl Settings {
@@ -56,7 +58,8 @@ impl Settings {
             minimum_segment_mm: profile.correction.minimum_segment_mm,
         };
         let profile_name = file::name(path);
-        Ok(Self { profile, profile_name, profile_hash: loaded.hash, dialect, setup, engine, options })
+        let flow = Flow::load(shared)?;
+        Ok(Self { profile, profile_name, profile_hash: loaded.hash, dialect, setup, engine, options, flow })
     }
 
     /// The engine as a model of paths; the published variants are none.

@@ -1,0 +1,167 @@
+//! Programs with flow: values and folders from the command line, places back in the user's files.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use diagnostic::Diagnostic;
+use nc_expand::{Environment, Expanded, Limits, Preset};
+
+use crate::arguments::Shared;
+use crate::correct::{self, Corrected, Job};
+use crate::message::{Failure, Report, Source};
+use crate::settings::Settings;
+
+/// A subprogram's file is no larger.
+const LARGEST_FILE: u64 = 64 << 20;
+
+/// What `--set` and `--include` say.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Flow {
+    presets: Vec<Preset>,
+    folders: Vec<PathBuf>,
+}
+
+impl Flow {
+    /// Reads the options.
+    pub(crate) fn load(shared: &Shared) -> Result<Self, Failure> {
+        let mut presets = Vec::with_capacity(shared.set.len());
+        for text in &shared.set {
+            presets.push(Preset::parse(text).ok_or_else(|| {
+                Failure::option(
+                    format!("`--set {text}` cannot be read"),
+                    "write a variable and its value as in `--set \"#500=12.5\"`, `--set \"#<depth>=2\"`; `#1=#0` is an empty one",
+                )
+            })?);
+        }
+        for folder in &shared.include {
+            if !folder.is_dir() {
+                return Err(Failure::option(
+                    format!("`--include {}` is no folder", folder.display()),
+                    "give the folder that holds the subprograms",
+                ));
+            }
+        }
+        Ok(Self { presets, folders: shared.include.clone() })
+    }
+
+    /// Reads a subprogram's file from the first folder that has it.
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let mut parts = Path::new(name).components();
+        let plain = matches!((parts.next(), parts.next()), (Some(std::path::Component::Normal(_)), None));
+        if !plain {
+            return Err(io::Error::from(io::ErrorKind::InvalidInput));
+        }
+        for folder in &self.folders {
+            let path = folder.join(name);
+            if !path.is_file() {
+                continue;
+            }
+            // A link may lead anywhere.
+            if !path.canonicalize()?.starts_with(folder.canonicalize()?) {
+                return Err(io::Error::from(io::ErrorKind::InvalidInput));
+            }
+            if path.metadata()?.len() > LARGEST_FILE {
+                return Err(io::Error::other(format!("longer than {LARGEST_FILE} bytes")));
+            }
+            return std::fs::read(path);
+        }
+        Err(io::Error::from(io::ErrorKind::NotFound))
+    }
+}
+
+/// A text's plain program.
+pub(crate) fn expanded<'a>(text: &'a [u8], name: &str, settings: &Settings) -> Result<Expanded<'a>, Failure> {
+    let read = |file: &str| settings.flow.read(file);
+    let environment =
+        Environment { variables: &settings.flow.presets, read_external: &read, limits: Limits::default() };
+    nc_expand::expand(text, &settings.dialect, &environment).map_err(|refusal| match refusal.file {
+        None => Failure::refused(name, text, refusal.diagnostics),
+        Some((name, text)) => Failure::refused(&name, &text, refusal.diagnostics),
+    })
+}
+
+/// Diagnostics about a plain program as reports about the files it was made from.
+pub(crate) fn reports(
+    expanded: &Expanded<'_>,
+    name: &str,
+    text: &[u8],
+    diagnostics: Vec<Diagnostic>,
+) -> Vec<Report> {
+    let report = |(file, diagnostics): (usize, Vec<Diagnostic>)| {
+        let (name, bytes) = expanded.file(file).unwrap_or((name, text));
+        Report { source: Some(Source { name: name.to_owned(), bytes: bytes.to_vec() }), diagnostics }
+    };
+    expanded.settle(diagnostics).into_iter().map(report).collect()
+}
+
+/// A corrected program and what is to be said about it.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub corrected: Corrected,
+    pub warnings: Vec<Report>,
+}
+
+/// Expands and corrects a program; what needs no correction comes out byte for byte, flow and all.
+///
+/// `progress` is told the share that is done, 0 to 1, and may end the work.
+pub(crate) fn correct(
+    text: &[u8],
+    name: &str,
+    settings: &Settings,
+    force: bool,
+    mut progress: impl FnMut(f64) -> Result<(), Failure>,
+) -> Result<Done, Failure> {
+    nc_syntax::looks_like_program(text)
+        .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
+    // The mark of an earlier correction may stand where the flat program does not come by.
+    if let (Some(diagnostic), false) = (correct::corrected_before(text), force) {
+        return Err(Failure::refused(name, text, vec![diagnostic]));
+    }
+    let expanded = expanded(text, name, settings)?;
+    let mut provenance = settings.provenance();
+    if expanded.changed() {
+        provenance.push_str(" PROGRAM FLOW EXPANDED");
+    }
+    // Looked for above, in the text as it was given.
+    let job = Job { force: true, ..settings.job(force, &provenance)? };
+    let total = expanded.text().len().max(1) as f64;
+    let result = correct::correct(expanded.text(), &job, |done| {
+        progress(done as f64 / total).map_err(PipelineEnd::Failed)
+    });
+    let mut corrected = match result {
+        Ok(corrected) => corrected,
+        Err(PipelineEnd::Refused(diagnostics)) => {
+            return Err(Failure::Refused(reports(&expanded, name, text, diagnostics)));
+        }
+        Err(PipelineEnd::Failed(failure)) => return Err(failure),
+    };
+    let mut warnings = reports(&expanded, name, text, corrected.figures.warnings.clone());
+    if expanded.changed() {
+        let figures = &mut corrected.figures;
+        for figure in [&mut figures.largest, &mut figures.before, &mut figures.after] {
+            figure.1 = expanded.source_line(figure.1).1;
+        }
+        if corrected.text == expanded.text() {
+            corrected.text = text.to_vec();
+        } else if !expanded.warnings().is_empty() {
+            corrected.figures.warnings.extend_from_slice(expanded.warnings());
+            warnings.push(Report {
+                source: Some(Source { name: name.to_owned(), bytes: text.to_vec() }),
+                diagnostics: expanded.warnings().to_vec(),
+            });
+        }
+    }
+    Ok(Done { corrected, warnings })
+}
+
+/// Why a pipeline ended early.
+enum PipelineEnd {
+    Refused(Vec<Diagnostic>),
+    Failed(Failure),
+}
+
+impl From<Vec<Diagnostic>> for PipelineEnd {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::Refused(diagnostics)
+    }
+}
