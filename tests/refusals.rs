@@ -56,13 +56,13 @@ fn a_feed_outside_the_volume() {
 fn a_number_that_is_none() {
     insta::assert_snapshot!(Trial::new().refused(b"G21 G90\nG0 Xnan Y0\n", &[]), @"
     exit status 1
-    error[VP0201]: a number cannot be read
+    error[VP0101]: `Xnan` is not a number a control reads
      --> /part.nc:2:4
       |
     2 | G0 Xnan Y0
-      |    ^^^^ not understood
+      |    ^^^^ expected a sign, digits and one decimal point
       |
-    help: write it as digits with at most one point
+    help: write it like `X-12.5`: no exponent, one sign, a point and not a comma
     ");
 }
 
