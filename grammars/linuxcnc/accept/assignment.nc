@@ -1,8 +1,6 @@
-(expect VP0202)
+(executed and expanded)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
-o100 sub
+#1=2.
 G1 X20. F200.
-o100 endsub
-o100 call
 M2

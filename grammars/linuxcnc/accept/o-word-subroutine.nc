@@ -1,9 +1,8 @@
-%
-O0001
-(expect VP0202)
+(executed and expanded)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
-#1=2.
+o100 sub
 G1 X20. F200.
-M30
-%
+o100 endsub
+o100 call
+M2
