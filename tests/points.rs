@@ -106,3 +106,35 @@ fn point_files_are_checked() {
         );
     }
 }
+
+#[test]
+fn points_outside_the_volume_are_not_passed_over_in_silence() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let points = folder.path().join("points.csv");
+    std::fs::write(&points, "x_mm,y_mm,z_mm\n10,10,10\n10,10,230\n").expect("writable");
+    let points = points.to_str().expect("a plain path");
+    let clamped = vpost().args(["predict", points]).args(STAN).output().expect("runs");
+    assert!(clamped.status.success());
+    assert!(messages(&clamped).contains("warning[VP0909]: 1 of 2 points"), "{}", messages(&clamped));
+    let refused = vpost().args(["predict", points, "--outside", "refuse"]).args(STAN).output().expect("runs");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        refused.stdout.is_empty() && messages(&refused).contains("error[VP0909]"),
+        "{}",
+        messages(&refused)
+    );
+}
+
+#[test]
+fn predicting_with_another_engine_uses_its_model() {
+    let input = "x_mm,y_mm,z_mm\n130,140,106\n";
+    let rigid = table(&["predict", "-"], input);
+    let tracker = table(&["predict", "-", "--engine", "tracker"], input);
+    assert_ne!(rigid[1], tracker[1]);
+    // Forward and inverse of one engine belong together.
+    let target: Vec<f64> = (3..6).map(|at| tracker[1][at].parse().expect("a number")).collect();
+    let back = solved("tracker", [target[0], target[1], target[2]]);
+    for (found, command) in back.iter().zip([130.0, 140.0, 106.0]) {
+        assert!((found - command).abs() < 5e-9, "{back:?}");
+    }
+}

@@ -122,7 +122,7 @@ pub fn correct<E: From<Vec<Diagnostic>>>(
     let mut block = Block::default();
     while reader.next(&mut block) {
         run.block(&block)?;
-        if run.figures.blocks_in.is_multiple_of(4096) {
+        if run.figures.blocks_in.is_multiple_of(256) {
             progress(block.offset)?;
         }
     }
@@ -521,6 +521,9 @@ pub(crate) fn run(
             Ok(())
         })?;
     interrupt.check()?;
+    if arguments.progress.is_some() && reported != Some(100) {
+        messages.note("FILTER_PROGRESS=100");
+    }
     match &arguments.output {
         Some(path) => file::write(path, &corrected.text)?,
         None => file::print(&corrected.text)?,

@@ -1,16 +1,20 @@
 //! Forward: where the machine really goes.
 
-use machine_model::Vector;
+use diagnostic::{Code, Diagnostic};
+use machine_model::{Engine, EngineId, Vector};
 
-use crate::arguments::{Predict, Shared};
+use crate::arguments::{Outside, Predict, Shared};
 use crate::conditions::{conditions, failure};
-use crate::message::{Failure, Messages};
+use crate::message::{Failure, Messages, Report};
 use crate::points::{Points, fixed};
-use crate::settings::{machine, setup_tool};
+use crate::settings::{engine_named, machine, setup_tool};
 use crate::{file, profile};
 
+/// Points outside the calibrated volume.
+pub(crate) const POINT_OUTSIDE: Code = Code(909);
+
 /// `vpost predict POINTS.csv -m PROFILE`
-pub(crate) fn run(arguments: &Predict, shared: &Shared, _: &Messages) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let profile = profile::load(machine(shared)?)?.profile;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
@@ -22,12 +26,41 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, _: &Messages) -> Result<
         profile.machine(&conditions)
     }
     .map_err(|error| failure(&error))?;
+    let engine = match &shared.engine {
+        None => None,
+        Some(name) => match engine_named(name)? {
+            EngineId::RigidBody => None,
+            id => Some(crate::conditions::engine(&profile, id, shared)?),
+        },
+    };
+    let other = match &engine {
+        None => None,
+        Some(engine) => Some(engine.path_model().ok_or_else(|| {
+            Failure::option(
+                format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
+                "use it with `vpost solve`",
+            )
+        })?),
+    };
+    let volume = other.map_or_else(|| machine.volume(), |other| other.volume());
+    let mut outside: Option<(usize, usize)> = None;
     let setup = &profile.setup;
     let mut out = points.columns.join(",");
     out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um\n");
-    for (fields, command) in &points.rows {
-        let prediction = machine.predict(command);
-        let (mut position, mut error) = (prediction.position_mm, prediction.error_mm);
+    for (row, (fields, command)) in points.rows.iter().enumerate() {
+        if !volume.contains(&command.linear_mm) {
+            outside = Some(outside.map_or((row, 1), |(first, count)| (first, count + 1)));
+        }
+        let (mut position, mut error) = match other {
+            None => {
+                let prediction = machine.predict(command);
+                (prediction.position_mm, prediction.error_mm)
+            }
+            Some(other) => {
+                let error = other.error_mm(command);
+                (command.linear_mm + command.tool_mm + error, error)
+            }
+        };
         if arguments.include_setup {
             // The measuring frame turns and shifts what it measures: p' = p + shift + rotation × p.
             let moved = Vector::from(setup.shift_mm) + Vector::from(setup.rotation_rad).cross(&position);
@@ -44,6 +77,20 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, _: &Messages) -> Result<
             out.push_str(&fixed(value * 1e3, 6));
         }
         out.push('\n');
+    }
+    if let Some((first, count)) = outside {
+        let message = format!("{count} of {} points lie outside the calibrated volume", points.rows.len());
+        if shared.outside == Some(Outside::Refuse) {
+            let diagnostic =
+                Diagnostic::error(POINT_OUTSIDE, format!("{message}, the first is point {}", first + 1))
+                    .help("leave them out, or drop `--outside refuse` to take the nearest point's error");
+            return Err(Failure::refused(&name, &bytes, vec![diagnostic]));
+        }
+        let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(format!(
+            "point {} is the first; each has the error of the volume's nearest point",
+            first + 1
+        ));
+        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
     file::print(out.as_bytes())
 }
