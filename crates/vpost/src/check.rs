@@ -109,8 +109,9 @@ fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failu
     nc_syntax::looks_like_program(&text)
         .map_err(|diagnostic| Failure::refused(&name, &text, vec![diagnostic]))?;
     let expanded = expand::expanded(&text, &name, settings)?;
-    let refuse =
-        |diagnostics: Vec<Diagnostic>| Failure::Refused(expand::reports(&expanded, &name, &text, diagnostics));
+    let refuse = |diagnostics: Vec<Diagnostic>| {
+        Failure::Refused(expand::reports(&expanded, &name, &text, diagnostics))
+    };
     let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false, scale: 1.0 };
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
     let mut reader = Reader::new(expanded.text(), &settings.dialect);

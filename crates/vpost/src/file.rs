@@ -62,9 +62,10 @@ fn read_lines(mut source: impl Read, path: &Path) -> Result<Vec<u8>, Failure> {
                 return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
             }
             let span = start as u64..start as u64 + 120;
-            let diagnostic = Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
-                .at(span, "no line end within a megabyte")
-                .help("check that this is a part program and that its line ends arrived with it");
+            let diagnostic =
+                Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
+                    .at(span, "no line end within a megabyte")
+                    .help("check that this is a part program and that its line ends arrived with it");
             return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
         }
     }
