@@ -6,6 +6,8 @@ use crate::value::{NameId, Names, Variable};
 
 /// Brackets, functions and `#` inside one another; controls take 5 (Fanuc) or a line's worth.
 const DEEPEST: u32 = 64;
+/// Parts of one statement's expressions; a control's block holds some dozens. Bounds the depth of the tree.
+const MOST_PARTS: u32 = 1000;
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,6 +222,9 @@ impl<'t, 'n> Parser<'t, 'n> {
     /// A number, a variable, a function, a bracket; with a sign.
     pub(crate) fn operand(&mut self) -> Result<Expression, Fault> {
         self.cost += 1;
+        if self.cost > MOST_PARTS {
+            return Err(format!("more than {MOST_PARTS} values in one statement"));
+        }
         self.depth += 1;
         if self.depth > DEEPEST {
             return Err(format!("more than {DEEPEST} brackets and functions inside one another"));

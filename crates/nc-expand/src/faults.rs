@@ -56,7 +56,10 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
         (Variable::Numbered(number), _) => number > 5000,
         (Variable::Named(_), _) => false,
     };
-    let why = if system {
+    let local = matches!(variable, Variable::Named(id) if !names.is_global(id));
+    let why = if local {
+        "it is read before anything sets it"
+    } else if system {
         "the control sets it while the program runs"
     } else {
         "nothing in this program sets it before, and an earlier program may have"

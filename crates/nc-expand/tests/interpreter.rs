@@ -31,7 +31,8 @@ fn canonical(program: &Path, folder: &Path) -> Option<Vec<String>> {
     let work = tempfile::tempdir().expect("a temporary folder");
     let (variables, tools, out) = (work.path().join("var"), work.path().join("tbl"), work.path().join("out"));
     std::fs::write(&variables, "").expect("writable");
-    std::fs::write(&tools, "T1 P1 D0.5 Z1.0\nT2 P2 D0.25 Z2.0\nT3 P3 D0.125\nT4 P4 D0.1\nT5 P5\n").expect("writable");
+    std::fs::write(&tools, "T1 P1 D0.5 Z1.0\nT2 P2 D0.25 Z2.0\nT3 P3 D0.125\nT4 P4 D0.1\nT5 P5\n")
+        .expect("writable");
     let ran = Command::new("rs274")
         .current_dir(folder)
         .args(["-t".as_ref(), tools.as_os_str(), "-v".as_ref(), variables.as_os_str(), "-g".as_ref()])
@@ -46,8 +47,12 @@ fn canonical(program: &Path, folder: &Path) -> Option<Vec<String>> {
     let lines: Vec<String> = String::from_utf8_lossy(&text)
         .lines()
         .filter_map(|line| {
-            let call = line.split_once("N..... ").or_else(|| line.split_once(' ').map(|(_, rest)| ("", rest)))?.1;
-            let call = call.trim_start().trim_start_matches(|c: char| c.is_ascii_digit() || c == 'N' || c == '.').trim();
+            let call =
+                line.split_once("N..... ").or_else(|| line.split_once(' ').map(|(_, rest)| ("", rest)))?.1;
+            let call = call
+                .trim_start()
+                .trim_start_matches(|c: char| c.is_ascii_digit() || c == 'N' || c == '.')
+                .trim();
             (!call.starts_with("COMMENT") && !call.starts_with("MESSAGE")).then(|| call.to_owned())
         })
         .collect();
@@ -62,7 +67,8 @@ fn refused_later(text: &[u8], dialect: &Dialect) -> bool {
         for word in block.words() {
             let row = word.g_code().and_then(|code| dialect.code(code));
             let number = word.number().and_then(nc_syntax::Number::integer);
-            let m_row = number.filter(|_| word.letter == b'M').and_then(|n| dialect.m_code(u16::try_from(n).ok()?));
+            let m_row =
+                number.filter(|_| word.letter == b'M').and_then(|n| dialect.m_code(u16::try_from(n).ok()?));
             if row.is_some_and(|row| matches!(row.action, Action::Refuse { .. }))
                 || m_row.is_some_and(|row| row.refuse.is_some())
             {
