@@ -133,7 +133,7 @@ impl<'a> Run<'a, '_> {
             )),
             _ => {
                 let numbers = &self.dialect.numbers;
-                let decimals = if self.inch() {
+                let decimals = if self.inch {
                     numbers.least_increment_decimals_inch
                 } else {
                     numbers.least_increment_decimals_mm

@@ -30,6 +30,7 @@ pub mod codes;
 mod evaluate;
 mod expression;
 mod faults;
+mod flow;
 mod o_word;
 mod output;
 mod program;
@@ -37,6 +38,7 @@ mod run;
 mod statement;
 mod value;
 mod variables;
+mod words;
 
 use std::borrow::Cow;
 use std::io;

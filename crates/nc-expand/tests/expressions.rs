@@ -63,7 +63,7 @@ fn number() -> impl Strategy<Value = Operand> {
     (0..100_000_i64, 0..4_u32, any::<bool>()).prop_map(|(mantissa, decimals, negative)| {
         let shown = format!("{:.*}", decimals as usize, mantissa as f64 / f64::from(10_u32.pow(decimals)));
         let shown = if negative { format!("-{shown}") } else { shown };
-        Operand { value: shown.parse().unwrap(), text: shown }
+        Operand { value: shown.parse().expect("a number"), text: shown }
     })
 }
 
@@ -103,8 +103,8 @@ fn operand() -> impl Strategy<Value = Operand> {
 
 fn computed(text: &str) -> f64 {
     let plain = flat("linuxcnc", &format!("X[{text}]\nM2\n"), &[], &[]);
-    let line = plain.lines().find(|line| line.starts_with('X')).unwrap();
-    line[1..].parse().unwrap()
+    let line = plain.lines().find(|line| line.starts_with('X')).expect("a block with X");
+    line[1..].parse().expect("a number")
 }
 
 /// What the written decimals leave of a value.
@@ -145,7 +145,7 @@ proptest! {
     #[test]
     fn angles_are_degrees(angle in -720.0..720.0f64) {
         let shown = format!("{angle:.3}");
-        let radians = shown.parse::<f64>().unwrap().to_radians();
+        let radians = shown.parse::<f64>().expect("a number").to_radians();
         let computed_all = [computed(&format!("SIN[{shown}]")), computed(&format!("COS[{shown}]"))];
         prop_assert!((computed_all[0] - units::math::sin(radians)).abs() < 1e-9);
         prop_assert!((computed_all[1] - units::math::cos(radians)).abs() < 1e-9);
