@@ -1,0 +1,116 @@
+//! Statements of flow and calls: text to what they do.
+
+use nc_syntax::Block;
+use nc_syntax::dialect::Macros;
+
+use crate::expression::{Expression, Parser};
+use crate::statement::Control;
+
+/// `#1=…`
+pub(crate) fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), String> {
+    let target = parser.variable()?;
+    parser.expect(b'=')?;
+    let value = if parser.macros == Macros::Fanuc { parser.expression()? } else { parser.operand()? };
+    Ok((target, value))
+}
+
+/// Passes over a letter with its value.
+pub(crate) fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), String> {
+    match parser.peek() {
+        Some(b'A'..=b'Z') => {
+            parser.at += 1;
+            parser.operand().map(|_| ())
+        }
+        Some(b'/') => {
+            parser.at += 1;
+            Ok(())
+        }
+        other => Err(format!("`{}` starts no word", other.map_or(' ', |byte| byte as char))),
+    }
+}
+
+/// Statements of custom macro B.
+pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String> {
+    if parser.word(b"IF") {
+        let condition = parser.bracketed()?;
+        if parser.word(b"GOTO") {
+            return Ok(Control::IfGoto(condition, parser.operand()?));
+        }
+        if parser.word(b"THEN") {
+            return Ok(Control::IfThen(condition, vec![assignment(parser)?]));
+        }
+        return Err("GOTO or THEN was expected".to_owned());
+    }
+    if parser.word(b"GOTO") {
+        return Ok(Control::Goto(parser.operand()?));
+    }
+    if parser.word(b"WHILE") {
+        let condition = Some(parser.bracketed()?);
+        if !parser.word(b"DO") {
+            return Err("DO was expected".to_owned());
+        }
+        return Ok(Control::While { condition, number: loop_number(parser)?, end: 0 });
+    }
+    if parser.word(b"DO") {
+        return Ok(Control::While { condition: None, number: loop_number(parser)?, end: 0 });
+    }
+    if parser.word(b"END") {
+        return Ok(Control::EndWhile { number: loop_number(parser)?, start: 0 });
+    }
+    for word in [&b"DPRNT"[..], b"BPRNT", b"POPEN", b"PCLOS"] {
+        if parser.word(word) {
+            parser.at = parser.text.len();
+            return Ok(Control::Output);
+        }
+    }
+    Err("this is no statement of this dialect".to_owned())
+}
+
+fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, String> {
+    match parser.operand()? {
+        Expression::Number(number @ (1.0 | 2.0 | 3.0)) => Ok(number as u32),
+        _ => Err("DO and END take 1, 2 or 3".to_owned()),
+    }
+}
+
+/// Which words of a block belong to its call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Taken {
+    /// M98: itself, P, L.
+    Sub,
+    /// M99: itself, P.
+    Return,
+    /// G65: everything.
+    Macro,
+}
+
+impl Taken {
+    pub(crate) fn contains(self, letter: u8, comma: bool, text: &[u8]) -> bool {
+        let code = |number: &[u8]| {
+            let digits: Vec<u8> = text[1..].iter().copied().filter(u8::is_ascii_digit).collect();
+            let at = digits.iter().position(|digit| *digit != b'0').unwrap_or(0);
+            digits[at..].starts_with(number)
+        };
+        match (self, letter) {
+            _ if comma => false,
+            (_, b'N') => false,
+            (Self::Macro, _) => true,
+            (_, b'P' | b'L') => true,
+            (Self::Sub, b'M') => code(b"98"),
+            (Self::Return, b'M') => code(b"99"),
+            _ => false,
+        }
+    }
+}
+
+pub(crate) fn call_of(block: &Block<'_>) -> Option<Taken> {
+    block.words().find_map(|word| {
+        let number = word.number()?;
+        match (word.letter, number.tenths()?) {
+            (b'M', 980) => Some(Taken::Sub),
+            (b'M', 990) => Some(Taken::Return),
+            (b'G', 650) => Some(Taken::Macro),
+            _ => None,
+        }
+    })
+}
