@@ -7,15 +7,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use nc_dialect::{builtin, builtin_names};
+use nc_expand::{Environment, Limits, expand};
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value, looks_like_program};
 
 /// Messages that reading and the tables alone decide: unreadable, not static, unknown, refused, command.
 const DECIDED_HERE: [u16; 10] = [101, 102, 103, 104, 105, 106, 202, 207, 208, 224];
 
-/// A variable or flow; a code that the table refuses.
-const NOT_STATIC: u16 = 202;
-const REFUSED: u16 = 208;
 /// Messages of the execution of variables and flow.
 const EXPANSION: std::ops::Range<u16> = 120..140;
 
@@ -31,8 +29,15 @@ fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
     entries.map(read).collect()
 }
 
-/// The first message that reading or the tables decide.
+/// The first message that reading or the tables decide, once program flow is executed.
 fn verdict(text: &[u8], dialect: &Dialect) -> Option<u16> {
+    let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
+    let environment = Environment { variables: &[], read_external: &nothing, limits: Limits::default() };
+    let expanded = match expand(text, dialect, &environment) {
+        Ok(expanded) => expanded,
+        Err(refusal) => return Some(refusal.diagnostics[0].code.0),
+    };
+    let text = expanded.text();
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
     while reader.next(&mut block) {
         for item in &block.items {
@@ -84,8 +89,7 @@ fn accepted_programs_are_readable() {
         for (file, text) in programs(name, "accept") {
             assert_eq!(looks_like_program(&text), Ok(()), "{name}/accept/{file}");
             // Flow that is not refused is executed before the tables are asked.
-            let found = verdict(&text, dialect).filter(|code| *code != NOT_STATIC);
-            assert_eq!(found, None, "{name}/accept/{file}");
+            assert_eq!(verdict(&text, dialect), None, "{name}/accept/{file}");
         }
     }
 }
@@ -99,11 +103,7 @@ fn rejected_programs_say_why_and_are_rejected_for_it() {
                 panic!("{name}/reject/{file} has no `expect VPnnnn`")
             };
             if EXPANSION.contains(&expected) {
-                // Flow: refused while it is executed, not by the tables.
-                assert!(
-                    matches!(verdict(&text, dialect), Some(NOT_STATIC | REFUSED)),
-                    "{name}/reject/{file}"
-                );
+                assert_eq!(verdict(&text, dialect), Some(expected), "{name}/reject/{file}");
                 continue;
             }
             let found = verdict(&text, dialect).filter(|found| DECIDED_HERE.contains(found));

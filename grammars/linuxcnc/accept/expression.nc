@@ -1,5 +1,4 @@
-(executed and expanded)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
-G1 X[1+2] F200.
+G1 X[10+2*5] Y[SQRT[100]+1] F[100*2]
 M2

@@ -1,0 +1,6 @@
+(expect VP0133)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+#1=1
+(ABORT, no tool)
+M2

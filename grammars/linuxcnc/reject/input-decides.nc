@@ -1,0 +1,8 @@
+(expect VP0121)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+M66 P0 L0
+o1 if [#5399 EQ 1]
+G1 X20. F200.
+o1 endif
+M2

@@ -1,0 +1,5 @@
+(expect VP0121)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 X#<never> F200.
+M2
