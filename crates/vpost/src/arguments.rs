@@ -69,7 +69,8 @@ pub struct Shared {
     /// Where the axes stand at the start of the program, machine coordinates, mm.
     #[arg(long = "start-at", value_name = "X,Y,Z", global = true, allow_hyphen_values = true)]
     pub start_at: Option<String>,
-    /// Value of a variable that the program does not set itself: "#500=12.5", "#<depth>=2", "#1=#0" for empty (repeatable).
+    /// Value of a variable that the program does not set itself: `#500=12.5`, `#<depth>=2`, `#1=#0` for empty (repeatable).
+    /// Quote it for the shell.
     #[arg(long, value_name = "#N=VALUE", global = true, allow_hyphen_values = true)]
     pub set: Vec<String>,
     /// Folder of subprograms that the program calls by number or name (repeatable).
