@@ -166,7 +166,6 @@ impl<'a> Assembly<'a> {
         let (full, full_rank) = self.square(&model.parts);
         let total = model.space.total(model.fit.level);
         let reducible = (total - self.noise_variance() * model.space.degrees).max(1e-12);
-        let questions = model.library.questions() as f64;
         let mut ranked: Vec<Ranked> = model
             .parts
             .iter()
@@ -176,6 +175,7 @@ impl<'a> Assembly<'a> {
                 let (alone, _) = self.square(&[*part]);
                 let columns = (full_rank.saturating_sub(rest_rank)).max(1) as f64;
                 let ratio = (rest - full) / columns / (full / self.degrees()).max(1e-12);
+                let questions = model.library.questions(part.candidate);
                 let p = (f_tail(ratio, columns, self.degrees()) * questions).min(1.0);
                 let share = |gain: f64| (gain / reducible).clamp(0.0, 1.0);
                 let (unique, alone) = (share(rest - full), share(total - alone));
@@ -213,12 +213,26 @@ impl<'a> Assembly<'a> {
         start..start + length(&self.model.parts[place])
     }
 
+    /// Columns of the measuring frame: the first six.
     fn set_up_terms(&self) -> &[Term] {
-        &self.model.solution.terms[..self.model.library.nuisances]
+        self.model.solution.terms.split_at(6).0
+    }
+
+    /// What is neither frame nor cause and is known from the fit: the bar's length, unknown approaches.
+    fn instrument(&self) -> Vec<(Term, f64)> {
+        let solution = &self.model.solution;
+        (6..self.model.library.nuisances).map(|i| (solution.terms[i], solution.coefficients[i])).collect()
+    }
+
+    /// The gap of some rows, aligned, with the first causes taken off.
+    fn gap(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Vec<f64> {
+        let mut off = self.instrument();
+        off.extend(self.taken_off(count));
+        aligned(data, scalars, self.set_up_terms(), &off)
     }
 
     fn gap_after(&self, count: usize) -> Vec<f64> {
-        aligned(self.data, &self.model.scalars, self.set_up_terms(), &self.taken_off(count))
+        self.gap(self.data, &self.model.scalars, count)
     }
 
     fn diagnosis(&self, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
@@ -530,7 +544,6 @@ impl<'a> Assembly<'a> {
     }
 
     fn holdout(&self, holdout: &Measurements) -> Holdout {
-        let all = self.taken_off(self.ordered.len());
         let (before, after) = if holdout.has_magnitudes() {
             // Lengths cannot be aligned: they are taken in the measuring frame that was found.
             let terms = self.model.solution.terms.iter().copied();
@@ -538,10 +551,8 @@ impl<'a> Assembly<'a> {
             (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
         } else {
             let scalars = holdout.scalars(None);
-            let length = |off: &[(Term, f64)]| {
-                row_lengths(&scalars, &aligned(holdout, &scalars, self.set_up_terms(), off))
-            };
-            (length(&[]), length(&all))
+            let length = |count: usize| row_lengths(&scalars, &self.gap(holdout, &scalars, count));
+            (length(0), length(self.ordered.len()))
         };
         let (rms_before_um, rms_after_um) = (rms(&before), rms(&after));
         let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
@@ -567,16 +578,16 @@ impl<'a> Assembly<'a> {
     fn detectable(&self) -> Vec<Detectable> {
         let space = &self.model.space;
         let level = self.model.fit.level;
-        let questions = self.model.library.questions() as f64;
         let sigma = self.variance().sqrt();
-        let beyond = Normal::standard().inverse_cdf(1.0 - 0.5 * crate::engine::LEVEL / questions) + 1.28;
         self.model
             .library
             .candidates
             .iter()
-            .map(|candidate| {
-                let columns = space.columns(&self.model.library, &[]);
-                debug_assert!(columns.is_empty(), "no part, no column");
+            .enumerate()
+            .map(|(index, candidate)| {
+                // Passes the F test nine times in ten.
+                let tail = 0.5 * crate::engine::LEVEL / self.model.library.questions(index);
+                let beyond = Normal::standard().inverse_cdf(1.0 - tail) + 1.28;
                 let first = candidate.variants.first().and_then(|v| v.columns.first());
                 let square = first.map_or(0.0, |c| {
                     let c = c - self.model.library.nuisances;

@@ -6,15 +6,16 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use crate::crossval::{Folding, Folds};
 use crate::fit::Solution;
 use crate::gram::{Gram, Source};
-use crate::library::{Library, Variant};
+use crate::library::{Library, Variant, narrowest_mm};
 use crate::noise::outliers;
 use crate::observation::{Measurements, Scalar};
 use crate::propose;
 use crate::search::{Fit, Move, Part, Space, next_move, without};
 use crate::term::Term;
 
-/// Bonferroni-corrected level of the F test.
-pub(crate) const LEVEL: f64 = 1e-3;
+/// Level of the F test, over all questions asked: shared evenly among the effects, and within an effect among
+/// its forms.
+pub(crate) const LEVEL: f64 = 1e-2;
 /// Least share of the reducible square that a cause must explain.
 pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Most causes named.
@@ -67,11 +68,21 @@ pub(crate) struct Refused {
 pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
     let mut dropped: Vec<usize> = Vec::new();
     let mut result = explain_once(data, scalars.to_vec(), without);
-    for _ in 0..PASSES {
+    let lone = |model: &Explained| {
         let source = source(data, scalars);
-        let sub = result.model_gram();
-        let residuals = conditional_residuals(&sub, &result.solution, &source);
-        let found = outliers(&data.rows, scalars, &residuals);
+        let residuals = conditional_residuals(&model.model_gram(), &model.solution, &source);
+        outliers(&data.rows, scalars, &residuals)
+    };
+    for pass in 0..PASSES {
+        let local = result.parts.iter().any(|p| is_local(result.library.candidates[p.candidate].kind));
+        let found = if pass == 0 && local {
+            // Two blunders in one place look like damage there: judge them by a model without damage.
+            let mut no_damage = without.to_vec();
+            no_damage.extend((0..3).map(EffectKind::Local));
+            lone(&explain_once(data, scalars.to_vec(), &no_damage))
+        } else {
+            lone(&result)
+        };
         if found == dropped || found.len() * 5 > data.rows.len() {
             break;
         }
@@ -87,6 +98,10 @@ pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[Effect
         result.dropped_residuals_um = left_out.map(|(_, r)| r).collect();
     }
     result
+}
+
+const fn is_local(kind: EffectKind) -> bool {
+    matches!(kind, EffectKind::Local(_))
 }
 
 /// Where the products come from.
@@ -250,7 +265,9 @@ impl<'a> State<'a> {
             if self.without.contains(&kind) || self.uses(kind) {
                 continue;
             }
-            if let Some((centre, width, asked)) = propose::damage(self.source, &solution.residuals_um, axis) {
+            if let Some((centre, width, asked)) =
+                propose::damage(self.source, &solution.residuals_um, axis, narrowest_mm(self.data, axis))
+            {
                 let variants = self.library.place(kind, centre, width);
                 self.library.add_variants(kind, variants, asked);
             }
@@ -272,7 +289,12 @@ impl<'a> State<'a> {
             let Some((shape, indices)) = self.shape_of(&columns) else { continue };
             let rest = model_columns(&self.library, &without(&self.parts, place));
             let others: Vec<Term> = rest.iter().map(|c| self.library.terms[*c]).collect();
-            let Some(better) = propose::refined(self.source, &others, kind, &shape, &indices, rho) else {
+            let narrowest = match kind {
+                EffectKind::Local(axis) => narrowest_mm(self.data, axis),
+                _ => 0.0,
+            };
+            let Some(better) = propose::refined(self.source, &others, kind, &shape, &indices, rho, narrowest)
+            else {
                 continue;
             };
             if better == shape {
@@ -322,7 +344,7 @@ impl<'a> State<'a> {
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
         let p = 2.0
-            * self.library.questions() as f64
+            * self.library.questions(part.candidate)
             * f_tail(ratio, columns, effective).min(self.within_runs(&with));
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });

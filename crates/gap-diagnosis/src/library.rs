@@ -2,6 +2,7 @@
 
 use machine_model::effects::{EffectKind, Shape};
 
+use crate::noise::median;
 use crate::observation::{Measurements, Row};
 use crate::term::Term;
 
@@ -56,6 +57,10 @@ const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
 
 /// What the rows vary in.
 struct Seen {
+    /// Number of different places per axis.
+    places: [usize; 3],
+    /// Narrowest damage that these places could show.
+    narrowest_mm: [f64; 3],
     range: [(f64, f64); 3],
     direction: [bool; 3],
     unknown_direction: [bool; 3],
@@ -72,7 +77,10 @@ impl Seen {
     fn new(data: &Measurements) -> Self {
         let rows = &data.rows;
         let varies = |value: &dyn Fn(&Row) -> Option<f64>| range(rows, value).is_some_and(|(a, b)| b > a);
+        let places = [0, 1, 2].map(|a| data.places_mm(a).len());
         Self {
+            places,
+            narrowest_mm: [0, 1, 2].map(|a| narrowest_mm(data, a)),
             range: [0, 1, 2].map(|a| data.range_mm(a)),
             direction: [0, 1, 2].map(|a| {
                 let has = |d: i8| rows.iter().any(|r| r.command.direction[a] == d);
@@ -91,6 +99,14 @@ impl Seen {
                 .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
         }
     }
+}
+
+/// A bump narrower than this falls between the places measured: two and a half steps between them.
+#[must_use]
+pub(crate) fn narrowest_mm(data: &Measurements, axis: usize) -> f64 {
+    let places = data.places_mm(axis);
+    let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).collect();
+    2.5 * median(&mut steps).unwrap_or(0.0)
 }
 
 fn distinct(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> usize {
@@ -181,10 +197,19 @@ impl Library {
             EffectKind::Warmup(_) => self.warmup(kind, seen),
             EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
                 let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
+                // A polynomial of half as many terms as places is a guess between them.
+                let lists: Vec<&[usize]> = lists
+                    .into_iter()
+                    .filter(|l| l.len() <= 2 || 2 * (l.len() + 2) <= seen.places[a])
+                    .collect();
                 self.selections(kind, interval(a), &lists)
             }
             EffectKind::Angular { axis: a, .. } if travels(a) => {
                 let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
+                let lists: Vec<&[usize]> = lists
+                    .into_iter()
+                    .filter(|l| l.len() <= 2 || 2 * (l.len() + 1) <= seen.places[a])
+                    .collect();
                 self.selections(kind, interval(a), &lists)
             }
             EffectKind::Sag(a) if travels(a) => {
@@ -227,7 +252,7 @@ impl Library {
                 self.selections(kind, none, &lists)
             }
             EffectKind::Step(_) => self.steps(kind, seen),
-            EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a]),
+            EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a], seen.narrowest_mm[a]),
             _ => Vec::new(),
         }
     }
@@ -260,8 +285,11 @@ impl Library {
             .collect()
     }
 
-    fn places(&mut self, kind: EffectKind, (low, high): (f64, f64)) -> Vec<Variant> {
-        let width_mm = 2.0 * (high - low) / LOCAL_PLACES as f64;
+    fn places(&mut self, kind: EffectKind, (low, high): (f64, f64), narrowest_mm: f64) -> Vec<Variant> {
+        let width_mm = (2.0 * (high - low) / LOCAL_PLACES as f64).max(narrowest_mm);
+        if width_mm > crate::propose::LOCAL_WIDEST * (high - low) {
+            return Vec::new();
+        }
         (0..=LOCAL_PLACES)
             .flat_map(|k| {
                 let centre_mm = low + (high - low) * k as f64 / LOCAL_PLACES as f64;
@@ -281,9 +309,10 @@ impl Library {
         variants
     }
 
-    /// Number of forms of all effects: how often the data are asked.
+    /// By how much the p value of one form of a candidate must be multiplied (weighted Bonferroni): every
+    /// effect has the same share of the level, and its forms divide it.
     #[must_use]
-    pub(crate) fn questions(&self) -> usize {
-        self.candidates.iter().map(Candidate::asked).sum()
+    pub(crate) fn questions(&self, candidate: usize) -> f64 {
+        (self.candidates.len() * self.candidates[candidate].asked()) as f64
     }
 }

@@ -132,6 +132,16 @@ impl Measurements {
         self.rows.iter().any(|r| matches!(r.reading, Reading::Length { .. }))
     }
 
+    /// The different commands of a linear axis, ascending, mm.
+    #[must_use]
+    pub fn places_mm(&self, axis: usize) -> Vec<f64> {
+        const SAME_MM: f64 = 1e-3;
+        let mut places: Vec<f64> = self.rows.iter().map(|r| r.command.linear_mm[axis]).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|b, a| *b - *a < SAME_MM);
+        places
+    }
+
     /// Smallest and largest command of a linear axis, mm.
     #[must_use]
     pub fn range_mm(&self, axis: usize) -> (f64, f64) {

@@ -15,7 +15,7 @@ use crate::term::Term;
 const NOMINAL_PITCHES_MM: [f64; 17] =
     [2.0, 2.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 30.0, 32.0, 40.0, 50.0];
 /// Damage at a place is narrower than this share of the axis.
-const LOCAL_WIDEST: f64 = 0.3;
+pub(crate) const LOCAL_WIDEST: f64 = 0.3;
 /// So many places at uneven distances show a wave even where they lie further apart than half its period.
 const ENOUGH_PLACES: usize = 24;
 /// How far from a nominal pitch is still a neighbour.
@@ -123,7 +123,12 @@ pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
 /// Place and width where a bump along one axis explains most of the residual, all components together; how many
 /// were looked at.
 #[must_use]
-pub(crate) fn damage(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, f64, usize)> {
+pub(crate) fn damage(
+    source: &Source<'_>,
+    residuals_um: &[f64],
+    axis: usize,
+    narrowest_mm: f64,
+) -> Option<(f64, f64, usize)> {
     const WIDTHS: [f64; 5] = [0.04, 0.07, 0.12, 0.18, 0.27];
     let mut points: Vec<(f64, Vector, f64)> = thinned(source.scalars)
         .into_iter()
@@ -138,7 +143,7 @@ pub(crate) fn damage(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> 
     }
     let (mut best, mut asked) = (None, 0);
     let mut most = 0.0;
-    for share in WIDTHS {
+    for share in WIDTHS.into_iter().filter(|share| share * length >= narrowest_mm) {
         let (width, step) = (share * length, share * length / 4.0);
         let count = (length / step) as i32;
         for k in 0..=count {
@@ -156,8 +161,8 @@ pub(crate) fn damage(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> 
                 different += i32::from(*q != last);
                 last = *q;
             }
-            // One place alone could be anything.
-            if different < 2 {
+            // One or two places alone could be anything.
+            if different < 3 {
                 continue;
             }
             let power: f64 =
@@ -227,7 +232,7 @@ struct Free {
     high: f64,
 }
 
-fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64) -> Vec<Free> {
+fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64, narrowest_mm: f64) -> Vec<Free> {
     match kind {
         EffectKind::Pitch(_) => vec![Free {
             get: |s| s.pitch_mm,
@@ -255,7 +260,7 @@ fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64) -> Vec<Free> {
                 get: |s| s.width_mm,
                 set: |s, v| s.width_mm = v,
                 step: 0.4 * shape.width_mm,
-                low: 1e-3 * length_mm,
+                low: narrowest_mm.min(LOCAL_WIDEST * length_mm),
                 // Wider is a bow, not damage at a place.
                 high: LOCAL_WIDEST * length_mm,
             },
@@ -275,6 +280,7 @@ pub(crate) fn refined(
     shape: &Shape,
     indices: &[usize],
     rho: f64,
+    narrowest_mm: f64,
 ) -> Option<Shape> {
     let length_mm = match kind {
         EffectKind::Pitch(a) | EffectKind::Local(a) => range(source, a),
@@ -294,7 +300,7 @@ pub(crate) fn refined(
     if let EffectKind::Step(_) = kind {
         return step_time(&source, shape, gain);
     }
-    let frees = free_numbers(kind, shape, length_mm);
+    let frees = free_numbers(kind, shape, length_mm, narrowest_mm);
     if frees.is_empty() {
         return None;
     }

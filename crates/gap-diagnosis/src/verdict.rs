@@ -3,7 +3,7 @@
 use crate::diagnosis::Verdict;
 
 /// More than this share of the reducible gap left: the causes named do not explain it.
-pub(crate) const PHI_PARTIAL: f64 = 0.10;
+pub(crate) const PHI_PARTIAL: f64 = 0.05;
 /// Lack of fit counts below this probability.
 pub(crate) const LACK_OF_FIT: f64 = 1e-3;
 /// The best absorber must explain this share, else it is not worth calling the gap partly explained.
