@@ -128,7 +128,7 @@ pub(crate) fn write_samples(folder: &Path) -> anyhow::Result<String> {
 }
 
 /// Builds the command in release mode and says where it lies.
-fn released() -> anyhow::Result<PathBuf> {
+pub(crate) fn released() -> anyhow::Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo).args(["build", "--release", "-q", "-p", "vpost"]).status()?;
     if !status.success() {

@@ -1,5 +1,6 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
+mod corpus;
 mod engines;
 mod gap_bench;
 mod markdown;
@@ -21,6 +22,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
+    /// Correct LinuxCNC's samples, judge each result twice, and write docs/corpus.md.
+    Corpus(corpus::Options),
     /// Print docs/engines.md: the engines against one another.
     Engines,
     /// Diagnose machines with withheld effects and write docs/diagnosis-benchmark.md.
@@ -39,6 +42,7 @@ enum Task {
 
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
+        Task::Corpus(options) => corpus::run(&options)?,
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,

@@ -47,3 +47,6 @@ pub const UNREADABLE_FILE: Code = Code(138);
 pub const LOST_ASSIGNMENT: Code = Code(139);
 /// Warning: output to a printer or file is left out of the expanded program.
 pub const LOST_OUTPUT: Code = Code(140);
+/// The file defines subroutines and executes nothing: there is no path to correct.
+/// Remedy: the program that calls them, with `--include`.
+pub const NOTHING_EXECUTED: Code = Code(141);

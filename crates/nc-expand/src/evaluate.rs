@@ -1,8 +1,9 @@
 //! Expressions: tree to value.
 //!
-//! LinuxCNC computes in double precision, so its results are these. What Fanuc's own number format makes of
-//! values that differ by rounding only is told by no manual: there the work is refused
-//! ([`Fault::TooClose`]) instead of decided.
+//! LinuxCNC computes in double precision, so its sums and products are these; its sines differ in the last
+//! digits from processor to processor (`COS[90]` is -2.5e-20 on one and 6.1e-17 on another). What Fanuc's own
+//! number format makes of values that differ by rounding only is told by no manual. Where such a difference
+//! would decide, the work is refused ([`Fault::TooClose`]).
 
 use nc_syntax::dialect::{Flow, Macros};
 use units::math;
@@ -14,6 +15,9 @@ use crate::value::{Value, Variable};
 pub(crate) const LINUXCNC_EQUAL: f64 = 1e-4;
 /// Fanuc: relative difference below which two values cannot be told apart with certainty.
 const FANUC_NEAR: f64 = 1e-7;
+
+/// LinuxCNC: the same, for results of its mathematics library.
+const LINUXCNC_NEAR: f64 = 1e-12;
 
 /// Why there is no value.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,14 +59,14 @@ impl Rules {
         expression: &Expression,
         variables: &impl Variables,
     ) -> Result<Value, Fault> {
-        let value = match expression {
+        let (value, rounded) = match expression {
             Expression::Number(number) => return Ok(Value::Number(*number)),
             Expression::Variable(variable) => return variables.value(*variable),
             Expression::Indirect(index) => {
                 return match self.evaluate(index, variables)? {
-                    Value::Number(number) => variables.value(self.index(number)?),
                     Value::Null => variables.value(Variable::Numbered(0)),
                     unknown @ Value::Unknown(_) => Ok(unknown),
+                    value => variables.value(self.index(number(value))?),
                 };
             }
             Expression::Exists(variable) => {
@@ -72,14 +76,12 @@ impl Rules {
                 });
             }
             Expression::Negative(inside) => match self.evaluate(inside, variables)? {
-                Value::Number(number) => -number,
-                Value::Null => 0.0,
                 unknown @ Value::Unknown(_) => return Ok(unknown),
+                value => (0.0 - number(value), value.is_rounded()),
             },
             Expression::Unary(function, inside) => match self.evaluate(inside, variables)? {
-                Value::Number(number) => self.function(*function, number)?,
-                Value::Null => self.function(*function, 0.0)?,
                 unknown @ Value::Unknown(_) => return Ok(unknown),
+                value => self.function(*function, number(value), value.is_rounded())?,
             },
             Expression::Binary(operator, left, right) => {
                 let left = self.evaluate(left, variables)?;
@@ -90,16 +92,40 @@ impl Rules {
                     }
                     // An empty variable is not the number 0 where equality is asked for.
                     (Operator::Equal | Operator::NotEqual, a, b) if a == Value::Null || b == Value::Null => {
-                        truth((a == b) == (*operator == Operator::Equal))
+                        (truth((a == b) == (*operator == Operator::Equal)), false)
                     }
-                    (_, a, b) => self.binary(*operator, number(a), number(b))?,
+                    (_, a, b) => {
+                        self.binary(*operator, number(a), number(b), a.is_rounded() || b.is_rounded())?
+                    }
                 }
             }
         };
-        if value.is_finite() {
-            Ok(Value::Number(value))
-        } else {
-            Err(Fault::Arithmetic("the result is larger than any number".to_owned()))
+        if !value.is_finite() {
+            return Err(Fault::Arithmetic("the result is larger than any number".to_owned()));
+        }
+        Ok(if rounded { Value::Rounded(value) } else { Value::Number(value) })
+    }
+
+    /// Whether a condition holds.
+    ///
+    /// # Errors
+    /// A value that is zero but for rounding.
+    pub(crate) fn truth(self, value: Value) -> Result<bool, Fault> {
+        let number = number(value);
+        if number != 0.0 && self.undecided(number, 0.0, value.is_rounded()) {
+            return Err(Fault::TooClose(number, 0.0));
+        }
+        Ok(number != 0.0)
+    }
+
+    /// Two values that another control may see in another order: any that are near on Fanuc, on LinuxCNC those
+    /// that its mathematics library has rounded (its sines are computed in the processor's longest format).
+    fn undecided(self, a: f64, b: f64, rounded: bool) -> bool {
+        match (self.fanuc(), rounded) {
+            (true, true) => near(a, b, FANUC_NEAR),
+            (true, false) => a != b && near(a, b, FANUC_NEAR),
+            (false, true) => near(a, b, LINUXCNC_NEAR),
+            (false, false) => false,
         }
     }
 
@@ -116,42 +142,43 @@ impl Rules {
         Ok(Variable::Numbered(whole as u32))
     }
 
-    fn function(self, function: Function, v: f64) -> Result<f64, Fault> {
+    /// A function's value, and whether its last digits are in doubt.
+    fn function(self, function: Function, v: f64, rounded: bool) -> Result<(f64, bool), Fault> {
         let arithmetic = |message: String| Err(Fault::Arithmetic(message));
         Ok(match function {
-            Function::Abs => v.abs(),
-            Function::Sin => math::sin(v.to_radians()),
-            Function::Cos => math::cos(v.to_radians()),
-            Function::Tan => math::tan(v.to_radians()),
-            Function::Atan => math::atan(v).to_degrees(),
+            Function::Abs => (v.abs(), rounded),
+            Function::Sin => (math::sin(v.to_radians()), true),
+            Function::Cos => (math::cos(v.to_radians()), true),
+            Function::Tan => (math::tan(v.to_radians()), true),
+            Function::Atan => (math::atan(v).to_degrees(), true),
             Function::Asin | Function::Acos if !(-1.0..=1.0).contains(&v) => {
                 return arithmetic(format!("no angle has the sine or cosine {v}"));
             }
-            Function::Asin => math::asin(v).to_degrees(),
-            Function::Acos => math::acos(v).to_degrees(),
-            Function::Exp => math::exp(v),
+            Function::Asin => (math::asin(v).to_degrees(), true),
+            Function::Acos => (math::acos(v).to_degrees(), true),
+            Function::Exp => (math::exp(v), true),
             Function::Ln if v <= 0.0 => return arithmetic(format!("the logarithm of {v}")),
-            Function::Ln => math::ln(v),
+            Function::Ln => (math::ln(v), true),
             Function::Sqrt if v < 0.0 => return arithmetic(format!("the square root of {v}")),
-            Function::Sqrt => v.sqrt(),
+            Function::Sqrt => (v.sqrt(), rounded),
             Function::Fix | Function::Fup => {
-                let whole = v.round();
-                if self.fanuc() && whole != v && near(v, whole) {
-                    return Err(Fault::TooClose(v, whole));
+                if self.undecided(v, v.round(), rounded) {
+                    return Err(Fault::TooClose(v, v.round()));
                 }
-                match (function, self.fanuc()) {
+                let whole = match (function, self.fanuc()) {
                     (Function::Fix, true) => v.trunc(),
                     (Function::Fix, false) => v.floor(),
                     (_, true) if v < 0.0 => v.floor(),
                     _ => v.ceil(),
-                }
+                };
+                (whole, false)
             }
             Function::Round => match self.round_decimals {
                 Some(decimals) => {
                     let steps = f64::from(10_u32.pow(u32::from(decimals.min(9))));
-                    self.half_away(v * steps)? / steps
+                    (self.half_away(v * steps, rounded)? / steps, false)
                 }
-                None => self.half_away(v)?,
+                None => (self.half_away(v, rounded)?, false),
             },
             Function::Bcd | Function::Bin => {
                 let whole = whole("BCD and BIN", v)?;
@@ -168,23 +195,24 @@ impl Rules {
                     place *= to;
                     left /= from;
                 }
-                sum as f64
+                (sum as f64, false)
             }
         })
     }
 
     /// The nearest whole number, halves away from zero.
-    fn half_away(self, v: f64) -> Result<f64, Fault> {
+    fn half_away(self, v: f64, rounded: bool) -> Result<f64, Fault> {
         let half = v.trunc() + 0.5 * v.signum();
-        if self.fanuc() && v != half && near(v, half) {
+        if self.undecided(v, half, rounded) {
             return Err(Fault::TooClose(v, half));
         }
         Ok(v.round())
     }
 
-    fn binary(self, operator: Operator, a: f64, b: f64) -> Result<f64, Fault> {
+    /// An operator's value, and whether its last digits are in doubt.
+    fn binary(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<(f64, bool), Fault> {
         let arithmetic = |message: String| Err(Fault::Arithmetic(message));
-        Ok(match operator {
+        let value = match operator {
             Operator::Add => a + b,
             Operator::Subtract => a - b,
             Operator::Multiply => a * b,
@@ -194,43 +222,69 @@ impl Rules {
             Operator::Divide => a / b,
             Operator::Modulo if self.fanuc() => (whole("MOD", a)? % whole("MOD", b)?) as f64,
             Operator::Modulo => {
+                if self.undecided(a / b, (a / b).round(), rounded) {
+                    return Err(Fault::TooClose(a, (a / b).round() * b));
+                }
                 let rest = a % b;
                 if rest < 0.0 { rest + b.abs() } else { rest }
             }
             Operator::Power if a < 0.0 && b.fract() != 0.0 => {
                 return arithmetic(format!("{a} to the power of {b}"));
             }
-            Operator::Power => math::powf(a, b),
+            Operator::Power => return Ok((math::powf(a, b), true)),
             Operator::Atan2 => {
-                let degrees = math::atan2(a, b).to_degrees();
-                if self.flow.full_circle_atan && degrees < 0.0 { degrees + 360.0 } else { degrees }
-            }
-            Operator::And | Operator::Or | Operator::Xor if self.fanuc() => {
-                let (a, b) = (whole("AND, OR and XOR", a)?, whole("AND, OR and XOR", b)?);
-                (match operator {
-                    Operator::And => a & b,
-                    Operator::Or => a | b,
-                    _ => a ^ b,
-                }) as f64
-            }
-            Operator::And => truth(a != 0.0 && b != 0.0),
-            Operator::Or => truth(a != 0.0 || b != 0.0),
-            Operator::Xor => truth((a != 0.0) != (b != 0.0)),
-            comparison => {
-                if self.fanuc() && a != b && near(a, b) {
-                    return Err(Fault::TooClose(a, b));
+                // Where the angle jumps by a turn, the sign of a zero decides.
+                let jumps = a != 0.0 || rounded;
+                let cut = if self.flow.full_circle_atan { b >= 0.0 } else { b <= 0.0 };
+                if cut && jumps && near(a, 0.0, if self.fanuc() { FANUC_NEAR } else { LINUXCNC_NEAR }) {
+                    return Err(Fault::TooClose(a, 0.0));
                 }
-                let equal = if self.fanuc() { a == b } else { (a - b).abs() < LINUXCNC_EQUAL };
-                truth(match comparison {
-                    Operator::Equal => equal,
-                    Operator::NotEqual => !equal,
-                    Operator::Greater => a > b,
-                    Operator::GreaterOrEqual => a >= b,
-                    Operator::Less => a < b,
-                    _ => a <= b,
-                })
+                let degrees = math::atan2(a, b).to_degrees();
+                let turned = self.flow.full_circle_atan && degrees < 0.0;
+                return Ok((if turned { degrees + 360.0 } else { degrees }, true));
             }
-        })
+            logic @ (Operator::And | Operator::Or | Operator::Xor) => {
+                return Ok((self.logic(logic, a, b, rounded)?, false));
+            }
+            comparison => return Ok((self.compare(comparison, a, b, rounded)?, false)),
+        };
+        Ok((value, rounded))
+    }
+
+    /// Fanuc: bit by bit. LinuxCNC: everything but 0 is true.
+    fn logic(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<f64, Fault> {
+        if self.fanuc() {
+            let (a, b) = (whole("AND, OR and XOR", a)?, whole("AND, OR and XOR", b)?);
+            return Ok(match operator {
+                Operator::And => a & b,
+                Operator::Or => a | b,
+                _ => a ^ b,
+            } as f64);
+        }
+        let holds = |v| self.truth(if rounded { Value::Rounded(v) } else { Value::Number(v) });
+        let (a, b) = (holds(a)?, holds(b)?);
+        Ok(truth(match operator {
+            Operator::And => a && b,
+            Operator::Or => a || b,
+            _ => a != b,
+        }))
+    }
+
+    fn compare(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<f64, Fault> {
+        let equality = matches!(operator, Operator::Equal | Operator::NotEqual);
+        // LinuxCNC's EQ has a tolerance of its own that rounding does not reach.
+        if (self.fanuc() || !equality) && self.undecided(a, b, rounded) {
+            return Err(Fault::TooClose(a, b));
+        }
+        let equal = if self.fanuc() { a == b } else { (a - b).abs() < LINUXCNC_EQUAL };
+        Ok(truth(match operator {
+            Operator::Equal => equal,
+            Operator::NotEqual => !equal,
+            Operator::Greater => a > b,
+            Operator::GreaterOrEqual => a >= b,
+            Operator::Less => a < b,
+            _ => a <= b,
+        }))
     }
 }
 
@@ -240,11 +294,11 @@ fn truth(holds: bool) -> f64 {
 
 /// An empty variable counts as 0.
 pub(crate) fn number(value: Value) -> f64 {
-    if let Value::Number(number) = value { number } else { 0.0 }
+    if let Value::Number(number) | Value::Rounded(number) = value { number } else { 0.0 }
 }
 
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= FANUC_NEAR * a.abs().max(b.abs()).max(1.0)
+fn near(a: f64, b: f64, share: f64) -> bool {
+    (a - b).abs() <= share * a.abs().max(b.abs()).max(1.0)
 }
 
 /// The value as an integer of 32 bits.

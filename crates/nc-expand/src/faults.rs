@@ -180,6 +180,12 @@ pub(crate) fn runs_into(number: u32) -> Stop {
     )
 }
 
+pub(crate) fn nothing_executed(span: Range<u64>) -> Diagnostic {
+    Diagnostic::error(codes::NOTHING_EXECUTED, "the file defines subroutines and executes nothing")
+        .at(span, "defined here, called nowhere")
+        .help("correct the program that calls it, with `--include DIR` naming this file's folder: the moves depend on the call")
+}
+
 pub(crate) fn block_delete() -> Stop {
     say(
         codes::BLOCK_DELETE,

@@ -68,6 +68,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) cycle: bool,
     /// A block with words was executed.
     started: bool,
+    /// The main program did something besides defining subroutines and ending.
+    acted: bool,
     /// How often each subroutine was called.
     pub(crate) calls: BTreeMap<(usize, u32), u64>,
     /// File names that were looked for, and what was found.
@@ -113,6 +115,7 @@ pub(crate) fn run<'a>(
         inch,
         cycle: false,
         started: false,
+        acted: false,
         calls: BTreeMap::new(),
         externals: BTreeMap::new(),
         first_output: None,
@@ -120,7 +123,12 @@ pub(crate) fn run<'a>(
     };
     run.units(inch);
     match run.all() {
-        Ok(()) => Ok(run.finish()),
+        Ok(()) => match run.first_definition() {
+            Some(span) if !run.acted => {
+                Err(Refusal { diagnostics: vec![faults::nothing_executed(span)], file: None })
+            }
+            _ => Ok(run.finish()),
+        },
         Err(stop) => Err(run.refusal(&stop)),
     }
 }
@@ -153,6 +161,7 @@ impl<'a> Run<'a, '_> {
             Kind::Copy => {
                 self.copy(source, statement, place, again);
                 self.note(statement);
+                self.acted |= statement.flags.words && !statement.flags.ends;
                 if again {
                     self.spend(1)?;
                 }
@@ -166,6 +175,7 @@ impl<'a> Run<'a, '_> {
                     self.spend(1 + u64::from(complex.cost) / 16)?;
                 }
                 self.started = true;
+                self.acted |= !complex.defines();
                 self.complex(source, statement, complex, place, again)?;
                 self.bounded()?;
                 if statement.flags.ends && !statement.flags.skip {
@@ -193,6 +203,13 @@ impl<'a> Run<'a, '_> {
             Kind::Broken(diagnostic) => return Err(Stop::Diagnostic(diagnostic.clone())),
         }
         Ok(Next::On)
+    }
+
+    /// The first subroutine that the main program defines.
+    fn first_definition(&self) -> Option<std::ops::Range<u64>> {
+        let main = &self.sources[0];
+        let first = main.subroutines.values().min()?;
+        main.statements.get(*first as usize).map(|statement| main.span(statement))
     }
 
     /// Notes an execution; true where it is not the first.
@@ -492,7 +509,12 @@ impl<'a> Run<'a, '_> {
     }
 
     pub(crate) fn holds(&self, condition: &Expression) -> Result<bool, Stop> {
-        Ok(self.known(condition)? != 0.0)
+        match self.evaluate(condition)? {
+            Value::Unknown(variable) => Err(Stop::Unknown(variable)),
+            value => {
+                Rules { flow: self.dialect.flow, round_decimals: None }.truth(value).map_err(Stop::Fault)
+            }
+        }
     }
 
     /// The variable on the left of `=`.

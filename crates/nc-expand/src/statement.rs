@@ -70,6 +70,13 @@ pub(crate) struct Complex {
     pub(crate) cost: u32,
 }
 
+impl Complex {
+    /// True where nothing but the definition of a subroutine starts here.
+    pub(crate) fn defines(&self) -> bool {
+        matches!(&self.control, Some(Control::O(o)) if matches!(o.word, o_word::OWord::Sub))
+    }
+}
+
 /// A word whose number is computed.
 #[derive(Clone, Debug)]
 pub(crate) struct ComputedWord {

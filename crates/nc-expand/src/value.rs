@@ -12,12 +12,21 @@ pub(crate) enum Variable {
 /// A value as far as it is known before the program runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// A number.
+    /// A number, the same in every double precision.
     Number(f64),
+    /// A number whose last digits depend on the control's library: a sine and all that is computed from it.
+    Rounded(f64),
     /// Fanuc's empty variable: 0 in arithmetic, and a word with it is not there.
     Null,
     /// Known on the machine only, because this variable is.
     Unknown(Variable),
+}
+
+impl Value {
+    /// True where the last digits are in doubt.
+    pub(crate) const fn is_rounded(self) -> bool {
+        matches!(self, Self::Rounded(_))
+    }
 }
 
 /// A name's place in [`Names`].

@@ -51,7 +51,7 @@ impl Run<'_, '_> {
         };
         let rules = Rules { flow: self.dialect.flow, round_decimals: fanuc.then_some(decimals) };
         let value = match rules.evaluate(&word.value, &self.store).map_err(Stop::Fault)? {
-            Value::Number(value) => value,
+            Value::Number(value) | Value::Rounded(value) => value,
             Value::Null => return Ok(()),
             Value::Unknown(variable) => return Err(Stop::Unknown(variable)),
         };

@@ -149,6 +149,8 @@ proptest! {
         let computed_all = [computed(&format!("SIN[{shown}]")), computed(&format!("COS[{shown}]"))];
         prop_assert!((computed_all[0] - units::math::sin(radians)).abs() < 1e-9);
         prop_assert!((computed_all[1] - units::math::cos(radians)).abs() < 1e-9);
+        // Where the angle jumps by a turn, the control's rounding decides, and nothing is computed.
+        prop_assume!((angle.rem_euclid(360.0) - 180.0).abs() > 1e-3);
         let back = computed(&format!("ATAN[SIN[{shown}]]/[COS[{shown}]]"));
         prop_assert!((back - angle).rem_euclid(360.0).min((angle - back).rem_euclid(360.0)) < 2e-3);
     }

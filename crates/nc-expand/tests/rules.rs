@@ -146,6 +146,11 @@ fn linuxcnc_flow() {
         ("X[FIX[-1.5]] Y[FUP[-1.5]] Z[ROUND[-1.5]]\nM2\n", "X-2. Y-1. Z-2.|M2"),
         ("X[ATAN[-1]/[-1]] Y[1/3]\nM2\n", "X-135. Y0.333333333|M2"),
         ("#<a>=1\nX[EXISTS[#<a>]] Y[EXISTS[#<b>]]\nM2\n", "X1. Y0.|M2"),
+        // Sums are the same on every processor, and EQ has its tolerance.
+        (
+            "#1=0\no1 while [#1 LT 0.3]\n#1=[#1+0.1]\no1 endwhile\nX#1\no2 if [COS[90] EQ 0]\nY1\no2 endif\nM2\n",
+            "X0.3|Y1|M2",
+        ),
         // Branches and loops.
         ("o1 if [0]\nX1\no1 elseif [1]\nX2\no1 else\nX3\no1 endif\nM2\n", "X2|M2"),
         ("o1 if [0]\nX1\no1 elseif [0]\nX2\no1 else\nX3\no1 endif\nM2\n", "X3|M2"),
@@ -222,6 +227,12 @@ fn refusals() {
         ("linuxcnc", "X[EXP[1000]]\nM2\n", "VP0122"),
         ("fanuc", "#1=0\nWHILE[#1LT1]DO1\n#1=#1+0.1\nX#1\nEND1\nM30\n", "VP0123"),
         ("fanuc", "#1=FIX[0.3*10-0.0000000001]\nM30\n", "VP0123"),
+        ("fanuc", "#1=COS[90]\nIF[#1GT0]GOTO5\nN5 M30\n", "VP0123"),
+        ("fanuc", "#1=SIN[360]\n#2=ATAN[#1]/[1]\nM30\n", "VP0123"),
+        ("linuxcnc", "#1=[COS[90]]\no1 if [#1 GT 0]\nX1\no1 endif\nM2\n", "VP0123"),
+        ("linuxcnc", "o1 if [SIN[180]]\nX1\no1 endif\nM2\n", "VP0123"),
+        ("linuxcnc", "#1=[FIX[10*SIN[30]]]\nX#1\nM2\n", "VP0123"),
+        ("linuxcnc", "#1=[ATAN[SIN[180]]/[COS[180]]]\nX#1\nM2\n", "VP0123"),
         ("fanuc", "#1=1.5\nG#1.\nM30\n", "VP0201 not here"),
         ("fanuc", "M[1.5]\nM30\n", "VP0124"),
         ("fanuc", "M[29+1]\n", "VP0124"),
@@ -255,6 +266,7 @@ fn refusals() {
         ("fanuc", "M98 P2\nM30\nO2\nX1.\n", "VP0135"),
         ("fanuc", "O1\n#1=1\nX#1\nO2\nX1.\nM99\n", "VP0135"),
         ("linuxcnc", "o1 return\nM2\n", "VP0135"),
+        ("linuxcnc", "(a library)\no<a> sub\nX#1\no<a> endsub\nM2\n", "VP0141"),
         ("fanuc", "G4 P100 M98 P2\nM30\nO2\nM99\n", "VP0136"),
         ("fanuc", "#1=2 X1.\nM30\n", "VP0136 or VP0120"),
         ("fanuc", "M98 P31000\nM30\nO1000\nM99\nO31000\nM99\n", "VP0136"),

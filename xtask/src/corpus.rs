@@ -1,0 +1,345 @@
+//! LinuxCNC's samples through the command: what is corrected, what is refused and why, and what two judges
+//! say of each correction.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use clap::Args;
+use nc_expand::{Environment, Limits, expand};
+use rayon::prelude::*;
+
+use crate::markdown::table;
+
+/// Options of the corpus run.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Folder of the samples, with all folders in it.
+    #[arg(long, default_value = "/usr/share/linuxcnc/ncfiles")]
+    samples: PathBuf,
+    /// Machine profile.
+    #[arg(long, default_value = "tests/profiles/linuxcnc_samples.toml")]
+    profile: PathBuf,
+    /// The command under test; default: the release build beside this program, built first.
+    #[arg(long)]
+    vpost: Option<PathBuf>,
+    /// Programs at the same time.
+    #[arg(long, default_value_t = 2)]
+    jobs: usize,
+    /// Only programs whose path contains this text; nothing is written to docs/ then.
+    #[arg(long)]
+    only: Option<String>,
+    /// Where the page goes.
+    #[arg(long, default_value = "docs/corpus.md")]
+    page: PathBuf,
+}
+
+/// Longest time for one run of a tool.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// What became of a program.
+struct Sample {
+    name: String,
+    /// It computes, jumps or calls.
+    flow: bool,
+    fate: Fate,
+}
+
+enum Fate {
+    /// Code and message.
+    Refused(String, String),
+    Corrected {
+        check: Verdict,
+        referee: Verdict,
+    },
+    /// It executes no feed motion.
+    Idle,
+    /// Neither: a defect of the command.
+    Broken(String),
+}
+
+enum Verdict {
+    Holds {
+        motions: u64,
+        before_um: f64,
+        after_um: f64,
+    },
+    Fails(String),
+    /// The judge could not read the program.
+    Silent(String),
+}
+
+/// Runs everything; the summary for the terminal.
+pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
+    let vpost = match &options.vpost {
+        Some(path) => path.canonicalize().with_context(|| format!("{} is not there", path.display()))?,
+        None => crate::gap_bench::released()?,
+    };
+    let mut paths = Vec::new();
+    programs(&options.samples, &mut paths)?;
+    paths.sort();
+    if let Some(only) = &options.only {
+        paths.retain(|path| path.display().to_string().contains(only));
+    }
+    if paths.is_empty() {
+        bail!("no programs in {}", options.samples.display());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;
+    let samples = pool.install(|| {
+        paths.par_iter().map(|path| sample(&vpost, options, path)).collect::<anyhow::Result<Vec<_>>>()
+    })?;
+    let page = page(&samples);
+    if options.only.is_none() {
+        std::fs::write(&options.page, &page)?;
+    }
+    Ok(page)
+}
+
+fn programs(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    for entry in std::fs::read_dir(folder).with_context(|| format!("{} is not there", folder.display()))? {
+        let path = entry?.path();
+        if path.is_dir() {
+            programs(&path, found)?;
+        } else if path.extension().is_some_and(|ending| ending == "ngc") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample> {
+    let name = path.strip_prefix(&options.samples)?.display().to_string();
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let work = tempfile::tempdir()?;
+    let out = work.path().join("out.ngc");
+    let plain = work.path().join("plain.ngc");
+    let text = std::fs::read(path)?;
+    let flow = plain_program(&text, folder, &plain)?;
+
+    let mut command = Command::new(vpost);
+    command.arg(path).arg("-m").arg(&options.profile).args(["-d", "linuxcnc", "-q", "--color", "never"]);
+    command.arg("--include").arg(folder).arg("-o").arg(&out);
+    let (status, _, said) = finish(command)?;
+    let fate = match status {
+        Some(0) => {
+            let mut check = Command::new(vpost);
+            check.arg("check").arg(path).arg(&out).arg("-m").arg(&options.profile);
+            check.args(["-d", "linuxcnc", "--json", "--color", "never"]).arg("--include").arg(folder);
+            let check = checked(check)?;
+            // The output step of the program's unit: 0.0001 inch is 2.54 um.
+            let resolution_um = if inch(&text) { "2.54" } else { "1" };
+            let mut referee = Command::new("/usr/bin/python3");
+            referee.arg("tests/referee/referee.py").arg("--in").arg(&plain).arg("--out").arg(&out);
+            referee.arg("--model").arg(&options.profile);
+            referee.args(["--resolution", resolution_um]);
+            match check {
+                Verdict::Holds { motions: 0, .. } => Fate::Idle,
+                check if machine_coordinates(&plain)? => Fate::Corrected {
+                    check,
+                    referee: Verdict::Silent("G53, whose place it does not know".to_owned()),
+                },
+                check => Fate::Corrected { check, referee: judged(referee)? },
+            }
+        }
+        Some(1) => {
+            match said.lines().next().and_then(|line| line.strip_prefix("error[")?.split_once("]: ")) {
+                Some((code, message)) => Fate::Refused(code.to_owned(), message.to_owned()),
+                None => Fate::Broken(said),
+            }
+        }
+        _ => Fate::Broken(said),
+    };
+    Ok(Sample { name, flow, fate })
+}
+
+/// Writes the program without flow, which the second judge is given; true where there was some.
+///
+/// That both move alike is shown apart, by LinuxCNC's interpreter (`nc-expand`, test `interpreter`).
+fn plain_program(text: &[u8], folder: &Path, plain: &Path) -> anyhow::Result<bool> {
+    let dialect = nc_dialect::builtin("linuxcnc").context("a shipped dialect")?;
+    let read = |name: &str| std::fs::read(folder.join(name));
+    let environment = Environment { variables: &[], read_external: &read, limits: Limits::default() };
+    Ok(match expand(text, dialect, &environment) {
+        Ok(expanded) => {
+            std::fs::write(plain, expanded.text())?;
+            expanded.changed()
+        }
+        Err(_) => true,
+    })
+}
+
+/// Runs a command to its end: status, output, messages. No status: it had to be stopped.
+fn finish(mut command: Command) -> anyhow::Result<(Option<i32>, String, String)> {
+    let folder = tempfile::tempdir()?;
+    let (out, messages) = (folder.path().join("out"), folder.path().join("messages"));
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(std::fs::File::create(&out)?)
+        .stderr(std::fs::File::create(&messages)?)
+        .spawn()?;
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status.code();
+        }
+        if start.elapsed() > PATIENCE {
+            child.kill()?;
+            child.wait()?;
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let text = |path: &Path| -> anyhow::Result<String> {
+        Ok(String::from_utf8_lossy(&std::fs::read(path)?).into_owned())
+    };
+    Ok((status, text(&out)?, text(&messages)?))
+}
+
+fn checked(command: Command) -> anyhow::Result<Verdict> {
+    let (status, out, said) = finish(command)?;
+    let Ok(json) = serde_json::from_str::<serde_json::Value>(&out) else {
+        return Ok(Verdict::Fails(first_line(&said)));
+    };
+    if status == Some(0) {
+        return Ok(Verdict::Holds {
+            motions: json["feed_motions_in"].as_u64().unwrap_or_default(),
+            before_um: json["deviation_before_um"].as_f64().unwrap_or_default(),
+            after_um: json["deviation_after_um"].as_f64().unwrap_or_default(),
+        });
+    }
+    Ok(Verdict::Fails(json["findings"][0].as_str().unwrap_or("no finding").to_owned()))
+}
+
+fn judged(command: Command) -> anyhow::Result<Verdict> {
+    let (status, out, said) = finish(command)?;
+    let Ok(json) = serde_json::from_str::<serde_json::Value>(&out) else {
+        return Ok(Verdict::Silent(said.lines().last().unwrap_or("no answer").to_owned()));
+    };
+    if status == Some(0) {
+        return Ok(Verdict::Holds {
+            motions: json["counts"]["moves_in"].as_u64().unwrap_or_default(),
+            before_um: json["before"]["um"].as_f64().unwrap_or_default(),
+            after_um: json["after"]["um"].as_f64().unwrap_or_default(),
+        });
+    }
+    Ok(Verdict::Fails(json["failures"][0].as_str().unwrap_or("no failure").to_owned()))
+}
+
+/// True where the program goes to machine coordinates: the second judge has no work offsets in its interpreter
+/// and takes the axes to be elsewhere afterwards.
+fn machine_coordinates(program: &Path) -> anyhow::Result<bool> {
+    let text = String::from_utf8_lossy(&std::fs::read(program)?).to_ascii_uppercase();
+    Ok(text.lines().any(|line| line.split('(').next().is_some_and(|words| words.contains("G53"))))
+}
+
+/// True where the program chooses inches.
+fn inch(text: &[u8]) -> bool {
+    let text: String =
+        String::from_utf8_lossy(text).to_ascii_uppercase().split_whitespace().collect::<Vec<_>>().join(" ");
+    let code = |at: usize| !text[at + 3..].starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    text.match_indices("G20").any(|(at, _)| code(at))
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or("no answer").to_owned()
+}
+
+fn page(samples: &[Sample]) -> String {
+    let total = samples.len();
+    let corrected: Vec<(&Sample, &Verdict, &Verdict)> = samples
+        .iter()
+        .filter_map(|sample| match &sample.fate {
+            Fate::Corrected { check, referee } => Some((sample, check, referee)),
+            _ => None,
+        })
+        .collect();
+    let count = |which: &dyn Fn(&Verdict, &Verdict) -> bool| {
+        corrected.iter().filter(|(_, check, referee)| which(check, referee)).count()
+    };
+    let share = |part: usize| format!("{part} ({:.0} %)", 100.0 * part as f64 / total as f64);
+    let wrong = count(&|check, referee| {
+        !matches!(check, Verdict::Holds { .. }) || matches!(referee, Verdict::Fails(_))
+    });
+    let with_flow = corrected.iter().filter(|(sample, ..)| sample.flow).count();
+    let idle = samples.iter().filter(|sample| matches!(sample.fate, Fate::Idle)).count();
+    let broken = samples.iter().filter(|sample| matches!(sample.fate, Fate::Broken(_))).count();
+    let refused = total - corrected.len() - broken - idle;
+    let mut text = String::from(
+        "# LinuxCNC's samples\n\nMade by `cargo run -p xtask -- corpus`: every program that comes with LinuxCNC, corrected for a wide crooked machine \
+         (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include` and nothing else said. Each corrected one goes through the closed loop \
+         (`vpost check`) and before the second judge (LinuxCNC's interpreter and a machine model that share no code with vpost). Many samples are subroutines alone, \
+         lathe programs, or ask the machine something.\n\n",
+    );
+    text += &table(
+        &["", "programs"],
+        &[
+            vec!["all".into(), total.to_string()],
+            vec!["corrected".into(), share(corrected.len())],
+            vec!["… of these with variables, loops or subroutines".into(), with_flow.to_string()],
+            vec!["refused".into(), share(refused)],
+            vec!["without feed motion, unchanged".into(), share(idle)],
+            vec!["wrong by either judge".into(), wrong.to_string()],
+            vec!["neither corrected nor refused".into(), broken.to_string()],
+            vec![
+                "held by the closed loop".into(),
+                count(&|check, _| matches!(check, Verdict::Holds { .. })).to_string(),
+            ],
+            vec![
+                "held by the second judge".into(),
+                count(&|_, referee| matches!(referee, Verdict::Holds { .. })).to_string(),
+            ],
+            vec![
+                "not read by the second judge".into(),
+                count(&|_, referee| matches!(referee, Verdict::Silent(_))).to_string(),
+            ],
+        ],
+    );
+    let mut codes: BTreeMap<&str, (usize, &str, &str)> = BTreeMap::new();
+    for sample in samples {
+        if let Fate::Refused(code, message) = &sample.fate {
+            codes.entry(code).or_insert((0, &sample.name, message)).0 += 1;
+        }
+    }
+    text += "\n## Refused, by message\n\n";
+    let rows: Vec<Vec<String>> = codes
+        .iter()
+        .map(|(code, (count, name, message))| {
+            vec![(*code).to_owned(), count.to_string(), format!("`{name}`: {}", cell(message))]
+        })
+        .collect();
+    text += &table(&["message", "programs", "the first"], &rows);
+    text += "\n## Corrected\n\nLargest path deviation before and after, in µm.\n\n";
+    let rows: Vec<Vec<String>> = corrected
+        .iter()
+        .map(|(sample, check, referee)| {
+            vec![
+                format!("`{}`", sample.name),
+                if sample.flow { "yes" } else { "" }.into(),
+                shown(check),
+                shown(referee),
+            ]
+        })
+        .collect();
+    text += &table(&["program", "flow", "closed loop", "second judge"], &rows);
+    for sample in samples {
+        if let Fate::Broken(said) = &sample.fate {
+            text += &format!("\nDefect on `{}`: {}\n", sample.name, first_line(said));
+        }
+    }
+    text
+}
+
+fn shown(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Holds { before_um, after_um, .. } => format!("{before_um:.1} → {after_um:.2}"),
+        Verdict::Fails(why) => format!("**wrong**: {}", cell(why)),
+        Verdict::Silent(why) => format!("not read: {}", cell(why)),
+    }
+}
+
+/// Text that fits a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "/").replace('<', "&lt;").chars().take(140).collect()
+}
