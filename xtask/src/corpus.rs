@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::Args;
-use nc_expand::{Environment, Limits, expand};
+use nc_expand::{Environment, Limits, Preset, expand};
 use rayon::prelude::*;
 
 use crate::markdown::table;
@@ -42,6 +42,8 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// What became of a program.
 struct Sample {
     name: String,
+    /// Options that messages asked for.
+    ways: Vec<String>,
     /// It computes, jumps or calls.
     flow: bool,
     fate: Fate,
@@ -116,17 +118,28 @@ fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample
     let out = work.path().join("out.ngc");
     let plain = work.path().join("plain.ngc");
     let text = std::fs::read(path)?;
-    let flow = plain_program(&text, folder, &plain)?;
-
-    let mut command = Command::new(vpost);
-    command.arg(path).arg("-m").arg(&options.profile).args(["-d", "linuxcnc", "-q", "--color", "never"]);
-    command.arg("--include").arg(folder).arg("-o").arg(&out);
-    let (status, _, said) = finish(command)?;
+    // The ways out that messages name are taken: a value for a variable, a place to start from.
+    let mut ways: Vec<String> = Vec::new();
+    let (status, said) = loop {
+        let mut command = Command::new(vpost);
+        command.arg(path).arg("-m").arg(&options.profile).args(["-d", "linuxcnc", "-q", "--color", "never"]);
+        command.arg("--include").arg(folder).arg("-o").arg(&out).args(&ways);
+        let (status, _, said) = finish(command)?;
+        match way_out(&said) {
+            Some(way) if status == Some(1) && ways.len() < 60 && !ways.contains(&way[1]) => ways.extend(way),
+            _ => break (status, said),
+        }
+    };
+    let flow = plain_program(&text, folder, &ways, &plain)?;
     let fate = match status {
         Some(0) => {
             let mut check = Command::new(vpost);
             check.arg("check").arg(path).arg(&out).arg("-m").arg(&options.profile);
-            check.args(["-d", "linuxcnc", "--json", "--color", "never"]).arg("--include").arg(folder);
+            check
+                .args(["-d", "linuxcnc", "--json", "--color", "never"])
+                .arg("--include")
+                .arg(folder)
+                .args(&ways);
             let check = checked(check)?;
             // The output step of the program's unit: 0.0001 inch is 2.54 um.
             let resolution_um = if inch(&text) { "2.54" } else { "1" };
@@ -151,16 +164,27 @@ fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample
         }
         _ => Fate::Broken(said),
     };
-    Ok(Sample { name, flow, fate })
+    Ok(Sample { name, ways, flow, fate })
+}
+
+/// The option that a refusal's help names, with a value of ours.
+fn way_out(said: &str) -> Option<[String; 2]> {
+    let first = said.lines().next()?;
+    if first.starts_with("error[VP0121]") {
+        let name = said.split_once("`--set \"")?.1.split_once("=12.5\"`")?.0;
+        return Some(["--set".to_owned(), format!("{name}=100")]);
+    }
+    first.starts_with("error[VP0213]").then(|| ["--start-at".to_owned(), "100,80,300".to_owned()])
 }
 
 /// Writes the program without flow, which the second judge is given; true where there was some.
 ///
 /// That both move alike is shown apart, by LinuxCNC's interpreter (`nc-expand`, test `interpreter`).
-fn plain_program(text: &[u8], folder: &Path, plain: &Path) -> anyhow::Result<bool> {
+fn plain_program(text: &[u8], folder: &Path, ways: &[String], plain: &Path) -> anyhow::Result<bool> {
+    let variables: Vec<Preset> = ways.iter().filter_map(|way| Preset::parse(way)).collect();
     let dialect = nc_dialect::builtin("linuxcnc").context("a shipped dialect")?;
     let read = |name: &str| std::fs::read(folder.join(name));
-    let environment = Environment { variables: &[], read_external: &read, limits: Limits::default() };
+    let environment = Environment { variables: &variables, read_external: &read, limits: Limits::default() };
     Ok(match expand(text, dialect, &environment) {
         Ok(expanded) => {
             std::fs::write(plain, expanded.text())?;
@@ -266,11 +290,14 @@ fn page(samples: &[Sample]) -> String {
     let idle = samples.iter().filter(|sample| matches!(sample.fate, Fate::Idle)).count();
     let broken = samples.iter().filter(|sample| matches!(sample.fate, Fate::Broken(_))).count();
     let refused = total - corrected.len() - broken - idle;
+    let alone =
+        samples.iter().filter(|s| matches!(&s.fate, Fate::Refused(code, _) if code == "VP0141")).count();
     let mut text = String::from(
         "# LinuxCNC's samples\n\nMade by `cargo run -p xtask -- corpus`: every program that comes with LinuxCNC, corrected for a wide crooked machine \
-         (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include` and nothing else said. Each corrected one goes through the closed loop \
-         (`vpost check`) and before the second judge (LinuxCNC's interpreter and a machine model that share no code with vpost). Many samples are subroutines alone, \
-         lathe programs, or ask the machine something.\n\n",
+         (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include`. Where a message names an option as the way out (`--set` for a variable, `--start-at`), it is given: 100 for a \
+         variable. Each corrected one goes through the closed loop \
+         (`vpost check`) and before the second judge (LinuxCNC's interpreter and a machine model that share no code with vpost). Most samples are subroutines alone (VP0141); \
+         how these are executed when something calls them is compared with LinuxCNC's interpreter by the test `interpreter` of `nc-expand`.\n\n",
     );
     text += &table(
         &["", "programs"],
@@ -278,7 +305,12 @@ fn page(samples: &[Sample]) -> String {
             vec!["all".into(), total.to_string()],
             vec!["corrected".into(), share(corrected.len())],
             vec!["… of these with variables, loops or subroutines".into(), with_flow.to_string()],
-            vec!["refused".into(), share(refused)],
+            vec![
+                "… of these with options that a message asked for".into(),
+                corrected.iter().filter(|(sample, ..)| !sample.ways.is_empty()).count().to_string(),
+            ],
+            vec!["refused: subroutines alone (VP0141)".into(), share(alone)],
+            vec!["refused for other reasons".into(), share(refused - alone)],
             vec!["without feed motion, unchanged".into(), share(idle)],
             vec!["wrong by either judge".into(), wrong.to_string()],
             vec!["neither corrected nor refused".into(), broken.to_string()],
@@ -314,15 +346,17 @@ fn page(samples: &[Sample]) -> String {
     let rows: Vec<Vec<String>> = corrected
         .iter()
         .map(|(sample, check, referee)| {
+            let ways = sample.ways.join(" ").replace("--set ", "");
             vec![
                 format!("`{}`", sample.name),
+                if ways.is_empty() { ways } else { format!("`{ways}`") },
                 if sample.flow { "yes" } else { "" }.into(),
                 shown(check),
                 shown(referee),
             ]
         })
         .collect();
-    text += &table(&["program", "flow", "closed loop", "second judge"], &rows);
+    text += &table(&["program", "given", "flow", "closed loop", "second judge"], &rows);
     for sample in samples {
         if let Fate::Broken(said) = &sample.fate {
             text += &format!("\nDefect on `{}`: {}\n", sample.name, first_line(said));

@@ -3,9 +3,14 @@
 use std::fmt::Write;
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CycleCode};
+use nc_syntax::dialect::{Action, CycleCode, GCode, Macros};
 
 use crate::action_name;
+
+/// G65
+const MACRO_CALL: GCode = GCode(650);
+/// What becomes of a call where the dialect's flow is known.
+const EXECUTED: &str = "called programs are executed in the call's place, see above";
 
 /// What becomes of a block with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +66,10 @@ pub fn describe(dialect: &Dialect) -> String {
     }
     out.push_str("\n| code | group | what becomes of it | why, or how |\n|---|---|---|---|\n");
     for entry in &dialect.codes {
+        if entry.code == MACRO_CALL && dialect.flow.macros == Macros::Fanuc {
+            line(&mut out, format_args!("| {} | {} | executed | {EXECUTED} |", entry.code, entry.group));
+            continue;
+        }
         let name = treatment(&entry.action).name();
         line(
             &mut out,
@@ -71,7 +80,9 @@ pub fn describe(dialect: &Dialect) -> String {
     out.push_str("| M code | what becomes of it |\n|---|---|\n");
     for code in &dialect.m_codes {
         let mut what = Vec::new();
-        if let Some((reason, help)) = &code.refuse {
+        if matches!(code.number, 98 | 99) && dialect.flow.macros != Macros::None {
+            what.push(EXECUTED.to_owned());
+        } else if let Some((reason, help)) = &code.refuse {
             what.push(format!("refused: {reason}; {help}"));
         }
         if code.after_motion {
