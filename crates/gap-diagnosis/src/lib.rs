@@ -5,11 +5,13 @@
 //! model, and what to measure next. The method and its thresholds are in `docs/diagnosis.md`.
 
 mod align;
+mod assembly;
 mod crossval;
 mod diagnose;
 mod diagnosis;
 mod engine;
 mod fit;
+mod forecast;
 mod gram;
 mod library;
 mod linear;
@@ -18,6 +20,7 @@ mod magnitude;
 mod next;
 mod noise;
 mod observation;
+mod parameters;
 mod propose;
 mod remedy;
 mod rivals;

@@ -197,10 +197,10 @@ impl Library {
             EffectKind::Warmup(_) => self.warmup(kind, seen),
             EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
                 let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
-                // A polynomial of half as many terms as places is a guess between them.
+                // A polynomial with nearly as many terms as places is a guess between them.
                 let lists: Vec<&[usize]> = lists
                     .into_iter()
-                    .filter(|l| l.len() <= 2 || 2 * (l.len() + 2) <= seen.places[a])
+                    .filter(|l| l.len() <= 2 || 10 * (l.len() + 2) <= 7 * seen.places[a])
                     .collect();
                 self.selections(kind, interval(a), &lists)
             }
@@ -208,7 +208,7 @@ impl Library {
                 let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
                 let lists: Vec<&[usize]> = lists
                     .into_iter()
-                    .filter(|l| l.len() <= 2 || 2 * (l.len() + 1) <= seen.places[a])
+                    .filter(|l| l.len() <= 2 || 10 * (l.len() + 1) <= 7 * seen.places[a])
                     .collect();
                 self.selections(kind, interval(a), &lists)
             }

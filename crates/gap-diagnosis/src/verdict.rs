@@ -32,6 +32,8 @@ pub(crate) struct Evidence {
     pub lack_of_fit_p: f64,
     /// Residual noise over stated noise, where stated.
     pub noise_ratio: Option<f64>,
+    /// What the causes displace is known better than the gap is large, everywhere it would be used.
+    pub carries: bool,
 }
 
 /// The verdict; the thresholds and their reasons are in docs/diagnosis.md.
@@ -49,6 +51,10 @@ pub(crate) fn verdict(e: &Evidence) -> Verdict {
         return if suspect { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
     if structured {
+        // What is left is no noise, so the intervals are too narrow, and even those exceed the gap.
+        if !e.carries {
+            return Verdict::Underpowered;
+        }
         return if e.phi > PHI_UNKNOWN { Verdict::Unknown } else { Verdict::Partial };
     }
     if e.ambiguous {

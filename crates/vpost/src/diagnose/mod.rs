@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         .map(|id| id.parse::<EffectKind>())
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
-    let options = Options { without, seed: arguments.seed };
+    let options = Options { without, seed: arguments.seed, volume: Some(model.profile.volume()) };
     let diagnosis = gap_diagnosis::diagnose(&data, holdout.as_ref(), &options);
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&diagnosis))?;

@@ -1,0 +1,159 @@
+//! How far the gap shrinks: forecast, and checked on points no fit has seen.
+
+use machine_model::{Vector, Volume};
+
+use crate::align::{FREE_OFFSETS, magnitude_errors, rms, row_lengths};
+use crate::assembly::Assembly;
+use crate::crossval::{Folding, Folds};
+use crate::diagnosis::{Holdout, Shrinkage};
+use crate::engine::{model_columns, source};
+use crate::gram::Gram;
+use crate::noise::tail_factor;
+use crate::observation::{Measurements, Row, Scalar};
+use crate::search::Part;
+use crate::shrinkage::{Strength, transported};
+use crate::term::Term;
+
+impl Assembly<'_> {
+    /// Largest expanded uncertainty (95 %) of what the causes displace in the corners of a box, µm: what a
+    /// correction by them would be worth there.
+    pub(crate) fn uncertainty_in_corners_um(&self, volume: Option<Volume>) -> f64 {
+        let Some(typical) = self.data.rows.get(self.data.rows.len() / 2) else { return 0.0 };
+        let measured = [0, 1, 2].map(|a| self.data.range_mm(a));
+        let ends = match volume {
+            Some(Volume(ranges)) => ranges.map(|r| (r.low, r.high)),
+            None => measured,
+        };
+        let positions: Vec<usize> = self.ordered.iter().flat_map(|r| self.positions(r.place)).collect();
+        let solution = &self.model.solution;
+        let covariance = |i: usize, j: usize| solution.unit_covariance[(positions[i], positions[j])];
+        let mut largest: f64 = 0.0;
+        for corner in 0..8 {
+            let mut row: Row = *typical;
+            for axis in 0..3 {
+                let (low, high) = ends[axis];
+                row.command.linear_mm[axis] = if corner >> axis & 1 == 0 { low } else { high };
+                // A direction that was never measured has no uncertainty to speak of.
+                row.command.direction[axis] = typical.command.direction[axis];
+            }
+            let unit: Vec<Vector> = positions
+                .iter()
+                .map(|p| solution.terms[*p].displacement_um(&row, &self.data.geometry))
+                .collect();
+            let mut square = 0.0;
+            for (i, a) in unit.iter().enumerate() {
+                for (j, b) in unit.iter().enumerate() {
+                    square += covariance(i, j) * a.dot(b);
+                }
+            }
+            largest = largest.max(square * self.variance());
+        }
+        1.96 * largest.max(0.0).sqrt()
+    }
+
+    /// What the first causes do to some commands, alignment taken out.
+    pub(crate) fn strength(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Strength {
+        let own: Vec<(Term, f64)> = self.taken_off(count);
+        let positions: Vec<usize> =
+            self.ordered.iter().take(count).flat_map(|r| self.positions(r.place)).collect();
+        let mut terms = self.set_up_terms().to_vec();
+        let nuisances = terms.len();
+        terms.extend(own.iter().map(|(t, _)| *t));
+        let source = source(data, scalars);
+        let gram = Gram::new(terms, &source);
+        let align = scalars.len() >= 24 && !data.has_magnitudes();
+        let (whitened, _) = gram.whitened(if align { FREE_OFFSETS } else { 0.0 });
+        let (products, rank) =
+            crate::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
+        let offset = products.nrows() - 1 - own.len();
+        let covariance = &self.model.solution.unit_covariance;
+        let (mut square, mut spread) = (0.0, 0.0);
+        for (i, (_, a)) in own.iter().enumerate() {
+            for (j, (_, b)) in own.iter().enumerate() {
+                let product = products[(offset + i, offset + j)];
+                square += a * b * product;
+                spread += covariance[(positions[i], positions[j])] * product;
+            }
+        }
+        let equations = scalars.len().max(1) as f64;
+        let noise = self.noise_variance().max(1e-12);
+        let fitted = if align { rank as f64 + gram.offsets_fitted() } else { 0.0 };
+        Strength {
+            square: square / equations / noise,
+            spread: spread * self.variance() / equations / noise,
+            noise: (1.0 - fitted / equations).max(0.05),
+        }
+    }
+
+    /// Mean square of the residual on unseen lines and its standard error, in units of the noise variance.
+    ///
+    /// With few runs a left-out run or stretch is an extrapolation, not a new line of the same kind: then the
+    /// residual itself is taken, per degree of freedom.
+    pub(crate) fn misfit(&self, count: usize) -> (f64, f64) {
+        let model = self.model;
+        let noise = self.noise_variance().max(1e-12);
+        let parts: Vec<Part> = self.ordered.iter().take(count).map(|r| r.part).collect();
+        if self.data.runs.len() < 8 {
+            let (square, rank) = self.square(&parts);
+            let degrees = (model.space.degrees - rank as f64).max(1.0);
+            let m = square / degrees / noise;
+            return (m, m * (2.0 / degrees).sqrt());
+        }
+        let columns = model_columns(&model.library, &parts);
+        let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
+        let source = source(self.data, &model.scalars);
+        let nuisances = model.library.nuisances;
+        let folds = Folds::new(&terms, nuisances, model.solution.rho, &source, Folding::Runs);
+        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
+        let losses = folds.losses(&all);
+        let share = model.space.degrees / model.scalars.len() as f64;
+        let m = losses.iter().sum::<f64>() / model.space.degrees / noise;
+        let each: Vec<f64> = losses
+            .iter()
+            .zip(folds.counts())
+            .filter(|(_, n)| **n > 0)
+            .map(|(l, n)| l / (*n as f64 * share) / noise)
+            .collect();
+        let mean = each.iter().sum::<f64>() / each.len().max(1) as f64;
+        let spread = each.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+        (m, (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt())
+    }
+
+    pub(crate) fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
+        let model = self.model;
+        let (m, m_error) = self.misfit(count);
+        let mut data = self.strength(self.data, &model.scalars, count);
+        if self.data.runs.len() < 8 {
+            // A residual does not contain the uncertainty of the numbers that were fitted to it.
+            data.spread = 0.0;
+        }
+        let target = match holdout {
+            Some(h) if h.has_magnitudes() => {
+                let estimate = crate::align::displacements(h, &self.taken_off(count));
+                Some(self.strength(h, &h.scalars(Some(&estimate)), count))
+            }
+            Some(h) => Some(self.strength(h, &h.scalars(None), count)),
+            None => None,
+        };
+        let mut target = target.unwrap_or(data);
+        target.noise *=
+            tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
+        transported(m, m_error, &data, &target)
+    }
+
+    pub(crate) fn holdout(&self, holdout: &Measurements) -> Holdout {
+        let (before, after) = if holdout.has_magnitudes() {
+            // Lengths cannot be aligned: they are taken in the measuring frame that was found.
+            let terms = self.model.solution.terms.iter().copied();
+            let all: Vec<(Term, f64)> = terms.zip(self.model.solution.coefficients.iter().copied()).collect();
+            (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
+        } else {
+            let scalars = holdout.scalars(None);
+            let length = |count: usize| row_lengths(&scalars, &self.gap(holdout, &scalars, count));
+            (length(0), length(self.ordered.len()))
+        };
+        let (rms_before_um, rms_after_um) = (rms(&before), rms(&after));
+        let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
+        Holdout { rows: before.len(), rms_before_um, rms_after_um, shrink }
+    }
+}
