@@ -30,8 +30,7 @@ impl Assembly<'_> {
         let mut largest: f64 = 0.0;
         for corner in 0..8 {
             let mut row: Row = *typical;
-            for axis in 0..3 {
-                let (low, high) = ends[axis];
+            for (axis, (low, high)) in ends.into_iter().enumerate() {
                 row.command.linear_mm[axis] = if corner >> axis & 1 == 0 { low } else { high };
                 // A direction that was never measured has no uncertainty to speak of.
                 row.command.direction[axis] = typical.command.direction[axis];

@@ -297,7 +297,8 @@ impl<'a> Run<'a, '_> {
             },
             OWord::EndWhile => self.at.statement = o.next,
             OWord::Repeat(count) => {
-                let count = self.known(count)?.round();
+                // The interpreter rounds halves to even: 2.5 turns are two.
+                let count = self.known(count)?.round_ties_even();
                 if count >= 1.0 {
                     self.repeats.push((place.statement, count.min(9e15) as u64));
                 } else {

@@ -133,6 +133,39 @@ fn calls(name: &str, text: &str) -> Vec<String> {
         .collect()
 }
 
+/// Corners of the language, each where two readings are possible.
+const CORNERS: [&str; 12] = [
+    "o1 repeat [2.5]\nG0 X1\no1 endrepeat\no2 repeat [3.5]\nG0 Y1\no2 endrepeat\no3 repeat [0.9]\nG0 Z1\no3 endrepeat\no4 repeat [-2]\nG0 Z2\no4 endrepeat\nM2\n",
+    "#1=2 #1=3\nG0 X#1\n#1=5 #2=#1 G0 Y#1\nG0 X#1 Y#2\nM2\n",
+    "G0 X[2 + -3] Y[-[2]**2] Z[5 MOD -3]\nG0 X[7 MOD 2.5] Y[2 - 3 - 4] Z[8/4/2]\nM2\n",
+    "G0 X[1 LT 2 LT 3] Y[1 OR 0 AND 0] Z[1 + 2 EQ 3]\nG0 X[1 XOR 1] Y[0 AND 0 OR 1] Z[2 EQ 2 AND 3 NE 4]\nM2\n",
+    "G0 X[ROUND[-2.5]] Y[FIX[-0.5]] Z[FUP[-0.5]]\nG0 X[ABS[-3] * SQRT[9]] Y[EXP[0]] Z[LN[1]]\nM2\n",
+    "#4=9\n#2=4\n#[#2+1]=[##2 + 1]\nG0 X#5 Y##2 Z[-#2]\nM2\n",
+    "o3 sub\nG0 X[#1+#2] Y#3\no3 return [#1]\nG0 X99\no3 endsub\no3 call [1] [2]\nG0 Z#<_value> Y#<_value_returned>\no3 call\nG0 Z#<_value>\nM2\n",
+    "#1=7\nG0 X#1\nM98 P10 L2\nG0 X#1\nM2\nO10\n#1=[#1+1]\nG0 Y#1\nM99\n",
+    "#1=7\n#<x>=1\no1 sub\n#1=8\n#<x>=2\n#<_g>=[#<x>+#1]\no1 endsub\no1 call [3]\nG0 X#1 Y#<x> Z#<_g>\nM2\n",
+    "#1=0\no1 while [#1 LT 5]\n#1=[#1+1]\no2 if [#1 EQ 2]\no1 continue\no2 elseif [#1 EQ 4]\no1 break\no2 endif\nG0 X#1\no1 endwhile\nG0 Y#1\nM2\n",
+    "#1=0\no1 do\n#1=[#1+1]\no2 if [#1 EQ 2]\no1 continue\no2 endif\nG0 X#1\no1 while [#1 LT 4]\nM2\n",
+    "#<a b>=1\n#<AB>=[#<ab>+1]\nG0 X#<A B> Y[EXISTS[#<ab>]] Z[EXISTS[#<abc>]]\no<s t> sub\nG1 X#1 F1\no<st> endsub\nO<ST> CALL [4]\nM2\n",
+];
+
+#[test]
+fn corners_of_the_language_are_the_interpreters() {
+    if !have_interpreter() {
+        return;
+    }
+    let work = tempfile::tempdir().expect("a temporary folder");
+    let (main, plain) = (work.path().join("main.ngc"), work.path().join("plain.ngc"));
+    for text in CORNERS {
+        std::fs::write(&main, text).expect("writable");
+        std::fs::write(&plain, common::linuxcnc(text)).expect("writable");
+        let wanted =
+            canonical(&main, work.path()).unwrap_or_else(|| panic!("not run by the interpreter: {text}"));
+        assert!(wanted.iter().any(|call| call.starts_with("STRAIGHT")), "{text}");
+        assert_eq!(canonical(&plain, work.path()), Some(wanted), "{text}");
+    }
+}
+
 /// The samples that are subroutines alone, called.
 #[test]
 fn called_samples_move_as_the_interpreter_moves() {
