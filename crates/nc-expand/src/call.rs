@@ -8,9 +8,10 @@ use nc_syntax::dialect::{Macros, PointFree};
 
 use crate::codes;
 use crate::faults::{self, Stop, say, whole};
+use crate::jump::CallKind;
 use crate::o_word::{Label, OStatement, OWord};
 use crate::program::Source;
-use crate::run::{CallKind, Place, Run};
+use crate::run::{Place, Run};
 use crate::statement::{Call, Control, Kind, Statement};
 use crate::value::{NameId, Value};
 

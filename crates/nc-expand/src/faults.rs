@@ -7,7 +7,7 @@ use nc_syntax::dialect::Macros;
 
 use crate::codes;
 use crate::evaluate::Fault;
-use crate::run::CallKind;
+use crate::jump::CallKind;
 use crate::value::{Names, Variable};
 use crate::variables::Protected;
 

@@ -31,6 +31,7 @@ mod evaluate;
 mod expression;
 mod faults;
 mod flow;
+mod jump;
 mod o_word;
 mod output;
 mod program;

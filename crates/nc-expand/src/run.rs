@@ -9,11 +9,12 @@ use nc_syntax::dialect::{Action, Dialect, Macros};
 use crate::evaluate::{Rules, Variables, number};
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
+use crate::jump::Frame;
 use crate::output::{From, Output};
-use crate::program::{Found, Source};
+use crate::program::Source;
 use crate::statement::{Complex, Control, Kind, Statement};
-use crate::value::{NameId, Names, Value, Variable};
-use crate::variables::{Saved, Store};
+use crate::value::{Names, Value, Variable};
+use crate::variables::Store;
 use crate::{Environment, Expanded, Refusal};
 
 /// Where the program stands.
@@ -21,31 +22,6 @@ use crate::{Environment, Expanded, Refusal};
 pub(crate) struct Place {
     pub(crate) file: usize,
     pub(crate) statement: u32,
-}
-
-/// A call that has not returned.
-#[derive(Debug)]
-pub(crate) struct Frame {
-    pub(crate) back: Place,
-    pub(crate) start: Place,
-    /// Passes still to come.
-    pub(crate) left: u64,
-    pub(crate) passes: u64,
-    pub(crate) kind: CallKind,
-    /// The caller's variables, where the called program has its own.
-    saved: Option<Saved>,
-    repeats: Vec<(u32, u64)>,
-    /// Section of the caller.
-    section: u32,
-}
-
-/// How a program was called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CallKind {
-    /// M98, G65: M99 returns.
-    Number(u32),
-    /// `o<name> call`: `endsub` and `return` return.
-    Name(NameId),
 }
 
 pub(crate) struct Run<'a, 'e> {
@@ -61,7 +37,7 @@ pub(crate) struct Run<'a, 'e> {
     /// Running `repeat` loops of the running program: head and turns left.
     pub(crate) repeats: Vec<(u32, u64)>,
     pub(crate) at: Place,
-    previous: Option<Place>,
+    pub(crate) previous: Option<Place>,
     steps: u64,
     most_bytes: u64,
     pub(crate) inch: bool,
@@ -380,118 +356,6 @@ impl<'a> Run<'a, '_> {
             Control::O(o) => self.o_word(source, statement, o, place),
             Control::IfThen(..) | Control::Output => Ok(()),
         }
-    }
-
-    fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {
-        let value = self.known(label)?;
-        let number = faults::whole("a block number", value)?;
-        match source.label(section, number) {
-            Found::Statement(statement) => {
-                self.at.statement = statement;
-                Ok(())
-            }
-            Found::Missing => Err(faults::label(number, "there is no such block in this program")),
-            Found::Twice => Err(faults::label(number, "the number stands before more than one block")),
-        }
-    }
-
-    /// M99.
-    fn return_by_number(
-        &mut self,
-        source: &Source<'a>,
-        statement: &Statement,
-        to: Option<&Expression>,
-    ) -> Result<(), Stop> {
-        if self.frames.is_empty() {
-            return match to {
-                Some(label) => self.goto(source, statement.section, label),
-                None => Err(faults::endless()),
-            };
-        }
-        if matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
-            return Err(faults::no_call("M99 in a subroutine that an O-word called"));
-        }
-        let to = match to {
-            Some(label) => Some(self.known(label)?),
-            None => None,
-        };
-        let section = self.frames.last().map_or(0, |frame| frame.section);
-        let jump = to.is_some();
-        if !self.leave(jump) {
-            return Ok(());
-        }
-        if let Some(number) = to {
-            let caller = Rc::clone(&self.sources[self.at.file]);
-            return self.goto(&caller, section, &Expression::Number(number));
-        }
-        Ok(())
-    }
-
-    /// Ends a pass of the running call; false where another one begins.
-    pub(crate) fn leave(&mut self, for_good: bool) -> bool {
-        let Some(mut frame) = self.frames.pop() else { return true };
-        if frame.left > 0 && !for_good {
-            frame.left -= 1;
-            self.at = frame.start;
-            self.repeats.clear();
-            self.announce(frame.kind, frame.passes - frame.left, Some(frame.passes), frame.back);
-            self.frames.push(frame);
-            return false;
-        }
-        if let Some(saved) = frame.saved {
-            self.store.leave(saved);
-        }
-        self.repeats = frame.repeats;
-        self.at = frame.back;
-        true
-    }
-
-    /// Starts a call.
-    pub(crate) fn enter(
-        &mut self,
-        start: Place,
-        kind: CallKind,
-        passes: u64,
-        arguments: Option<&[(u32, Value)]>,
-        section: u32,
-        caller: Place,
-    ) -> Result<(), Stop> {
-        let limit = self.environment.limits.depth;
-        if self.frames.len() >= limit {
-            return Err(faults::too_deep(limit));
-        }
-        let back = self.at;
-        let saved = arguments.map(|arguments| self.store.enter(arguments));
-        let repeats = std::mem::take(&mut self.repeats);
-        let count = self.calls.entry((start.file, start.statement)).or_insert(0);
-        *count += 1;
-        let (number, of) = match kind {
-            CallKind::Number(_) => (1, Some(passes)),
-            CallKind::Name(_) => (*count, None),
-        };
-        self.announce(kind, number, of, caller);
-        self.frames.push(Frame { back, start, left: passes - 1, passes, kind, saved, repeats, section });
-        self.at = start;
-        Ok(())
-    }
-
-    /// `(O1000 CALL 2 OF 3)`
-    fn announce(&mut self, kind: CallKind, number: u64, of: Option<u64>, caller: Place) {
-        let name = match kind {
-            CallKind::Number(program) => format!("O{program:04}"),
-            CallKind::Name(id) => format!("O<{}>", self.names.name(id)),
-        };
-        let text = match of {
-            Some(passes) => format!("{name} CALL {number} OF {passes}"),
-            None => format!("{name} CALL {number}"),
-        };
-        let source = Rc::clone(&self.sources[caller.file]);
-        let at = (caller.statement as usize).min(source.statements.len().saturating_sub(1));
-        if let Some(statement) = source.statements.get(at) {
-            let from = self.from(statement, caller);
-            self.out.comment(text.as_bytes(), from);
-        }
-        self.previous = None;
     }
 
     pub(crate) fn evaluate(&self, expression: &Expression) -> Result<Value, Stop> {

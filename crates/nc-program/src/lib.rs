@@ -34,6 +34,7 @@
 //! * The first `%` opens the program, the next one, M2 or M30 ends it; nothing after that is looked at.
 
 mod arc;
+mod circular;
 pub mod codes;
 mod cycle;
 mod delete;
@@ -44,6 +45,7 @@ mod motion;
 mod position;
 mod settings;
 mod setup;
+mod tool_length;
 mod transform;
 mod words;
 

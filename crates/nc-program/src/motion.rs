@@ -3,21 +3,19 @@
 use diagnostic::Diagnostic;
 use nc_syntax::Span;
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Arc, Feed, FeedRate, Motion, Shape};
+use toolpath::{Feed, FeedRate, Motion, Shape};
 
-use crate::arc::{self, Circle, Fault};
+use crate::circular::circular;
 use crate::codes;
 use crate::cycle;
 use crate::frames::{self, settle};
-use crate::modal::{
-    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, ToolLength, Turn,
-    Units, Why,
-};
+use crate::modal::{Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Units, Why};
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
+use crate::tool_length;
 use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY,
-    ROTARY_LETTERS, SECONDARY_LETTERS, Words,
+    ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY, ROTARY_LETTERS,
+    SECONDARY_LETTERS, Words,
 };
 
 /// Nearly always none or one.
@@ -52,7 +50,7 @@ pub(crate) fn execute(
             by_mode(env, words, before, state, moved)?;
         }
         Owner::Frame => moved.states_position = frames::execute(env, words, demand, before, state)?,
-        Owner::Length => length_from_words(words, demand, before, state)?,
+        Owner::Length => tool_length::from_words(words, demand, before, state)?,
         Owner::Dwell => dwell(words, demand)?,
         Owner::Arguments => {
             if let (Some(motion), true) = (demand.written_motion, words.has(AXIS_LETTERS.or(ARC_LETTERS))) {
@@ -125,35 +123,6 @@ fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
             .help("write the dwell in a block of its own"));
     }
     Ok(())
-}
-
-/// G43.1: the words are the length; axes left out keep what they had.
-fn length_from_words(
-    words: &Words<'_, '_, '_>,
-    demand: &Demand<'_>,
-    before: &Modal,
-    state: &mut Modal,
-) -> Outcome<()> {
-    let Some(span) = demand.owner_span else { return Ok(()) };
-    let others = ARC_LETTERS.or(ROTARY_LETTERS).or(SECONDARY_LETTERS).or(Letters::of(b"H"));
-    let message = if words.has(others) || !words.has(LINEAR_LETTERS) {
-        format!("{} takes X, Y and Z", words.text(span))
-    } else if demand.written_motion.is_some() || compensated(before, state) || state.cycle.is_some() {
-        format!("{} beside a motion, a cycle or cutter compensation", words.text(span))
-    } else {
-        let mut applied_mm = state.tool_length.applied_mm();
-        for i in 0..3 {
-            if let Some(value) = words.coordinate(LINEAR[i], state.units == Units::Inch) {
-                applied_mm[i] = value * state.units.mm();
-            }
-        }
-        state.tool_length = ToolLength::Written { applied_mm };
-        frames::refresh(state);
-        return Ok(());
-    };
-    Err(words
-        .refuse(codes::TOOL_LENGTH, message, span, "the length is in the words of this block")
-        .help("write it in a block of its own with X, Y and Z alone"))
 }
 
 fn by_mode(
@@ -262,234 +231,13 @@ fn straight(
     Ok(())
 }
 
-/// G2 and G3.
-fn circular(
-    env: &Environment<'_>,
-    words: &Words<'_, '_, '_>,
-    before: &Modal,
-    state: &mut Modal,
-    turn: Turn,
-    motions: &mut Motions,
-) -> Outcome<()> {
-    settle(words, state)?;
-    let frame = *require_frame(env, words, state)?;
-    let start = state.axes;
-    let end = end(words, state, &frame)?;
-    let what = "the arc";
-    let from = require_known(words, &start, what)?;
-    let to = require_known(words, &end, what)?;
-    let turning = from.rotary_deg != to.rotary_deg;
-    if turning && env.setup.rotary_matters {
-        return Err(simultaneous(words));
-    }
-    let turns = turns(env, words)?;
-    let [first, second, _] = state.plane.axes();
-    let plane = |point: &[f64; 3]| [point[first], point[second]];
-    let Some(similarity) = frame.similarity(state.plane) else {
-        return Err(words
-            .refuse(
-                codes::FRAME,
-                format!("an arc under {}", state.transform.name()),
-                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                "the frame makes it an ellipse or turns it out of its plane",
-            )
-            .help("let the CAM write the arc as lines, or scale all axes alike"));
-    };
-    // The words say the circle in program coordinates. A shifted frame has the same circle in axis
-    // commands; a turned or mirrored one must be asked.
-    let shift = frame.is_shift();
-    let local = |point: &[f64; 3]| plane(&if shift { *point } else { frame.to_program(*point) });
-    let (start_2d, end_2d) = (local(&from.linear_mm), local(&to.linear_mm));
-    let origin = if shift { plane(&frame.offset_mm()) } else { [0.0; 2] };
-    let tolerance_mm = env.dialect.output.arc_radius_tolerance_mm;
-    let inch = state.units == Units::Inch;
-    let circle = match words.coordinate(b'R', inch) {
-        Some(_) if words.has(CENTRE_LETTERS) => {
-            let span = words.span(ARC_LETTERS);
-            return Err(words
-                .refuse(codes::ARC_WORDS, "R and a centre in one arc", span, "which one?")
-                .help(format!("remove R or {}", words.names(CENTRE_LETTERS))));
-        }
-        Some(radius) => arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance_mm),
-        None => {
-            let centre = centre(words, state, start_2d, origin)?;
-            arc::by_centre(start_2d, end_2d, centre, turn, tolerance_mm)
-        }
-    };
-    let Circle { centre_mm, sweep_rad } =
-        circle.map_err(|fault| no_circle(words, state, fault, tolerance_mm))?;
-    let rate = feed_rate(words, state)?;
-    state.axes = end;
-    let centre_mm = if shift {
-        centre_mm
-    } else {
-        let mut centre = frame.to_program(from.linear_mm);
-        (centre[first], centre[second]) = (centre_mm[0], centre_mm[1]);
-        plane(&frame.to_machine(centre))
-    };
-    let whole = f64::from(turns - 1) * std::f64::consts::TAU;
-    let sweep_rad = sweep_rad + whole.copysign(sweep_rad);
-    let sweep_rad = if similarity.mirrored { -sweep_rad } else { sweep_rad };
-    let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
-    let may_split = !compensated(before, state) && !turning;
-    motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, may_split }));
-    Ok(())
-}
-
-/// P of an arc: its turns, where the dialect has that; the first need not be whole.
-fn turns(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<u32> {
-    const P: Letters = Letters::of(b"P");
-    /// More than any thread has.
-    const MOST: u32 = 1000;
-    if env.dialect.frames.arc_turns {
-        let turns = words.whole(b'P')?.unwrap_or(1);
-        if (1..=MOST).contains(&turns) {
-            return Ok(turns);
-        }
-        let message = format!("an arc of {turns} turns");
-        return Err(words
-            .refuse(codes::ARC_WORDS, message, words.span(P), format!("1 to {MOST} were expected"))
-            .help("write P1, or no P, for an arc of at most one turn"));
-    }
-    match words.plain(b'P') {
-        Some(turns) if (turns - 1.0).abs() > 1e-9 => Err(words
-            .refuse(
-                codes::ARC_WORDS,
-                "P beside an arc",
-                words.span(P),
-                "turns on some controls, nothing on others",
-            )
-            .help("write one block for each turn")),
-        _ => Ok(1),
-    }
-}
-
-/// The centre by I J K, mm, where the program's zero is `shift_mm`.
-fn centre(
-    words: &Words<'_, '_, '_>,
-    state: &Modal,
-    start_mm: [f64; 2],
-    shift_mm: [f64; 2],
-) -> Outcome<[f64; 2]> {
-    let letters = state.plane.centre_letters();
-    let [one, two] = shown_letters(state);
-    let in_plane = Letters::of(&letters);
-    let across = CENTRE_LETTERS.without(in_plane);
-    let inch = state.units == Units::Inch;
-    if words.has(across) {
-        let letter = across.first();
-        // `K0` on a G17 arc is how some posts write nothing.
-        if words.coordinate(letter, inch) != Some(0.0) {
-            let message = format!("{} on an arc whose plane has {one} and {two}", letter as char);
-            return Err(words
-                .refuse(codes::ARC_WORDS, message, words.span(across), "not in this plane")
-                .help("select the arc's plane with G17, G18 or G19, or remove the word"));
-        }
-    }
-    if !words.has(in_plane) {
-        return Err(without_centre(words, one, two));
-    }
-    let values = letters.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm()));
-    match (state.arc_centres, values) {
-        (ArcCentres::Incremental, [i, j]) => {
-            Ok([start_mm[0] + i.unwrap_or(0.0), start_mm[1] + j.unwrap_or(0.0)])
-        }
-        (ArcCentres::Absolute, [Some(i), Some(j)]) => Ok([i + shift_mm[0], j + shift_mm[1]]),
-        (ArcCentres::Absolute, _) => Err(words
-            .refuse(
-                codes::ARC_WORDS,
-                "half a centre under absolute arc centres",
-                words.span(in_plane),
-                format!("{one} and {two} were expected"),
-            )
-            .help(format!("write both {one} and {two}, or G91.1 for centres from the start"))),
-    }
-}
-
-fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagnostic> {
-    words
-        .refuse(
-            codes::ARC_WITHOUT_CENTRE,
-            "arc without centre",
-            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            format!("neither {one}/{two} nor R in this block, and neither is modal"),
-        )
-        .help(format!(
-            "post the program again so that each arc block has its {one} and {two} (some posts drop unchanged ones), or add R"
-        ))
-}
-
-fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_mm: f64) -> Box<Diagnostic> {
-    let [one, two] = shown_letters(state);
-    let (unit_mm, unit) = match state.units {
-        Units::Millimetre => (1.0, "mm"),
-        Units::Inch => (25.4, "inch"),
-    };
-    let show = |mm: f64| shortest(mm / unit_mm);
-    let centre = words.span(ARC_LETTERS);
-    match fault {
-        Fault::NoRadius => words
-            .refuse(codes::ARC_WORDS, "an arc about its own start", centre, format!("{one} and {two} are 0"))
-            .help(format!("write the distance from the start to the centre as {one} and {two}")),
-        Fault::RadiiDiffer { start_mm, end_mm } => {
-            let message = "the ends of the arc lie at different distances from its centre";
-            let label = format!(
-                "radius {} at the start, {} {unit} at the end, {} allowed",
-                show(start_mm),
-                show(end_mm),
-                show(tolerance_mm)
-            );
-            let mode = match state.arc_centres {
-                ArcCentres::Incremental => "measured from the start (G91.1)",
-                ArcCentres::Absolute => "absolute (G90.1)",
-            };
-            words
-                .refuse(codes::RADII_DIFFER, message, centre, label)
-                .help(format!("correct the end or the centre; {one} and {two} are read as {mode}"))
-        }
-        Fault::RadiusTooSmall { radius_mm, chord_mm } => {
-            // Rounded up, so that the number can be typed as it stands.
-            let least = (chord_mm / unit_mm / 2.0 * 1e4 - 1e-6).ceil() / 1e4;
-            words
-                .refuse(
-                    codes::RADIUS_TOO_SMALL,
-                    "arc radius is smaller than half the chord",
-                    centre,
-                    format!("R{} {unit}, chord is {} {unit}", show(radius_mm), show(chord_mm)),
-                )
-                .help(format!("use {one}/{two} centre form, or R of at least {}", shortest(least)))
-        }
-        Fault::FullCircleByRadius => words
-            .refuse(
-                codes::ARC_WORDS,
-                "a full circle by R",
-                centre,
-                "start and end are the same point: R has no centre",
-            )
-            .help(format!("use {one}/{two} centre form")),
-    }
-}
-
-/// The plane's centre letters in the order people write them.
-fn shown_letters(state: &Modal) -> [char; 2] {
-    let mut letters = state.plane.centre_letters().map(char::from);
-    letters.sort_unstable();
-    letters
-}
-
-/// A number for people: at most four decimals, no trailing zeros.
-fn shortest(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
 /// G41 and G42 are in force before or after the block: neither its start-up nor its end may be split.
-fn compensated(before: &Modal, state: &Modal) -> bool {
+pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
     before.compensation == Compensation::On || state.compensation == Compensation::On
 }
 
 /// F of a feed motion: under G93 it must stand in the block itself.
-fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
+pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
     if state.feed_mode != FeedMode::InverseTime {
         return Ok(rate(state, 0.0));
     }
@@ -610,7 +358,7 @@ fn stray(words: &Words<'_, '_, '_>, why: &str) -> Box<Diagnostic> {
         .help("write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs")
 }
 
-fn simultaneous(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+pub(crate) fn simultaneous(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::SIMULTANEOUS,

@@ -6,10 +6,11 @@ use toolpath::Plane;
 
 use crate::codes;
 use crate::modal::{
-    ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts,
-    ToolLength, Turn, Units, WorkOffset,
+    ArcCentres, Compensation, CycleState, Distance, FeedMode, Modal, MotionMode, ReturnLevel, Shifts, Turn,
+    Units, WorkOffset,
 };
 use crate::setup::Setup;
+use crate::tool_length::{self, Length};
 use crate::words::{Letters, Outcome, Words};
 use crate::{frames, transform::Transform};
 
@@ -55,13 +56,6 @@ pub(crate) struct Demand<'d> {
     pub(crate) written_motion: Option<Span>,
     /// The code that moves the frame by its words.
     pub(crate) frame: Option<&'d Action>,
-}
-
-/// How the tool length is asked to change.
-#[derive(Clone, Copy)]
-enum Length {
-    Off,
-    On { negative: bool },
 }
 
 /// Collected while the codes are read, applied afterwards in a fixed order.
@@ -134,12 +128,12 @@ pub(crate) fn apply<'d>(
                 .help(help.as_str()));
         }
     }
-    tool(words, state);
+    tool_length::tool(words, state);
     if let Some(offset) = wanted.offset {
         let other = takes_p(env, words, state, &demand, &wanted);
         work_offset(env, words, state, offset, other)?;
     }
-    length(env, words, state, wanted.length)?;
+    tool_length::length(env, words, state, wanted.length)?;
     switches(words, state, &wanted)?;
     motion(env, state, &wanted);
     if !before.transform.is_none() && before.transform == state.transform {
@@ -365,68 +359,6 @@ fn set<'d>(
         }
     }
     Owner::Motion
-}
-
-/// T, and the M6 that brings it into the spindle. A T that is no whole number selects nothing known.
-fn tool(words: &Words<'_, '_, '_>, state: &mut Modal) {
-    const T: Letters = Letters::of(b"T");
-    if words.has(T) {
-        state.tool_selected = words.whole(b'T').ok().flatten();
-    }
-    if words.m_codes.iter().any(|(number, _)| *number == 6) {
-        state.tool_loaded = state.tool_selected;
-    }
-}
-
-/// G43, G44, G49 and H.
-///
-/// H alone changes the length while G43 or G44 is in force and means nothing otherwise; G43 without H
-/// takes the loaded tool where the dialect says so, else the H already in force.
-fn length(
-    env: &Environment<'_>,
-    words: &Words<'_, '_, '_>,
-    state: &mut Modal,
-    wanted: Option<(Length, Span)>,
-) -> Outcome<()> {
-    const H: Letters = Letters::of(b"H");
-    let (negative, span) = match (wanted, state.tool_length) {
-        (Some((Length::Off, _)), _) => {
-            state.tool_length = ToolLength::Off;
-            return Ok(());
-        }
-        (Some((Length::On { negative }, span)), _) => (negative, span),
-        (None, ToolLength::On { negative, .. }) if words.has(H) => (negative, words.span(H)),
-        (None, _) => return Ok(()),
-    };
-    let number = match (words.whole(b'H')?, state.tool_length) {
-        (Some(number), _) => number,
-        (None, _) if env.dialect.length_of_loaded_tool => match state.tool_loaded {
-            Some(number) => number,
-            None => {
-                let message = "tool length without H, and no tool was loaded before";
-                return Err(words
-                    .refuse(codes::TOOL_LENGTH, message, span, "takes the tool in the spindle: which one?")
-                    .help("program T and M6 before it, or H in this block"));
-            }
-        },
-        (None, ToolLength::On { number, .. }) => number,
-        (None, ToolLength::Off | ToolLength::Written { .. }) => {
-            let message = "tool length without H";
-            return Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")
-                .help("write the number of the length, e.g. H1; H0 is no length"));
-        }
-    };
-    let Some(vector) = env.setup.tool(number) else {
-        let message = format!("tool length H{number} is not given");
-        let at = if words.has(H) { words.span(H) } else { span };
-        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "neither in the profile nor on the command line").help(
-            format!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile"),
-        ));
-    };
-    let applied_mm = if negative { vector.map(|v| -v) } else { vector };
-    state.tool_length = ToolLength::On { number, negative, applied_mm };
-    Ok(())
 }
 
 /// Cancels, then starts: motion codes end a cycle, cycles start a series where none is running.

@@ -1,0 +1,110 @@
+//! T, H, G43, G44, G49 and G43.1: which tool length is in force.
+
+use nc_syntax::Span;
+
+use crate::codes;
+use crate::frames;
+use crate::modal::{Modal, ToolLength, Units};
+use crate::motion::compensated;
+use crate::settings::{Demand, Environment};
+use crate::words::{
+    ARC_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
+};
+
+/// How the tool length is asked to change.
+#[derive(Clone, Copy)]
+pub(crate) enum Length {
+    Off,
+    On { negative: bool },
+}
+
+/// T, and the M6 that brings it into the spindle. A T that is no whole number selects nothing known.
+pub(crate) fn tool(words: &Words<'_, '_, '_>, state: &mut Modal) {
+    const T: Letters = Letters::of(b"T");
+    if words.has(T) {
+        state.tool_selected = words.whole(b'T').ok().flatten();
+    }
+    if words.m_codes.iter().any(|(number, _)| *number == 6) {
+        state.tool_loaded = state.tool_selected;
+    }
+}
+
+/// G43, G44, G49 and H.
+///
+/// H alone changes the length while G43 or G44 is in force and means nothing otherwise; G43 without H
+/// takes the loaded tool where the dialect says so, else the H already in force.
+pub(crate) fn length(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    wanted: Option<(Length, Span)>,
+) -> Outcome<()> {
+    const H: Letters = Letters::of(b"H");
+    let (negative, span) = match (wanted, state.tool_length) {
+        (Some((Length::Off, _)), _) => {
+            state.tool_length = ToolLength::Off;
+            return Ok(());
+        }
+        (Some((Length::On { negative }, span)), _) => (negative, span),
+        (None, ToolLength::On { negative, .. }) if words.has(H) => (negative, words.span(H)),
+        (None, _) => return Ok(()),
+    };
+    let number = match (words.whole(b'H')?, state.tool_length) {
+        (Some(number), _) => number,
+        (None, _) if env.dialect.length_of_loaded_tool => match state.tool_loaded {
+            Some(number) => number,
+            None => {
+                let message = "tool length without H, and no tool was loaded before";
+                return Err(words
+                    .refuse(codes::TOOL_LENGTH, message, span, "takes the tool in the spindle: which one?")
+                    .help("program T and M6 before it, or H in this block"));
+            }
+        },
+        (None, ToolLength::On { number, .. }) => number,
+        (None, ToolLength::Off | ToolLength::Written { .. }) => {
+            let message = "tool length without H";
+            return Err(words
+                .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")
+                .help("write the number of the length, e.g. H1; H0 is no length"));
+        }
+    };
+    let Some(vector) = env.setup.tool(number) else {
+        let message = format!("tool length H{number} is not given");
+        let at = if words.has(H) { words.span(H) } else { span };
+        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "neither in the profile nor on the command line").help(
+            format!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile"),
+        ));
+    };
+    let applied_mm = if negative { vector.map(|v| -v) } else { vector };
+    state.tool_length = ToolLength::On { number, negative, applied_mm };
+    Ok(())
+}
+
+/// G43.1: the words are the length; axes left out keep what they had.
+pub(crate) fn from_words(
+    words: &Words<'_, '_, '_>,
+    demand: &Demand<'_>,
+    before: &Modal,
+    state: &mut Modal,
+) -> Outcome<()> {
+    let Some(span) = demand.owner_span else { return Ok(()) };
+    let others = ARC_LETTERS.or(ROTARY_LETTERS).or(SECONDARY_LETTERS).or(Letters::of(b"H"));
+    let message = if words.has(others) || !words.has(LINEAR_LETTERS) {
+        format!("{} takes X, Y and Z", words.text(span))
+    } else if demand.written_motion.is_some() || compensated(before, state) || state.cycle.is_some() {
+        format!("{} beside a motion, a cycle or cutter compensation", words.text(span))
+    } else {
+        let mut applied_mm = state.tool_length.applied_mm();
+        for i in 0..3 {
+            if let Some(value) = words.coordinate(LINEAR[i], state.units == Units::Inch) {
+                applied_mm[i] = value * state.units.mm();
+            }
+        }
+        state.tool_length = ToolLength::Written { applied_mm };
+        frames::refresh(state);
+        return Ok(());
+    };
+    Err(words
+        .refuse(codes::TOOL_LENGTH, message, span, "the length is in the words of this block")
+        .help("write it in a block of its own with X, Y and Z alone"))
+}
