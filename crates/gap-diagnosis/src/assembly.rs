@@ -218,6 +218,7 @@ impl<'a> Assembly<'a> {
             outlier_lines: model.outliers.iter().map(|r| self.data.rows[*r].line).collect(),
             detectable: self.detectable(),
             notes,
+            residuals: crate::unseen::residuals(&model.scalars, &before, &self.gap_after(self.ordered.len())),
         }
     }
 

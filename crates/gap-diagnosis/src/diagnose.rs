@@ -69,6 +69,7 @@ pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
         outlier_lines: Vec::new(),
         detectable: Vec::new(),
         notes: missing,
+        residuals: Vec::new(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The answer: what `vpost diagnose` reports.
 
+use machine_model::Vector;
 use machine_model::effects::EffectTerm;
 
 /// The verdicts of the contract.
@@ -153,8 +154,32 @@ pub struct Leftover {
     pub absorber: Option<String>,
 }
 
-/// Points the fit has not seen.
+/// What one equation of a row shows before and after the causes are in the model, alignment taken out.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// Index of the row.
+    pub row: usize,
+    /// 0, 1, 2 for a component, 3 for any other direction.
+    pub class: usize,
+    /// Unit vector along which it is seen.
+    pub along: Vector,
+    /// Without the causes, µm.
+    pub before_um: f64,
+    /// With them, µm.
+    pub after_um: f64,
+}
+
+/// RMS of the unseen points as the model grows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What was added: part of the measuring frame, or a cause.
+    pub added: String,
+    /// RMS with it and all before it, µm.
+    pub rms_um: f64,
+}
+
+/// Points the fit has not seen.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Holdout {
     /// Rows.
     pub rows: usize,
@@ -164,6 +189,10 @@ pub struct Holdout {
     pub rms_after_um: f64,
     /// 1 - after / before.
     pub shrink: f64,
+    /// The way from the one to the other.
+    pub steps: Vec<Step>,
+    /// Point by point.
+    pub residuals: Vec<Residual>,
 }
 
 /// What would settle it.
@@ -215,4 +244,6 @@ pub struct Diagnosis {
     pub detectable: Vec<Detectable>,
     /// What the reader should know about how this was found.
     pub notes: Vec<String>,
+    /// Equation by equation, outliers left out.
+    pub residuals: Vec<Residual>,
 }

@@ -1,11 +1,11 @@
-//! How far the gap shrinks: forecast, and checked on points no fit has seen.
+//! How far the gap shrinks.
 
 use machine_model::{Vector, Volume};
 
-use crate::align::{FREE_OFFSETS, magnitude_errors, rms, row_lengths};
+use crate::align::FREE_OFFSETS;
 use crate::assembly::Assembly;
 use crate::crossval::{Folding, Folds};
-use crate::diagnosis::{Holdout, Shrinkage};
+use crate::diagnosis::Shrinkage;
 use crate::engine::{model_columns, source};
 use crate::gram::Gram;
 use crate::noise::tail_factor;
@@ -138,21 +138,5 @@ impl Assembly<'_> {
         target.noise *=
             tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
         transported(m, m_error, &data, &target)
-    }
-
-    pub(crate) fn holdout(&self, holdout: &Measurements) -> Holdout {
-        let (before, after) = if holdout.has_magnitudes() {
-            // Lengths cannot be aligned: they are taken in the measuring frame that was found.
-            let terms = self.model.solution.terms.iter().copied();
-            let all: Vec<(Term, f64)> = terms.zip(self.model.solution.coefficients.iter().copied()).collect();
-            (magnitude_errors(holdout, &[]), magnitude_errors(holdout, &all))
-        } else {
-            let scalars = holdout.scalars(None);
-            let length = |count: usize| row_lengths(&scalars, &self.gap(holdout, &scalars, count));
-            (length(0), length(self.ordered.len()))
-        };
-        let (rms_before_um, rms_after_um) = (rms(&before), rms(&after));
-        let shrink = if rms_before_um > 0.0 { 1.0 - rms_after_um / rms_before_um } else { 0.0 };
-        Holdout { rows: before.len(), rms_before_um, rms_after_um, shrink }
     }
 }

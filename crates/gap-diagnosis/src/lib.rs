@@ -6,6 +6,7 @@
 
 mod align;
 mod assembly;
+mod confounding;
 mod crossval;
 mod diagnose;
 mod diagnosis;
@@ -29,12 +30,14 @@ mod sentence;
 mod shrinkage;
 mod structure;
 mod term;
+mod unseen;
 mod verdict;
 
+pub use confounding::{Confounding, confounding};
 pub use diagnose::{Options, diagnose, underpowered};
 pub use diagnosis::{
-    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter, Setup,
-    Shrinkage, Verdict,
+    Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter,
+    Residual, Setup, Shrinkage, Step, Verdict,
 };
 pub use observation::{Measurements, Reading, Row};
 pub use remedy::remedy;

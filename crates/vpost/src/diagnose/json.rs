@@ -49,9 +49,11 @@ pub(super) fn bytes(d: &Diagnosis) -> Vec<u8> {
             "lack_of_fit_p": round(d.leftover.lack_of_fit_p), "correlates_with": d.leftover.correlates_with,
             "absorber": d.leftover.absorber,
         }),
-        holdout: d.holdout.map_or(Value::Null, |h| {
+        holdout: d.holdout.as_ref().map_or(Value::Null, |h| {
             json!({ "rows": h.rows, "rms_before_um": round(h.rms_before_um),
-                "rms_after_um": round(h.rms_after_um), "shrink": round(h.shrink) })
+                "rms_after_um": round(h.rms_after_um), "shrink": round(h.shrink),
+                "steps": h.steps.iter().map(|s| json!({ "added": s.added, "rms_um": round(s.rms_um) }))
+                    .collect::<Vec<_>>() })
         }),
         next_measurement: d.next_measurement.as_ref().map_or(Value::Null, |n| {
             json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma) })

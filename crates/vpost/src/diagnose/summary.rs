@@ -73,6 +73,9 @@ fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
             100.0 * h.shrink,
             h.rows
         )?;
+        for step in &h.steps {
+            writeln!(out, "        {:>8.1} um  {}", step.rms_um, step.added)?;
+        }
     }
     if !d.leftover.correlates_with.is_empty() {
         writeln!(out, "what is left goes with {}", d.leftover.correlates_with.join(", "))?;
