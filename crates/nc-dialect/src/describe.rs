@@ -1,16 +1,12 @@
 //! The code-by-code list of a dialect, for people.
 
-use std::fmt::Write;
-
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CycleCode, GCode, Macros};
+use nc_syntax::dialect::{Action, CycleCode, GCode, MCode, Macros};
 
 use crate::action_name;
 
 /// G65
 const MACRO_CALL: GCode = GCode(650);
-/// What becomes of a call where the dialect's flow is known.
-const EXECUTED: &str = "called programs are executed in the call's place, see above";
 
 /// What becomes of a block with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +19,8 @@ pub enum Treatment {
     NotCorrected,
     /// It is text.
     Passed,
+    /// Called programs are executed in the call's place, before anything is corrected.
+    Executed,
     /// The program is refused.
     Refused,
 }
@@ -36,9 +34,34 @@ impl Treatment {
             Self::Followed => "followed",
             Self::NotCorrected => "left alone",
             Self::Passed => "passed",
+            Self::Executed => "executed",
             Self::Refused => "refused",
         }
     }
+}
+
+/// One row of the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// `G54.1`, `M98`, `TRANS`.
+    pub code: String,
+    /// Modal group; 0 for G codes of one block, and for M codes and commands.
+    pub group: u8,
+    /// What becomes of a block with it.
+    pub treatment: Treatment,
+    /// Why, or how.
+    pub note: String,
+}
+
+/// Every code of a dialect's table: G codes, M codes, commands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// Every other one is refused.
+    pub g_codes: Vec<Row>,
+    /// Every other one is passed.
+    pub m_codes: Vec<Row>,
+    /// Every other one is refused.
+    pub commands: Vec<Row>,
 }
 
 /// What becomes of a block whose code does this.
@@ -57,68 +80,55 @@ pub const fn treatment(action: &Action) -> Treatment {
     }
 }
 
-/// Markdown: what is assumed, and every code with what becomes of it.
+/// What a dialect's table says of each of its codes.
 #[must_use]
-pub fn describe(dialect: &Dialect) -> String {
-    let mut out = format!("### `{}`: {}\n\nAssumed:\n\n", dialect.name, dialect.title);
-    for assumption in &dialect.assumptions {
-        line(&mut out, format_args!("- {assumption}"));
-    }
-    out.push_str("\n| code | group | what becomes of it | why, or how |\n|---|---|---|---|\n");
-    for entry in &dialect.codes {
-        if entry.code == MACRO_CALL && dialect.flow.macros == Macros::Fanuc {
-            line(&mut out, format_args!("| {} | {} | executed | {EXECUTED} |", entry.code, entry.group));
-            continue;
-        }
-        let name = treatment(&entry.action).name();
-        line(
-            &mut out,
-            format_args!("| {} | {} | {name} | {} |", entry.code, entry.group, note(&entry.action)),
-        );
-    }
-    out.push_str("\nAny other G code is refused: it could move an axis.\n\n");
-    out.push_str("| M code | what becomes of it |\n|---|---|\n");
-    for code in &dialect.m_codes {
-        let mut what = Vec::new();
-        if matches!(code.number, 98 | 99) && dialect.flow.macros != Macros::None {
-            what.push(EXECUTED.to_owned());
-        } else if let Some((reason, help)) = &code.refuse {
-            what.push(format!("refused: {reason}; {help}"));
-        }
-        if code.after_motion {
-            what.push("executed after the motion of its block".to_owned());
-        }
-        let lost: String =
-            "XYZ".chars().zip(code.loses_position).filter(|(_, lost)| *lost).map(|(axis, _)| axis).collect();
-        if !lost.is_empty() {
-            what.push(format!("position of {lost} unknown afterwards"));
-        }
-        if code.ends_program {
-            what.push("ends the program".to_owned());
-        }
-        if what.is_empty() {
-            what.push("passed".to_owned());
-        }
-        line(&mut out, format_args!("| M{} | {} |", code.number, what.join("; ")));
-    }
-    out.push_str("\nAny other M code is passed.\n");
-    if !dialect.commands.is_empty() {
-        out.push_str("\n| command | what becomes of it |\n|---|---|\n");
-        for command in &dialect.commands {
-            let what = match &command.refuse {
-                None => "passed".to_owned(),
-                Some((reason, help)) => format!("refused: {reason}; {help}"),
-            };
-            line(&mut out, format_args!("| `{}` | {what} |", command.name));
-        }
-        out.push_str("\nAny other command is refused: it could move the frame.\n");
-    }
-    out
+pub fn rows(dialect: &Dialect) -> Rows {
+    let executed = || "called programs are executed in the call's place, see above".to_owned();
+    let g_codes = dialect.codes.iter().map(|entry| {
+        let calls = entry.code == MACRO_CALL && dialect.flow.macros == Macros::Fanuc;
+        let (treatment, note) = if calls {
+            (Treatment::Executed, executed())
+        } else {
+            (treatment(&entry.action), note(&entry.action))
+        };
+        Row { code: entry.code.to_string(), group: entry.group, treatment, note }
+    });
+    let m_codes = dialect.m_codes.iter().map(|entry| {
+        let (treatment, note) = if matches!(entry.number, 98 | 99) && dialect.flow.macros != Macros::None {
+            (Treatment::Executed, executed())
+        } else {
+            of_m_code(entry)
+        };
+        Row { code: format!("M{}", entry.number), group: 0, treatment, note }
+    });
+    let commands = dialect.commands.iter().map(|entry| {
+        let (treatment, note) = match &entry.refuse {
+            None => (Treatment::Passed, String::new()),
+            Some((reason, help)) => (Treatment::Refused, format!("{reason}; {help}")),
+        };
+        Row { code: entry.name.clone(), group: 0, treatment, note }
+    });
+    Rows { g_codes: g_codes.collect(), m_codes: m_codes.collect(), commands: commands.collect() }
 }
 
-fn line(out: &mut String, text: std::fmt::Arguments<'_>) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(out, "{text}");
+fn of_m_code(entry: &MCode) -> (Treatment, String) {
+    if let Some((reason, help)) = &entry.refuse {
+        return (Treatment::Refused, format!("{reason}; {help}"));
+    }
+    let mut what = Vec::new();
+    if entry.after_motion {
+        what.push("executed after the motion of its block".to_owned());
+    }
+    let lost: String =
+        "XYZ".chars().zip(entry.loses_position).filter(|(_, lost)| *lost).map(|(axis, _)| axis).collect();
+    if !lost.is_empty() {
+        what.push(format!("position of {lost} unknown afterwards"));
+    }
+    if entry.ends_program {
+        what.push("ends the program".to_owned());
+    }
+    let followed = entry.ends_program || !lost.is_empty();
+    (if followed { Treatment::Followed } else { Treatment::Passed }, what.join("; "))
 }
 
 fn note(action: &Action) -> String {

@@ -2,8 +2,8 @@
 //!
 //! A dialect is a file in `grammars/`: how numbers and comments are written, what each code does, what the
 //! control takes back. [`load`] reads such a text and checks it; [`builtin`] gives those that are shipped.
-//! `docs/dialects.md` explains every field and lists every code of every shipped dialect
-//! ([`describe`] writes that list).
+//! `docs/dialects.md` explains every field and lists every code of every shipped dialect ([`rows`]) with the
+//! test that proves it.
 
 mod action;
 mod checks;
@@ -13,6 +13,6 @@ mod shipped;
 mod table;
 
 pub use action::{ACTION_NAMES, action_name, action_named};
-pub use describe::{Treatment, describe, treatment};
+pub use describe::{Row, Rows, Treatment, rows, treatment};
 pub use load::load;
 pub use shipped::{builtin, builtin_names};

@@ -1,0 +1,12 @@
+;the unit changes and changes back
+G17 G71 G90
+G0 X10 Y10 Z60
+G70
+G0 X1 Y1 Z2.5
+G1 Z2 F10
+X3
+G71
+X90 Y60
+Z45 F200
+G0 Z60
+M30

@@ -1,0 +1,9 @@
+;G79 is an axis position, never corrected
+G17 G71 G90
+G0 X10 Y10 Z60
+G79 G0 Z300
+G0 X10 Y10 Z60
+G1 Z50 F200
+X60
+G0 Z60
+M30

@@ -1,0 +1,12 @@
+;G18 and G19 name the plane; lines do not care
+G17 G71 G90
+G0 X10 Y10 Z60
+G18
+G1 Z50 F200
+X20
+G19
+Y20
+G17
+X40
+G0 Z60
+M30

@@ -1,0 +1,9 @@
+; centre words J and K
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G19
+G2 Y30. Z50. J10. K0.
+G3 Y10. Z50. J-10.
+G17
+M30

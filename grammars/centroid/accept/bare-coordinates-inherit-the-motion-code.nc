@@ -1,0 +1,8 @@
+; X40. alone is the G1 before it
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X40.
+Y30.
+X10. Y10.
+M30

@@ -1,0 +1,18 @@
+; limits, exact stop, spindle modes: no axis moves
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G4 P0.5
+G9 X20.
+G22 X900. Y900. Z900. I-10. J-10. K-10.
+G23
+G50
+G61
+G64
+G69
+G92.1 X0
+G96 S120
+G97 S1500
+X40. Y40.
+G0 Z60.
+M30

@@ -1,0 +1,13 @@
+; G53 X.. is an axis position, never corrected
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X20.
+G53 G0 Z300.
+G53 X400. Y300.
+G0 X10. Y10.
+Z60.
+G1 Z50.
+X60. Y60.
+G0 Z60.
+M30

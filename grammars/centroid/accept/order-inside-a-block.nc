@@ -1,0 +1,7 @@
+; words in any order
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+F200. Z50. G1
+Y20. X20. G1
+X30. G0 Z60.
+M30

@@ -1,0 +1,6 @@
+; tabs between words
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1	Z50.	F200.
+X20.		Y20.	
+M30

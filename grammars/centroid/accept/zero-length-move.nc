@@ -1,0 +1,7 @@
+; a move to where the tool is
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X10. Y10.
+X10. Y10. Z50.
+M30

@@ -1,0 +1,15 @@
+%
+O0001
+(after M60 nobody knows where the axes stand: an absolute rapid names every axis)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X20.
+G0 Z60.
+M60
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X20.
+G0 Z60.
+M30
+%

@@ -1,0 +1,10 @@
+(G73, pecks left to the control)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G98 G73 X20. Y20. Z30. R55. Q4. F100.
+X40.
+G99 X60.
+G98 X80.
+G80
+G0 Z60.
+M2

@@ -1,0 +1,17 @@
+%CORPUS
+(G84, G87 and G88 belong to the spindle: hole by hole, never written as moves)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+M3 S500
+G98 G84 X20. Y20. Z40. R52. F500.
+X40.
+G80
+G88 X20. Y80. Z40. R52. P0.5 F100.
+X40.
+G80
+G87 X20. Y90. Z45. R52. P0.5 F100.
+X60.
+G80
+G0 Z60.
+M30
+%

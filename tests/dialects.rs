@@ -1,0 +1,390 @@
+//! The list of codes in `docs/dialects.md`: what becomes of each code, and the program or test that shows it.
+//!
+//! A program of the corpus proves a row by what the code does in it: the motion under it is corrected, or
+//! left alone; the program without it means something else, or the same; it is what the refusal names. The
+//! list is written from the tables and from the proofs found: `VPOST_UPDATE_DOCS=1` writes it.
+
+mod common;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use nc_dialect::{Row, Rows, Treatment, rows};
+use nc_expand::Limits;
+use nc_program::{Interpreter, Setup, Step};
+use nc_syntax::dialect::{GCode, Paren};
+use nc_syntax::{Block, Dialect, ItemKind, Reader, Value};
+use toolpath::Motion;
+
+use common::{files, messages, root, run};
+
+const DOCUMENT: &str = "docs/dialects.md";
+/// What stands above the list.
+const MARK: &str = "<!-- tables -->\n";
+/// In these every row has its proof.
+const PROVEN: [&str; 5] = ["centroid", "fanuc", "linuxcnc", "perspektiva", "sinumerik"];
+const PROFILE: &str = "tests/profiles/corpus.toml";
+/// The work offset that this profile lacks.
+const GIVEN: &str = "G57";
+
+/// A program of the corpus, executed as far as its motions.
+struct Program {
+    /// `accept/helix.nc`
+    name: String,
+    /// Program flow is executed; `None` where that is refused.
+    flat: Option<Vec<u8>>,
+    /// Flow was executed.
+    flows: bool,
+    /// Codes in it, as rows name them, before flow is executed.
+    codes: Vec<String>,
+    run: Run,
+}
+
+/// What a program makes of its blocks, up to the one that is refused.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Run {
+    steps: Vec<Step>,
+    refused: Option<(u16, String)>,
+}
+
+impl Program {
+    fn read(path: &Path, dialect: &Dialect, setup: &Setup) -> Self {
+        let text = std::fs::read(path).expect("readable");
+        let folder = path.parent().and_then(Path::file_name).expect("a folder").to_string_lossy();
+        let file = path.file_name().expect("a name").to_string_lossy();
+        let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
+        let environment =
+            nc_expand::Environment { variables: &[], read_external: &nothing, limits: Limits::default() };
+        let (flat, refused) = match nc_expand::expand(&text, dialect, &environment) {
+            Ok(expanded) => (Some(expanded.text().to_vec()), None),
+            Err(refusal) => {
+                let first = &refusal.diagnostics[0];
+                (None, Some((first.code.0, first.message.clone())))
+            }
+        };
+        let run = match &flat {
+            Some(flat) => interpret(flat, dialect, setup),
+            None => Run { steps: Vec::new(), refused },
+        };
+        let flows = flat.as_deref().is_some_and(|flat| flat != text.as_slice());
+        let mut codes: Vec<String> = words(&text, dialect).into_iter().map(|(code, _)| code).collect();
+        codes.sort();
+        codes.dedup();
+        Self { name: format!("{folder}/{file}"), flat, flows, codes, run }
+    }
+
+    /// Number of executed blocks: the shorter a program, the better a proof.
+    fn length(&self) -> usize {
+        self.run.steps.len()
+    }
+}
+
+/// Every code of a program as rows name it, with its bytes.
+fn words(text: &[u8], dialect: &Dialect) -> Vec<(String, std::ops::Range<usize>)> {
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    let mut found = Vec::new();
+    while reader.next(&mut block) {
+        for item in &block.items {
+            let span = block.file_span(item.span);
+            let span = span.start as usize..span.end as usize;
+            match item.kind {
+                ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+                    if let Some(tenths) = number.tenths() {
+                        found.push((GCode(tenths).to_string(), span));
+                    }
+                }
+                ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
+                    if let Some(number) = number.integer() {
+                        found.push((format!("M{number}"), span));
+                    }
+                }
+                ItemKind::BracketCommand => {
+                    let name = dialect.command(block.text(item.span)).map(|row| row.name.clone());
+                    found.push((name.unwrap_or_default(), span));
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+fn interpret(text: &[u8], dialect: &Dialect, setup: &Setup) -> Run {
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    let mut interpreter = Interpreter::new(dialect, setup);
+    let mut run = Run::default();
+    while reader.next(&mut block) {
+        match interpreter.step(&block) {
+            Ok(step) => run.steps.push(step),
+            Err(refused) => {
+                run.refused = Some((refused[0].code.0, refused[0].message.clone()));
+                break;
+            }
+        }
+    }
+    run
+}
+
+/// The steps of the blocks that hold a code.
+fn steps_with<'r>(program: &'r Program, code: &str, dialect: &Dialect) -> Vec<&'r Step> {
+    let Some(flat) = &program.flat else { return Vec::new() };
+    let (mut reader, mut block) = (Reader::new(flat, dialect), Block::default());
+    let mut found = Vec::new();
+    for step in &program.run.steps {
+        if !reader.next(&mut block) {
+            break;
+        }
+        if words(block.bytes, dialect).iter().any(|(has, _)| has == code) {
+            found.push(step);
+        }
+    }
+    found
+}
+
+/// What a program means where every word of a code is blank; `whole`: every block that has one.
+fn without(program: &Program, code: &str, whole: bool, dialect: &Dialect, setup: &Setup) -> Option<Run> {
+    let mut flat = program.flat.clone()?;
+    for (_, span) in words(&flat, dialect).into_iter().filter(|(has, _)| has == code) {
+        let (mut start, mut end) = (span.start, span.end);
+        if whole {
+            let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+            start = flat[..start].iter().rposition(is_end).map_or(0, |at| at + 1);
+            end = flat[end..].iter().position(is_end).map_or(flat.len(), |length| end + length);
+        }
+        flat[start..end].fill(b' ');
+    }
+    Some(interpret(&flat, dialect, setup))
+}
+
+/// True where the program shows that the row is true.
+fn proves(program: &Program, row: &Row, dialect: &Dialect, setup: &Setup) -> bool {
+    if !program.codes.contains(&row.code) {
+        return false;
+    }
+    let accepted = program.name.starts_with("accept/") && program.run.refused.is_none();
+    let corrected = |motion: &Motion| !matches!(motion, Motion::Uncorrected { .. });
+    match row.treatment {
+        Treatment::Refused => {
+            let Some((number, message)) = &program.run.refused else { return false };
+            matches!(number, 208 | 224) && message.starts_with(&format!("{} is refused: ", row.code))
+        }
+        Treatment::Executed => accepted && program.flows,
+        Treatment::Corrected => {
+            accepted
+                && program.run.steps.iter().any(|step| {
+                    step.context.motion_code.is_some_and(|code| code.to_string() == row.code)
+                        && step.motions.iter().any(corrected)
+                })
+        }
+        Treatment::NotCorrected => {
+            let steps = steps_with(program, &row.code, dialect);
+            let mut motions = steps.iter().flat_map(|step| &step.motions).peekable();
+            accepted && motions.peek().is_some() && !motions.any(corrected)
+        }
+        Treatment::Followed => {
+            accepted
+                && without(program, &row.code, false, dialect, setup).is_some_and(|run| run != program.run)
+        }
+        Treatment::Passed => {
+            accepted
+                && [false, true].into_iter().any(|whole| {
+                    without(program, &row.code, whole, dialect, setup).is_some_and(|run| run == program.run)
+                })
+        }
+    }
+}
+
+/// The test of this file that shows what no program of the corpus can: where a code stands in the output,
+/// and an offset that the corpus' profile lacks so that others can be refused for it.
+fn named(row: &Row) -> Option<&'static str> {
+    if row.treatment == Treatment::Passed && row.note.starts_with("executed after the motion") {
+        return Some("`stops_stay_behind_the_motion` in tests/dialects.rs");
+    }
+    (row.code == GIVEN && row.treatment == Treatment::Followed)
+        .then_some("`an_offset_given_on_the_command_line_is_followed` in tests/dialects.rs")
+}
+
+/// The programs of a dialect, those first that prove best.
+fn programs(dialect: &Dialect, setup: &Setup) -> Vec<Program> {
+    let folder = root().join("grammars").join(&dialect.name);
+    let mut found: Vec<Program> = ["accept", "reject"]
+        .iter()
+        .flat_map(|kind| files(&folder.join(kind), &["nc", "ngc"]))
+        .map(|path| Program::read(&path, dialect, setup))
+        .collect();
+    found.sort_by(|a, b| (a.length(), &a.name).cmp(&(b.length(), &b.name)));
+    found
+}
+
+/// Offsets and tools of the corpus' profile.
+fn setup() -> Setup {
+    let text = std::fs::read_to_string(root().join(PROFILE)).expect("readable");
+    let profile: toml::Table = text.parse().expect("TOML");
+    let number =
+        |value: &toml::Value| value.as_float().or(value.as_integer().map(|n| n as f64)).expect("a number");
+    let offsets = profile["work_offsets_mm"].as_table().expect("a table");
+    let tools = profile["tool"]["lengths_mm"].as_table().expect("a table");
+    Setup {
+        work_offsets: offsets
+            .iter()
+            .map(|(name, zero)| (name.clone(), [0, 1, 2].map(|i| number(&zero[i]))))
+            .collect(),
+        tools: tools
+            .iter()
+            .map(|(name, length)| (name[1..].parse().expect("a number"), [0.0, 0.0, number(length)]))
+            .collect(),
+        ..Setup::default()
+    }
+}
+
+/// Writes the list of a dialect; rows without proof are added to `missing`.
+fn describe(dialect: &Dialect, setup: &Setup, missing: &mut Vec<String>) -> String {
+    let programs = programs(dialect, setup);
+    let mut shown = |what: String, found: Option<String>| {
+        found.unwrap_or_else(|| {
+            missing.push(format!("{}: {what}", dialect.name));
+            "—".to_owned()
+        })
+    };
+    let mut proof = |row: &Row| {
+        let file = || {
+            let program = programs.iter().find(|program| proves(program, row, dialect, setup))?;
+            Some(format!("`{}`", program.name))
+        };
+        shown(format!("{} {}", row.code, row.treatment.name()), named(row).map(str::to_owned).or_else(file))
+    };
+    let Rows { g_codes, m_codes, commands } = rows(dialect);
+    let mut out = format!("### `{}`: {}\n\nAssumed:\n\n", dialect.name, dialect.title);
+    let mut line = |text: std::fmt::Arguments<'_>| writeln!(out, "{text}").expect("a string takes all");
+    for assumption in &dialect.assumptions {
+        line(format_args!("- {assumption}"));
+    }
+    line(format_args!(
+        "\n| code | group | what becomes of it | why, or how | proof |\n|---|---|---|---|---|"
+    ));
+    for row in &g_codes {
+        let Row { code, group, treatment, note } = row;
+        line(format_args!("| {code} | {group} | {} | {note} | {} |", treatment.name(), proof(row)));
+    }
+    line(format_args!("\n| code | what becomes of it | why, or how | proof |\n|---|---|---|---|"));
+    for row in m_codes.iter().chain(&commands) {
+        let command = commands.contains(row);
+        let code = if command { format!("`{}`", row.code) } else { row.code.clone() };
+        line(format_args!("| {code} | {} | {} | {} |", row.treatment.name(), row.note, proof(row)));
+    }
+    let refused_as = |wanted: u16| {
+        let is = |program: &&Program| program.run.refused.as_ref().is_some_and(|(code, _)| *code == wanted);
+        programs.iter().find(is).map(|program| format!("`{}`", program.name))
+    };
+    let unknown_m = programs.iter().find(|program| {
+        let unknown = |code: &&String| {
+            code.starts_with('M') && code[1..].parse().is_ok_and(|n| dialect.m_code(n).is_none())
+        };
+        program.name.starts_with("accept/")
+            && program.codes.iter().find(unknown).is_some_and(|code| {
+                let row =
+                    Row { code: code.clone(), group: 0, treatment: Treatment::Passed, note: String::new() };
+                proves(program, &row, dialect, setup)
+            })
+    });
+    let unknown_m = unknown_m.map(|program| format!("`{}`", program.name));
+    line(format_args!(
+        "\nAny other G code is refused, for it could move an axis: {}. Any other M code is passed: {}.",
+        shown("an unknown G code".to_owned(), refused_as(207)),
+        shown("an unknown M code".to_owned(), unknown_m),
+    ));
+    if !commands.is_empty() {
+        // Without brackets an unknown name is text that cannot be read.
+        let code = if dialect.paren == Paren::Command { 224 } else { 105 };
+        let unknown = programs.iter().find(|program| {
+            program
+                .run
+                .refused
+                .as_ref()
+                .is_some_and(|(found, message)| *found == code && !message.contains(" is refused: "))
+        });
+        let unknown = unknown.map(|program| format!("`{}`", program.name));
+        line(format_args!(
+            "Any other command is refused, for it could move the frame: {}.",
+            shown("an unknown command".to_owned(), unknown)
+        ));
+    }
+    out
+}
+
+#[test]
+fn every_code_is_listed_with_its_proof() {
+    let setup = setup();
+    let mut missing = Vec::new();
+    let lists: Vec<String> = nc_dialect::builtin_names()
+        .into_iter()
+        .filter_map(nc_dialect::builtin)
+        .map(|dialect| describe(dialect, &setup, &mut missing))
+        .collect();
+    missing.retain(|row| PROVEN.iter().any(|name| row.starts_with(&format!("{name}:"))));
+    assert!(missing.is_empty(), "{} rows without proof:\n{}", missing.len(), missing.join("\n"));
+    let path = root().join(DOCUMENT);
+    let document = std::fs::read_to_string(&path).expect("readable");
+    let (above, _) = document.split_once(MARK).expect("the mark is there");
+    let wanted = format!("{above}{MARK}\n{}", lists.join("\n"));
+    if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
+        std::fs::write(&path, wanted).expect("writable");
+    } else {
+        assert!(document == wanted, "{DOCUMENT} is stale: VPOST_UPDATE_DOCS=1 writes its lists anew");
+    }
+}
+
+/// M0, M5, M9 and their like end up behind the last piece of a block that is split, and nowhere else.
+#[test]
+fn stops_stay_behind_the_motion() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.nc");
+    let program = program.to_str().expect("a plain path");
+    for dialect in nc_dialect::builtin_names().into_iter().filter_map(nc_dialect::builtin) {
+        for row in dialect.m_codes.iter().filter(|row| row.after_motion && row.loses_position == [false; 3]) {
+            let stop = format!("M{}", row.number);
+            let inch_free =
+                if dialect.name == "balt-system" || dialect.name == "sinumerik" { "G71" } else { "G21" };
+            let text = format!(
+                "G17 {inch_free} G40 G54 G90\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX900. Y700. {stop}\n"
+            );
+            std::fs::write(program, text).expect("writable");
+            let ran = run(&[program, "-m", PROFILE, "-d", &dialect.name]);
+            assert!(ran.status.success(), "{} {stop}: {}", dialect.name, messages(&ran));
+            let out = String::from_utf8_lossy(&ran.stdout).into_owned();
+            let lines: Vec<&str> = out.lines().collect();
+            let split = lines.iter().filter(|line| line.contains('X') && !line.contains("G0")).count();
+            assert!(split > 3, "{} {stop} stands in a block that is not split:\n{out}", dialect.name);
+            let at: Vec<usize> = (0..lines.len()).filter(|i| lines[*i].contains(&stop)).collect();
+            assert_eq!(at, [lines.len() - 1], "{} {stop}:\n{out}", dialect.name);
+        }
+    }
+}
+
+/// The same program is refused without the offset, and corrected for where the offset puts it.
+#[test]
+fn an_offset_given_on_the_command_line_is_followed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.nc");
+    std::fs::write(&program, format!("{GIVEN}\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX90. Y70.\n"))
+        .expect("writable");
+    let program = program.to_str().expect("a plain path");
+    let mut tried = 0;
+    for dialect in nc_dialect::builtin_names().into_iter().filter_map(nc_dialect::builtin) {
+        let followed = |row: &&Row| row.code == GIVEN && row.treatment == Treatment::Followed;
+        if rows(dialect).g_codes.iter().find(followed).is_none() {
+            continue;
+        }
+        tried += 1;
+        let without = run(&[program, "-m", PROFILE, "-d", &dialect.name]);
+        assert!(messages(&without).contains("VP0214"), "{}: {}", dialect.name, messages(&without));
+        let corrected = |offset: &str| {
+            let given = format!("{GIVEN}={offset}");
+            let ran = run(&[program, "-m", PROFILE, "-d", &dialect.name, "--work-offset", &given]);
+            assert!(ran.status.success(), "{}: {}", dialect.name, messages(&ran));
+            ran.stdout
+        };
+        assert_ne!(corrected("100,80,40"), corrected("300,250,90"), "{}", dialect.name);
+    }
+    assert_eq!(tried, 5, "all but balt-system, which chooses origins by commands");
+}
