@@ -1,5 +1,6 @@
 //! Files: read whole, written whole or not at all.
 
+use std::borrow::Cow;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -15,6 +16,15 @@ const TOO_LONG: Code = Code(106);
 /// The name of a path in messages.
 pub(crate) fn name(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// Text of a file that may be older than UTF-8: then it is Windows-1251, as controls and instruments of the region write.
+/// No two files become the same text, so ids stay apart.
+pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => encoding_rs::WINDOWS_1251.decode_without_bom_handling(bytes).0,
+    }
 }
 
 /// Reads a file, or standard input for `-`.

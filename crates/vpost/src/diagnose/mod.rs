@@ -3,6 +3,7 @@
 mod json;
 mod measurements;
 mod summary;
+mod written;
 
 use std::path::PathBuf;
 
@@ -69,7 +70,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         file::write(path, &json::bytes(&diagnosis))?;
     }
     if let Some(path) = &arguments.write_profile {
-        write_profile(path, shared, &diagnosis)?;
+        written::write(path, machine(shared)?, &diagnosis)?;
         messages.note(&format!("{} holds the profile with the causes as effects", file::name(path)));
     }
     file::print(summary::text(&diagnosis).as_bytes())
@@ -108,8 +109,9 @@ impl Model {
 fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Measurements, Failure> {
     let bytes = file::read(path)?;
     let tool_mm = setup_tool(&model.profile);
-    let mut data = measurements::read(&file::name(path), &bytes, tool_mm, ignore, &model.geometry)?;
-    measurements::check(&file::name(path), &bytes, &data, &model.profile)?;
+    let name = file::name(path);
+    let (mut data, table) = measurements::read(&name, &bytes, tool_mm, ignore, &model.geometry)?;
+    measurements::commands_and_frames(&table, &data, &model.profile)?;
     let rigid = model.profile.rigid_body_without_effects();
     for row in &mut data.rows {
         row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {
@@ -125,24 +127,6 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
             })?;
         }
     }
+    measurements::readings_against_model(&table, &data)?;
     Ok(data)
-}
-
-/// The profile's own text with the causes behind it.
-fn write_profile(
-    path: &std::path::Path,
-    shared: &Shared,
-    diagnosis: &gap_diagnosis::Diagnosis,
-) -> Result<(), Failure> {
-    let mut text = String::from_utf8_lossy(&file::read(machine(shared)?)?).into_owned();
-    if !text.ends_with('\n') {
-        text.push('\n');
-    }
-    for cause in &diagnosis.causes {
-        text.push_str(&format!("\n[[effect]]\nid = \"{}\"\n", cause.effect));
-        for (name, value) in cause.term.entry() {
-            text.push_str(&format!("{name} = {}\n", json::number(value)));
-        }
-    }
-    file::write(path, text.as_bytes())
 }
