@@ -1,1 +1,17 @@
-//! Measurements to machine profiles.
+//! Measurements to machine profiles: what an instrument read becomes error functions with their uncertainty.
+//!
+//! Millimetres and radians throughout, as in [`machine_model`]; no files, no text formats, no clock. Every result
+//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (45) of
+//! `docs/equations.md`.
+
+pub mod change;
+mod error;
+mod least_squares;
+mod student;
+pub mod tracker;
+mod traverse;
+
+pub use error::CalibrationError;
+pub use least_squares::{Estimate, solve};
+pub use student::quantile_95;
+pub use traverse::{MeanTraverse, Node, Noise, Reading};

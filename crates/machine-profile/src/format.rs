@@ -98,6 +98,12 @@ pub(crate) struct Calibrated {
     pub(crate) date: Option<Spanned<String>>,
     pub(crate) temperature_c: Option<Finite>,
     pub(crate) instrument: Option<String>,
+    /// Standard deviation of one reading.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) repeatability_um: Option<Spanned<Finite>>,
+    /// Half width of the 95 % interval of the deviation at the far corner.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) uncertainty_um: Option<Spanned<Finite>>,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]

@@ -12,6 +12,7 @@ mod profile;
 mod show;
 mod tables;
 mod toml_error;
+mod write;
 
 pub use effects::EngineError;
 pub use error::ProfileError;
@@ -19,3 +20,4 @@ pub use load::{Read, load};
 pub use profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
 pub use show::schema;
 pub use tables::ErrorRows;
+pub use write::ProfileText;

@@ -132,7 +132,20 @@ impl Loader<'_> {
                 .help("write year-month-day, like \"2023-05-15\"");
             self.refuse(date, diagnostic, "expected year-month-day");
         }
+        for (name, given) in
+            [("repeatability_um", &written.repeatability_um), ("uncertainty_um", &written.uncertainty_um)]
+        {
+            if let Some(given) = given
+                && given.get_ref().0 < 0.0
+            {
+                let diagnostic = Diagnostic::error(VALUE, format!("{name} is {}", given.get_ref().0));
+                self.refuse(given, diagnostic, "expected 0 or more");
+            }
+        }
+        let number = |given: &Option<Spanned<Finite>>| given.as_ref().map(|v| v.get_ref().0);
         Calibrated {
+            repeatability_um: number(&written.repeatability_um),
+            uncertainty_um: number(&written.uncertainty_um),
             date: written.date.as_ref().map(|d| d.get_ref().clone()),
             temperature_c: written.temperature_c.map(|Finite(t)| t),
             instrument: written.instrument.clone(),

@@ -14,6 +14,10 @@ pub struct Calibrated {
     pub temperature_c: Option<f64>,
     /// Instrument.
     pub instrument: Option<String>,
+    /// Standard deviation of one reading, µm: how well the machine came back to a point while it was measured.
+    pub repeatability_um: Option<f64>,
+    /// Half width of the 95 % interval of the deviation at the far corner of the volume, µm.
+    pub uncertainty_um: Option<f64>,
 }
 
 /// What happens to feed motion outside the calibrated volume.

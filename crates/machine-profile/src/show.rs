@@ -36,6 +36,12 @@ impl Profile {
             let parts: Vec<String> =
                 [c.date.clone(), temperature, c.instrument.clone()].into_iter().flatten().collect();
             writeln!(out, "calibrated   {}", parts.join(", "))?;
+            if let Some(um) = c.repeatability_um {
+                writeln!(out, "  repeats    within {um} um (standard deviation of one reading)")?;
+            }
+            if let Some(um) = c.uncertainty_um {
+                writeln!(out, "  known to   {um} um at the far corner (95 %)")?;
+            }
         }
         let volume = self.volume();
         for (i, axis) in Axis::ALL[..3].iter().enumerate() {

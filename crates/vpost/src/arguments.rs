@@ -33,6 +33,8 @@ pub enum Command {
     Predict(Predict),
     /// What to command so that the tool reaches points.
     Solve(Solve),
+    /// Make a machine profile from an instrument's files.
+    Calibrate(crate::calibrate::Calibrate),
     /// Which unmodelled effect explains the gap between the model and measurements.
     Diagnose(crate::diagnose::Diagnose),
     /// Check, show or describe machine profiles.

@@ -4,6 +4,7 @@
 //! [`correct`] for the line that data takes.
 
 pub mod arguments;
+pub mod calibrate;
 mod check;
 mod conditions;
 pub mod correct;
@@ -50,6 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
         Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
+        Some(Command::Calibrate(a)) => calibrate::run(a, &arguments.shared, &messages),
         Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),

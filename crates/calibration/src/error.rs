@@ -1,0 +1,26 @@
+//! Why measurements give no profile.
+
+use thiserror::Error;
+
+/// Letters of the linear axes.
+pub(crate) const LETTERS: [char; 3] = ['X', 'Y', 'Z'];
+
+/// Measurements that cannot be used, and why.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum CalibrationError {
+    /// A file of another axis, or two axes in one traverse.
+    #[error("{0}")]
+    Axes(String),
+    /// Numbers that are in another unit than they claim.
+    #[error("{0}")]
+    Units(String),
+    /// Runs or targets that are missing or do not belong together.
+    #[error("{0}")]
+    Runs(String),
+    /// Fewer data than unknowns.
+    #[error("{0}")]
+    TooFew(String),
+    /// The data leave some unknowns, or combinations of them, open.
+    #[error("the measurements cannot tell {0}")]
+    Unobservable(String),
+}

@@ -1,0 +1,29 @@
+//! Coverage factors.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Two-sided 95 % quantile of Student's t: the factor from a standard uncertainty with so many degrees of
+/// freedom to the half width of the interval. 1.96 where the standard deviation is known (`None`).
+///
+/// Infinite for zero degrees of freedom: nothing is known of the scatter then.
+#[must_use]
+pub fn quantile_95(degrees_of_freedom: Option<usize>) -> f64 {
+    match degrees_of_freedom {
+        None => 1.959_963_984_540_054,
+        Some(0) => f64::INFINITY,
+        Some(n) => StudentsT::new(0.0, 1.0, n as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (n, t) in [(1, 12.7062), (4, 2.7764), (9, 2.2622), (30, 2.0423)] {
+            assert!((quantile_95(Some(n)) - t).abs() < 5e-5, "{n}");
+        }
+        assert!(quantile_95(Some(0)).is_infinite());
+    }
+}

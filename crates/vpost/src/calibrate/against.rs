@@ -1,0 +1,60 @@
+//! `--against OLD.toml`: has the machine changed beyond what the two measurements are uncertain of?
+
+use std::path::Path;
+
+use calibration::change::compare;
+use machine_model::{Range, Vector, Volume};
+use machine_profile::Profile;
+
+use crate::message::Failure;
+use crate::{file, profile};
+
+use super::codes::question;
+use super::output::short;
+
+/// Prints the comparison.
+pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
+    let name = file::name(old);
+    let old = profile::load(old)?.profile;
+    let (a, b) = (old.volume(), new.volume());
+    let volume = Volume(
+        [0, 1, 2].map(|i| Range { low: a.0[i].low.max(b.0[i].low), high: a.0[i].high.min(b.0[i].high) }),
+    );
+    let known = |p: &Profile| p.calibrated.as_ref().and_then(|c| c.uncertainty_um).map(|um| um * 1e-3);
+    let change = compare(
+        old.rigid_body_without_effects(),
+        new.rigid_body_without_effects(),
+        &volume,
+        Vector::from(new.default_tool_mm),
+        [known(&old), known(new)],
+    )
+    .ok_or_else(|| {
+        question(
+            format!("{name} and the new measurements have no volume in common"),
+            "compare profiles of one machine",
+        )
+    })?;
+    let at: Vec<String> = change.at_mm.iter().map(|v| short(*v, 3)).collect();
+    let d = change.difference_mm * 1e3;
+    let mut text = format!(
+        "\nagainst {name}: errors differ by {:.1} um RMS, at most {:.1} um at ({}) mm: x {:+.1} y {:+.1} z {:+.1} um; frames taken off\n",
+        change.rms_mm * 1e3,
+        change.largest_mm * 1e3,
+        at.join(", "),
+        d.x,
+        d.y,
+        d.z
+    );
+    let verdict = match (change.is_beyond_uncertainty(), change.uncertainty_mm) {
+        (Some(true), Some(u)) => format!(
+            "  the machine has changed: the two are uncertain of ±{:.1} um together (95 %)\n",
+            u * 1e3
+        ),
+        (Some(false), Some(u)) => {
+            format!("  no change is shown: the two are uncertain of ±{:.1} um together (95 %)\n", u * 1e3)
+        }
+        _ => "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n".to_owned(),
+    };
+    text.push_str(&verdict);
+    file::print(text.as_bytes())
+}

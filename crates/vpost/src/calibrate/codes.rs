@@ -1,0 +1,62 @@
+//! Numbers of the messages of `calibrate`.
+
+use calibration::CalibrationError;
+use diagnostic::{Code, Diagnostic};
+
+use crate::message::Failure;
+
+/// A measurement file that cannot be read.
+pub(super) const UNREADABLE: Code = Code(910);
+/// A column is missing, unknown or twice.
+pub(super) const COLUMNS: Code = Code(911);
+/// A field is not what its column says.
+pub(super) const FIELD: Code = Code(912);
+/// Axes, signs or frames that do not fit.
+pub(super) const AXES: Code = Code(1101);
+/// Numbers in another unit than they claim.
+pub(super) const UNITS: Code = Code(1102);
+/// Measurements that cannot carry a correction.
+pub(super) const UNFIT: Code = Code(1103);
+/// Runs or targets that are missing or unequal.
+pub(super) const RUNS: Code = Code(1104);
+/// Too few data, or unknowns that they leave open.
+pub(super) const OPEN: Code = Code(1105);
+/// Something only the user can say.
+pub(super) const QUESTION: Code = Code(1106);
+/// Warning: runs or targets are missing.
+pub(super) const MISSING: Code = Code(1108);
+/// Warning: the uncertainty is more than half of what it corrects.
+pub(super) const DOUBTFUL: Code = Code(1109);
+/// Warning: something the profile should say is not known.
+pub(super) const UNSAID: Code = Code(1110);
+
+/// What to say of measurements that give no profile, and what to do.
+pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
+    let (code, help) = match error {
+        CalibrationError::Axes(_) => (
+            AXES,
+            "give the files in the order X, Y, Z, in a right-handed frame; `--frame fit` turns an instrument's frame",
+        ),
+        CalibrationError::Units(_) => {
+            (UNITS, "the column's name says its unit: convert the numbers or rename the column")
+        }
+        CalibrationError::Runs(_) => (RUNS, "every run must pass every target; leave an incomplete run out"),
+        CalibrationError::TooFew(_) => (OPEN, "measure more points"),
+        CalibrationError::Unobservable(_) => {
+            (OPEN, "measure where they differ: another tool length, other positions of the other axes")
+        }
+    };
+    let diagnostic = Diagnostic::error(code, error.to_string()).help(help);
+    if file.is_empty() {
+        return Failure::Refused(vec![crate::message::Report {
+            source: None,
+            diagnostics: vec![diagnostic],
+        }]);
+    }
+    Failure::refused(file, bytes, vec![diagnostic])
+}
+
+/// A question that stays open.
+pub(super) fn question(message: impl Into<String>, help: impl Into<String>) -> Failure {
+    Failure::usage(Diagnostic::error(QUESTION, message).help(help))
+}

@@ -1,0 +1,36 @@
+//! `vpost calibrate`: from an instrument's files to a machine profile.
+//!
+//! Files and formats are read here, the mathematics is in the crate `calibration`.
+
+mod against;
+mod codes;
+mod output;
+mod sheet;
+mod tracker;
+
+use clap::{Args, Subcommand};
+
+use crate::arguments::Shared;
+use crate::message::{Failure, Messages};
+
+/// `vpost calibrate`
+#[derive(Debug, Args)]
+pub struct Calibrate {
+    /// The instrument.
+    #[command(subcommand)]
+    pub command: CalibrateCommand,
+}
+
+/// Instruments.
+#[derive(Debug, Subcommand)]
+pub enum CalibrateCommand {
+    /// Three axis traverses of a laser tracker: directions, squareness, positioning and straightness.
+    Tracker(tracker::Tracker),
+}
+
+/// `vpost calibrate INSTRUMENT FILES… -o PROFILE`
+pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    match &arguments.command {
+        CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
+    }
+}

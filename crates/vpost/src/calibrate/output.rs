@@ -1,0 +1,223 @@
+//! The profile that a calibration writes, with its tables beside it.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use diagnostic::Diagnostic;
+use machine_model::Axis;
+use machine_profile::{Calibrated, Profile, ProfileText};
+
+use crate::arguments::Shared;
+use crate::message::{Failure, Messages, Report, file_diagnostic};
+use crate::{file, profile};
+
+use super::codes::{UNSAID, question};
+
+/// What every calibration is told about the profile it makes.
+#[derive(Debug, Clone, Args)]
+pub struct Target {
+    /// Write this profile, its tables in a folder of the same name beside it. With -m: that profile with what was
+    /// measured in place of what it says. Without: the report only.
+    #[arg(short, long, value_name = "PROFILE.toml")]
+    pub output: Option<PathBuf>,
+    /// Name of the machine, for a new profile.
+    #[arg(long, value_name = "TEXT")]
+    pub name: Option<String>,
+    /// Axes from workpiece to tool, for a new profile: "[w X Y b Z t]".
+    #[arg(long, value_name = "CHAIN")]
+    pub chain: Option<String>,
+    /// Day of the measurement: year-month-day.
+    #[arg(long, value_name = "DATE")]
+    pub date: Option<String>,
+    /// Temperature of the machine during the measurement, °C; default: the mean of the files' temp_c.
+    #[arg(long, value_name = "C")]
+    pub temperature: Option<f64>,
+    /// What it was measured with.
+    #[arg(long, value_name = "TEXT")]
+    pub instrument: Option<String>,
+    /// Say whether the machine has changed since this profile was made.
+    #[arg(long, value_name = "OLD.toml")]
+    pub against: Option<PathBuf>,
+    /// Column of the measurements to pass over (repeatable).
+    #[arg(long, value_name = "NAME")]
+    pub ignore_column: Vec<String>,
+}
+
+/// A profile in the making.
+pub(super) struct Output {
+    /// Its text.
+    pub(super) text: ProfileText,
+    /// The profile it is based on.
+    pub(super) base: Option<Profile>,
+    /// Tables: name inside the profile's folder, bytes.
+    tables: Vec<(String, Vec<u8>)>,
+    folder: String,
+}
+
+impl Output {
+    /// From `-m`, or new. `chain` must be known then: nothing about a machine is guessed.
+    pub(super) fn start(target: &Target, shared: &Shared) -> Result<Self, Failure> {
+        let stem = target.output.as_deref().and_then(Path::file_stem);
+        let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
+        if let Some(path) = &shared.machine {
+            let base = profile::load(path)?.profile;
+            let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
+            let Some(mut text) = ProfileText::parse(&text) else {
+                return Err(question("the base profile cannot be edited", "run `vpost profile check` on it"));
+            };
+            let from = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+            let mut tables = Vec::new();
+            let mut broken = None;
+            text.rename_tables(&mut |old| {
+                let name = Path::new(old)
+                    .file_name()
+                    .map_or_else(|| old.to_owned(), |n| n.to_string_lossy().into_owned());
+                match std::fs::read(from.join(old)) {
+                    Ok(bytes) => tables.push((name.clone(), bytes)),
+                    Err(error) => broken = Some(Failure::usage(file_diagnostic(old, "read", &error))),
+                }
+                format!("{folder}/{name}")
+            });
+            if let Some(failure) = broken {
+                return Err(failure);
+            }
+            if let Some(name) = &target.name {
+                text.set_text(&["name"], name);
+            }
+            return Ok(Self { text, base: Some(base), tables, folder });
+        }
+        let Some(chain) = &target.chain else {
+            return Err(question(
+                "which machine? its chain of axes is not known",
+                "add `-m PROFILE.toml` of the same machine, or `--chain \"[w X Y b Z t]\"`: axes from workpiece (w) by the bed (b) to the tool (t)",
+            ));
+        };
+        let name = target.name.as_deref().unwrap_or("calibrated machine");
+        let text = ProfileText::new(name, chain, shared.dialect.as_deref());
+        Ok(Self { text, base: None, tables: Vec::new(), folder })
+    }
+
+    /// Puts a table beside the profile and gives the name by which the profile calls it.
+    pub(super) fn table(&mut self, name: &str, bytes: Vec<u8>) -> String {
+        self.tables.retain(|(old, _)| old != name);
+        self.tables.push((name.to_owned(), bytes));
+        format!("{}/{name}", self.folder)
+    }
+
+    /// Error functions of an axis as a table of the profile; `None` for functions that were not measured.
+    pub(super) fn errors(
+        &mut self,
+        axis: Axis,
+        key: &str,
+        positions_mm: &[f64],
+        functions: &[Option<Vec<f64>>; 6],
+    ) {
+        let negative = if key == "errors" { "" } else { "_negative" };
+        let name = format!("{}{negative}.csv", axis.letter().to_ascii_lowercase());
+        let file = self.table(&name, error_table(axis, positions_mm, functions).into_bytes());
+        self.text.set_text(&["axis", &axis.letter().to_string(), key], &file);
+    }
+
+    /// What is known of the measurement; warns of what is not.
+    pub(super) fn calibrated(
+        &mut self,
+        target: &Target,
+        messages: &Messages,
+        measured: Calibrated,
+    ) -> Result<(), Failure> {
+        let calibrated = Calibrated {
+            date: target.date.clone().or(measured.date),
+            temperature_c: target.temperature.or(measured.temperature_c),
+            instrument: target.instrument.clone().or(measured.instrument),
+            repeatability_um: measured.repeatability_um.map(|v| (v * 1e3).round() / 1e3),
+            uncertainty_um: measured.uncertainty_um.map(|v| (v * 1e3).round() / 1e3),
+        };
+        let missing: Vec<&str> = [
+            (calibrated.date.is_none(), "--date"),
+            (calibrated.temperature_c.is_none(), "--temperature"),
+            (calibrated.instrument.is_none(), "--instrument"),
+        ]
+        .into_iter()
+        .filter_map(|(missing, option)| missing.then_some(option))
+        .collect();
+        if !missing.is_empty() && target.output.is_some() {
+            warn(
+                messages,
+                Diagnostic::warning(
+                    UNSAID,
+                    "the profile does not say when, how warm or with what the machine was measured",
+                )
+                .help(format!("add {}", missing.join(", "))),
+            );
+        }
+        self.text.set_calibrated(&calibrated);
+        Ok(())
+    }
+
+    /// The finished profile, read back as every other command will read it.
+    pub(super) fn check(&self) -> Result<Profile, Failure> {
+        let text = self.text.to_string();
+        let read = |name: &str| {
+            let own = name.strip_prefix(&self.folder).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
+            let found = self.tables.iter().find(|(table, _)| table == own);
+            found.map(|(_, bytes)| bytes.clone()).ok_or_else(|| std::io::ErrorKind::NotFound.into())
+        };
+        machine_profile::load(&text, &read).map_err(|errors| {
+            let diagnostics = errors.into_iter().map(|error| error.diagnostic).collect();
+            Failure::refused("the profile that would be written", text.as_bytes(), diagnostics)
+        })
+    }
+
+    /// Compares with an earlier profile where that is asked; writes the tables, then the profile; nothing where the profile would not be a good one.
+    pub(super) fn write(&self, target: &Target, messages: &Messages) -> Result<(), Failure> {
+        let profile = self.check()?;
+        if let Some(old) = &target.against {
+            super::against::report(old, &profile)?;
+        }
+        let Some(path) = &target.output else { return Ok(()) };
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
+        std::fs::create_dir_all(&folder)
+            .map_err(|error| Failure::file(&file::name(&folder), "make", &error))?;
+        for (name, bytes) in &self.tables {
+            file::write(&folder.join(name), bytes)?;
+        }
+        file::write(path, self.text.to_string().as_bytes())?;
+        messages.note(&format!("{}: written, tables in {}", file::name(path), file::name(&folder)));
+        Ok(())
+    }
+}
+
+/// Prints a warning.
+pub(super) fn warn(messages: &Messages, diagnostic: Diagnostic) {
+    messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+}
+
+/// Error functions as CSV, µm with four decimals and µrad with four: finer than any instrument reads.
+pub(super) fn error_table(axis: Axis, positions_mm: &[f64], functions: &[Option<Vec<f64>>; 6]) -> String {
+    let mut out = String::from(if axis.is_linear() { "position_mm" } else { "position_deg" });
+    for (k, function) in functions.iter().enumerate() {
+        if function.is_some() {
+            let unit = if k < 3 { "um" } else { "urad" };
+            let _ = write!(out, ",E{}{axis}_{unit}", Axis::ALL[k]);
+        }
+    }
+    out.push('\n');
+    for (row, position) in positions_mm.iter().enumerate() {
+        let _ = write!(out, "{}", short(*position, 6));
+        for (k, function) in functions.iter().enumerate() {
+            if let Some(values) = function {
+                let _ = write!(out, ",{}", short(values[row] * if k < 3 { 1e3 } else { 1e6 }, 4));
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// A number with at most so many decimals, without zeros at its end and without minus zero.
+pub(super) fn short(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
