@@ -12,7 +12,8 @@ use crate::noise::{Noise, NoiseSource, estimate};
 use crate::observation::{Measurements, Scalar};
 use crate::remedy::remedy;
 use crate::rivals::{Rival, rivals};
-use crate::search::{Part, without};
+use crate::search::without;
+use crate::space::Part;
 use crate::term::Term;
 use crate::verdict::{Evidence, verdict};
 

@@ -10,8 +10,8 @@ use crate::engine::{model_columns, source};
 use crate::gram::Gram;
 use crate::noise::tail_factor;
 use crate::observation::{Measurements, Row, Scalar};
-use crate::search::Part;
 use crate::shrinkage::{Strength, transported};
+use crate::space::Part;
 use crate::term::Term;
 
 impl Assembly<'_> {

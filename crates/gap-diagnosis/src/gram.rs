@@ -5,15 +5,16 @@
 //! `XᵀV⁻¹X = XᵀDX - Σ_r C_rᵀ (I/ρ + U_rᵀDU_r)⁻¹ C_r`, `C_r = U_rᵀDX`: the raw products and a 3×p block per
 //! run are enough for every ρ.
 
+use machine_model::Vector;
 use machine_model::effects::EffectGeometry;
 use nalgebra::{DMatrix, Matrix3};
-use rayon::prelude::*;
 
 use crate::observation::{Row, Scalar};
 use crate::term::Term;
 
-/// Rows of a chunk: fixed, so that the sum has one order on any number of threads.
-const CHUNK: usize = 1024;
+/// Values of columns kept between extensions, at most this many numbers (256 MiB); what does not fit is evaluated
+/// again when it is needed.
+const KEPT: usize = 32 << 20;
 
 /// Raw inner products; the last column is the gap itself.
 #[derive(Clone, Debug)]
@@ -43,9 +44,38 @@ pub(crate) struct Source<'a> {
     pub geometry: &'a EffectGeometry,
 }
 
-struct Partial {
-    products: DMatrix<f64>,
-    run_products: Vec<(usize, DMatrix<f64>)>,
+impl Source<'_> {
+    /// Values of a column at some equations, times the roots of their weights.
+    #[must_use]
+    pub(crate) fn weighted(&self, term: &Term, equations: &[usize]) -> Vec<f64> {
+        let value = |i: &usize| {
+            let scalar = &self.scalars[*i];
+            scalar.weight.sqrt() * term.value(scalar, &self.rows[scalar.row], self.geometry)
+        };
+        equations.iter().map(value).collect()
+    }
+}
+
+/// Values of columns, class by class, for the next extension.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept {
+    classes: [Vec<Option<Vec<f64>>>; 4],
+    numbers: usize,
+}
+
+impl Kept {
+    fn keep(&mut self, class: usize, term: usize, values: Vec<f64>) {
+        if self.numbers + values.len() <= KEPT {
+            self.numbers += values.len();
+            let list = &mut self.classes[class];
+            list.resize(list.len().max(term + 1), None);
+            list[term] = Some(values);
+        }
+    }
+
+    fn get(&self, class: usize, term: usize) -> Option<&[f64]> {
+        self.classes[class].get(term)?.as_deref()
+    }
 }
 
 impl Gram {
@@ -62,75 +92,98 @@ impl Gram {
         for scalar in source.scalars {
             let run = source.rows[scalar.row].run;
             gram.run_information[run] += scalar.along * scalar.along.transpose() * scalar.weight;
+            gram.products[(0, 0)] += scalar.weight * scalar.gap_um * scalar.gap_um;
+            for c in 0..3 {
+                gram.run_products[run][(c, 0)] += scalar.weight * scalar.along[c] * scalar.gap_um;
+            }
         }
-        gram.extend(terms, source);
+        gram.extend(terms, source, None);
         gram
     }
 
-    /// Adds columns.
-    pub(crate) fn extend(&mut self, new: Vec<Term>, source: &Source<'_>) {
+    /// Adds columns; `kept` holds values of the columns there are and takes those of the new ones.
+    pub(crate) fn extend(&mut self, new: Vec<Term>, source: &Source<'_>, mut kept: Option<&mut Kept>) {
         let first_new = self.terms.len();
-        let mut terms = std::mem::take(&mut self.terms);
-        terms.extend(new);
-        let size = terms.len() + 1;
+        self.terms.extend(new);
+        let size = self.terms.len() + 1;
         // Old block and old run products keep their place; the gap moves to the end.
-        let mut products = DMatrix::zeros(size, size);
-        let mut run_products = vec![DMatrix::zeros(3, size); source.runs];
         let place = |old: usize| if old == first_new { size - 1 } else { old };
-        if first_new > 0 {
+        let mut products = DMatrix::zeros(size, size);
+        for j in 0..=first_new {
             for i in 0..=first_new {
-                for j in 0..=first_new {
-                    products[(place(i), place(j))] = self.products[(i, j)];
-                }
-                for (to, from) in run_products.iter_mut().zip(&self.run_products) {
-                    for c in 0..3 {
-                        to[(c, place(i))] = from[(c, i)];
-                    }
-                }
+                products[(place(i), place(j))] = self.products[(i, j)];
             }
         }
-        let fresh: Vec<bool> = (0..size).map(|j| j >= first_new && j + 1 < size || first_new == 0).collect();
+        for block in &mut self.run_products {
+            let mut wider = DMatrix::zeros(3, size);
+            for i in 0..=first_new {
+                wider.set_column(place(i), &block.column(i));
+            }
+            *block = wider;
+        }
         for class in 0..4 {
-            let scalars: Vec<&Scalar> = source.scalars.iter().filter(|s| s.class == class).collect();
-            if scalars.is_empty() {
+            let equations: Vec<usize> =
+                (0..source.scalars.len()).filter(|i| source.scalars[*i].class == class).collect();
+            if equations.is_empty() {
                 continue;
             }
-            // Columns that can be anything but zero in this class; the gap (index terms.len()) last.
-            let mut active: Vec<usize> =
-                (0..terms.len()).filter(|i| class == 3 || terms[*i].touches(class)).collect();
-            active.push(size - 1);
-            let is_fresh: Vec<bool> = active.iter().map(|i| fresh[*i]).collect();
-            if !is_fresh.iter().any(|f| *f) {
-                continue;
+            // Columns that can be anything but zero in this class.
+            let seen = |i: &usize| class == 3 || self.terms[*i].touches(class);
+            let fresh: Vec<(usize, Vec<f64>)> = (first_new..size - 1)
+                .filter(seen)
+                .map(|i| (i, source.weighted(&self.terms[i], &equations)))
+                .collect();
+            let mut add = |i: usize, j: usize, value: f64| {
+                products[(i, j)] += value;
+                if i != j {
+                    products[(j, i)] += value;
+                }
+            };
+            let gap: Vec<f64> = equations
+                .iter()
+                .map(|i| source.scalars[*i].weight.sqrt() * source.scalars[*i].gap_um)
+                .collect();
+            fresh.iter().for_each(|(j, b)| add(*j, size - 1, dot(&gap, b)));
+            for i in (0..first_new).filter(seen).filter(|_| !fresh.is_empty()) {
+                let known = kept.as_deref().and_then(|k| k.get(class, i));
+                let again = known.is_none().then(|| source.weighted(&self.terms[i], &equations));
+                if let Some(a) = known.or(again.as_deref()) {
+                    fresh.iter().for_each(|(j, b)| add(i, *j, dot(a, b)));
+                }
             }
-            let groups: Vec<Vec<&Scalar>> =
-                scalars.chunks(CHUNK * (1 + scalars.len() / (CHUNK * 64))).map(<[&Scalar]>::to_vec).collect();
-            let partials: Vec<Partial> =
-                groups.par_iter().map(|group| partial(group, &terms, &active, &is_fresh, source)).collect();
-            for part in partials {
-                for (a, i) in active.iter().enumerate() {
-                    for (b, j) in active.iter().enumerate().skip(a) {
-                        if is_fresh[a] || is_fresh[b] {
-                            let v = part.products[(a, b)];
-                            products[(*i, *j)] += v;
-                            if i != j {
-                                products[(*j, *i)] += v;
-                            }
-                        }
+            for (place, (i, a)) in fresh.iter().enumerate() {
+                fresh[place..].iter().for_each(|(j, b)| add(*i, *j, dot(a, b)));
+            }
+            for (i, values) in fresh {
+                for (equation, value) in equations.iter().zip(&values) {
+                    let scalar = &source.scalars[*equation];
+                    let block = &mut self.run_products[source.rows[scalar.row].run];
+                    let value = scalar.weight.sqrt() * value;
+                    for c in 0..3 {
+                        block[(c, i)] += scalar.along[c] * value;
                     }
                 }
-                for (run, block) in part.run_products {
-                    for (a, i) in active.iter().enumerate().filter(|(a, _)| is_fresh[*a]) {
-                        for c in 0..3 {
-                            run_products[run][(c, *i)] += block[(c, a)];
-                        }
-                    }
+                if let Some(kept) = kept.as_deref_mut() {
+                    kept.keep(class, i, values);
                 }
             }
         }
-        self.terms = terms;
         self.products = products;
-        self.run_products = run_products;
+    }
+
+    /// The Cholesky factors of `I/ρ + UᵀDU` of every run, and the logarithm of the determinant of V/σ².
+    #[must_use]
+    pub(crate) fn run_factors(&self, rho: f64) -> (Vec<Matrix3<f64>>, f64) {
+        let mut log_determinant = 0.0;
+        let factors = self.run_information.iter().map(|information| {
+            let inner = Matrix3::identity() / rho + information;
+            let l = inner.cholesky().map_or_else(Matrix3::identity, |c| c.l());
+            log_determinant +=
+                2.0 * (0..3).map(|i| units::math::ln(l[(i, i)])).sum::<f64>() + 3.0 * units::math::ln(rho);
+            l
+        });
+        let factors = factors.collect();
+        (factors, log_determinant)
     }
 
     /// Products under run offsets of variance `rho` σ², and the logarithm of the determinant of V/σ².
@@ -141,98 +194,42 @@ impl Gram {
             return (result, 0.0);
         }
         let size = result.nrows();
-        let mut log_determinant = 0.0;
-        let factors: Vec<Vec<f64>> = self
-            .run_products
-            .iter()
-            .zip(&self.run_information)
-            .flat_map(|(block, information)| {
-                let inner = Matrix3::identity() / rho + information;
-                let Some(cholesky) = inner.cholesky() else { return Vec::new() };
-                let l = cholesky.l();
-                log_determinant += 2.0 * (0..3).map(|i| units::math::ln(l[(i, i)])).sum::<f64>()
-                    + 3.0 * units::math::ln(rho);
-                let mut rows = vec![vec![0.0; size]; 3];
-                for j in 0..size {
-                    for i in 0..3 {
-                        let mut v = block[(i, j)];
-                        for k in 0..i {
-                            v -= l[(i, k)] * rows[k][j];
-                        }
-                        rows[i][j] = v / l[(i, i)];
-                    }
-                }
-                rows
-            })
-            .collect();
-        // One column of the result after another, each the work of one thread.
-        result.as_mut_slice().par_chunks_mut(size).enumerate().for_each(|(j, column)| {
-            for row in &factors {
-                let v = row[j];
-                if v != 0.0 {
-                    for (to, from) in column.iter_mut().zip(row) {
-                        *to -= v * from;
-                    }
+        let (factors, log_determinant) = self.run_factors(rho);
+        for (l, block) in factors.iter().zip(&self.run_products) {
+            let columns: Vec<Vector> =
+                (0..size).map(|j| forward(l, [block[(0, j)], block[(1, j)], block[(2, j)]])).collect();
+            for (j, b) in columns.iter().enumerate().filter(|(_, b)| **b != Vector::zeros()) {
+                for (i, a) in columns.iter().enumerate() {
+                    result[(i, j)] -= a.dot(b);
                 }
             }
-        });
+        }
         (result, log_determinant)
     }
 }
 
-/// Products of one chunk: four rows at a time, so that a load and a store serve four products.
-fn partial(
-    group: &[&Scalar],
-    terms: &[Term],
-    active: &[usize],
-    fresh: &[bool],
-    source: &Source<'_>,
-) -> Partial {
-    let width = active.len();
-    let mut values = vec![0.0; width * 4];
-    let mut products = vec![0.0; width * width];
-    let mut runs: Vec<(usize, DMatrix<f64>)> = Vec::new();
-    for quad in group.chunks(4) {
-        values.fill(0.0);
-        for (lane, scalar) in quad.iter().enumerate() {
-            let row = &source.rows[scalar.row];
-            let root = scalar.weight.sqrt();
-            let lane_values = &mut values[lane * width..(lane + 1) * width];
-            for (to, index) in lane_values.iter_mut().zip(active) {
-                let value =
-                    terms.get(*index).map_or(scalar.gap_um, |term| term.value(scalar, row, source.geometry));
-                *to = root * value;
-            }
-            if runs.last().is_none_or(|(run, _)| *run != row.run) {
-                runs.push((row.run, DMatrix::zeros(3, width)));
-            }
-            if let Some((_, block)) = runs.last_mut() {
-                for (j, value) in lane_values.iter().enumerate().filter(|(j, _)| fresh[*j]) {
-                    for c in 0..3 {
-                        block[(c, j)] += root * scalar.along[c] * value;
-                    }
-                }
-            }
-        }
-        let (v0, rest) = values.split_at(width);
-        let (v1, rest) = rest.split_at(width);
-        let (v2, v3) = rest.split_at(width);
-        let first_fresh = fresh.iter().position(|f| *f).unwrap_or(width);
-        for i in 0..width {
-            let (a, b, c, d) = (v0[i], v1[i], v2[i], v3[i]);
-            if a == 0.0 && b == 0.0 && c == 0.0 && d == 0.0 {
-                continue;
-            }
-            // Pairs of old columns are known already.
-            let from = if fresh[i] { i } else { i.max(first_fresh) };
-            let target = &mut products[i * width + from..(i + 1) * width];
-            let lanes = v0[from..].iter().zip(&v1[from..]).zip(v2[from..].iter().zip(&v3[from..]));
-            for (to, ((w0, w1), (w2, w3))) in target.iter_mut().zip(lanes) {
-                *to += (a * w0 + b * w1) + (c * w2 + d * w3);
-            }
+/// `L⁻¹ b`.
+#[must_use]
+pub(crate) fn forward(l: &Matrix3<f64>, b: [f64; 3]) -> Vector {
+    let x = b[0] / l[(0, 0)];
+    let y = (b[1] - l[(1, 0)] * x) / l[(1, 1)];
+    let z = (b[2] - l[(2, 0)] * x - l[(2, 1)] * y) / l[(2, 2)];
+    Vector::new(x, y, z)
+}
+
+/// Inner product in eight partial sums: the order of the additions is fixed, and they do not wait for one another.
+#[must_use]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (whole, rest) = a.as_chunks::<8>();
+    let (other, other_rest) = b.as_chunks::<8>();
+    for (a, b) in whole.iter().zip(other) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
         }
     }
-    Partial { products: DMatrix::from_row_slice(width, width, &products), run_products: runs }
+    let tail: f64 = rest.iter().zip(other_rest).map(|(a, b)| a * b).sum();
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7])) + tail
 }
 
 /// Eliminates the first `count` columns (rank-revealing Cholesky) from a matrix of products and returns the

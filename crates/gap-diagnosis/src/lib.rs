@@ -23,11 +23,14 @@ mod noise;
 mod observation;
 mod parameters;
 mod propose;
+mod refine;
 mod remedy;
 mod rivals;
 mod search;
+
 mod sentence;
 mod shrinkage;
+mod space;
 mod structure;
 mod term;
 mod unseen;

@@ -148,17 +148,25 @@ impl Library {
         library
     }
 
-    /// Adds columns of an effect and returns their positions.
+    /// Adds columns of an effect, unless they are there, and returns their positions.
     pub(crate) fn add_columns(&mut self, kind: EffectKind, shape: Shape, indices: &[usize]) -> Vec<usize> {
-        let first = self.terms.len();
-        self.terms.extend(indices.iter().map(|index| Term::Effect { kind, index: *index, shape }));
-        (first..self.terms.len()).collect()
+        let place = |term: Term, terms: &mut Vec<Term>| {
+            terms.iter().position(|t| *t == term).unwrap_or_else(|| {
+                terms.push(term);
+                terms.len() - 1
+            })
+        };
+        indices.iter().map(|i| place(Term::Effect { kind, index: *i, shape }, &mut self.terms)).collect()
     }
 
     /// Adds forms to an effect, as the search proposes them; `asked`: how many were looked at to find them.
     pub(crate) fn add_variants(&mut self, kind: EffectKind, variants: Vec<Variant>, asked: usize) {
         if let Some(candidate) = self.candidates.iter_mut().find(|c| c.kind == kind) {
-            candidate.variants.extend(variants);
+            for variant in variants {
+                if candidate.variants.iter().all(|v| v.columns != variant.columns) {
+                    candidate.variants.push(variant);
+                }
+            }
             candidate.rejected = candidate.rejected.max(asked);
         } else {
             self.candidates.push(Candidate { kind, variants, rejected: asked });

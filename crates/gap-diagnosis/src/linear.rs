@@ -10,8 +10,13 @@ pub(crate) const RANK_TOLERANCE: f64 = 1e-6;
 pub(crate) struct Factor {
     /// Columns that are independent, in pivot order, as positions in the list given.
     pub kept: Vec<usize>,
-    /// Lower triangular factor over the kept columns.
-    lower: DMatrix<f64>,
+    /// Rows of the lower triangular factor over the kept columns, one behind the other.
+    lower: Vec<f64>,
+}
+
+/// Where row `i` of a packed triangle begins.
+const fn row(i: usize) -> usize {
+    i * (i + 1) / 2
 }
 
 impl Factor {
@@ -47,7 +52,8 @@ impl Factor {
             rows.push(row);
         }
         let rank = kept.len();
-        let lower = DMatrix::from_fn(rank, rank, |i, j| if j <= i { rows[j][kept[i]] } else { 0.0 });
+        let lower =
+            (0..rank).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| rows[j][kept[i]]).collect();
         Self { kept, lower }
     }
 
@@ -60,18 +66,25 @@ impl Factor {
     /// Logarithm of the determinant of the products of the kept columns.
     #[must_use]
     pub(crate) fn log_determinant(&self) -> f64 {
-        (0..self.rank()).map(|i| 2.0 * units::math::ln(self.lower[(i, i)])).sum()
+        (0..self.rank()).map(|i| 2.0 * units::math::ln(self.lower[row(i) + i])).sum()
     }
 
     /// `L⁻¹ b`, b over the kept columns.
     #[must_use]
     pub(crate) fn forward(&self, b: &[f64]) -> Vec<f64> {
-        let mut x: Vec<f64> = Vec::with_capacity(b.len());
-        for (i, value) in b.iter().enumerate().take(self.rank()) {
-            let sum: f64 = x.iter().enumerate().map(|(k, v)| self.lower[(i, k)] * v).sum();
-            x.push((value - sum) / self.lower[(i, i)]);
-        }
+        let mut x = b.to_vec();
+        self.forward_in_place(&mut x);
         x
+    }
+
+    /// The same where `b` lies.
+    pub(crate) fn forward_in_place(&self, b: &mut [f64]) {
+        for i in 0..self.rank() {
+            let (known, rest) = b.split_at_mut(i);
+            let own = &self.lower[row(i)..row(i + 1)];
+            let sum: f64 = own.iter().zip(known.iter()).map(|(l, v)| l * v).sum();
+            rest[0] = (rest[0] - sum) / own[i];
+        }
     }
 
     /// Solution of the normal equations; zero for columns that are not kept.
@@ -80,8 +93,8 @@ impl Factor {
         let picked: Vec<f64> = self.kept.iter().map(|k| b[*k]).collect();
         let mut x = self.forward(&picked);
         for i in (0..self.rank()).rev() {
-            let sum: f64 = (i + 1..self.rank()).map(|k| self.lower[(k, i)] * x[k]).sum();
-            x[i] = (x[i] - sum) / self.lower[(i, i)];
+            let sum: f64 = (i + 1..self.rank()).map(|k| self.lower[row(k) + i] * x[k]).sum();
+            x[i] = (x[i] - sum) / self.lower[row(i) + i];
         }
         let mut result = DVector::zeros(count);
         for (k, v) in self.kept.iter().zip(x) {

@@ -165,11 +165,12 @@ fn voxels(data: &Measurements, scalars: &[Scalar]) -> Option<Family> {
             })
             .collect();
     }
+    let ranges = [0, 1, 2].map(|a| data.range_mm(a));
     let label = scalars
         .iter()
         .map(|s| {
             travelled.iter().fold(0, |index, axis| {
-                let (low, high) = data.range_mm(*axis);
+                let (low, high) = ranges[*axis];
                 index * PER_AXIS + segment(data.rows[s.row].command.linear_mm[*axis], low, high, PER_AXIS)
             })
         })

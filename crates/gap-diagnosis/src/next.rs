@@ -8,7 +8,8 @@ use crate::engine::{Explained, model_columns, source};
 use crate::gram::Gram;
 use crate::linear::Factor;
 use crate::observation::{Measurements, Reading, Row};
-use crate::search::{Part, without};
+use crate::search::without;
+use crate::space::Part;
 use crate::term::Term;
 
 /// Points of a proposed line, each way.

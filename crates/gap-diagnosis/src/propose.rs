@@ -1,15 +1,13 @@
-//! Non-linear shapes: found on the residual, refined on the fit (variable projection).
+//! Non-linear shapes, found on the residual: where, when, with which period.
 
 use machine_model::Vector;
 use machine_model::effects::{EffectKind, Shape};
 use units::math;
 
-use crate::gram::{Gram, Source};
+use crate::gram::Source;
 use crate::library::{Library, Variant};
-use crate::linear::explained;
 use crate::noise::median;
 use crate::observation::Scalar;
-use crate::term::Term;
 
 /// Pitches that screws, racks and gears are made with, mm.
 const NOMINAL_PITCHES_MM: [f64; 17] =
@@ -30,54 +28,97 @@ pub(crate) fn thinned(scalars: &[Scalar]) -> Vec<usize> {
     (0..scalars.len()).step_by(step).collect()
 }
 
-/// The pitches of one axis that explain most of the residual, and how many were looked at.
-#[must_use]
-pub(crate) fn pitches(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> (Vec<f64>, usize) {
-    let points: Vec<(f64, f64)> = thinned(source.scalars)
-        .into_iter()
-        .map(|i| (source.scalars[i], residuals_um[i]))
-        .filter(|(s, _)| s.along[axis].abs() > 0.3)
-        .map(|(s, r)| (source.rows[s.row].command.linear_mm[axis], r * s.along[axis]))
-        .collect();
-    let (low, high) =
-        points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (q, _)| (l.min(*q), h.max(*q)));
-    let length = high - low;
-    let mut found: Vec<(f64, f64)> = Vec::new();
-    let mut asked = 0;
-    if points.len() < 12 || length.is_nan() {
-        return (Vec::new(), 0);
-    }
-    for nominal in NOMINAL_PITCHES_MM.into_iter().filter(|p| 3.0 * p <= length) {
-        let step = (0.25 * nominal * nominal / length).max(2.0 * NEIGHBOURHOOD * nominal / 60.0);
-        let count = (NEIGHBOURHOOD * nominal / step).floor() as i32;
-        let mut best: Option<(f64, f64)> = None;
-        for k in -count..=count {
-            asked += 1;
-            let pitch = nominal + step * f64::from(k);
-            if is_strobed(source, axis, pitch) {
-                continue;
-            }
-            let power = power(&points, pitch);
-            if best.is_none_or(|(_, p)| power > p) {
-                best = Some((pitch, power));
-            }
+/// The pitches of one axis that can be asked about: nominal ones, each with its neighbours.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pitches {
+    /// Neighbours of one nominal pitch each, mm.
+    grid: Vec<Vec<f64>>,
+    /// How many are looked at.
+    asked: usize,
+}
+
+impl Pitches {
+    /// What the rows of a file can show of one axis.
+    #[must_use]
+    pub(crate) fn new(source: &Source<'_>, axis: usize) -> Self {
+        let places = || {
+            let seen = thinned(source.scalars).into_iter().map(|i| &source.scalars[i]);
+            seen.filter(|s| s.along[axis].abs() > 0.3).map(|s| source.rows[s.row].command.linear_mm[axis])
+        };
+        let (low, high) = places().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), q| (l.min(q), h.max(q)));
+        let length = high - low;
+        let mut found = Self::default();
+        if places().count() < 12 || length.is_nan() {
+            return found;
         }
-        found.extend(best);
+        let steps: Vec<f64> = source
+            .rows
+            .windows(2)
+            .filter(|pair| pair[0].run == pair[1].run)
+            .map(|pair| (pair[1].command.linear_mm[axis] - pair[0].command.linear_mm[axis]).abs())
+            .filter(|step| *step > 0.0)
+            .collect();
+        for nominal in NOMINAL_PITCHES_MM.into_iter().filter(|p| 3.0 * p <= length) {
+            let step = (0.25 * nominal * nominal / length).max(2.0 * NEIGHBOURHOOD * nominal / 60.0);
+            let count = (NEIGHBOURHOOD * nominal / step).floor() as i32;
+            found.asked += 2 * count.unsigned_abs() as usize + 1;
+            let neighbours = (-count..=count).map(|k| nominal + step * f64::from(k));
+            found.grid.push(neighbours.filter(|pitch| !is_strobed(&steps, *pitch)).collect());
+        }
+        found
     }
-    found.sort_by(|a, b| b.1.total_cmp(&a.1));
-    (found.into_iter().take(2).map(|(p, _)| p).collect(), asked)
+
+    /// Those that explain most of the residual, the best first, and how many were looked at.
+    #[must_use]
+    pub(crate) fn best(&self, source: &Source<'_>, residuals_um: &[f64], axis: usize) -> (Vec<f64>, usize) {
+        let mut places: Vec<Place> = thinned(source.scalars)
+            .into_iter()
+            .map(|i| (&source.scalars[i], residuals_um[i]))
+            .filter(|(s, _)| s.along[axis].abs() > 0.3)
+            .map(|(s, r)| Place {
+                position_mm: source.rows[s.row].command.linear_mm[axis],
+                count: 1.0,
+                sum_um: r * s.along[axis],
+            })
+            .collect();
+        places.sort_by(|a, b| a.position_mm.total_cmp(&b.position_mm));
+        places.dedup_by(|next, first| {
+            let same = next.position_mm == first.position_mm;
+            if same {
+                first.count += next.count;
+                first.sum_um += next.sum_um;
+            }
+            same
+        });
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        for neighbours in &self.grid {
+            let powers = neighbours.iter().map(|pitch| (*pitch, power(&places, *pitch)));
+            found.extend(powers.reduce(|best, next| if next.1 > best.1 { next } else { best }));
+        }
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        (found.into_iter().take(2).map(|(p, _)| p).collect(), self.asked)
+    }
+}
+
+/// Residuals at one position of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    position_mm: f64,
+    count: f64,
+    sum_um: f64,
 }
 
 /// Square explained by a sine and a cosine of this period beside a constant.
-fn power(points: &[(f64, f64)], pitch_mm: f64) -> f64 {
-    let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y) =
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (q, r) in points {
-        let (sin, cos) = math::sin_cos(std::f64::consts::TAU * q / pitch_mm);
-        (s, c, ss, sc, cc) = (s + sin, c + cos, ss + sin * sin, sc + sin * cos, cc + cos * cos);
-        (sy, cy, y) = (sy + sin * r, cy + cos * r, y + r);
+fn power(places: &[Place], pitch_mm: f64) -> f64 {
+    let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y, mut n) =
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for place in places {
+        let (sin, cos) = math::sin_cos(std::f64::consts::TAU * place.position_mm / pitch_mm);
+        let (k, r) = (place.count, place.sum_um);
+        (s, c, ss, sc, cc) =
+            (s + k * sin, c + k * cos, ss + k * sin * sin, sc + k * sin * cos, cc + k * cos * cos);
+        (sy, cy, y, n) = (sy + sin * r, cy + cos * r, y + r, n + k);
     }
-    let n = points.len() as f64;
     let (ss, sc, cc) = (ss - s * s / n, sc - s * c / n, cc - c * c / n);
     let (sy, cy) = (sy - s * y / n, cy - c * y / n);
     let determinant = ss * cc - sc * sc;
@@ -186,18 +227,12 @@ pub(crate) fn is_coarse(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool
 }
 
 /// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
-fn is_strobed(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
-    let mut slow = 0;
-    let mut all = 0;
-    for pair in source.rows.windows(2) {
-        let step = (pair[1].command.linear_mm[axis] - pair[0].command.linear_mm[axis]).abs();
-        if pair[0].run != pair[1].run || step < 0.5 * pitch_mm {
-            continue;
-        }
+fn is_strobed(steps_mm: &[f64], pitch_mm: f64) -> bool {
+    let long = steps_mm.iter().filter(|step| **step >= 0.5 * pitch_mm);
+    let (all, slow) = long.fold((0, 0), |(all, slow), step| {
         let phase = step / pitch_mm;
-        all += 1;
-        slow += i32::from((phase - phase.round()).abs() < 0.12);
-    }
+        (all + 1, slow + i32::from((phase - phase.round()).abs() < 0.12))
+    });
     all > 8 && 10 * slow > 8 * all
 }
 
@@ -219,143 +254,4 @@ pub(crate) fn pitch_variants(
         Variant { columns: pick(&[0, 1, 2, 3, 4, 5]), enriched: true, only_rival: false },
         Variant { columns, enriched: true, only_rival: false },
     ]
-}
-
-/// One free number of a shape.
-#[derive(Clone, Copy, Debug)]
-struct Free {
-    get: fn(&Shape) -> f64,
-    set: fn(&mut Shape, f64),
-    /// Half of the first step.
-    step: f64,
-    low: f64,
-    high: f64,
-}
-
-fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64, narrowest_mm: f64) -> Vec<Free> {
-    match kind {
-        EffectKind::Pitch(_) => vec![Free {
-            get: |s| s.pitch_mm,
-            set: |s, v| s.pitch_mm = v,
-            step: 0.15 * shape.pitch_mm * shape.pitch_mm / length_mm.max(shape.pitch_mm),
-            low: 0.2,
-            high: f64::INFINITY,
-        }],
-        EffectKind::Warmup(_) => vec![Free {
-            get: |s| s.tau_s,
-            set: |s, v| (s.tau_s, s.tau2_s) = (v, v * (s.tau2_s / s.tau_s)),
-            step: 0.4 * shape.tau_s,
-            low: 1.0,
-            high: f64::INFINITY,
-        }],
-        EffectKind::Local(_) => vec![
-            Free {
-                get: |s| s.centre_mm,
-                set: |s, v| s.centre_mm = v,
-                step: 0.25 * shape.width_mm,
-                low: f64::NEG_INFINITY,
-                high: f64::INFINITY,
-            },
-            Free {
-                get: |s| s.width_mm,
-                set: |s, v| s.width_mm = v,
-                step: 0.4 * shape.width_mm,
-                low: narrowest_mm.min(LOCAL_WIDEST * length_mm),
-                // Wider is a bow, not damage at a place.
-                high: LOCAL_WIDEST * length_mm,
-            },
-        ],
-        _ => Vec::new(),
-    }
-}
-
-/// Shape of one effect that, beside the other columns, explains most; `None` where it has no free number.
-///
-/// `others`: set-up and the other effects; `indices`: coefficients of this one.
-#[must_use]
-pub(crate) fn refined(
-    source: &Source<'_>,
-    others: &[Term],
-    kind: EffectKind,
-    shape: &Shape,
-    indices: &[usize],
-    rho: f64,
-    narrowest_mm: f64,
-) -> Option<Shape> {
-    let length_mm = match kind {
-        EffectKind::Pitch(a) | EffectKind::Local(a) => range(source, a),
-        _ => 0.0,
-    };
-    let thin: Vec<Scalar> = thinned(source.scalars).into_iter().map(|i| source.scalars[i]).collect();
-    let source = Source { scalars: &thin, ..*source };
-    let gain = |shape: &Shape| {
-        let mut terms = others.to_vec();
-        terms.extend(indices.iter().map(|index| Term::Effect { kind, index: *index, shape: *shape }));
-        let gram = Gram::new(terms, &source);
-        let (whitened, _) = gram.whitened(rho);
-        let columns: Vec<usize> = (0..gram.terms.len()).collect();
-        explained(&whitened, &columns, &gram.squares()).0
-    };
-    let mut best = *shape;
-    if let EffectKind::Step(_) = kind {
-        return step_time(&source, shape, gain);
-    }
-    let frees = free_numbers(kind, shape, length_mm, narrowest_mm);
-    if frees.is_empty() {
-        return None;
-    }
-    let mut value = gain(&best);
-    let mut steps: Vec<f64> = frees.iter().map(|f| f.step).collect();
-    for _ in 0..10 {
-        for (free, step) in frees.iter().zip(&mut steps) {
-            let here = (free.get)(&best);
-            let tries = [here - *step, here + *step].map(|v| {
-                let mut shape = best;
-                (free.set)(&mut shape, v.clamp(free.low, free.high));
-                (shape, gain(&shape))
-            });
-            let better = if tries[0].1 > tries[1].1 { tries[0] } else { tries[1] };
-            if better.1 > value {
-                (best, value) = better;
-            } else {
-                *step *= 0.45;
-            }
-        }
-    }
-    Some(best)
-}
-
-/// A knock happened between two rows: try every gap near the first guess.
-fn step_time(source: &Source<'_>, shape: &Shape, gain: impl Fn(&Shape) -> f64) -> Option<Shape> {
-    let mut times: Vec<f64> = source.rows.iter().filter_map(|r| r.conditions.time_s).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let place = times.partition_point(|t| *t < shape.time_s);
-    let mut best: Option<(f64, f64)> = None;
-    let reach = times.len() / 24 + 2;
-    let stride = (reach / 24).max(1);
-    let mut centre = place;
-    for pass_stride in [stride, 1] {
-        let span = if pass_stride == stride { reach } else { stride };
-        for k in (centre.saturating_sub(span)..=centre + span).step_by(pass_stride) {
-            let (Some(before), Some(after)) = (k.checked_sub(1).and_then(|b| times.get(b)), times.get(k))
-            else {
-                continue;
-            };
-            let time_s = 0.5 * (before + after);
-            let value = gain(&Shape { time_s, ..*shape });
-            if best.is_none_or(|(_, v)| value > v) {
-                best = Some((time_s, value));
-                centre = k;
-            }
-        }
-    }
-    best.map(|(time_s, _)| Shape { time_s, ..*shape })
-}
-
-fn range(source: &Source<'_>, axis: usize) -> f64 {
-    let (low, high) = source.rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| {
-        (l.min(r.command.linear_mm[axis]), h.max(r.command.linear_mm[axis]))
-    });
-    high - low
 }

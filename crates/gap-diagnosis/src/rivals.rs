@@ -5,7 +5,8 @@ use nalgebra::DMatrix;
 
 use crate::engine::Explained;
 use crate::linear::{Factor, explained};
-use crate::search::{Part, without};
+use crate::search::without;
+use crate::space::Part;
 
 /// Two effects look alike where the correlation of what they do to this design, set-up and other causes
 /// taken out, reaches this.

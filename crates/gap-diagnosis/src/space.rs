@@ -1,0 +1,369 @@
+//! The space of all columns, set-up and run offsets taken out, in which models are judged.
+
+use nalgebra::{DMatrix, Matrix3};
+use units::math;
+
+use crate::gram::{Gram, dot, forward};
+use crate::library::Library;
+use crate::linear::{Factor, RANK_TOLERANCE};
+
+/// Ratios of run-offset variance to row variance among which the likelihood chooses.
+pub(crate) const RHO_GRID: [f64; 9] = [0.0, 0.003, 0.01, 0.04, 0.15, 0.6, 2.5, 10.0, 100.0];
+
+/// One effect of a model: positions in the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Index of its form.
+    pub variant: usize,
+}
+
+/// What a run-offset ratio makes of the products.
+///
+/// Every column has a vector `b` — first what the run offsets explain of it (three numbers per run, component by
+/// component), then what the set-up explains of the rest — such that the whitened product of two columns, set-up
+/// eliminated, is their raw product minus `b·b`.
+#[derive(Clone, Debug)]
+struct Level {
+    rho: f64,
+    /// Set-up eliminated; the gap last.
+    products: DMatrix<f64>,
+    log_determinant: f64,
+    /// Independent set-up columns in the order of their elimination, with their vectors as far as they were known
+    /// then.
+    pivots: Vec<(usize, Explained)>,
+    /// One per column, the gap last.
+    explained: Vec<Explained>,
+}
+
+/// The vector `b` of a column.
+#[derive(Clone, Debug, Default)]
+struct Explained {
+    /// By run offsets, one list per component; empty where the column does not show in it.
+    runs: [Vec<f64>; 3],
+    /// By the set-up columns.
+    set_up: Vec<f64>,
+}
+
+impl Explained {
+    fn by_runs(&self, other: &Self) -> f64 {
+        let pair = |c: usize| match (self.runs[c].is_empty(), other.runs[c].is_empty()) {
+            (false, false) => dot(&self.runs[c], &other.runs[c]),
+            _ => 0.0,
+        };
+        pair(0) + pair(1) + pair(2)
+    }
+
+    fn product(&self, other: &Self) -> f64 {
+        self.by_runs(other) + dot(&self.set_up, &other.set_up)
+    }
+}
+
+impl Level {
+    fn new(rho: f64) -> Self {
+        let products = DMatrix::zeros(1, 1);
+        Self { rho, products, log_determinant: 0.0, pivots: Vec::new(), explained: Vec::new() }
+    }
+
+    /// Takes the columns of `gram` that are not known yet; the first call also eliminates the set-up.
+    fn grow(&mut self, gram: &Gram, nuisances: usize) {
+        let size = gram.terms.len() + 1;
+        let first_new = self.explained.len().saturating_sub(1);
+        let gap = self.explained.pop();
+        let factors = (self.rho > 0.0).then(|| gram.run_factors(self.rho));
+        let mut fresh: Vec<Explained> = (first_new..size - usize::from(gap.is_some()))
+            .map(|j| Explained { runs: by_runs(gram, factors.as_ref().map(|f| &f.0), j), set_up: Vec::new() })
+            .collect();
+        self.log_determinant = factors.map_or(0.0, |f| f.1);
+        if gap.is_none() {
+            self.choose_pivots(gram, &mut fresh[..nuisances]);
+        }
+        for (j, own) in fresh.iter_mut().enumerate() {
+            for (k, (pivot, row)) in self.pivots.iter().enumerate().skip(own.set_up.len()) {
+                let left = gram.products[(*pivot, first_new + j)]
+                    - own.by_runs(row)
+                    - dot(&own.set_up, &row.set_up[..k]);
+                own.set_up.push(left / row.set_up[k]);
+            }
+        }
+        self.explained.extend(fresh);
+        self.explained.extend(gap);
+        let kept = size - nuisances;
+        let old = first_new.saturating_sub(nuisances);
+        let before = std::mem::replace(&mut self.products, DMatrix::zeros(kept, kept));
+        let known = |i: usize| (i < old).then_some(i).or((old > 0 && i + 1 == kept).then_some(old));
+        for j in 0..kept {
+            for i in 0..=j {
+                let value = if let (Some(a), Some(b)) = (known(i), known(j)) {
+                    before[(a, b)]
+                } else {
+                    let (a, b) = (nuisances + i, nuisances + j);
+                    gram.products[(a, b)] - self.explained[a].product(&self.explained[b])
+                };
+                self.products[(i, j)] = value;
+                self.products[(j, i)] = value;
+            }
+        }
+    }
+
+    /// Eliminates the set-up columns that are independent (rank-revealing Cholesky). A column of which next to
+    /// nothing is left (a ball bar does not see itself turned) is none: nothing must be fitted to that nothing.
+    fn choose_pivots(&mut self, gram: &Gram, set_up: &mut [Explained]) {
+        let square = |i: usize| gram.products[(i, i)];
+        let mut rest: Vec<f64> =
+            set_up.iter().enumerate().map(|(i, own)| square(i) - own.by_runs(own)).collect();
+        loop {
+            let best = (0..rest.len())
+                .filter(|i| self.pivots.iter().all(|(p, _)| p != i) && rest[*i] > RANK_TOLERANCE * square(*i))
+                .max_by(|i, j| (rest[*i] / square(*i)).total_cmp(&(rest[*j] / square(*j))));
+            let Some(pivot) = best else { break };
+            let row = set_up[pivot].clone();
+            let root = rest[pivot].sqrt();
+            for (j, own) in set_up.iter_mut().enumerate() {
+                let left = gram.products[(pivot, j)] - own.by_runs(&row) - dot(&own.set_up, &row.set_up);
+                own.set_up.push(left / root);
+                rest[j] -= (left / root) * (left / root);
+            }
+            self.pivots.push((pivot, set_up[pivot].clone()));
+        }
+    }
+}
+
+/// What the run offsets explain of a column: `L⁻¹ UᵀDx` of every run, by component.
+fn by_runs(gram: &Gram, factors: Option<&Vec<Matrix3<f64>>>, column: usize) -> [Vec<f64>; 3] {
+    let mut lists = [Vec::new(), Vec::new(), Vec::new()];
+    let Some(factors) = factors else { return lists };
+    for (l, block) in factors.iter().zip(&gram.run_products) {
+        let v = forward(l, [block[(0, column)], block[(1, column)], block[(2, column)]]);
+        (0..3).for_each(|c| lists[c].push(v[c]));
+    }
+    lists.map(|list| if list.iter().all(|v| *v == 0.0) { Vec::new() } else { list })
+}
+
+/// Everything the search needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Space {
+    levels: Vec<Level>,
+    /// Square of each column before the set-up was taken out.
+    reference: Vec<f64>,
+    nuisances: usize,
+    /// Equations minus set-up columns.
+    pub degrees: f64,
+}
+
+/// A model judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fit {
+    /// Extended BIC, smaller is better.
+    pub score: f64,
+    /// Whitened residual sum of squares, µm².
+    pub residual: f64,
+    /// Run-offset ratio.
+    pub level: usize,
+    /// Independent columns of the effects.
+    pub rank: usize,
+}
+
+impl Space {
+    /// Whitens and eliminates the set-up for every ratio.
+    #[must_use]
+    pub(crate) fn new(gram: &Gram, nuisances: usize) -> Self {
+        let mut space = Self {
+            levels: RHO_GRID.map(Level::new).to_vec(),
+            reference: Vec::new(),
+            nuisances,
+            degrees: 1.0,
+        };
+        space.grow(gram);
+        space
+    }
+
+    /// Takes the columns that were added to `gram`.
+    pub(crate) fn grow(&mut self, gram: &Gram) {
+        let size = gram.terms.len() + 1;
+        self.reference = (self.nuisances..size).map(|i| gram.products[(i, i)]).collect();
+        self.levels.iter_mut().for_each(|level| level.grow(gram, self.nuisances));
+        let rank = self.levels.iter().map(|l| l.pivots.len()).max().unwrap_or(0);
+        self.degrees = (gram.equations as f64 - rank as f64).max(1.0);
+    }
+
+    /// The ratio of a level.
+    #[must_use]
+    pub(crate) fn rho(&self, level: usize) -> f64 {
+        self.levels[level].rho
+    }
+
+    /// Products at a level, set-up eliminated; positions are library columns minus the set-up's.
+    #[must_use]
+    pub(crate) fn products(&self, level: usize) -> &DMatrix<f64> {
+        &self.levels[level].products
+    }
+
+    /// Square of each column before anything was taken out, same positions.
+    #[must_use]
+    pub(crate) fn reference(&self) -> &[f64] {
+        &self.reference
+    }
+
+    /// Positions in [`Self::products`] of the columns of a model.
+    #[must_use]
+    pub(crate) fn columns(&self, library: &Library, parts: &[Part]) -> Vec<usize> {
+        parts
+            .iter()
+            .flat_map(|p| &library.candidates[p.candidate].variants[p.variant].columns)
+            .map(|c| c - self.nuisances)
+            .collect()
+    }
+
+    /// Square of the gap after the set-up, at a level.
+    #[must_use]
+    pub(crate) fn total(&self, level: usize) -> f64 {
+        let products = &self.levels[level].products;
+        products[(products.nrows() - 1, products.nrows() - 1)].max(0.0)
+    }
+
+    /// What looking at this many forms of this many effects costs, and what its columns cost.
+    fn price(&self, library: &Library, part: Part) -> f64 {
+        let candidate = &library.candidates[part.candidate];
+        let asked = (library.candidates.len() * candidate.asked()) as f64;
+        let columns = candidate.variants[part.variant].columns.len() as f64;
+        columns * math::ln(self.degrees) + 2.0 * math::ln(asked)
+    }
+
+    /// Judges a model.
+    #[must_use]
+    pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
+        let mut best: Option<Fit> = None;
+        let columns = self.columns(library, parts);
+        for (index, level) in self.levels.iter().enumerate() {
+            let (explained, rank) = crate::linear::explained(&level.products, &columns, &self.reference);
+            let fit = self.judged(index, (self.total(index) - explained).max(0.0), rank, 0.0);
+            if best.is_none_or(|b| fit.score < b.score) {
+                best = Some(fit);
+            }
+        }
+        let mut fit = best.unwrap_or(Fit { score: 0.0, residual: 0.0, level: 0, rank: 0 });
+        // The price does not depend on the level.
+        fit.score += parts.iter().map(|part| self.price(library, *part)).sum::<f64>();
+        fit
+    }
+
+    fn judged(&self, level: usize, residual: f64, rank: usize, price: f64) -> Fit {
+        // A residual of nothing would make any model infinitely good: a nanometre per row is nothing.
+        let mean = (residual / self.degrees).max(1e-6);
+        let score = self.degrees * math::ln(mean) + self.levels[level].log_determinant + price;
+        Fit { score, residual, level, rank }
+    }
+
+    /// Judges `base` plus every form of every effect not in it (or only of `only`), each in turn; with `rivals`
+    /// also the forms that cannot be named.
+    #[must_use]
+    pub(crate) fn scan(
+        &self,
+        library: &Library,
+        base: &[Part],
+        only: Option<usize>,
+        rivals: bool,
+    ) -> Vec<(Part, Fit)> {
+        let columns = self.columns(library, base);
+        let base_price: f64 = base.iter().map(|p| self.price(library, *p)).sum();
+        let asked: Vec<usize> = (0..library.candidates.len())
+            .filter(|c| only.is_none_or(|o| o == *c) && base.iter().all(|p| p.candidate != *c))
+            .collect();
+        let forms: Vec<(Part, Vec<usize>)> = asked
+            .iter()
+            .flat_map(|c| {
+                (0..library.candidates[*c].variants.len()).map(|v| Part { candidate: *c, variant: v })
+            })
+            .filter(|p| rivals || !library.candidates[p.candidate].variants[p.variant].only_rival)
+            .map(|part| (part, self.columns(library, &[part])))
+            .collect();
+        let last = self.reference.len() - 1;
+        let mut needed = vec![false; last + 1];
+        forms.iter().flat_map(|(_, own)| own).for_each(|c| needed[*c] = true);
+        needed[last] = true;
+        let mut sweeps: Vec<Option<Sweep<'_>>> = self.levels.iter().map(|_| None).collect();
+        let start = self.fit(library, base).level;
+        let mut found = Vec::new();
+        for (part, own) in forms {
+            let one_sided = library.candidates[part.candidate].kind.is_one_sided();
+            let price = base_price + self.price(library, part);
+            let mut judge = |index: usize| {
+                let level = self.levels.get(index)?;
+                let sweep = sweeps[index]
+                    .get_or_insert_with(|| Sweep::new(&level.products, &columns, &self.reference, &needed));
+                let (gain, own_rank) = sweep.gain(&own, &self.reference, one_sided);
+                let residual = (sweep.left(last, last) - gain).max(0.0);
+                (own_rank > 0).then(|| self.judged(index, residual, sweep.factor.rank() + own_rank, price))
+            };
+            // The likelihood has one summit over the ratio: uphill from where the base has its own.
+            let mut best = judge(start);
+            for (step, mut index) in [(1, start), (usize::MAX, start)] {
+                loop {
+                    index = index.wrapping_add(step);
+                    match judge(index) {
+                        Some(fit) if best.is_none_or(|b| fit.score < b.score) => best = Some(fit),
+                        _ => break,
+                    }
+                }
+            }
+            found.extend(best.map(|fit| (part, fit)));
+        }
+        found
+    }
+}
+
+/// Products with the columns of a base eliminated, entry by entry as they are asked for.
+struct Sweep<'a> {
+    products: &'a DMatrix<f64>,
+    factor: Factor,
+    /// `L⁻¹` times the base's products with every column needed, one behind the other.
+    over: Vec<f64>,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(products: &'a DMatrix<f64>, base: &[usize], reference: &[f64], needed: &[bool]) -> Self {
+        let factor = Factor::new(products, base, reference);
+        let rank = factor.rank();
+        let kept: Vec<usize> = factor.kept.iter().map(|k| base[*k]).collect();
+        let mut over = vec![0.0; rank * needed.len()];
+        if rank > 0 {
+            for (j, b) in over.chunks_exact_mut(rank).enumerate().filter(|(j, _)| needed[*j]) {
+                let column = products.column(j);
+                b.iter_mut().zip(&kept).for_each(|(to, k)| *to = column[*k]);
+                factor.forward_in_place(b);
+            }
+        }
+        Self { products, factor, over }
+    }
+
+    /// Product of two columns after the base.
+    fn left(&self, i: usize, j: usize) -> f64 {
+        let rank = self.factor.rank();
+        let own = |k: usize| &self.over[k * rank..(k + 1) * rank];
+        self.products[(i, j)] - own(i).iter().zip(own(j)).map(|(a, b)| a * b).sum::<f64>()
+    }
+
+    /// What `own` columns take off the square of the last column (the gap), and their rank.
+    fn gain(&self, own: &[usize], reference: &[f64], one_sided: bool) -> (f64, usize) {
+        let last = self.products.nrows() - 1;
+        if let [single] = own {
+            let square = self.left(*single, *single);
+            if square <= RANK_TOLERANCE * reference[*single] || square <= 0.0 {
+                return (0.0, 0);
+            }
+            let cross = self.left(*single, last);
+            if one_sided && cross < 0.0 {
+                return (0.0, 0);
+            }
+            return (cross * cross / square, 1);
+        }
+        let count = own.len();
+        let at = |k: usize| if k < count { own[k] } else { last };
+        let small = DMatrix::from_fn(count + 1, count + 1, |i, j| self.left(at(i), at(j)));
+        let reference: Vec<f64> = own.iter().map(|c| reference[*c]).collect();
+        let all: Vec<usize> = (0..count).collect();
+        crate::linear::explained(&small, &all, &reference)
+    }
+}
