@@ -22,8 +22,8 @@ struct Document<'a> {
     notes: &'a [String],
 }
 
-/// The file's bytes.
-pub(super) fn bytes(d: &Diagnosis) -> Vec<u8> {
+/// The file's text.
+pub(super) fn text(d: &Diagnosis) -> String {
     let document = Document {
         schema: "vpost.diagnosis/1",
         verdict: d.verdict.name(),
@@ -66,8 +66,8 @@ pub(super) fn bytes(d: &Diagnosis) -> Vec<u8> {
             .collect(),
         notes: &d.notes,
     };
-    let mut text = serde_json::to_vec_pretty(&document).expect("plain values always serialise");
-    text.push(b'\n');
+    let mut text = serde_json::to_string_pretty(&document).expect("plain values always serialise");
+    text.push('\n');
     text
 }
 

@@ -2,6 +2,7 @@
 
 mod json;
 mod measurements;
+mod report;
 mod summary;
 mod written;
 
@@ -13,6 +14,7 @@ use machine_model::effects::{EffectGeometry, EffectKind, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
 
+use self::report::{Facts, Report};
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
 use crate::settings::{engine_named, machine, setup_tool};
@@ -30,6 +32,9 @@ pub struct Diagnose {
     /// Write the diagnosis as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write the diagnosis as one page for a browser: drawings, no network, no script.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Write the profile with the causes added as effects.
     #[arg(long, value_name = "FILE")]
     pub write_profile: Option<PathBuf>,
@@ -47,15 +52,23 @@ pub struct Diagnose {
 /// What predicts the rows: engine or tables, with the profile's effects.
 struct Model {
     profile: Profile,
+    /// Of the profile and its tables.
+    hash: blake3::Hash,
     engine: Option<Box<dyn machine_model::Engine>>,
     effects: Vec<EffectTerm>,
     geometry: EffectGeometry,
 }
 
+/// A measurement file with its predictions, and what a report says of the file.
+struct Measured {
+    data: Measurements,
+    file: report::File,
+}
+
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let model = Model::load(shared)?;
-    let data = read(&arguments.measurements, &model, &arguments.ignore_column)?;
+    let measured = read(&arguments.measurements, &model, &arguments.ignore_column)?;
     let holdout =
         arguments.holdout.as_deref().map(|path| read(path, &model, &arguments.ignore_column)).transpose()?;
     let without = arguments
@@ -65,9 +78,22 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
     let options = Options { without, seed: arguments.seed, volume: Some(model.profile.volume()) };
-    let diagnosis = gap_diagnosis::diagnose(&data, holdout.as_ref(), &options);
+    let unseen = holdout.as_ref().map(|h| &h.data);
+    let diagnosis = gap_diagnosis::diagnose(&measured.data, unseen, &options);
+    let json = json::text(&diagnosis);
     if let Some(path) = &arguments.json {
-        file::write(path, &json::bytes(&diagnosis))?;
+        file::write(path, json.as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        let facts = model.facts(arguments, shared, &measured, holdout.as_ref())?;
+        let page = Report {
+            diagnosis: &diagnosis,
+            data: &measured.data,
+            holdout: unseen,
+            facts: &facts,
+            json: &json,
+        };
+        file::write(path, page.html().as_bytes())?;
     }
     if let Some(path) = &arguments.write_profile {
         written::write(path, machine(shared)?, &diagnosis)?;
@@ -78,7 +104,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
 
 impl Model {
     fn load(shared: &Shared) -> Result<Self, Failure> {
-        let profile = profile::load(machine(shared)?)?.profile;
+        let profile::Loaded { profile, hash } = profile::load(machine(shared)?)?;
         let engine = match &shared.engine {
             None => None,
             Some(name) => {
@@ -102,11 +128,46 @@ impl Model {
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| Failure::option(error.to_string(), "correct the profile's [[effect]]"))?;
         let effects = effects.into_iter().map(|term| term.with_geometry(geometry.clone())).collect();
-        Ok(Self { profile, engine, effects, geometry })
+        Ok(Self { profile, hash, engine, effects, geometry })
+    }
+
+    /// What the report says of files, options and machine.
+    fn facts(
+        &self,
+        arguments: &Diagnose,
+        shared: &Shared,
+        measured: &Measured,
+        holdout: Option<&Measured>,
+    ) -> Result<Facts, Failure> {
+        let calibrated = self.profile.calibrated.as_ref().map_or_else(String::new, |c| {
+            let temperature = c.temperature_c.map(|t| format!("{t} \u{b0}C"));
+            [c.date.clone(), temperature, c.instrument.clone()]
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()
+                .join(", ")
+        });
+        Ok(Facts {
+            machine: self.profile.name.clone(),
+            chain: self.profile.chain().to_string(),
+            calibrated,
+            profile: report::File {
+                name: file::name(machine(shared)?),
+                hash: self.hash.to_string(),
+                comments: Vec::new(),
+            },
+            measurements: measured.file.clone(),
+            holdout: holdout.map(|h| h.file.clone()),
+            engine: shared.engine.clone().unwrap_or_else(|| "rigid-body".to_owned()),
+            seed: arguments.seed,
+            ignored_columns: arguments.ignore_column.clone(),
+            without: arguments.without.clone(),
+            tolerance_um: shared.tolerance.unwrap_or(self.profile.correction.tolerance_um),
+        })
     }
 }
 
-fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Measurements, Failure> {
+fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Measured, Failure> {
     let bytes = file::read(path)?;
     let tool_mm = setup_tool(&model.profile);
     let name = file::name(path);
@@ -128,5 +189,8 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
         }
     }
     measurements::readings_against_model(&table, &data)?;
-    Ok(data)
+    let text = file::decoded(&bytes);
+    let comments = text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();
+    let file = report::File { name, hash: blake3::hash(&bytes).to_string(), comments };
+    Ok(Measured { data, file })
 }

@@ -1,0 +1,119 @@
+//! Cells coloured or shaded by an amount: slices through the machine, and tables of likeness.
+
+use maud::{Markup, html};
+
+use super::{WIDTH, rect, svg, text};
+use crate::scale::{Scale, px};
+use crate::text::{number, number_of_digits, short};
+
+/// Mean amounts over a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slice {
+    /// Which plane.
+    pub title: String,
+    /// Names of the axis to the right and the axis up.
+    pub axes: [&'static str; 2],
+    /// Ranges of both.
+    pub ranges: [(f64, f64); 2],
+    /// Cells to the right and up.
+    pub cells: [usize; 2],
+    /// Amounts, row by row from below; `None` where nothing was measured.
+    pub values: Vec<Option<f64>>,
+}
+
+/// How alike things are, 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrix {
+    /// Names of the rows.
+    pub rows: Vec<String>,
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Row by row; `None` where it was not asked.
+    pub values: Vec<Option<f64>>,
+    /// From here on two things cannot be told apart.
+    pub limit: f64,
+}
+
+/// Steps of lightness in the palette.
+const SHADES: usize = 10;
+const PER_ROW: usize = 3;
+const SIDE: f64 = 168.0;
+
+fn shade(value: f64, largest: f64) -> usize {
+    if largest <= 0.0 || !value.is_finite() {
+        return 0;
+    }
+    ((value / largest * SHADES as f64).floor().max(0.0) as usize).min(SHADES - 1)
+}
+
+/// Slices, three in a row, all on one scale from zero to `largest`.
+#[must_use]
+pub fn slices(title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
+    let step = (SIDE + 68.0, SIDE + 64.0);
+    let place = |at: usize| (46.0 + step.0 * (at % PER_ROW) as f64, 22.0 + step.1 * (at / PER_ROW) as f64);
+    let height = 22.0 + step.1 * all.len().div_ceil(PER_ROW) as f64;
+    let body = html! {
+        @for (at, slice) in all.iter().enumerate() {
+            @let (left, top) = place(at);
+            @let x = Scale::new(slice.ranges[0], (left, left + SIDE));
+            @let y = Scale::new(slice.ranges[1], (top + SIDE, top));
+            @let size = [SIDE / slice.cells[0].max(1) as f64, SIDE / slice.cells[1].max(1) as f64];
+            (text(left, top - 6.0, "", &slice.title))
+            @for (cell, value) in slice.values.iter().enumerate() {
+                @let column = (cell % slice.cells[0].max(1)) as f64;
+                @let row = (cell / slice.cells[0].max(1)) as f64;
+                @let corner = (left + column * size[0], top + SIDE - (row + 1.0) * size[1]);
+                @let class = value.map_or_else(|| "cell none".to_owned(), |v| format!("cell h{}", shade(v, largest)));
+                (rect(&class, corner, size[0], size[1]))
+            }
+            @for (value, label) in x.ticks(3) { (text(x.at(value), top + SIDE + 14.0, "m c", &label)) }
+            @for (value, label) in y.ticks(3) { (text(left - 5.0, y.at(value) + 4.0, "m e", &label)) }
+            (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", &format!("{} to the right, {} up", slice.axes[0], slice.axes[1])))
+        }
+        @for k in 0..SHADES {
+            (rect(&format!("h{k}"), (46.0 + 24.0 * k as f64, height), 24.0, 10.0))
+        }
+        (text(46.0, height + 24.0, "m", "0"))
+        (text(46.0 + 24.0 * SHADES as f64, height + 24.0, "m e", &format!("{} {unit}", number(largest))))
+        (rect("cell none", (330.0, height), 24.0, 10.0))
+        (text(360.0, height + 9.0, "m", "not measured"))
+    };
+    svg(height + 30.0, title, &format!("one scale for all slices, 0 to {} {unit}", number(largest)), &body)
+}
+
+/// A table of likeness, darker where more alike.
+#[must_use]
+pub fn matrix(title: &str, m: &Matrix) -> Markup {
+    const LEFT: f64 = 150.0;
+    const TOP: f64 = 110.0;
+    let width = ((WIDTH - LEFT - 70.0) / m.columns.len().max(1) as f64).min(46.0);
+    let height = 24.0;
+    let text_size = if width < 30.0 { "font-size:9px" } else { "font-size:11px" };
+    let body = html! {
+        @for (column, name) in m.columns.iter().enumerate() {
+            @let x = LEFT + (column as f64 + 0.5) * width + 4.0;
+            text x=(px(x)) y=(px(TOP - 6.0)) transform={ "rotate(-55 " (px(x)) " " (px(TOP - 6.0)) ")" } { (short(name, 20)) }
+        }
+        @for (row, name) in m.rows.iter().enumerate() {
+            @let y = TOP + row as f64 * height;
+            (text(LEFT - 8.0, y + 16.0, "e", &short(name, 20)))
+            @for column in 0..m.columns.len() {
+                @let x = LEFT + column as f64 * width;
+                @match m.values.get(row * m.columns.len() + column).copied().flatten() {
+                    None => (rect("cell none", (x, y), width, height)),
+                    Some(value) => {
+                        @let shade = shade(value, 1.0);
+                        (rect(&format!("cell h{shade}"), (x, y), width, height))
+                        @if value >= m.limit { (rect("whisker", (x + 1.5, y + 1.5), width - 3.0, height - 3.0)) }
+                        text.c.(if shade < 5 { "on0" } else { "on1" }) x=(px(x + 0.5 * width)) y=(px(y + 16.0)) style=(text_size) {
+                            (number_of_digits(value, 2))
+                        }
+                    }
+                }
+            }
+        }
+    };
+    let alike = m.values.iter().flatten().filter(|v| **v >= m.limit).count();
+    let described = format!("{alike} pairs are more alike than {}", number(m.limit));
+    svg(TOP + height * m.rows.len() as f64 + 8.0, title, &described, &body)
+}

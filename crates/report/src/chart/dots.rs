@@ -1,0 +1,80 @@
+//! Dots over a variable, in panels side by side.
+
+use maud::{Markup, html};
+
+use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
+use crate::scale::{Scale, px};
+
+/// Dots of one colour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    /// 0 to 3: which colour.
+    pub series: usize,
+    /// Places.
+    pub at: Vec<(f64, f64)>,
+}
+
+/// One panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// What runs along it, with its unit.
+    pub label: String,
+    /// Range of that.
+    pub range: (f64, f64),
+    /// The dots.
+    pub points: Vec<Points>,
+}
+
+const HEIGHT: f64 = 96.0;
+const STEP: f64 = HEIGHT + 40.0;
+const TOP: f64 = 44.0;
+const LEFT: f64 = 44.0;
+const GAP: f64 = 40.0;
+
+/// Panels in rows of columns, all on one vertical scale of `reach` above and below zero, so that sizes can be compared.
+#[must_use]
+pub fn panels(
+    title: &str,
+    columns: &[&str],
+    rows: &[Vec<Panel>],
+    reach: f64,
+    series: &[(&str, &str)],
+    unit: &str,
+) -> Markup {
+    let count = columns.len().max(1) as f64;
+    let width = (WIDTH - LEFT - 18.0 - GAP * (count - 1.0)) / count;
+    let left = |column: usize| LEFT + column as f64 * (width + GAP);
+    let described =
+        format!("{}; vertical scale \u{b1}{} {unit}", columns.join(" and "), crate::text::number(reach));
+    let body = html! {
+        (legend(LEFT, 14.0, series))
+        @for (column, name) in columns.iter().enumerate() {
+            (text(left(column), TOP - 8.0, "", &format!("{name}, {unit}")))
+        }
+        @for (row, panels) in rows.iter().enumerate() {
+            @let top = TOP + STEP * row as f64;
+            @for (column, panel) in panels.iter().enumerate() {
+                @let x = Scale::new(panel.range, (left(column) + 4.0, left(column) + width - 4.0));
+                @let y = Scale::new((-reach, reach), (top + HEIGHT, top));
+                (rect("frame", (left(column), top), width, HEIGHT))
+                (ticks_left(&y, 4, left(column), left(column) + width))
+                (ticks_below(&x, 5, top, top + HEIGHT))
+                (line("zero", (left(column), y.at(0.0)), (left(column) + width, y.at(0.0))))
+                @for points in &panel.points {
+                    path class={ "dots s" (points.series) } d=(dots(&points.at, &x, &y)) {}
+                }
+                (text(left(column) + 0.5 * width, top + HEIGHT + 27.0, "m c", &panel.label))
+            }
+        }
+    };
+    svg(TOP + STEP * rows.len() as f64, title, &described, &body)
+}
+
+/// Dots as one path: strokes of no length with round ends.
+fn dots(at: &[(f64, f64)], x: &Scale, y: &Scale) -> String {
+    let known = at.iter().filter(|(a, b)| a.is_finite() && b.is_finite());
+    known.fold(String::new(), |mut path, (a, b)| {
+        path.push_str(&format!("M{} {}h0", px(x.at(*a)), px(y.at(*b))));
+        path
+    })
+}

@@ -1,0 +1,131 @@
+//! Error vectors over the machine, and how often an error is smaller than.
+
+use maud::{Markup, html};
+
+use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
+use crate::scale::{Scale, px};
+use crate::text::{number, percent};
+
+/// A displacement at a place, in the plane drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrow {
+    /// Where, mm.
+    pub at: (f64, f64),
+    /// How far before, mm, magnified.
+    pub before: (f64, f64),
+    /// How far after, mm, magnified.
+    pub after: (f64, f64),
+}
+
+/// One view along an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Names of the axis to the right and the axis up.
+    pub axes: [&'static str; 2],
+    /// Ranges of both, mm.
+    pub ranges: [(f64, f64); 2],
+    /// What is drawn in it.
+    pub arrows: Vec<Arrow>,
+}
+
+const SIDE: f64 = 190.0;
+const TOP: f64 = 30.0;
+
+/// Views side by side, each on its own scale, lengths along both of its axes equal.
+#[must_use]
+pub fn views(title: &str, all: &[View], magnification: f64) -> Markup {
+    let left = |at: usize| 40.0 + at as f64 * (SIDE + 48.0);
+    let body = html! {
+        (legend(40.0, 14.0, &[("k1", "before"), ("k0", "after")]))
+        @for (at, view) in all.iter().enumerate() {
+            @let spans = view.ranges.map(|(low, high)| high - low);
+            @let half = 0.64 * spans[0].max(spans[1]).max(1.0);
+            @let middle = view.ranges.map(|(low, high)| 0.5 * (low + high));
+            @let x = Scale::new((middle[0] - half, middle[0] + half), (left(at), left(at) + SIDE));
+            @let y = Scale::new((middle[1] - half, middle[1] + half), (TOP + SIDE, TOP));
+            (rect("frame", (left(at), TOP), SIDE, SIDE))
+            (ticks_below(&x, 4, TOP, TOP + SIDE))
+            (ticks_left(&y, 4, left(at), left(at) + SIDE))
+            (text(left(at) + 0.5 * SIDE, TOP + SIDE + 29.0, "m c", &format!("{} to the right, {} up, mm", view.axes[0], view.axes[1])))
+            path class="line s1" d=(strokes(view, &x, &y, |a| a.before)) {}
+            path class="line s0" d=(strokes(view, &x, &y, |a| a.after)) {}
+            path class="dots s3" style="stroke-width:2" d=(feet(view, &x, &y)) {}
+        }
+    };
+    let described =
+        format!("errors drawn {} times their size from the commanded point", number(magnification));
+    svg(TOP + SIDE + 36.0, title, &described, &body)
+}
+
+fn strokes(view: &View, x: &Scale, y: &Scale, which: impl Fn(&Arrow) -> (f64, f64)) -> String {
+    let mut path = String::new();
+    for arrow in &view.arrows {
+        let (right, up) = which(arrow);
+        let end = (arrow.at.0 + right, arrow.at.1 + up);
+        if end.0.is_finite() && end.1.is_finite() {
+            let (from, to) = ((x.at(arrow.at.0), y.at(arrow.at.1)), (x.at(end.0), y.at(end.1)));
+            path.push_str(&format!("M{} {}L{} {}", px(from.0), px(from.1), px(to.0), px(to.1)));
+        }
+    }
+    path
+}
+
+fn feet(view: &View, x: &Scale, y: &Scale) -> String {
+    view.arrows.iter().map(|a| format!("M{} {}h0", px(x.at(a.at.0)), px(y.at(a.at.1)))).collect()
+}
+
+/// Share of the rows that lie below an amount, before and after, with a limit if there is one. Both lists ascend.
+#[must_use]
+pub fn cumulative(
+    title: &str,
+    before: &[f64],
+    after: &[f64],
+    limit: Option<(f64, &str)>,
+    unit: &str,
+) -> Markup {
+    let (left, right, top, bottom) = (60.0, WIDTH - 20.0, 42.0, 242.0);
+    let largest = before.last().copied().unwrap_or(1.0).max(limit.map_or(0.0, |l| 1.1 * l.0));
+    let x = Scale::new((0.0, largest), (left, right));
+    let y = Scale::new((0.0, 1.0), (bottom, top));
+    let below = |values: &[f64]| {
+        limit.map(|(l, _)| values.iter().filter(|v| **v <= l).count() as f64 / values.len().max(1) as f64)
+    };
+    let body = html! {
+        (legend(left, 14.0, &[("k1", "before"), ("k0", "after")]))
+        (rect("frame", (left, top), right - left, bottom - top))
+        (ticks_below(&x, 7, top, bottom))
+        @for share in [0.0, 0.25, 0.5, 0.75, 0.95, 1.0] {
+            (line("axis", (left, y.at(share)), (right, y.at(share))))
+            @if (share - 0.95_f64).abs() > 1e-9 { (text(left - 6.0, y.at(share) + 4.0, "m e", &percent(share))) }
+        }
+        (text(left - 6.0, y.at(0.95) + 9.0, "m e", "95 %"))
+        path class="line s1" d=(steps(before, &x, &y)) {}
+        path class="line s0" d=(steps(after, &x, &y)) {}
+        @if let Some((value, name)) = limit {
+            (line("limit", (x.at(value), top), (x.at(value), bottom)))
+            (text(x.at(value), top - 7.0, "", &format!("{name} {} {unit}", number(value))))
+        }
+        (text(0.5 * (left + right), bottom + 30.0, "m c", &format!("size of the gap of a row, {unit}")))
+    };
+    let described = match (below(before), below(after), limit) {
+        (Some(b), Some(a), Some((l, _))) => {
+            format!("{} of the rows are below {} {unit} before, {} after", percent(b), number(l), percent(a))
+        }
+        _ => format!("largest {} {unit} before", number(largest)),
+    };
+    svg(bottom + 38.0, title, &described, &body)
+}
+
+/// Points of a curve are as many as can be seen.
+const MOST: usize = 240;
+
+fn steps(values: &[f64], x: &Scale, y: &Scale) -> String {
+    let count = values.len();
+    let mut path = format!("M{} {}", px(x.at(0.0)), px(y.at(0.0)));
+    let every = count.div_ceil(MOST).max(1);
+    for (at, value) in values.iter().enumerate().filter(|(at, _)| (at + 1) % every == 0 || at + 1 == count) {
+        path.push_str(&format!("H{}V{}", px(x.at(*value)), px(y.at((at + 1) as f64 / count as f64))));
+    }
+    path.push_str(&format!("H{}", px(x.to)));
+    path
+}

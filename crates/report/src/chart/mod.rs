@@ -1,0 +1,100 @@
+//! Drawings made of lines, dots, bars and cells.
+//!
+//! Each takes numbers and texts and gives an `svg` element that says what it shows (`title`, `desc`) and takes its colours
+//! from the page's styles.
+
+mod bars;
+mod cells;
+mod dots;
+mod lines;
+
+use maud::{Markup, html};
+
+pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
+pub use cells::{Matrix, Slice, matrix, slices};
+pub use dots::{Panel, Points, panels};
+pub use lines::{Arrow, View, cumulative, views};
+
+use crate::scale::{Scale, px};
+use crate::text::shown;
+
+/// Width of every drawing, in its own units.
+pub const WIDTH: f64 = 720.0;
+
+/// An `svg` element with its words.
+fn svg(height: f64, title: &str, description: &str, body: &Markup) -> Markup {
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(WIDTH)) " " (px(height)) } role="img" {
+            title { (shown(title)) }
+            desc { (shown(description)) }
+            (body)
+        }
+    }
+}
+
+fn text(x: f64, y: f64, class: &str, words: &str) -> Markup {
+    html! { text x=(px(x)) y=(px(y)) class=(class) { (shown(words)) } }
+}
+
+fn line(class: &str, (x1, y1): (f64, f64), (x2, y2): (f64, f64)) -> Markup {
+    html! { path class=(class) d={ "M" (px(x1)) " " (px(y1)) "L" (px(x2)) " " (px(y2)) } {} }
+}
+
+fn rect(class: &str, (x, y): (f64, f64), width: f64, height: f64) -> Markup {
+    html! { rect class=(class) x=(px(x)) y=(px(y)) width=(px(width.max(0.0))) height=(px(height)) {} }
+}
+
+/// Vertical lines and labels of a horizontal scale.
+fn ticks_below(scale: &Scale, count: usize, top: f64, bottom: f64) -> Markup {
+    html! {
+        @for (value, label) in scale.ticks(count) {
+            (line("axis", (scale.at(value), top), (scale.at(value), bottom)))
+            (text(scale.at(value), bottom + 14.0, "m c", &label))
+        }
+    }
+}
+
+/// Horizontal lines and labels of a vertical scale.
+fn ticks_left(scale: &Scale, count: usize, left: f64, right: f64) -> Markup {
+    html! {
+        @for (value, label) in scale.ticks(count) {
+            (line("axis", (left, scale.at(value)), (right, scale.at(value))))
+            (text(left - 5.0, scale.at(value) + 4.0, "m e", &label))
+        }
+    }
+}
+
+/// Squares with words: what the colours mean.
+fn legend(x: f64, y: f64, entries: &[(&str, &str)]) -> Markup {
+    let mut at = x;
+    html! {
+        @for (class, words) in entries {
+            (rect(class, (at, y - 9.0), 10.0, 10.0))
+            (text(at + 14.0, y, "", words))
+            @let () = at += 24.0 + 6.6 * words.chars().count() as f64;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_from_files_are_escaped_in_drawings() {
+        let hostile = "\"><script>alert(1)</script>";
+        let bar = Bar { label: hostile.to_owned(), value: 1.0 };
+        let drawing = waterfall(hostile, &[bar.clone(), bar], Some((0.5, hostile)), "um").into_string();
+        assert!(!drawing.contains("<script") && drawing.contains("&lt;script&gt;"), "{drawing}");
+    }
+
+    #[test]
+    fn nothing_that_is_no_number_is_written() {
+        let bars = [
+            Bar { label: "a".to_owned(), value: f64::NAN },
+            Bar { label: "b".to_owned(), value: f64::INFINITY },
+        ];
+        let drawing = super::bars("t", &bars, "um").into_string();
+        assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{drawing}");
+    }
+}

@@ -1,0 +1,268 @@
+//! Reports in a browser: Debian's `chromium`, headless, driven by its command line.
+//!
+//! No console message, no request, no script that acts, prints to PDF. Where the browser is missing the tests say that they
+//! were skipped; with `CI` set they fail.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use common::{messages, root, run};
+
+/// The browser.
+fn chromium() -> Option<&'static str> {
+    let there = Command::new("chromium")
+        .arg("--version")
+        .stderr(Stdio::null())
+        .output()
+        .is_ok_and(|output| output.status.success());
+    assert!(there || std::env::var_os("CI").is_none(), "chromium must be installed where CI is set");
+    there.then_some("chromium")
+}
+
+/// What the browser said about a page.
+struct Visit {
+    /// The document after everything had its chance to run.
+    dom: String,
+    /// Lines of the console.
+    console: Vec<String>,
+    /// Everything that was requested except the page itself.
+    requests: Vec<String>,
+}
+
+const QUIET: [&str; 12] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-default-apps",
+    "--disable-extensions",
+    "--hide-scrollbars",
+    "--enable-logging=stderr",
+];
+
+/// One run of the browser with an empty profile.
+fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
+    let profile = tempfile::tempdir().expect("a temporary folder");
+    let ran = Command::new(browser)
+        .args(QUIET)
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(more)
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .expect("the browser starts");
+    assert!(ran.status.success(), "{more:?}: {}", messages(&ran));
+    (String::from_utf8_lossy(&ran.stdout).into_owned(), messages(&ran))
+}
+
+fn visit(browser: &str, page: &Path) -> Visit {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let log = folder.path().join("net.json");
+    let more = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
+    let (dom, said) = browse(browser, page, &more);
+    let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned).collect();
+    let net = std::fs::read_to_string(&log).expect("the browser writes its log of requests");
+    Visit { dom, console, requests: requests(&net, page) }
+}
+
+/// Addresses in the browser's log that are of the network. (Files and data are the page itself.)
+fn requests(log: &str, page: &Path) -> Vec<String> {
+    let mut found: Vec<String> = log
+        .split("\"url\":\"")
+        .skip(1)
+        .filter_map(|part| part.split('"').next())
+        .filter(|url| !url.starts_with("data:") && !url.ends_with(&page.display().to_string()))
+        // The browser's own errands, which have nothing to do with the page.
+        .filter(|url| {
+            !["google.com", "googleapis.com", "gvt1.com", "gstatic.com"].iter().any(|own| url.contains(own))
+        })
+        .map(str::to_owned)
+        .collect();
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// A report in a folder of its own.
+struct Report {
+    folder: tempfile::TempDir,
+    page: PathBuf,
+}
+
+fn report(measurements: &str, profile: &str, more: &[&str]) -> Report {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let page = folder.path().join("report.html");
+    let name = page.to_str().expect("a plain path");
+    let ran = run(&[&["diagnose", measurements, "-m", profile, "--html", name], more].concat());
+    assert!(ran.status.success(), "{measurements}: {}", messages(&ran));
+    Report { folder, page }
+}
+
+fn stan() -> Report {
+    let unseen = ["--holdout", "samples/diagnosis/stan_s500_table_2_13.csv"];
+    report("samples/diagnosis/stan_s500_315.csv", "samples/diagnosis/stan_s500_tables.toml", &unseen)
+}
+
+fn backlash() -> Report {
+    let unseen = ["--holdout", "samples/diagnosis/backlash_holdout.csv"];
+    report("samples/diagnosis/backlash.csv", "samples/diagnosis/backlash.toml", &unseen)
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).expect("the report was written")
+}
+
+#[test]
+fn the_checks_of_this_test_can_fail() {
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let page = folder.path().join("bad.html");
+    let bad = "<html><img src='http://127.0.0.1:9/a.png'><script>console.error('here');document.documentElement.setAttribute('acted','1')</script></html>";
+    std::fs::write(&page, bad).expect("writable");
+    let visit = visit(browser, &page);
+    assert!(visit.dom.contains("acted"), "{}", visit.dom);
+    assert!(visit.console.iter().any(|line| line.contains("here")), "{:?}", visit.console);
+    assert!(visit.requests.iter().any(|url| url.contains("127.0.0.1:9/a.png")), "{:?}", visit.requests);
+}
+
+#[test]
+fn reports_open_without_a_message_and_without_a_request() {
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    for report in [stan(), backlash()] {
+        let visit = visit(browser, &report.page);
+        assert!(visit.console.is_empty(), "{:?}", visit.console);
+        assert!(visit.requests.is_empty(), "{:?}", visit.requests);
+        let sections = visit.dom.matches("<section ").count();
+        assert_eq!(sections, 12, "sections of {}", report.page.display());
+        assert!(visit.dom.matches("<svg ").count() >= 9);
+    }
+}
+
+#[test]
+fn a_report_prints_to_pdf() {
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let report = stan();
+    let pdf = report.folder.path().join("report.pdf");
+    let more = [format!("--print-to-pdf={}", pdf.display()), "--no-pdf-header-footer".to_owned()];
+    browse(browser, &report.page, &more);
+    let bytes = std::fs::read(&pdf).expect("a PDF");
+    assert!(bytes.starts_with(b"%PDF-"), "no PDF");
+    let pages = bytes.windows(12).filter(|w| w == b"/Type /Page\n").count();
+    assert!((3..20).contains(&pages), "{pages} pages, {} bytes", bytes.len());
+}
+
+/// Names of everything that a file or an option can name, each trying to act.
+#[test]
+fn nothing_in_a_file_can_act() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let act = "document.documentElement.id='acted'";
+    let hostile = format!("<script>{act}</script>");
+    let profile = folder.path().join("machine.toml");
+    let machine = format!("<img src=x onerror={act}>");
+    let original = std::fs::read_to_string(root().join("samples/diagnosis/backlash.toml")).expect("a sample");
+    std::fs::write(&profile, original.replace("single-900001", &machine)).expect("writable");
+    let original = std::fs::read_to_string(root().join("samples/diagnosis/backlash.csv")).expect("a sample");
+    let mut bytes = format!("# instrument: </script>{hostile} \"quoted\" 'and' &amp;\n").into_bytes();
+    bytes.extend_from_slice(b"# \xcf\xe5\xf0\xf1\xef\xe5\xea\xf2\xe8\xe2\xe0 \x00\x1b[31m\n");
+    for (at, line) in original.lines().enumerate() {
+        // The file calls its column whatever it likes, and is told to pass it over.
+        let line = if at == 0 { format!("{line},{hostile}") } else { format!("{line},0") };
+        let line = line.replace("r3,", &format!("\"<svg/onload={act}>\","));
+        let line = line.replace("r4,", "\"</script><!--\",");
+        bytes.extend_from_slice(format!("{line}\n").as_bytes());
+    }
+    let measurements = folder.path().join("<b onmouseover=x>\"m&m.csv");
+    std::fs::write(&measurements, bytes).expect("writable");
+    let report = report(
+        measurements.to_str().expect("a plain path"),
+        profile.to_str().expect("a plain path"),
+        &["--ignore-column", &hostile],
+    );
+    let page = text(&report.page);
+    assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
+    assert!(page.contains("&lt;svg/onload=") && page.contains("&lt;img src=x onerror="), "they are shown");
+    assert!(
+        page.contains("Перспектива \u{2400}\u{241b}[31m"),
+        "Windows-1251 and control characters are shown"
+    );
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let first = visit(browser, &report.page);
+    // The page's own policy would hide a mistake: without it nothing may act either.
+    let policy = page.find("<meta http-equiv").expect("a policy");
+    let end = policy + page[policy..].find('>').expect("it ends") + 1;
+    let unprotected = report.folder.path().join("unprotected.html");
+    std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
+    for visit in [first, visit(browser, &unprotected)] {
+        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
+        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
+        assert!(
+            visit.console.is_empty() && visit.requests.is_empty(),
+            "{:?} {:?}",
+            visit.console,
+            visit.requests
+        );
+    }
+}
+
+#[test]
+fn a_report_is_small_whole_and_the_same_each_time() {
+    let (first, second) = (stan(), stan());
+    let (a, b) = (text(&first.page), text(&second.page));
+    assert!(a == b, "two runs differ");
+    assert!(a.len() < 2_000_000, "{} bytes", a.len());
+    let data = a.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    assert_eq!(data["schema"], "vpost.diagnosis/1");
+    for address in ["http://", "https://", "url(", "@import", "src="] {
+        let found = a.replace("http://www.w3.org/2000/svg", "");
+        assert!(!found.contains(address), "the page names {address}");
+    }
+}
+
+/// What a reader sees, in `docs/img`: `VPOST_UPDATE_DOCS=1` writes the pictures anew.
+#[test]
+fn pictures_of_a_report() {
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let report = stan();
+    // Paper has no command line option: its styles are given to the screen.
+    let paper = report.folder.path().join("paper.html");
+    std::fs::write(&paper, text(&report.page).replace("@media print", "@media all")).expect("writable");
+    let dark = "--blink-settings=preferredColorScheme=0";
+    for (name, page, option) in
+        [("light", &report.page, "--light"), ("dark", &report.page, dark), ("print", &paper, "--light")]
+    {
+        let picture = report.folder.path().join(format!("diagnosis_{name}.png"));
+        let more = [
+            "--window-size=900,1100".to_owned(),
+            option.to_owned(),
+            format!("--screenshot={}", picture.display()),
+        ];
+        browse(browser, page, &more);
+        let bytes = std::fs::read(&picture).expect("a picture");
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{name}: {} bytes", bytes.len());
+        if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
+            std::fs::copy(&picture, root().join(format!("docs/img/diagnosis_{name}.png"))).expect("docs/img");
+        }
+    }
+}
