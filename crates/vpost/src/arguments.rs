@@ -27,6 +27,8 @@ pub struct Arguments {
 /// What is asked for besides the main job.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Correct many programs, on all cores or on many machines.
+    Batch(crate::batch::Batch),
     /// Run two programs through the machine model and compare the tool paths.
     Check(Check),
     /// Where the machine really goes for commanded points.

@@ -510,7 +510,7 @@ pub(crate) fn run(
     let interrupt = Interrupt::listen();
     let name = file::name(input);
     let mut reported = None;
-    let expand::Done { corrected, warnings } =
+    let expand::Done { corrected, warnings, .. } =
         expand::correct(&text, &name, &settings, arguments.force, |done| {
             interrupt.check()?;
             let percent = (done * 100.0) as u64;

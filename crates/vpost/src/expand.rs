@@ -1,10 +1,12 @@
 //! Programs with flow: values and folders from the command line, places back in the user's files.
 
+use std::cell::RefCell;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use diagnostic::Diagnostic;
 use nc_expand::{Environment, Expanded, Limits, Preset};
+use serde::{Deserialize, Serialize};
 
 use crate::arguments::Shared;
 use crate::correct::{self, Corrected, Job};
@@ -44,6 +46,11 @@ impl Flow {
         Ok(Self { presets, folders: shared.include.clone() })
     }
 
+    /// Values of variables.
+    pub(crate) fn presets(&self) -> &[Preset] {
+        &self.presets
+    }
+
     /// Reads a subprogram's file from the first folder that has it.
     fn read(&self, name: &str) -> io::Result<Vec<u8>> {
         let mut parts = Path::new(name).components();
@@ -71,9 +78,17 @@ impl Flow {
 
 /// A text's plain program.
 pub(crate) fn expanded<'a>(text: &'a [u8], name: &str, settings: &Settings) -> Result<Expanded<'a>, Failure> {
-    let read = |file: &str| settings.flow.read(file);
+    expanded_with(text, name, settings, &|file| settings.flow.read(file))
+}
+
+fn expanded_with<'a>(
+    text: &'a [u8],
+    name: &str,
+    settings: &Settings,
+    read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+) -> Result<Expanded<'a>, Failure> {
     let environment =
-        Environment { variables: &settings.flow.presets, read_external: &read, limits: Limits::default() };
+        Environment { variables: &settings.flow.presets, read_external: read, limits: Limits::default() };
     nc_expand::expand(text, &settings.dialect, &environment).map_err(|refusal| match refusal.file {
         None => Failure::refused(name, text, refusal.diagnostics),
         Some((name, text)) => Failure::refused(&name, &text, refusal.diagnostics),
@@ -99,6 +114,28 @@ pub(crate) fn reports(
 pub(crate) struct Done {
     pub corrected: Corrected,
     pub warnings: Vec<Report>,
+    /// Subprograms that were looked for.
+    pub lookups: Vec<Lookup>,
+}
+
+/// A subprogram's file that was looked for: its name, and the hash of what was there.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Lookup {
+    pub name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blake3: Option<String>,
+}
+
+impl Lookup {
+    fn of(name: &str, found: &io::Result<Vec<u8>>) -> Self {
+        let blake3 = found.as_ref().ok().map(|bytes| blake3::hash(bytes).to_hex().to_string());
+        Self { name: name.to_owned(), blake3 }
+    }
+
+    /// True where the same lookup finds the same today.
+    pub(crate) fn holds(&self, flow: &Flow) -> bool {
+        *self == Self::of(&self.name, &flow.read(&self.name))
+    }
 }
 
 /// Expands and corrects a program; what needs no correction comes out byte for byte, flow and all.
@@ -117,7 +154,12 @@ pub(crate) fn correct(
     if let (Some(diagnostic), false) = (correct::corrected_before(text), force) {
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
-    let expanded = expanded(text, name, settings)?;
+    let lookups = RefCell::new(Vec::new());
+    let expanded = expanded_with(text, name, settings, &|file| {
+        let found = settings.flow.read(file);
+        lookups.borrow_mut().push(Lookup::of(file, &found));
+        found
+    })?;
     let mut provenance = settings.provenance();
     if expanded.changed() {
         provenance.push_str(" PROGRAM FLOW EXPANDED");
@@ -151,7 +193,7 @@ pub(crate) fn correct(
             });
         }
     }
-    Ok(Done { corrected, warnings })
+    Ok(Done { corrected, warnings, lookups: lookups.into_inner() })
 }
 
 /// Why a pipeline ended early.

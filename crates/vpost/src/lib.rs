@@ -4,6 +4,7 @@
 //! [`correct`] for the line that data takes.
 
 pub mod arguments;
+pub mod batch;
 pub mod calibrate;
 mod check;
 mod conditions;
@@ -34,6 +35,8 @@ use message::{Failure, Messages};
 const DONE: u8 = 0;
 const REFUSED: u8 = 1;
 const USAGE: u8 = 2;
+/// Trying again may help: `EX_TEMPFAIL` of `sysexits.h`.
+const TRY_AGAIN: u8 = 75;
 
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -48,6 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let messages = Messages::new(arguments.shared.color, arguments.shared.quiet);
     let result = match &arguments.command {
+        Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
         Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
@@ -64,9 +68,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(failure) => {
             messages.failure(&failure);
             ExitCode::from(match failure {
-                Failure::Refused(_) | Failure::Check => REFUSED,
+                Failure::Refused(_) | Failure::File(..) | Failure::Check => REFUSED,
                 Failure::Usage(_) => USAGE,
                 Failure::Interrupted(signal) => 128 + signal,
+                Failure::Later(_) => TRY_AGAIN,
+                Failure::Said(status) => status,
             })
         }
     }

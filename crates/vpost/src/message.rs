@@ -17,6 +17,13 @@ pub(crate) struct Source {
     pub bytes: Vec<u8>,
 }
 
+impl Source {
+    /// The number of the line that holds this byte, from 1.
+    pub(crate) fn line(&self, at: u64) -> usize {
+        Line::around(&self.bytes, &(at..at)).number
+    }
+}
+
 /// Diagnostics and the text they are about.
 #[derive(Debug, Clone)]
 pub(crate) struct Report {
@@ -31,12 +38,18 @@ pub(crate) struct Report {
 pub(crate) enum Failure {
     /// The program was refused: exit status 1.
     Refused(Vec<Report>),
+    /// A file could not be read or written, for this reason: exit status 1.
+    File(Report, std::io::ErrorKind),
     /// A check failed and its result was printed: exit status 1.
     Check,
     /// Usage, profile or grammar: exit status 2.
     Usage(Vec<Report>),
     /// A signal came: exit status 128 + signal.
     Interrupted(u8),
+    /// Not now, but perhaps soon: exit status 75.
+    Later(Report),
+    /// Everything was said already: this exit status.
+    Said(u8),
 }
 
 /// A file cannot be read or written.
@@ -63,7 +76,10 @@ impl Failure {
 
     /// A file cannot be read or written.
     pub(crate) fn file(name: &str, verb: &str, error: &std::io::Error) -> Self {
-        Self::Refused(vec![Report { source: None, diagnostics: vec![file_diagnostic(name, verb, error)] }])
+        Self::File(
+            Report { source: None, diagnostics: vec![file_diagnostic(name, verb, error)] },
+            error.kind(),
+        )
     }
 }
 
@@ -108,8 +124,9 @@ impl Messages {
                     self.report(report);
                 }
             }
+            Failure::File(report, _) | Failure::Later(report) => self.report(report),
             Failure::Interrupted(_) => self.line("interrupted: nothing was written"),
-            Failure::Check => {}
+            Failure::Check | Failure::Said(_) => {}
         }
     }
 

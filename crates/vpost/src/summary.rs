@@ -58,7 +58,7 @@ struct Warning {
 }
 
 /// Micrometres with three decimals: nanometres are below everything that is promised.
-fn um(mm: f64) -> f64 {
+pub(crate) fn um(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e3
 }
 

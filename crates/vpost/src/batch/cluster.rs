@@ -1,0 +1,173 @@
+//! The same on many machines: plan once, run shares anywhere, merge.
+//!
+//! A share is a task without state: what it needs is in the manifest, what it knows of earlier attempts it reads from the
+//! output folder. Who starts the tasks, again where they were killed, is somebody else: HyperQueue, Slurm, GNU parallel.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::arguments::{EngineForm, Merge, Plan, Run};
+use super::folder::{Company, OutputFolder};
+use super::inputs::{self, Item};
+use super::job::Job;
+use super::journal::{self, Journal, Records};
+use super::manifest::{self, Manifest};
+use super::progress::Progress;
+use super::record::{Record, Status};
+use super::shard::{self, Shard};
+use super::work::{self, Results};
+use super::{finish, interrupted, passed_over};
+use crate::arguments::Shared;
+use crate::file::{self, Interrupt};
+use crate::message::{Failure, Messages};
+use crate::{REFUSED, TRY_AGAIN};
+
+/// `vpost batch plan`
+pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let root = arguments.programs.output.as_deref().unwrap_or(Path::new("."));
+    let job = Job::load(shared, messages)?;
+    let found = inputs::find(&arguments.programs, root)?;
+    passed_over(&found, messages);
+    let text = manifest::text(&found.items, root, &job, shared)?;
+    manifest::write(&arguments.manifest, &text)?;
+    let megabytes = found.items.iter().map(|item| item.bytes).sum::<u64>() as f64 / 1e6;
+    file::print(format!("{} programs, {megabytes:.3} MB, to correct\n", found.items.len()).as_bytes())
+}
+
+/// `vpost batch run`
+pub(crate) fn run(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    share(arguments, shared, messages).map_err(|failure| match failure {
+        // Of a disk that is full or a share that is gone the next attempt may know nothing.
+        Failure::File(report, _) => Failure::Later(report),
+        failure => failure,
+    })
+}
+
+fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let shard = Shard::read(arguments.shard.as_deref(), |name| std::env::var(name).ok())?;
+    let manifest = Manifest::read(&arguments.manifest)?;
+    let job = manifest.job(shared, messages)?;
+    let items: Vec<Item> = manifest
+        .items
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| shard.has(*index))
+        .map(|(_, item)| item.clone())
+        .collect();
+    let interrupt = Interrupt::listen();
+    let folder = OutputFolder::open(manifest.output(), Company::Shards)?;
+    let name = format!("{}.{}-of-{}", manifest.name, shard.number, shard.of);
+    let earlier = journal::read(&folder.journal(), Some(&[journal::WHOLE, &name]))?;
+    let mut journal = Journal::begin(&folder.journal(), &name)?;
+    let progress = Progress::new(&items, shared.quiet);
+    let batch = work::Batch {
+        job: &job,
+        folder: &folder,
+        earlier: &earlier,
+        force: false,
+        threads: work::threads(arguments.work.jobs),
+        interrupt: &interrupt,
+    };
+    let results = batch.run(&items, &mut journal, &progress, messages);
+    progress.end();
+    let results = results.map_err(|failure| interrupted(failure, messages))?;
+    journal.end(Records::new(), &results.records)?;
+    finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    match results.records.iter().map(|record| record.status).max() {
+        Some(Status::Failed) => Err(Failure::Said(TRY_AGAIN)),
+        Some(Status::Refused) => Err(Failure::Said(REFUSED)),
+        _ => Ok(()),
+    }
+}
+
+/// `vpost batch merge`
+pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failure> {
+    let manifest = Manifest::read(&arguments.manifest)?;
+    let root = manifest.output();
+    let folder = match OutputFolder::open(root, Company::Alone) {
+        Ok(folder) => Some(folder),
+        Err(Failure::Later(_)) => {
+            messages.note("shards are still at work");
+            None
+        }
+        Err(failure) => return Err(failure),
+    };
+    let records = journal::read(&root.join(".vpost/journal"), None)?;
+    let proofs: Vec<Option<Record>> =
+        manifest.items.par_iter().map(|item| proof(item, &manifest, &records)).collect();
+    let missing: Vec<usize> = (0..proofs.len()).filter(|index| proofs[*index].is_none()).collect();
+    let results = Results { records: proofs.into_iter().flatten().collect(), resumed: 0 };
+    // Where the file system cannot say that nobody else is at work, the journals stay apart.
+    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_locked()) {
+        Journal::begin(&folder.journal(), journal::WHOLE)?.end(records, &results.records)?;
+    }
+    match (arguments.missing, arguments.shards) {
+        (Some(form), Some(of)) => {
+            let mut text = shard::array(&shards_of(&missing, of), form);
+            if !text.is_empty() && !text.ends_with('\n') {
+                text.push('\n');
+            }
+            file::print(text.as_bytes())?;
+            if let Some(path) = &arguments.results {
+                file::write(path, &super::record::lines(&results.records))?;
+            }
+        }
+        (_, of) => {
+            finish(&results, None, arguments.results.as_deref())?;
+            say_missing(&missing, &manifest, of, messages);
+        }
+    }
+    let refused = results.records.iter().any(|record| !record.status.is_done());
+    match (missing.is_empty(), refused) {
+        (false, _) => Err(Failure::Said(TRY_AGAIN)),
+        (true, true) => Err(Failure::Said(REFUSED)),
+        (true, false) => Ok(()),
+    }
+}
+
+/// What became of a program, if that is certain: a correction of the planned bytes by the planned job whose output is in
+/// its place as it was written, or a refusal, which would be the same again.
+fn proof(item: &Item, manifest: &Manifest, records: &Records) -> Option<Record> {
+    let candidates: Vec<&Record> = records
+        .get(&item.output)?
+        .iter()
+        .filter(|record| record.job_blake3 == manifest.job_blake3())
+        .filter(|record| record.input_blake3.is_none() || record.input_blake3 == item.blake3)
+        .collect();
+    let done = candidates.iter().find(|record| record.status.is_done());
+    if let Some(done) = done {
+        let bytes = std::fs::read(manifest.output().join(&item.output)).ok()?;
+        let intact = done.output_blake3.as_deref() == Some(blake3::hash(&bytes).to_hex().as_str());
+        return intact.then(|| (*done).clone());
+    }
+    candidates.into_iter().find(|record| record.status == Status::Refused).cloned()
+}
+
+/// The shares that hold these programs, in order.
+fn shards_of(missing: &[usize], of: u32) -> Vec<u32> {
+    let mut numbers: Vec<u32> = missing.iter().map(|index| Shard::number_of(*index, of)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
+fn say_missing(missing: &[usize], manifest: &Manifest, of: Option<u32>, messages: &Messages) {
+    let Some(first) = missing.first() else { return };
+    let first = &manifest.items[*first].output;
+    let mut text =
+        format!("{} of {} outputs are missing, {first} the first\n", missing.len(), manifest.items.len());
+    match of {
+        None => text.push_str("which shards to run again: add `--shards N`"),
+        Some(of) => {
+            let shards = shards_of(missing, of);
+            text.push_str(&format!(
+                "run again: HyperQueue `--array {}`, Slurm `--array={}`, GNU parallel `::: {}`",
+                shard::array(&shards, EngineForm::Hq),
+                shard::array(&shards, EngineForm::Slurm),
+                shard::array(&shards, EngineForm::Parallel).trim_end().replace('\n', " "),
+            ));
+        }
+    }
+    messages.note(&text);
+}

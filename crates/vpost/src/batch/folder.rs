@@ -1,0 +1,157 @@
+//! The output folder: whole files under final names, whatever ends the work, and nothing left lying about.
+//!
+//! ```text
+//! OUTDIR/.vpost/lock      held while vpost works here
+//! OUTDIR/.vpost/tmp/      outputs before they are whole; renamed into place
+//! OUTDIR/.vpost/journal/  what became of each program
+//! OUTDIR/…                the outputs
+//! ```
+//!
+//! Who dies leaves temporaries only in `tmp`. Whoever opens the folder next and is alone with it empties that: locks
+//! end with their process, so being alone is known, not guessed from ages or process numbers.
+
+use std::fs::{File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use diagnostic::{Code, Diagnostic};
+use tempfile::NamedTempFile;
+
+use crate::file;
+use crate::message::{Failure, Report};
+
+/// Someone else works in the output folder.
+const BUSY: Code = Code(1005);
+
+/// Who else may work in the folder at the same time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Company {
+    /// Nobody.
+    Alone,
+    /// Other shards.
+    Shards,
+}
+
+/// The output folder, open for work.
+#[derive(Debug)]
+pub(crate) struct OutputFolder {
+    root: PathBuf,
+    temporaries: PathBuf,
+    /// Held until this value goes. None where the file system knows no locks.
+    lock: Option<File>,
+}
+
+impl OutputFolder {
+    /// Opens the folder, making it where it is not there; sweeps what a killed run left, if nobody else is at work.
+    pub(crate) fn open(root: &Path, company: Company) -> Result<Self, Failure> {
+        let own = root.join(".vpost");
+        let temporaries = own.join("tmp");
+        let lock = std::fs::create_dir_all(&temporaries)
+            .and_then(|()| std::fs::create_dir_all(own.join("journal")))
+            .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
+            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+        let alone = match lock.try_lock() {
+            Ok(()) => true,
+            Err(TryLockError::WouldBlock) => false,
+            // A file system without locks: nobody can be asked for, and nothing is swept.
+            Err(TryLockError::Error(_)) => {
+                return Ok(Self { root: root.to_owned(), temporaries, lock: None });
+            }
+        };
+        if alone {
+            sweep(&temporaries).map_err(|error| Failure::file(&file::name(&temporaries), "empty", &error))?;
+        }
+        let held = match company {
+            Company::Alone => alone,
+            Company::Shards => (!alone || lock.unlock().is_ok()) && share(&lock),
+        };
+        if !held {
+            return Err(busy(root));
+        }
+        Ok(Self { root: root.to_owned(), temporaries, lock: Some(lock) })
+    }
+
+    /// True where nobody else can be at work here.
+    pub(crate) fn is_locked(&self) -> bool {
+        self.lock.is_some()
+    }
+
+    /// The folder of the journal.
+    pub(crate) fn journal(&self) -> PathBuf {
+        self.root.join(".vpost").join("journal")
+    }
+
+    /// The final place of an output.
+    pub(crate) fn place(&self, output: &str) -> PathBuf {
+        self.root.join(output)
+    }
+
+    /// The bytes at an output's place; none where nothing is there.
+    pub(crate) fn present(&self, output: &str) -> io::Result<Option<Vec<u8>>> {
+        match std::fs::read(self.place(output)) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Writes an output: whole under its final name, or an earlier one stays as it was.
+    pub(crate) fn write(&self, output: &str, bytes: &[u8]) -> io::Result<()> {
+        let place = self.place(output);
+        if let Some(folder) = place.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let mut temporary = self.temporary()?;
+        temporary.write_all(bytes)?;
+        // On Linux all outputs are brought to the disk together, at the end: see `sync`.
+        if !cfg!(target_os = "linux") {
+            temporary.as_file().sync_all()?;
+        }
+        temporary.persist(place).map_err(|error| error.error)?;
+        Ok(())
+    }
+
+    fn temporary(&self) -> io::Result<NamedTempFile> {
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        builder.tempfile_in(&self.temporaries)
+    }
+
+    /// Brings everything written so far to the disk: what is reported as done survives a power cut.
+    ///
+    /// One call for all files; a call for each costs more than correcting a small program. A cut before it may leave an
+    /// output empty under its final name; the next run finds that its hash is not the recorded one.
+    pub(crate) fn sync(&self) -> io::Result<()> {
+        #[cfg(target_os = "linux")]
+        rustix::fs::syncfs(File::open(&self.root)?)?;
+        Ok(())
+    }
+}
+
+/// Takes the lock together with other shards. One of them may be alone for as long as sweeping takes.
+fn share(lock: &File) -> bool {
+    (0..100).any(|attempt| {
+        if attempt > 0 {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        lock.try_lock_shared().is_ok()
+    })
+}
+
+/// Someone else works there.
+fn busy(root: &Path) -> Failure {
+    let diagnostic = Diagnostic::error(BUSY, format!("another vpost batch is at work in {}", root.display()))
+        .help("let it end, or give a folder of its own with `-O`");
+    Failure::Later(Report { source: None, diagnostics: vec![diagnostic] })
+}
+
+fn sweep(folder: &Path) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        std::fs::remove_file(entry?.path())?;
+    }
+    Ok(())
+}

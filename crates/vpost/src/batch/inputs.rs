@@ -1,0 +1,254 @@
+//! Which programs there are, and where each correction goes.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use diagnostic::{Code, Diagnostic};
+use glob::{MatchOptions, Pattern};
+
+use super::arguments::Programs;
+use crate::file;
+use crate::message::Failure;
+
+/// No program was found.
+const NONE_FOUND: Code = Code(1001);
+/// Two programs would be written to one place.
+const COLLISION: Code = Code(1002);
+/// A correction would be written over a program.
+const ONTO_INPUT: Code = Code(1003);
+/// A name that JSON cannot hold.
+const NAME: Code = Code(1004);
+
+/// What part programs are called, from many shops' folders.
+const ENDINGS: [&str; 16] = [
+    "nc", "ngc", "cnc", "tap", "mpf", "spf", "ptp", "min", "eia", "iso", "gcode", "gc", "ncc", "fnc", "din",
+    "g",
+];
+
+/// A program to correct.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Item {
+    /// Where it is.
+    pub input: PathBuf,
+    /// Where its correction goes: below the output folder, with `/` between folders.
+    pub output: String,
+    /// Its size when it was found.
+    pub bytes: u64,
+    /// What it must hold, where a manifest says so.
+    pub blake3: Option<String>,
+}
+
+/// Programs in the order of their outputs, and what was passed over.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    pub items: Vec<Item>,
+    /// Files of other endings and links to folders.
+    pub passed_over: Vec<PathBuf>,
+}
+
+/// Finds the programs.
+///
+/// Folders are searched with all folders in them. Passed over in silence: hidden files and folders (a name that
+/// starts with a point), what `--exclude` names, and the output folder itself. A file that is named is taken
+/// whatever its name.
+pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure> {
+    let search = Search {
+        patterns: patterns("--pattern", &programs.pattern)?,
+        exclude: patterns("--exclude", &programs.exclude)?,
+        output: output.canonicalize().ok(),
+    };
+    let mut found = Found::default();
+    for input in &programs.inputs {
+        let data = input.metadata().map_err(|error| {
+            Failure::usage(crate::message::file_diagnostic(&file::name(input), "read", &error))
+        })?;
+        if data.is_dir() {
+            search.folder(input, Path::new(""), &mut found)?;
+        } else {
+            let name = input.file_name().map(Path::new).unwrap_or(input);
+            found.items.push(item(input.clone(), name, data.len())?);
+        }
+    }
+    if found.items.is_empty() {
+        let others = found.passed_over.len();
+        return Err(Failure::usage(
+            Diagnostic::error(NONE_FOUND, format!("no program was found; {others} other files were")).help(
+                format!(
+                    "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
+                    ENDINGS.join(" .")
+                ),
+            ),
+        ));
+    }
+    found.items.sort_by(|a, b| a.output.cmp(&b.output).then_with(|| a.input.cmp(&b.input)));
+    found.items.dedup();
+    found.passed_over.sort();
+    check_places(&found.items, output)?;
+    Ok(found)
+}
+
+struct Search {
+    patterns: Vec<Pattern>,
+    exclude: Vec<Pattern>,
+    output: Option<PathBuf>,
+}
+
+impl Search {
+    /// `below`: the folder's path from the one that was named.
+    fn folder(&self, folder: &Path, below: &Path, found: &mut Found) -> Result<(), Failure> {
+        let fail = |error: std::io::Error| Failure::file(&file::name(folder), "read", &error);
+        let mut entries = std::fs::read_dir(folder)
+            .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
+            .map_err(fail)?;
+        entries.sort_by_key(std::fs::DirEntry::file_name);
+        for entry in entries {
+            let name = entry.file_name();
+            let path = entry.path();
+            let below = below.join(&name);
+            if name.as_encoded_bytes().starts_with(b".") || matches(&self.exclude, &below) {
+                continue;
+            }
+            let kind = entry.file_type().map_err(fail)?;
+            if kind.is_dir() {
+                if self.output.is_none() || path.canonicalize().ok() != self.output {
+                    self.folder(&path, &below, found)?;
+                }
+                continue;
+            }
+            // A link may lead to a file. Links to folders may lead in circles.
+            let data = path.metadata();
+            match data {
+                Ok(data) if data.is_file() && self.is_program(&below) => {
+                    found.items.push(item(path, &below, data.len())?);
+                }
+                // A link that leads nowhere is a program that is missing: reading it says so.
+                Err(_) if self.is_program(&below) => found.items.push(item(path, &below, 0)?),
+                _ => found.passed_over.push(path),
+            }
+        }
+        Ok(())
+    }
+
+    fn is_program(&self, below: &Path) -> bool {
+        if !self.patterns.is_empty() {
+            return matches(&self.patterns, below);
+        }
+        let ending = below.extension().unwrap_or_default();
+        ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
+    }
+}
+
+/// Capital letters or not: controls and shares do not agree on them.
+const MATCHING: MatchOptions = MatchOptions {
+    case_sensitive: false,
+    require_literal_separator: true,
+    require_literal_leading_dot: false,
+};
+
+/// A pattern with a `/` is one of the path below the folder, others are of the name.
+fn matches(patterns: &[Pattern], below: &Path) -> bool {
+    patterns.iter().any(|pattern| {
+        let whole = pattern.as_str().contains('/');
+        let subject = if whole { Some(below) } else { below.file_name().map(Path::new) };
+        subject.is_some_and(|path| pattern.matches_path_with(path, MATCHING))
+    })
+}
+
+fn patterns(option: &str, given: &[String]) -> Result<Vec<Pattern>, Failure> {
+    let parse = |text: &String| {
+        Pattern::new(text).map_err(|error| {
+            Failure::option(
+                format!("`{option} {text}` is no pattern: {}", error.msg),
+                format!(
+                    "write as for the shell, in quotes: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`"
+                ),
+            )
+        })
+    };
+    given.iter().map(parse).collect()
+}
+
+fn item(input: PathBuf, below: &Path, bytes: u64) -> Result<Item, Failure> {
+    let mut output = String::new();
+    for part in below.components() {
+        let (Component::Normal(part), Some(_)) = (part, input.to_str()) else {
+            return Err(bad_name(&input));
+        };
+        if !output.is_empty() {
+            output.push('/');
+        }
+        output.push_str(part.to_str().ok_or_else(|| bad_name(&input))?);
+    }
+    Ok(Item { input, output, bytes, blake3: None })
+}
+
+fn bad_name(input: &Path) -> Failure {
+    Failure::usage(
+        Diagnostic::error(NAME, format!("the name {} is not UTF-8", input.display())).help(
+            "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",
+        ),
+    )
+}
+
+/// Every output has a place of its own, and none is a program's.
+fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
+    // Letters' case counts for nothing on the shares that most controls read.
+    let mut places: BTreeMap<String, &Item> = BTreeMap::new();
+    for item in items {
+        if let Some(other) = places.insert(item.output.to_lowercase(), item) {
+            return Err(collision(other, item, output));
+        }
+    }
+    for item in items {
+        let place = item.output.to_lowercase();
+        let mut folders = place.match_indices('/').map(|(at, _)| &place[..at]);
+        if let Some(other) = folders.find_map(|folder| places.get(folder)) {
+            return Err(collision(other, item, output));
+        }
+    }
+    let inputs: BTreeMap<_, &Item> =
+        items.iter().filter_map(|item| Some((identity(&item.input)?, item))).collect();
+    for item in items {
+        let place = output.join(&item.output);
+        if let Some(input) = identity(&place).and_then(|place| inputs.get(&place)) {
+            return Err(Failure::usage(
+                Diagnostic::error(
+                    ONTO_INPUT,
+                    format!(
+                        "the correction of {} would be written over {}",
+                        item.input.display(),
+                        input.input.display()
+                    ),
+                )
+                .help("give a folder of its own: `-O corrected`"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn collision(a: &Item, b: &Item, output: &Path) -> Failure {
+    Failure::usage(
+        Diagnostic::error(
+            COLLISION,
+            format!(
+                "{} and {} would both be written to {}",
+                a.input.display(),
+                b.input.display(),
+                output.join(&a.output).display()
+            ),
+        )
+        .help("name the folder above both instead of the files, or run vpost once for each `-O`"),
+    )
+}
+
+/// What makes two paths one file.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|data| (data.dev(), data.ino()))
+}
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
+}

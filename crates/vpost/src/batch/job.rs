@@ -1,0 +1,72 @@
+//! How programs are corrected, as a value that can be hashed: with the same one the same input gives the same bytes.
+
+use blake3::{Hash, Hasher};
+
+use super::record::{Fault, Record, Status};
+use crate::arguments::Shared;
+use crate::expand::{self, Done};
+use crate::file::Interrupt;
+use crate::message::{Failure, Messages, Report};
+use crate::settings::Settings;
+
+/// Profile, dialect, engine and options, read once for all programs.
+pub(crate) struct Job {
+    pub settings: Settings,
+    /// Hash of everything that decides the output besides the program and the subprograms it calls.
+    pub hash: Hash,
+}
+
+impl Job {
+    /// Reads profile and dialect and refuses what no program could be corrected with.
+    pub(crate) fn load(shared: &Shared, messages: &Messages) -> Result<Self, Failure> {
+        let settings = Settings::load(shared, messages)?;
+        settings.path_model()?;
+        let hash = hash(&settings, shared);
+        Ok(Self { settings, hash })
+    }
+
+    /// Corrects a program. The one place where batch meets the correction.
+    pub(crate) fn correct(&self, text: &[u8], name: &str, interrupt: &Interrupt) -> Result<Done, Failure> {
+        expand::correct(text, name, &self.settings, false, |_| interrupt.check())
+    }
+
+    /// The record of a program that was corrected.
+    pub(crate) fn done(&self, mut record: Record, text: &[u8], done: &Done) -> Record {
+        let out = &done.corrected.text;
+        record.status = if out == text { Status::Unchanged } else { Status::Corrected };
+        record.output_blake3 = Some(blake3::hash(out).to_hex().to_string());
+        record.bytes_out = Some(out.len() as u64);
+        record.figures = Some((&done.corrected.figures).into());
+        record.warnings = done.warnings.iter().flat_map(faults).collect();
+        record.subprograms = done.lookups.clone();
+        record
+    }
+}
+
+/// A report in few words.
+pub(crate) fn faults(report: &Report) -> Vec<Fault> {
+    report.diagnostics.iter().map(|diagnostic| Fault::new(diagnostic, report.source.as_ref())).collect()
+}
+
+/// Every value that decides the output, each with its name and length, so that none can run into the next.
+///
+/// The values as they were understood, not as they were written: `--tolerance 1` and `1.0` are the same job. `--at` is
+/// hashed as written.
+fn hash(settings: &Settings, shared: &Shared) -> Hash {
+    let mut hasher = Hasher::new();
+    let mut put = |name: &str, value: &[u8]| {
+        for part in [name.as_bytes(), value] {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part);
+        }
+    };
+    put("vpost", env!("CARGO_PKG_VERSION").as_bytes());
+    put("profile", settings.profile_hash.as_bytes());
+    put("dialect", format!("{:?}", settings.dialect).as_bytes());
+    put("setup", format!("{:?}", settings.setup).as_bytes());
+    put("engine", settings.engine.id().name().as_bytes());
+    put("options", format!("{:?}", settings.options).as_bytes());
+    put("values", format!("{:?}", settings.flow.presets()).as_bytes());
+    put("conditions", format!("{:?}", shared.at).as_bytes());
+    hasher.finalize()
+}

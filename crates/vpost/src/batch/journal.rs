@@ -1,0 +1,115 @@
+//! The journal: what became of each program, so that the next run need not do it again.
+//!
+//! A line is appended when a program's output stands under its final name. The journal saves work and proves
+//! completeness; it is never believed without the hash of the output it speaks of. So nothing is lost with it: a line
+//! that is torn, missing or of a file that has changed since means that the program is corrected again.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::record::{self, Record};
+use crate::file;
+use crate::message::Failure;
+
+/// The journal of whatever was done in the folder and needs no shard's name.
+pub(crate) const WHOLE: &str = "batch";
+
+/// Records by output; more than one where an output was made anew.
+pub(crate) type Records = BTreeMap<String, Vec<Record>>;
+
+/// A run's own journal, written as it goes.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    folder: PathBuf,
+    name: String,
+    live: PathBuf,
+    file: File,
+}
+
+impl Journal {
+    /// Begins a journal. No two runs write one file: the same shard may be at work twice, where an engine lost sight of
+    /// one of them.
+    pub(crate) fn begin(folder: &Path, name: &str) -> Result<Self, Failure> {
+        let (file, live) = tempfile::Builder::new()
+            .prefix(&format!("{name}."))
+            .suffix(".live")
+            .tempfile_in(folder)
+            .and_then(|file| file.keep().map_err(|error| error.error))
+            .map_err(|error| Failure::file(&file::name(folder), "write to", &error))?;
+        Ok(Self { folder: folder.to_owned(), name: name.to_owned(), live, file })
+    }
+
+    /// Adds a line.
+    pub(crate) fn add(&mut self, record: &Record) -> io::Result<()> {
+        self.file.write_all(&record::lines([record]))
+    }
+
+    /// Puts all records of this journal's name into one file; for [`WHOLE`], those of all names.
+    ///
+    /// `earlier`: what [`read`] gave for them and is to be kept.
+    pub(crate) fn end(self, earlier: Records, records: &[Record]) -> Result<(), Failure> {
+        drop(self.file);
+        let stale = files(&self.folder, (self.name != WHOLE).then_some(self.name.as_str()))?;
+        let place = self.folder.join(format!("{}.jsonl", self.name));
+        let mut all = earlier;
+        for record in records {
+            all.insert(record.output.clone(), vec![record.clone()]);
+        }
+        file::write(&place, &record::lines(all.values().flatten()))?;
+        for path in stale.iter().chain([&self.live]).filter(|path| **path != place) {
+            // What cannot be removed is read again and says nothing new.
+            let _ = std::fs::remove_file(path);
+        }
+        Ok(())
+    }
+}
+
+/// Reads the journals of these names; all where none is given.
+pub(crate) fn read(folder: &Path, names: Option<&[&str]>) -> Result<Records, Failure> {
+    let paths = match names {
+        None => files(folder, None)?,
+        Some(names) => {
+            let mut paths = Vec::new();
+            for name in names {
+                paths.extend(files(folder, Some(name))?);
+            }
+            paths
+        }
+    };
+    let mut records = Records::new();
+    for path in paths {
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            // Another shard has just put its files together.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            Err(error) => return Err(Failure::file(&file::name(&path), "read", &error)),
+        };
+        for line in bytes.split(|byte| *byte == b'\n') {
+            // Killed in the middle of a line: that program is corrected again.
+            let Ok(record) = serde_json::from_slice::<Record>(line) else { continue };
+            let known = records.entry(record.output.clone()).or_default();
+            if !known.contains(&record) {
+                known.push(record);
+            }
+        }
+    }
+    Ok(records)
+}
+
+/// The journals' files, in order.
+fn files(folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
+    let fail = |error: io::Error| Failure::file(&file::name(folder), "read", &error);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let entry = entry.map_err(fail)?;
+        let file = entry.file_name().to_string_lossy().into_owned();
+        let ours = name.is_none_or(|name| file.strip_prefix(name).is_some_and(|rest| rest.starts_with('.')));
+        if ours && (file.ends_with(".jsonl") || file.ends_with(".live")) {
+            found.push(entry.path());
+        }
+    }
+    found.sort();
+    Ok(found)
+}

@@ -1,0 +1,308 @@
+//! The manifest: which programs are to be corrected, and how, written down once for all machines.
+//!
+//! JSON Lines. The first line says how ([`Header`]), each further one names a program with its hash, in the order of
+//! the outputs. The header holds the hash of the lines below it, so a manifest that was cut or edited is none.
+
+use std::path::{Path, PathBuf};
+
+use diagnostic::{Code, Diagnostic};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::inputs::Item;
+use super::job::Job;
+use crate::arguments::{Outside, Shared};
+use crate::file;
+use crate::message::{Failure, Messages};
+
+/// The manifest cannot be used.
+const MANIFEST: Code = Code(1010);
+/// What decides the outputs changed since the plan.
+const JOB_CHANGED: Code = Code(1011);
+
+const SCHEMA: &str = "vpost.manifest/1";
+
+/// How the programs are corrected.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    schema: String,
+    version: String,
+    /// The output folder.
+    output: PathBuf,
+    options: Options,
+    /// Hash of everything that decides the outputs besides the programs.
+    job_blake3: String,
+    /// Hash of the folders given with `--include`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    include_blake3: Option<String>,
+    programs: usize,
+    /// Hash of the lines below.
+    programs_blake3: String,
+}
+
+/// The options of the plan's command line that decide the outputs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Options {
+    machine: Option<PathBuf>,
+    engine: Option<String>,
+    dialect: Option<String>,
+    tolerance: Option<f64>,
+    work_offset: Vec<String>,
+    tool: Vec<String>,
+    start_at: Option<String>,
+    set: Vec<String>,
+    include: Vec<PathBuf>,
+    at: Vec<String>,
+    clamp: Option<bool>,
+}
+
+impl Options {
+    fn of(shared: &Shared) -> Self {
+        // Taken apart so that an option that is added cannot be forgotten here.
+        let Shared {
+            machine,
+            engine,
+            dialect,
+            tolerance,
+            work_offset,
+            tool,
+            start_at,
+            set,
+            include,
+            at,
+            outside,
+            quiet: _,
+            verbose: _,
+            color: _,
+        } = shared.clone();
+        let clamp = outside.map(|outside| outside == Outside::Clamp);
+        Self { machine, engine, dialect, tolerance, work_offset, tool, start_at, set, include, at, clamp }
+    }
+
+    /// These options with the messages of another command line.
+    fn shared(&self, own: &Shared) -> Shared {
+        let Self {
+            machine,
+            engine,
+            dialect,
+            tolerance,
+            work_offset,
+            tool,
+            start_at,
+            set,
+            include,
+            at,
+            clamp,
+        } = self.clone();
+        let outside = clamp.map(|clamp| if clamp { Outside::Clamp } else { Outside::Refuse });
+        let Shared { quiet, verbose, color, .. } = *own;
+        Shared {
+            machine,
+            engine,
+            dialect,
+            tolerance,
+            work_offset,
+            tool,
+            start_at,
+            set,
+            include,
+            at,
+            outside,
+            quiet,
+            verbose,
+            color,
+        }
+    }
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Program {
+    output: String,
+    input: PathBuf,
+    bytes: u64,
+    blake3: String,
+}
+
+/// A manifest that was read.
+#[derive(Debug)]
+pub(crate) struct Manifest {
+    header: Header,
+    /// The programs with their hashes, in the order of their outputs.
+    pub items: Vec<Item>,
+    /// Of the whole file: a short name for its journals.
+    pub name: String,
+}
+
+/// The manifest's text for these programs; reads each of them.
+pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) -> Result<Vec<u8>, Failure> {
+    let hashed: Vec<Result<Program, Failure>> = items
+        .par_iter()
+        .map(|item| {
+            let bytes = file::read(&item.input)?;
+            Ok(Program {
+                output: item.output.clone(),
+                input: item.input.clone(),
+                bytes: bytes.len() as u64,
+                blake3: blake3::hash(&bytes).to_hex().to_string(),
+            })
+        })
+        .collect();
+    let mut lines = Vec::new();
+    for program in hashed {
+        line(&mut lines, &program?)?;
+    }
+    let header = Header {
+        schema: SCHEMA.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        output: output.to_owned(),
+        options: Options::of(shared),
+        job_blake3: job.hash.to_hex().to_string(),
+        include_blake3: include_hash(&shared.include)?,
+        programs: items.len(),
+        programs_blake3: blake3::hash(&lines).to_hex().to_string(),
+    };
+    let mut text = Vec::with_capacity(lines.len() + 1024);
+    line(&mut text, &header)?;
+    text.append(&mut lines);
+    Ok(text)
+}
+
+fn line(text: &mut Vec<u8>, value: &impl Serialize) -> Result<(), Failure> {
+    // Only the name of a file or folder can be what JSON does not hold.
+    serde_json::to_writer(&mut *text, value).map_err(|error| {
+        unusable(
+            format!("the plan cannot be written: {error}"),
+            "give files and folders names that are UTF-8",
+        )
+    })?;
+    text.push(b'\n');
+    Ok(())
+}
+
+/// Hash of the names and bytes of all files that could be called.
+fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
+    if folders.is_empty() {
+        return Ok(None);
+    }
+    let mut hasher = blake3::Hasher::new();
+    for folder in folders {
+        let fail = |error: std::io::Error| Failure::file(&file::name(folder), "read", &error);
+        let mut paths = Vec::new();
+        for entry in std::fs::read_dir(folder).map_err(fail)? {
+            paths.push(entry.map_err(fail)?.path());
+        }
+        paths.sort();
+        hasher.update(b"\0folder\0");
+        for path in paths.iter().filter(|path| path.is_file()) {
+            hasher.update(path.file_name().unwrap_or_default().as_encoded_bytes());
+            hasher.update(b"\0");
+            hasher.update(blake3::hash(&file::read(path)?).as_bytes());
+        }
+    }
+    Ok(Some(hasher.finalize().to_hex().to_string()))
+}
+
+/// Writes a manifest once. The same again changes nothing; another one needs another name.
+pub(crate) fn write(path: &Path, text: &[u8]) -> Result<(), Failure> {
+    match std::fs::read(path) {
+        Ok(present) if present == text => Ok(()),
+        Ok(_) => Err(unusable(
+            format!("{} is there already, and a manifest does not change", path.display()),
+            "give another name, or delete it if no shard of it will run again",
+        )),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => file::write(path, text),
+        Err(error) => Err(Failure::file(&file::name(path), "read", &error)),
+    }
+}
+
+impl Manifest {
+    /// Reads a manifest and checks that it is whole and of this version.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let text = std::fs::read(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                Failure::usage(crate::message::file_diagnostic(&file::name(path), "read", &error))
+            }
+            _ => Failure::file(&file::name(path), "read", &error),
+        })?;
+        let damaged = |what: String| {
+            unusable(
+                format!("{} is no manifest as `vpost batch plan` wrote it: {what}", path.display()),
+                "copy it again, or make a new one with `vpost batch plan`",
+            )
+        };
+        let at = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |at| at + 1);
+        let (first, lines) = text.split_at(at);
+        // Before the fields, which may be others in another version.
+        let schema: serde_json::Value =
+            serde_json::from_slice(first).map_err(|error| damaged(format!("line 1: {error}")))?;
+        if schema["schema"] != SCHEMA {
+            return Err(damaged(format!("its first line does not say {SCHEMA}")));
+        }
+        if schema["version"] != env!("CARGO_PKG_VERSION") {
+            return Err(unusable(
+                format!(
+                    "{} was written by vpost {}, this is {}",
+                    path.display(),
+                    schema["version"].as_str().unwrap_or("of another version"),
+                    env!("CARGO_PKG_VERSION")
+                ),
+                "run one version on all machines; another version may write other bytes",
+            ));
+        }
+        let header: Header =
+            serde_json::from_slice(first).map_err(|error| damaged(format!("line 1: {error}")))?;
+        if blake3::hash(lines).to_hex().as_str() != header.programs_blake3 {
+            return Err(damaged("the lines below the first were changed or cut".to_owned()));
+        }
+        let mut items = Vec::with_capacity(header.programs);
+        for (at, line) in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).enumerate() {
+            let Program { output, input, bytes, blake3 } =
+                serde_json::from_slice(line).map_err(|error| damaged(format!("line {}: {error}", at + 2)))?;
+            items.push(Item { input, output, bytes, blake3: Some(blake3) });
+        }
+        let name = blake3::hash(&text).to_hex()[..16].to_owned();
+        Ok(Self { header, items, name })
+    }
+
+    /// The output folder.
+    pub(crate) fn output(&self) -> &Path {
+        &self.header.output
+    }
+
+    /// The job's hash.
+    pub(crate) fn job_blake3(&self) -> &str {
+        &self.header.job_blake3
+    }
+
+    /// Profile, dialect and options as they were planned; refused where they are others today.
+    pub(crate) fn job(&self, own: &Shared, messages: &Messages) -> Result<Job, Failure> {
+        if Options::of(own) != Options::default() {
+            return Err(Failure::option(
+                "the manifest says which profile and options hold",
+                "leave them out here; for others make another plan",
+            ));
+        }
+        let shared = self.header.options.shared(own);
+        let job = Job::load(&shared, messages)?;
+        let changed = |what: &str| {
+            Failure::usage(
+                Diagnostic::error(JOB_CHANGED, format!("{what} changed since the plan was made"))
+                    .help("bring it back, or make a new plan with `vpost batch plan`"),
+            )
+        };
+        if job.hash.to_hex().as_str() != self.header.job_blake3 {
+            return Err(changed("the profile, one of its tables, or the dialect"));
+        }
+        if include_hash(&shared.include)? != self.header.include_blake3 {
+            return Err(changed("a file in a folder of subprograms (`--include`)"));
+        }
+        Ok(job)
+    }
+}
+
+fn unusable(message: String, help: &str) -> Failure {
+    Failure::usage(Diagnostic::error(MANIFEST, message).help(help))
+}

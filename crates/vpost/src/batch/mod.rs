@@ -1,0 +1,110 @@
+//! `vpost batch`: many programs, on all cores of one machine or on many machines.
+//!
+//! Here, a run finds the programs ([`inputs`]), corrects each on its own ([`work`]), puts outputs into place whole
+//! ([`folder`]) and keeps a journal of what is done ([`journal`]).
+
+mod arguments;
+mod cluster;
+mod folder;
+mod inputs;
+mod job;
+mod journal;
+mod manifest;
+mod progress;
+mod record;
+mod shard;
+mod table;
+mod work;
+
+use std::path::Path;
+
+pub use arguments::Batch;
+use arguments::BatchCommand;
+
+use crate::REFUSED;
+use crate::arguments::Shared;
+use crate::file::{self, Interrupt};
+use crate::message::{Failure, Messages};
+use folder::{Company, OutputFolder};
+use job::Job;
+use journal::Journal;
+use progress::Progress;
+use work::Results;
+
+/// `vpost batch`
+pub(crate) fn run(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    match &arguments.command {
+        None => here(arguments, shared, messages),
+        Some(BatchCommand::Plan(plan)) => cluster::plan(plan, shared, messages),
+        Some(BatchCommand::Run(run)) => cluster::run(run, shared, messages),
+        Some(BatchCommand::Merge(merge)) => cluster::merge(merge, messages),
+    }
+}
+
+/// All programs on this machine.
+fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let root = arguments.programs.output.as_deref().unwrap_or(Path::new("."));
+    let job = Job::load(shared, messages)?;
+    let found = inputs::find(&arguments.programs, root)?;
+    passed_over(&found, messages);
+    let interrupt = Interrupt::listen();
+    let folder = OutputFolder::open(root, Company::Alone)?;
+    if !folder.is_locked() && shared.verbose > 0 {
+        messages
+            .note("the output folder's file system knows no locks: nothing that a killed run left is swept");
+    }
+    let earlier = journal::read(&folder.journal(), None)?;
+    let mut journal = Journal::begin(&folder.journal(), journal::WHOLE)?;
+    let progress = Progress::new(&found.items, shared.quiet);
+    let batch = work::Batch {
+        job: &job,
+        folder: &folder,
+        earlier: &earlier,
+        force: arguments.force,
+        threads: work::threads(arguments.work.jobs),
+        interrupt: &interrupt,
+    };
+    let results = batch.run(&found.items, &mut journal, &progress, messages);
+    progress.end();
+    let results = results.map_err(|failure| interrupted(failure, messages))?;
+    journal.end(earlier, &results.records)?;
+    finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    if results.records.iter().all(|record| record.status.is_done()) {
+        Ok(())
+    } else {
+        Err(Failure::Said(REFUSED))
+    }
+}
+
+/// What a folder held besides programs: a program of an unusual name must not be missed.
+fn passed_over(found: &inputs::Found, messages: &Messages) {
+    if let Some(first) = found.passed_over.first() {
+        messages.note(&format!(
+            "{} file(s) are no programs by their names and were passed over, {} the first (see `--pattern`)",
+            found.passed_over.len(),
+            first.display()
+        ));
+    }
+}
+
+/// What is done stays, and the next run begins there.
+fn interrupted(failure: Failure, messages: &Messages) -> Failure {
+    let Failure::Interrupted(signal) = failure else { return failure };
+    messages.note("interrupted: what is done is done; the same command goes on from there");
+    Failure::Said(128 + signal)
+}
+
+/// Results to disk and to the user.
+fn finish(results: &Results, folder: Option<&OutputFolder>, lines: Option<&Path>) -> Result<(), Failure> {
+    if let Some(folder) = folder {
+        folder.sync().map_err(|error| Failure::file("the output folder", "write to", &error))?;
+    }
+    match lines {
+        Some(path) if path.as_os_str() == "-" => file::print(&record::lines(&results.records)),
+        Some(path) => {
+            file::write(path, &record::lines(&results.records))?;
+            file::print(table::table(results).as_bytes())
+        }
+        None => file::print(table::table(results).as_bytes()),
+    }
+}

@@ -1,0 +1,57 @@
+//! How far the work is, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::inputs::Item;
+
+/// A bar on standard error: programs, MB/s and the time that is left. Off a terminal, nothing.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    programs: usize,
+    done: std::cell::Cell<usize>,
+}
+
+impl Progress {
+    /// A bar as long as all programs together.
+    pub(crate) fn new(items: &[Item], quiet: bool) -> Self {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(items.iter().map(|item| item.bytes).sum()), target);
+        bar.set_style(
+            ProgressStyle::with_template(
+                "{bar:30} {msg} programs  {decimal_bytes_per_sec}  {elapsed} gone, {eta} left",
+            )
+            .expect("a template that was tried"),
+        );
+        let progress = Self { bar, programs: items.len(), done: std::cell::Cell::new(0) };
+        progress.say();
+        progress
+    }
+
+    /// A program is done. What an earlier run had done is no work and counts for no speed.
+    pub(crate) fn done(&self, item: &Item, resumed: bool) {
+        self.done.set(self.done.get() + 1);
+        if resumed {
+            self.bar.dec_length(item.bytes);
+        } else {
+            self.bar.inc(item.bytes);
+        }
+        self.say();
+    }
+
+    fn say(&self) {
+        if !self.bar.is_hidden() {
+            self.bar.set_message(format!("{}/{}", self.done.get(), self.programs));
+        }
+    }
+
+    /// Says something that stays above the bar.
+    pub(crate) fn aside(&self, say: impl FnOnce()) {
+        self.bar.suspend(say);
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,299 @@
+//! The work: programs to outputs on all cores, told in order.
+
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+
+use blake3::Hash;
+use diagnostic::{Code, Diagnostic};
+
+use super::folder::OutputFolder;
+use super::inputs::Item;
+use super::job::{self, Job};
+use super::journal::{Journal, Records};
+use super::progress::Progress;
+use super::record::{Record, Status};
+use crate::file::{self, Interrupt};
+use crate::message::{Failure, Messages, Report};
+
+/// An output would be written over a file that vpost did not write.
+const FOREIGN: Code = Code(1006);
+/// A program is not what the manifest says.
+const CHANGED: Code = Code(1007);
+/// A defect of vpost.
+const DEFECT: Code = Code(1008);
+
+/// No more refusals are printed with their lines.
+const MOST_PRINTED: usize = 20;
+
+/// One run of many programs.
+pub(crate) struct Batch<'a> {
+    pub job: &'a Job,
+    pub folder: &'a OutputFolder,
+    /// What earlier runs left.
+    pub earlier: &'a Records,
+    /// Correct anew what was corrected, overwrite what is not ours.
+    pub force: bool,
+    pub threads: usize,
+    pub interrupt: &'a Interrupt,
+}
+
+/// What came of a run.
+#[derive(Debug, Default)]
+pub(crate) struct Results {
+    /// In the order of the items.
+    pub records: Vec<Record>,
+    /// How many of them an earlier run had done.
+    pub resumed: usize,
+}
+
+/// What became of one program.
+struct Outcome {
+    record: Record,
+    resumed: bool,
+    told: Vec<Report>,
+}
+
+/// Threads for the work: as many as the machine gives this process.
+pub(crate) fn threads(jobs: Option<u16>) -> usize {
+    jobs.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from)
+}
+
+impl Batch<'_> {
+    /// Corrects the programs. What fails is told, and the others go on.
+    ///
+    /// Programs are begun in order, and their results are put in order before anybody sees them.
+    pub(crate) fn run(
+        &self,
+        items: &[Item],
+        journal: &mut Journal,
+        progress: &Progress,
+        messages: &Messages,
+    ) -> Result<Results, Failure> {
+        let threads = self.threads.min(items.len()).max(1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+            Failure::option(format!("{threads} threads cannot be had: {error}"), "fewer: `--jobs 2`")
+        })?;
+        let next = AtomicUsize::new(0);
+        let (sender, receiver) = mpsc::channel();
+        pool.in_place_scope(|scope| {
+            for _ in 0..threads {
+                let (sender, next) = (sender.clone(), &next);
+                scope.spawn(move |_| {
+                    while self.interrupt.check().is_ok()
+                        && let Some((index, item)) = {
+                            let index = next.fetch_add(1, Ordering::Relaxed);
+                            items.get(index).map(|item| (index, item))
+                        }
+                    {
+                        // Whoever listens no more has a reason that is told there.
+                        if sender.send((index, self.guarded(item))).is_err() {
+                            break;
+                        }
+                    }
+                });
+            }
+            drop(sender);
+            let mut told = Told { results: Results::default(), waiting: BTreeMap::new(), printed: 0 };
+            for (index, outcome) in receiver {
+                let Ok(mut outcome) = outcome else { continue };
+                progress.done(&items[index], outcome.resumed);
+                if !outcome.resumed
+                    && let Err(error) = journal.add(&outcome.record)
+                {
+                    fail(&mut outcome, Failure::file("the journal", "write", &error));
+                }
+                told.waiting.insert(index, outcome);
+                told.in_order(progress, messages);
+            }
+            self.interrupt.check()?;
+            Ok(told.results)
+        })
+    }
+
+    /// A defect of ours in one program is that program's failure.
+    fn guarded(&self, item: &Item) -> Result<Outcome, Failure> {
+        catch_unwind(AssertUnwindSafe(|| self.one(item))).unwrap_or_else(|_| {
+            let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
+            let diagnostic =
+                Diagnostic::error(DEFECT, format!("vpost broke down on {}", item.input.display()))
+                    .help("this is a defect of vpost; please report it with the program and the lines above");
+            fail(&mut outcome, refused(diagnostic));
+            Ok(outcome)
+        })
+    }
+
+    fn record(&self, item: &Item) -> Record {
+        Record {
+            output: item.output.clone(),
+            input: item.input.display().to_string(),
+            status: Status::Refused,
+            job_blake3: self.job.hash.to_hex().to_string(),
+            input_blake3: None,
+            output_blake3: None,
+            bytes_in: item.bytes,
+            bytes_out: None,
+            figures: None,
+            subprograms: Vec::new(),
+            warnings: Vec::new(),
+            errors: Vec::new(),
+            older_output: false,
+        }
+    }
+
+    /// One program; fails only where the work was interrupted.
+    fn one(&self, item: &Item) -> Result<Outcome, Failure> {
+        let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
+        match self.corrected(item, &mut outcome) {
+            Ok(()) => {}
+            Err(failure @ Failure::Interrupted(_)) => return Err(failure),
+            Err(failure) => {
+                fail(&mut outcome, failure);
+                outcome.record.older_output =
+                    self.earlier.contains_key(&item.output) && self.folder.place(&item.output).exists();
+            }
+        }
+        Ok(outcome)
+    }
+
+    fn corrected(&self, item: &Item, outcome: &mut Outcome) -> Result<(), Failure> {
+        let name = file::name(&item.input);
+        let text = file::read_program(&item.input).map_err(|failure| match (failure, &item.blake3) {
+            (Failure::File(_, std::io::ErrorKind::NotFound), Some(_)) => {
+                changed(&item.input, "is not there any more")
+            }
+            (failure, _) => failure,
+        })?;
+        let hash = blake3::hash(&text);
+        let hex = hash.to_hex().to_string();
+        if item.blake3.as_ref().is_some_and(|planned| *planned != hex) {
+            return Err(changed(&item.input, "holds other bytes"));
+        }
+        let record = &mut outcome.record;
+        record.bytes_in = text.len() as u64;
+        record.input_blake3 = Some(hex);
+        if !self.force
+            && let Some(known) = self.known(record)?
+        {
+            *record = Record { input: record.input.clone(), ..known };
+            outcome.resumed = true;
+            return Ok(());
+        }
+        let done = self.job.correct(&text, &name, self.interrupt)?;
+        let out = &done.corrected.text;
+        let finished = self.job.done(record.clone(), &text, &done);
+        let fail = |error: std::io::Error| {
+            Failure::file(&file::name(&self.folder.place(&item.output)), "write", &error)
+        };
+        let present = self.folder.present(&item.output).map_err(fail)?;
+        match present {
+            Some(present) if present == *out => {}
+            Some(present) if !self.force && !self.is_ours(&item.output, &present) => {
+                return Err(foreign(&self.folder.place(&item.output)));
+            }
+            _ => self.folder.write(&item.output, out).map_err(fail)?,
+        }
+        *record = finished;
+        outcome.told = done.warnings;
+        Ok(())
+    }
+
+    /// What an earlier run made of the same bytes with the same job, if its output is still there as it was written.
+    fn known(&self, record: &Record) -> Result<Option<Record>, Failure> {
+        let Some(candidates) = self.earlier.get(&record.output) else { return Ok(None) };
+        let same = candidates.iter().find(|known| {
+            known.status.is_done()
+                && known.input_blake3 == record.input_blake3
+                && known.job_blake3 == record.job_blake3
+                && known.subprograms.iter().all(|lookup| lookup.holds(&self.job.settings.flow))
+        });
+        let Some(known) = same else { return Ok(None) };
+        let present = self.folder.present(&record.output).map_err(|error| {
+            Failure::file(&file::name(&self.folder.place(&record.output)), "read", &error)
+        })?;
+        let intact = present.is_some_and(|bytes| is(known.output_blake3.as_deref(), blake3::hash(&bytes)));
+        Ok(intact.then(|| known.clone()))
+    }
+
+    /// True for a file that an earlier run wrote, or that says it was corrected.
+    fn is_ours(&self, output: &str, present: &[u8]) -> bool {
+        let hash = blake3::hash(present);
+        let mut known = self.earlier.get(output).into_iter().flatten();
+        known.any(|record| is(record.output_blake3.as_deref(), hash))
+            || nc_emit::find_provenance(present).is_some()
+    }
+}
+
+fn is(written: Option<&str>, hash: Hash) -> bool {
+    written.is_some_and(|written| written == hash.to_hex().as_str())
+}
+
+fn refused(diagnostic: Diagnostic) -> Failure {
+    Failure::Refused(vec![Report { source: None, diagnostics: vec![diagnostic] }])
+}
+
+fn changed(input: &Path, how: &str) -> Failure {
+    refused(
+        Diagnostic::error(CHANGED, format!("{} {how}: it changed since the plan was made", input.display()))
+            .help("make a new plan with `vpost batch plan`; what is the same will not be corrected again"),
+    )
+}
+
+fn foreign(place: &Path) -> Failure {
+    refused(
+        Diagnostic::error(
+            FOREIGN,
+            format!("{} is there already and was not written by vpost", place.display()),
+        )
+        .help("give another folder with `-O`, move that file away, or write over it with `--force`"),
+    )
+}
+
+/// Turns an outcome into that of a failure.
+fn fail(outcome: &mut Outcome, failure: Failure) {
+    let (status, reports) = match failure {
+        Failure::Refused(reports) | Failure::Usage(reports) => (Status::Refused, reports),
+        Failure::File(report, _) | Failure::Later(report) => (Status::Failed, vec![report]),
+        Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => (Status::Refused, Vec::new()),
+    };
+    outcome.record.status = status;
+    outcome.record.errors = reports.iter().flat_map(job::faults).collect();
+    outcome.told = reports;
+}
+
+/// Puts results in order.
+struct Told {
+    results: Results,
+    waiting: BTreeMap<usize, Outcome>,
+    printed: usize,
+}
+
+impl Told {
+    /// Tells all outcomes whose forerunners were told.
+    fn in_order(&mut self, progress: &Progress, messages: &Messages) {
+        while let Some(outcome) = self.waiting.remove(&self.results.records.len()) {
+            if !outcome.record.status.is_done() {
+                self.printed += 1;
+                if self.printed <= MOST_PRINTED {
+                    progress.aside(|| outcome.told.iter().for_each(|report| messages.report(report)));
+                }
+            }
+            self.results.resumed += usize::from(outcome.resumed);
+            self.results.records.push(outcome.record);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn at_least_one_thread_and_as_many_as_asked_for() {
+        assert!(threads(None) >= 1);
+        assert_eq!(threads(Some(3)), 3);
+    }
+}

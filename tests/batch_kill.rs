@@ -1,0 +1,129 @@
+//! `vpost batch`, ended at any moment: by Ctrl-C, or without being asked.
+
+// Signals are those of POSIX.
+#![cfg(unix)]
+
+mod common;
+#[path = "common/folders.rs"]
+mod folders;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use common::vpost;
+use folders::{PROFILE, release, temporaries, tree};
+
+fn start(input: &Path, output: &Path) -> Child {
+    let mut command = vpost();
+    command.arg("batch").arg(input).args(["-m", PROFILE, "-d", "linuxcnc", "-q", "-O"]).arg(output);
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the command starts")
+}
+
+fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    // Gone already, where the moment came late: no failure.
+    Command::new("kill").args([name, &id]).stderr(Stdio::null()).status().expect("kill is there");
+}
+
+/// One test at a time: each measures how long a run takes.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// A release, what its correction is, and how long that takes here and now.
+struct Release {
+    folder: tempfile::TempDir,
+    input: PathBuf,
+    wanted: BTreeMap<PathBuf, Vec<u8>>,
+    takes: Duration,
+}
+
+impl Release {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let input = folder.path().join("release");
+        release(&input, 60, 1500);
+        let output = folder.path().join("wanted");
+        let timed = |output: &Path| {
+            let begun = Instant::now();
+            assert!(start(&input, output).wait().unwrap().success());
+            begun.elapsed()
+        };
+        let takes = timed(&output).min(timed(&folder.path().join("again")));
+        Self { wanted: tree(&output), takes, input, folder }
+    }
+
+    /// Everything under a final name is whole.
+    fn assert_whole(&self, output: &Path) -> usize {
+        let there = if output.exists() { tree(output) } else { BTreeMap::new() };
+        for (name, bytes) in &there {
+            assert!(self.wanted.get(name) == Some(bytes), "{} is not whole", name.display());
+        }
+        there.len()
+    }
+
+    /// The same command again brings the same bytes and leaves nothing lying about.
+    fn assert_completes(&self, output: &Path) {
+        assert_eq!(start(&self.input, output).wait().unwrap().code(), Some(0));
+        assert!(tree(output) == self.wanted, "other bytes after the rerun");
+        assert_eq!(temporaries(output), Vec::<PathBuf>::new());
+        let journal: Vec<_> = std::fs::read_dir(output.join(".vpost/journal")).unwrap().collect();
+        assert_eq!(journal.len(), 1, "{journal:?}");
+    }
+
+    /// Kills `times` runs, each in its share of the time that a run takes.
+    fn kill(&self, times: u32) {
+        let mut whole = Vec::new();
+        for k in 0..times {
+            let output = self.folder.path().join(format!("out{k}"));
+            // Somewhere in the k-th share: the fractional part of multiples of the golden ratio.
+            let within = f64::from(k + 1) * 0.618_033_988_749_895 % 1.0;
+            let mut child = start(&self.input, &output);
+            std::thread::sleep(self.takes.mul_f64((f64::from(k) + within) / f64::from(times)));
+            signal(&child, "-KILL");
+            child.wait().unwrap();
+            whole.push(self.assert_whole(&output));
+            self.assert_completes(&output);
+            std::fs::remove_dir_all(&output).unwrap();
+        }
+        eprintln!("outputs that stood when the run was killed, of {}: {whole:?}", self.wanted.len());
+        assert!(
+            whole.iter().any(|count| (1..self.wanted.len()).contains(count)),
+            "no run was killed in the middle: {whole:?}"
+        );
+    }
+}
+
+#[test]
+fn killed_four_times_the_rerun_gives_the_same_bytes() {
+    let _alone = ALONE.lock();
+    Release::new().kill(4);
+}
+
+#[test]
+#[ignore = "a minute; `cargo test -p vpost --test batch_kill -- --ignored --nocapture`"]
+fn killed_twenty_times_the_rerun_gives_the_same_bytes() {
+    let _alone = ALONE.lock();
+    Release::new().kill(20);
+}
+
+#[test]
+fn interrupted_it_ends_at_once_and_leaves_nothing_half_done() {
+    let _alone = ALONE.lock();
+    let release = Release::new();
+    for (name, status) in [("-INT", 130), ("-TERM", 143)] {
+        let output = release.folder.path().join(name);
+        let mut child = start(&release.input, &output);
+        let begun = Instant::now();
+        // Once the first output stands, the run is in its middle.
+        while release.assert_whole(&output) == 0 && begun.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        signal(&child, name);
+        assert_eq!(child.wait().unwrap().code(), Some(status));
+        assert!(release.assert_whole(&output) < release.wanted.len());
+        assert_eq!(temporaries(&output), Vec::<PathBuf>::new());
+        release.assert_completes(&output);
+    }
+}
