@@ -42,7 +42,7 @@ pub(crate) struct Item {
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     pub items: Vec<Item>,
-    /// Files of other endings and links to folders.
+    /// Files of other endings, where no `--pattern` chooses, and links to folders.
     pub passed_over: Vec<PathBuf>,
 }
 
@@ -123,6 +123,7 @@ impl Search {
                 }
                 // A link that leads nowhere is a program that is missing: reading it says so.
                 Err(_) if self.is_program(&below) => found.items.push(item(path, &below, 0)?),
+                Ok(data) if data.is_file() && !self.patterns.is_empty() => {}
                 _ => found.passed_over.push(path),
             }
         }
