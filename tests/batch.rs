@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Output;
 
 use common::{messages, root, run, vpost};
-use folders::{PROFILE, program, release, temporaries, tree};
+use folders::{PROFILE, copy, program, release, temporaries, tree};
 
 fn batch(input: &Path, output: &Path, more: &[&str]) -> Output {
     let mut command = vpost();
@@ -151,18 +151,6 @@ fn what_is_done_is_not_done_again_unless_something_changed() {
     std::fs::remove_dir_all(output.join(".vpost")).unwrap();
     assert_eq!(go(&[]), 0, "the journal is gone");
     assert_eq!(tree(&output), first);
-}
-
-fn copy(from: &Path, to: &Path) {
-    if from.is_dir() {
-        std::fs::create_dir_all(to).unwrap();
-        for entry in std::fs::read_dir(from).unwrap() {
-            let name = entry.unwrap().file_name();
-            copy(&from.join(&name), &to.join(&name));
-        }
-    } else {
-        std::fs::copy(from, to).unwrap();
-    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ struct Planned {
 
 impl Planned {
     fn new(programs: u64) -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a temporary folder");
         let path = |name: &str| folder.path().join(name);
         let planned =
             Self { input: path("release"), output: path("out"), manifest: path("plan.jsonl"), folder };

@@ -41,13 +41,13 @@ struct Release {
 
 impl Release {
     fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = tempfile::tempdir().expect("a temporary folder");
         let input = folder.path().join("release");
         release(&input, 60, 1500);
         let output = folder.path().join("wanted");
         let timed = |output: &Path| {
             let begun = Instant::now();
-            assert!(start(&input, output).wait().unwrap().success());
+            assert!(start(&input, output).wait().expect("it ends").success());
             begun.elapsed()
         };
         let takes = timed(&output).min(timed(&folder.path().join("again")));
@@ -65,15 +65,16 @@ impl Release {
 
     /// The same command again brings the same bytes and leaves nothing lying about.
     fn assert_completes(&self, output: &Path) {
-        assert_eq!(start(&self.input, output).wait().unwrap().code(), Some(0));
+        assert_eq!(start(&self.input, output).wait().expect("it ends").code(), Some(0));
         assert!(tree(output) == self.wanted, "other bytes after the rerun");
         assert_eq!(temporaries(output), Vec::<PathBuf>::new());
-        let journal: Vec<_> = std::fs::read_dir(output.join(".vpost/journal")).unwrap().collect();
+        let journal: Vec<_> =
+            std::fs::read_dir(output.join(".vpost/journal")).expect("it is there").collect();
         assert_eq!(journal.len(), 1, "{journal:?}");
     }
 
-    /// Kills `times` runs, each in its share of the time that a run takes.
-    fn kill(&self, times: u32) {
+    /// Kills `times` runs, each in its share of the time that a run takes: how many outputs stood then.
+    fn kill(&self, times: u32) -> Vec<usize> {
         let mut whole = Vec::new();
         for k in 0..times {
             let output = self.folder.path().join(format!("out{k}"));
@@ -82,30 +83,30 @@ impl Release {
             let mut child = start(&self.input, &output);
             std::thread::sleep(self.takes.mul_f64((f64::from(k) + within) / f64::from(times)));
             signal(&child, "-KILL");
-            child.wait().unwrap();
+            child.wait().expect("it ends");
             whole.push(self.assert_whole(&output));
             self.assert_completes(&output);
-            std::fs::remove_dir_all(&output).unwrap();
+            std::fs::remove_dir_all(&output).expect("our own folder");
         }
-        eprintln!("outputs that stood when the run was killed, of {}: {whole:?}", self.wanted.len());
         assert!(
             whole.iter().any(|count| (1..self.wanted.len()).contains(count)),
             "no run was killed in the middle: {whole:?}"
         );
+        whole
     }
 }
 
 #[test]
 fn killed_four_times_the_rerun_gives_the_same_bytes() {
     let _alone = ALONE.lock();
-    Release::new().kill(4);
+    println!("outputs that stood when a run of 60 was killed: {:?}", Release::new().kill(4));
 }
 
 #[test]
 #[ignore = "a minute; `cargo test -p vpost --test batch_kill -- --ignored --nocapture`"]
 fn killed_twenty_times_the_rerun_gives_the_same_bytes() {
     let _alone = ALONE.lock();
-    Release::new().kill(20);
+    println!("outputs that stood when a run of 60 was killed: {:?}", Release::new().kill(20));
 }
 
 #[test]

@@ -59,3 +59,16 @@ pub(crate) fn temporaries(output: &Path) -> Vec<PathBuf> {
         .map(|entries| entries.map(|entry| entry.expect("a readable folder").path()).collect())
         .unwrap_or_default()
 }
+
+/// Copies a file, or a folder with everything in it.
+pub(crate) fn copy(from: &Path, to: &Path) {
+    if from.is_dir() {
+        std::fs::create_dir_all(to).expect("a new folder");
+        for entry in std::fs::read_dir(from).expect("a readable folder") {
+            let name = entry.expect("a readable folder").file_name();
+            copy(&from.join(&name), &to.join(&name));
+        }
+    } else {
+        std::fs::copy(from, to).expect("a copy");
+    }
+}
