@@ -87,12 +87,15 @@ pub fn function(readings: &[FunctionReading]) -> Result<Function, CalibrationErr
     }
     let mean_of = |all: &[Vec<f64>], i: usize| all.iter().map(|run| run[i]).sum::<f64>() / all.len() as f64;
     let count = runs.targets.len();
-    let side = |all: &[Vec<f64>]| -> Option<Vec<f64>> { (!all.is_empty()).then(|| (0..count).map(|i| mean_of(all, i)).collect()) };
+    let side = |all: &[Vec<f64>]| -> Option<Vec<f64>> {
+        (!all.is_empty()).then(|| (0..count).map(|i| mean_of(all, i)).collect())
+    };
     let (up, down) = (side(&runs.positive), side(&runs.negative));
     let (mut squares, mut free) = (0.0, 0);
     for (all, means) in [(&runs.positive, &up), (&runs.negative, &down)] {
         let Some(means) = means else { continue };
-        squares += all.iter().flat_map(|run| run.iter().zip(means)).map(|(v, m)| (v - m) * (v - m)).sum::<f64>();
+        squares +=
+            all.iter().flat_map(|run| run.iter().zip(means)).map(|(v, m)| (v - m) * (v - m)).sum::<f64>();
         free += all.len().saturating_sub(1) * count;
     }
     let mean = match (&up, &down) {

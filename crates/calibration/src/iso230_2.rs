@@ -154,7 +154,10 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
                 (None, None) => 0.0,
             };
             let own = |a: Option<Approach>| a.map_or(0.0, |a| a.repeatability);
-            let both = up.zip(down).zip(reversal).map_or(0.0, |((u, d), b)| 2.0 * u.deviation + 2.0 * d.deviation + b.abs());
+            let both = up
+                .zip(down)
+                .zip(reversal)
+                .map_or(0.0, |((u, d), b)| 2.0 * u.deviation + 2.0 * d.deviation + b.abs());
             Target {
                 position: runs.targets[i],
                 positive: up,
@@ -167,7 +170,9 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         .collect();
     let counts = [runs.positive.len(), runs.negative.len()];
     let of_mean = |a: &Approach, n: usize| a.deviation * a.deviation / n as f64;
-    let of_deviation = |a: &Approach, n: usize| if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 };
+    let of_deviation = |a: &Approach, n: usize| {
+        if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 }
+    };
     let pick = |t: &Target, side: usize| if side == 0 { t.positive } else { t.negative };
     let limits = |sides: &[usize], spread: f64| -> Vec<(Limit, Limit)> {
         let mut all = Vec::new();
@@ -176,7 +181,11 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
                 if let Some(a) = pick(t, side) {
                     let n = counts[side];
                     let variance = of_mean(&a, n) + spread * spread * of_deviation(&a, n);
-                    let limit = |sign: f64| Limit { value: a.mean + sign * spread * a.deviation, variance, position: t.position };
+                    let limit = |sign: f64| Limit {
+                        value: a.mean + sign * spread * a.deviation,
+                        variance,
+                        position: t.position,
+                    };
                     all.push((limit(1.0), limit(-1.0)));
                 }
             }
@@ -184,7 +193,10 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         all
     };
     let direction = |side: usize| -> Option<Direction> {
-        let worst = targets.iter().filter_map(|t| pick(t, side)).max_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
+        let worst = targets
+            .iter()
+            .filter_map(|t| pick(t, side))
+            .max_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
         let u = of_deviation(&worst, counts[side]).sqrt();
         Some(Direction {
             repeatability: Uncertain { value: worst.repeatability, expanded: 2.0 * 4.0 * u },
@@ -197,7 +209,8 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
     let means: Vec<(Limit, Limit)> = targets
         .iter()
         .map(|t| {
-            let parts = [t.positive.map(|a| of_mean(&a, counts[0])), t.negative.map(|a| of_mean(&a, counts[1]))];
+            let parts =
+                [t.positive.map(|a| of_mean(&a, counts[0])), t.negative.map(|a| of_mean(&a, counts[1]))];
             let given = parts.iter().flatten().count().max(1) as f64;
             let variance = parts.iter().flatten().sum::<f64>() / (given * given);
             let limit = Limit { value: t.mean, variance, position: t.position };
@@ -219,7 +232,10 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         negative: direction(1),
         reversal,
         mean_reversal: (!given.is_empty()).then(|| given.iter().sum::<f64>() / given.len() as f64),
-        repeatability: Uncertain { value: worst.repeatability, expanded: repeatability_uncertainty(worst, counts) },
+        repeatability: Uncertain {
+            value: worst.repeatability,
+            expanded: repeatability_uncertainty(worst, counts),
+        },
         systematic: range(&limits(&[0, 1], 0.0), relative).ok_or_else(few)?,
         mean_range: range(&means, relative).ok_or_else(few)?,
         accuracy: range(&limits(&[0, 1], 2.0), relative).ok_or_else(few)?,
@@ -230,7 +246,9 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
 /// Expanded uncertainty of R where it is R_i of this target.
 fn repeatability_uncertainty(target: &Target, counts: [usize; 2]) -> f64 {
     let parts = [(target.positive, counts[0]), (target.negative, counts[1])];
-    let of_deviation = |a: &Approach, n: usize| if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 };
+    let of_deviation = |a: &Approach, n: usize| {
+        if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 }
+    };
     // Of one direction 4s, of both 2s↑ + 2s↓ + |B|.
     for (approach, n) in &parts {
         if let Some(a) = approach

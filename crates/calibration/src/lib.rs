@@ -6,6 +6,8 @@
 
 pub mod change;
 mod error;
+pub mod functions;
+pub mod iso230_2;
 mod least_squares;
 mod student;
 pub mod tracker;

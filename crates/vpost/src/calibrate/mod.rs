@@ -4,6 +4,9 @@
 
 mod against;
 mod codes;
+mod formats;
+mod interferometer;
+mod iso_report;
 mod output;
 mod sheet;
 mod tracker;
@@ -26,11 +29,14 @@ pub struct Calibrate {
 pub enum CalibrateCommand {
     /// Three axis traverses of a laser tracker: directions, squareness, positioning and straightness.
     Tracker(tracker::Tracker),
+    /// Runs of an interferometer, or tables of a control: eighteen functions, squareness, ISO 230-2.
+    Interferometer(interferometer::Interferometer),
 }
 
 /// `vpost calibrate INSTRUMENT FILES… -o PROFILE`
 pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
+        CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::Axis;
+use machine_model::{Axis, Chain};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
@@ -96,6 +96,20 @@ impl Output {
         let name = target.name.as_deref().unwrap_or("calibrated machine");
         let text = ProfileText::new(name, chain, shared.dialect.as_deref());
         Ok(Self { text, base: None, tables: Vec::new(), folder })
+    }
+
+    /// The chain the profile will have.
+    pub(super) fn chain(&self, target: &Target) -> Result<Chain, Failure> {
+        if let Some(base) = &self.base {
+            return Ok(base.chain().clone());
+        }
+        let text = target.chain.as_deref().unwrap_or_default();
+        Chain::parse(text).map_err(|error| {
+            Failure::option(
+                format!("`--chain {text}`: {error}"),
+                "write the axes as in `--chain \"[w X Y b Z t]\"`",
+            )
+        })
     }
 
     /// Puts a table beside the profile and gives the name by which the profile calls it.
