@@ -26,7 +26,7 @@ class Unreadable(Exception):
 class Move:
     """One canonical motion; positions in machine coordinates, the tool's length not included."""
 
-    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "known", "start_known")
+    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "named", "known", "start_known")
 
     def __init__(self, rapid, line, start, end, arc, feed):
         self.rapid, self.line, self.start, self.end, self.arc, self.feed = rapid, line, start, end, arc, feed
@@ -161,8 +161,7 @@ class Canon:
         self.moves = []
         self.line = 0
         self.position = (0.0, 0.0, 0.0)
-        self.offset_name, self.g92, self.plane, self.feed = "G54", (0.0, 0.0, 0.0), 1, 0.0
-        self.offsets = {}
+        self.offset, self.g92, self.plane, self.feed = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1, 0.0
         # (seconds, line, moves before it): of G4 and of cycles.
         self.dwells = []
 
@@ -192,10 +191,8 @@ class Canon:
     def next_line(self, code):
         self.line = code.sequence_number
 
-    def set_g5x_offset(self, index, *values):
-        if any(values):
-            raise Unreadable(f"line {self.line}: the program sets a work offset")
-        self.offset_name = OFFSETS[index]
+    def set_g5x_offset(self, _, *values):
+        self.offset = tuple(value * INCH for value in values[:3])
 
     def set_g92_offset(self, *values):
         self.g92 = tuple(value * INCH for value in values[:3])
@@ -214,8 +211,7 @@ class Canon:
         self.dwells.append((f"dwell {seconds:g}", self.line, len(self.moves)))
 
     def machine(self, values):
-        offset = self.offsets.get(self.offset_name, (0.0, 0.0, 0.0))
-        return tuple(v * INCH + g + o for v, g, o in zip(values, self.g92, offset))
+        return tuple(v * INCH + g + o for v, g, o in zip(values, self.g92, self.offset))
 
     def add(self, rapid, end, arc=None):
         self.moves.append(Move(rapid, self.line, self.position, end, arc, 0.0 if rapid else self.feed))
@@ -240,6 +236,18 @@ class Canon:
         self.add(False, end, Arc(start, end, axes, (centre[axes[0]], centre[axes[1]]), turns))
 
 
+def write_offsets(path, offsets):
+    """The work offsets as the interpreter's parameters, inches.
+
+    It must know them itself: where a program changes its offset and then leaves an axis out, that axis stays in the
+    machine, and what it says of that axis afterwards depends on both offsets.
+    """
+    with open(path, "w", encoding="ascii") as file:
+        for index, name in enumerate(OFFSETS):
+            for axis, value in enumerate(offsets.get(name, ())):
+                file.write(f"{5201 + 20 * index + axis}\t{value / INCH!r}\n")
+
+
 def interpret(raw, offsets, least_increment=None):
     """Moves and events of a program.
 
@@ -253,8 +261,7 @@ def interpret(raw, offsets, least_increment=None):
         with open(path, "w", encoding="latin-1") as file:
             file.write("\n".join(text.lines) + "\nM2\n")
         canon = Canon(folder)
-        canon.offsets = offsets
-        open(canon.parameter_file, "w").close()
+        write_offsets(canon.parameter_file, offsets)
         result, line = gcode.parse(path, canon, "G21 G17 G40 G49 G80 G90 G94", "")
         if result > gcode.MIN_ERROR:
             raise Unreadable(f"line {line}: {gcode.strerror(result)}")
@@ -271,6 +278,8 @@ def interpret(raw, offsets, least_increment=None):
         before = move.known
         move.tool = text.tool.get(move.line)
         move.exempt = move.line in text.exempt
+        # What such a line does not name stays where it was: where the correction has put it.
+        move.named = text.lost.get(move.line) or set("XYZ")
     events, index = [], 0
     for line in sorted(text.events):
         while index < len(canon.moves) and canon.moves[index].line < line:

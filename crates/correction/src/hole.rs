@@ -278,9 +278,11 @@ impl<'m> Corrector<'m> {
             };
             corrector.follow_line(&mut follow, &part)
         };
-        // A start below R rises first, as the cycle does.
+        // A start below R rises first, as the cycle does. Under G98 one below the initial level (after a hole
+        // under G99) rises to that: LinuxCNC goes across at it, and where a control would not, higher is clear too.
         let start = Vector::from(hole.start.linear_mm);
-        let above = if down < 0.0 { start[normal].max(r_mm) } else { start[normal].min(r_mm) };
+        let least = if hole.cycle.return_to_initial { initial_mm } else { r_mm };
+        let above = if down < 0.0 { start[normal].max(least) } else { start[normal].min(least) };
         if above != start[normal] {
             let mut rise = start;
             rise[normal] = above;

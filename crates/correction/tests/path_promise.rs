@@ -511,6 +511,26 @@ fn a_leaning_hole_is_written_as_moves_where_it_can_be() {
     assert!((4.5e-3..=6.0e-3).contains(&lean), "half of 10 µm either way and rounding: {lean}");
 }
 
+/// After a hole under G99 the next one under G98: written as moves, its way across lies no lower than the level
+/// it returns to.
+#[test]
+fn a_hole_under_g98_goes_across_at_the_initial_level() {
+    let mut matrix = nalgebra::Matrix3::zeros();
+    matrix[(0, 2)] = 5e-4;
+    let model = Wavy { matrix, amplitude_mm: 0.0, wavelength_mm: 1.0 };
+    let (at_r, top) = (Vector::new(0.0, 0.0, 2.0), Vector::new(40.0, 10.0, 2.0));
+    let mut corrector = Corrector::new(&model, OPTIONS);
+    begin(&mut corrector, at_r);
+    let Motion::Hole(mut drilled) = hole(CycleKind::Drill, at_r, top, -18.0) else { unreachable!() };
+    drilled.initial_mm = 30.0;
+    let corrected = corrector.correct(&Motion::Hole(drilled), &block("XYZRQ", false)).unwrap();
+    let [first, second, ..] = corrected.pieces.as_slice() else { panic!("{:?}", corrected.pieces) };
+    assert_eq!((first.kind, second.kind), (PieceKind::Rapid, PieceKind::Rapid));
+    // 30 mm in a frame shifted by 5.5.
+    assert_eq!(first.axes[2], AxisWord::Write(24_500), "up first: {first:?}");
+    assert!(matches!(second.axes, [AxisWord::Write(_), _, AxisWord::Omit]), "across: {second:?}");
+}
+
 /// An upright machine keeps the cycle and moves it.
 #[test]
 fn an_upright_hole_stays_a_cycle() {
