@@ -109,6 +109,17 @@ impl AxisTables {
         self
     }
 
+    /// The same functions, the angles (`EA EB EC`) multiplied by a factor.
+    #[must_use]
+    pub fn with_angles_scaled(mut self, scale: f64) -> Self {
+        for coefficients in self.straight.iter_mut().chain(&mut self.curved).flatten() {
+            for angle in &mut coefficients[3..] {
+                *angle *= scale;
+            }
+        }
+        self
+    }
+
     /// The same constants over the whole of `range`: errors that do not depend on the place.
     #[must_use]
     pub fn constant(range: Range, values: Six) -> Self {

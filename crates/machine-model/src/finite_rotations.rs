@@ -6,6 +6,10 @@
 //! ([`Truncation::AllPlus`], [`Truncation::AllMinus`]); [`order_interval`] composes the rotations
 //! exactly in every admissible order.
 
+mod machine;
+
+pub use machine::{SecondOrder, Threshold, second_order, threshold};
+
 use crate::Vector;
 use nalgebra::Quaternion;
 

@@ -39,6 +39,8 @@ pub enum Command {
     Calibrate(crate::calibrate::Calibrate),
     /// Which unmodelled effect explains the gap between the model and measurements.
     Diagnose(crate::diagnose::Diagnose),
+    /// The volumetric error over the volume, and where to put the zero point and the workpiece.
+    Map(crate::map::Map),
     /// Check, show or describe machine profiles.
     Profile(Profile),
     /// List or check dialect tables.

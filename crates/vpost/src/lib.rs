@@ -13,6 +13,7 @@ pub mod diagnose;
 mod expand;
 mod file;
 mod grammar;
+pub mod map;
 mod message;
 mod points;
 mod predict;
@@ -57,6 +58,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Solve(a)) => solve::run(a, &arguments.shared, &messages),
         Some(Command::Calibrate(a)) => calibrate::run(a, &arguments.shared, &messages),
         Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
+        Some(Command::Map(a)) => map::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Completions(a)) => arguments::completions(a),

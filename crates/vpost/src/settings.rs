@@ -179,7 +179,7 @@ fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, F
 fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
     let mut setup = Setup {
         work_offsets: profile.work_offsets.clone(),
-        tools: profile.tools.clone(),
+        tools: tools(shared, profile)?,
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
@@ -194,6 +194,15 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
             None => setup.work_offsets.push((name, value)),
         }
     }
+    if let Some(start) = &shared.start_at {
+        setup.start_mm = Some(triple("--start-at", start, start, "400,280,200")?);
+    }
+    Ok(setup)
+}
+
+/// Length vectors of the H numbers: the profile's and the command line's.
+pub(crate) fn tools(shared: &Shared, profile: &Profile) -> Result<Vec<(u32, [f64; 3])>, Failure> {
+    let mut tools = profile.tools.clone();
     for option in &shared.tool {
         let example = "H1=120 or H1=0,0,120";
         let (name, value) = assignment("--tool", option, example)?;
@@ -206,15 +215,12 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         } else {
             [0.0, 0.0, millimetres(value).ok_or_else(|| wrong("--tool", option, example))?]
         };
-        match setup.tools.iter_mut().find(|(known, _)| *known == number) {
+        match tools.iter_mut().find(|(known, _)| *known == number) {
             Some(entry) => entry.1 = vector,
-            None => setup.tools.push((number, vector)),
+            None => tools.push((number, vector)),
         }
     }
-    if let Some(start) = &shared.start_at {
-        setup.start_mm = Some(triple("--start-at", start, start, "400,280,200")?);
-    }
-    Ok(setup)
+    Ok(tools)
 }
 
 fn wrong(option: &str, given: &str, example: &str) -> Failure {

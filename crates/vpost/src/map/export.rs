@@ -1,0 +1,66 @@
+//! The map for other programs: CSV, and VTK for ParaView.
+
+use std::fmt::Write;
+
+use super::study::{Kind, Study};
+use crate::points::fixed;
+
+/// Decimals of a micrometre.
+const DECIMALS: usize = 6;
+
+/// `x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um`, a row for each node, X fastest.
+pub(super) fn csv(study: &Study) -> Vec<u8> {
+    let mut out = String::from("x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um\n");
+    for (index, error) in study.map.errors_mm().iter().enumerate() {
+        let place = study.map.grid().place_mm(index);
+        for value in place.iter() {
+            out.push_str(&fixed(*value, 9));
+            out.push(',');
+        }
+        for value in error.iter() {
+            out.push_str(&fixed(value * 1e3, DECIMALS));
+            out.push(',');
+        }
+        out.push_str(&fixed(error.norm() * 1e3, DECIMALS));
+        out.push('\n');
+    }
+    out.into_bytes()
+}
+
+/// Legacy VTK, a rectilinear grid: errors and their lengths, as they are and after the shift by the
+/// geometric median.
+pub(super) fn vtk(study: &Study) -> Vec<u8> {
+    let grid = study.map.grid();
+    let [nx, ny, nz] = grid.counts();
+    // The title is one line of at most 255 characters.
+    let plain = |c: char| if c.is_ascii_graphic() { c } else { ' ' };
+    let name: String = study.machine.chars().map(plain).take(200).collect();
+    let mut out = format!(
+        "# vtk DataFile Version 3.0\nvpost map of {name}\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS {nx} {ny} {nz}\n"
+    );
+    for (axis, nodes) in ["X", "Y", "Z"].iter().zip(grid.axes()) {
+        let places = nodes.places_mm();
+        let _ = writeln!(out, "{axis}_COORDINATES {} double", places.len());
+        let text: Vec<String> = places.iter().map(|v| fixed(*v, 9)).collect();
+        out.push_str(&text.join(" "));
+        out.push('\n');
+    }
+    let _ = writeln!(out, "POINT_DATA {}", grid.len());
+    let median = study.parts[0].zero_points.iter().find(|z| z.kind == Kind::Median);
+    let shift = median.map(|z| z.shift_mm).unwrap_or_default();
+    for (name, shift) in [("error", shift * 0.0), ("error_after_shift", shift)] {
+        let _ = writeln!(out, "VECTORS {name}_um double");
+        for error in study.map.errors_mm() {
+            let left = (error - shift) * 1e3;
+            let text = [0, 1, 2].map(|axis| fixed(left[axis], DECIMALS));
+            out.push_str(&text.join(" "));
+            out.push('\n');
+        }
+        let _ = writeln!(out, "SCALARS {name}_length_um double 1\nLOOKUP_TABLE default");
+        for error in study.map.errors_mm() {
+            out.push_str(&fixed((error - shift).norm() * 1e3, DECIMALS));
+            out.push('\n');
+        }
+    }
+    out.into_bytes()
+}

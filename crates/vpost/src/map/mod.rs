@@ -1,0 +1,134 @@
+//! `vpost map`: what the machine does wrong over its volume, and where to put the zero point.
+
+mod export;
+mod json;
+mod options;
+mod second_order;
+mod study;
+mod text;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use diagnostic::Diagnostic;
+use machine_model::{Command, Engine, EngineId, PathModel, Vector};
+
+use crate::arguments::{Outside, Shared};
+use crate::message::{Failure, Messages, Report};
+use crate::predict::POINT_OUTSIDE;
+use crate::settings::{engine_named, machine};
+use crate::{conditions, file, profile};
+
+/// `vpost map`
+#[derive(Debug, Args)]
+pub struct Map {
+    /// Nodes of X, Y and Z: how many over the calibrated volume (22x22x21), or from:to:step in mm for each
+    /// (40:880:40,30:450:20,5:505:25).
+    #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
+    pub grid: String,
+    /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
+    #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
+    pub tool_vector: Option<String>,
+    /// Where the rotary axes stand, degrees; 0 if not given.
+    #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
+    pub rotary: Option<String>,
+    /// Tolerance for the share of nodes within it, µm.
+    #[arg(long, value_name = "UM", default_value_t = 20.0)]
+    pub within: f64,
+    /// A part of the volume to give figures and zero points for, mm (repeatable).
+    #[arg(long, value_name = "NAME=X0..X1,Y0..Y1,Z0..Z1", allow_hyphen_values = true)]
+    pub region: Vec<String>,
+    /// The same for a layer of nodes, at a place of the third axis in mm, or for every layer (repeatable).
+    #[arg(long, value_name = "XY=Z|XZ=Y|YZ=X|XY|XZ|YZ", allow_hyphen_values = true)]
+    pub plane: Vec<String>,
+    /// The same for a workpiece, where its axis commands lie, mm.
+    #[arg(long, value_name = "X0..X1,Y0..Y1,Z0..Z1", allow_hyphen_values = true)]
+    pub part_box: Option<String>,
+    /// Find the place for a workpiece of this size, mm, where shifting and turning it leave least.
+    #[arg(long, value_name = "LX,LY,LZ")]
+    pub clamp: Option<String>,
+    /// At which angles products of errors begin to matter, and what the order of rotations changes.
+    #[arg(long)]
+    pub second_order: bool,
+    /// Write the errors of all nodes (CSV).
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write all figures (JSON).
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the map for ParaView (VTK).
+    #[arg(long, value_name = "FILE")]
+    pub vtk: Option<PathBuf>,
+}
+
+/// `vpost map -m PROFILE`
+pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let loaded = profile::load(machine(shared)?)?;
+    let profile = loaded.profile;
+    let conditions = conditions::conditions(shared)?;
+    let id = shared.engine.as_deref().map_or(Ok(EngineId::RigidBody), engine_named)?;
+    let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
+    let model = model(engine.as_ref())?;
+    let asked = options::read(arguments, shared, &profile, model.volume())?;
+    outside(&asked, model, shared, messages)?;
+    let study = study::Study::new(&profile, id, model, &asked)?;
+    if let Some(path) = &arguments.csv {
+        file::write(path, &export::csv(&study))?;
+    }
+    if let Some(path) = &arguments.vtk {
+        file::write(path, &export::vtk(&study))?;
+    }
+    if let Some(path) = &arguments.json {
+        file::write(path, &json::bytes(&study))?;
+    }
+    file::print(text::page(&study).as_bytes())
+}
+
+fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
+    engine.path_model().ok_or_else(|| {
+        Failure::option(
+            format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
+            "leave `--engine` out, or take one of the engines without `-published`",
+        )
+    })
+}
+
+/// Nodes outside the calibrated volume: refused, unless the nearest point's error is asked for.
+fn outside(
+    asked: &options::Asked,
+    model: &dyn PathModel,
+    shared: &Shared,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let volume = model.volume();
+    let boxes = asked.part_box_mm.iter().copied().chain([asked.grid.axes().each_ref().map(|n| n.range_mm())]);
+    for ranges in boxes {
+        for (axis, range) in ranges.iter().enumerate() {
+            let known = volume.0[axis];
+            if known.contains(range.low) && known.contains(range.high) {
+                continue;
+            }
+            let message = format!(
+                "{} from {} to {} mm reaches outside the calibrated volume, {} to {} mm",
+                ['X', 'Y', 'Z'][axis],
+                range.low,
+                range.high,
+                known.low,
+                known.high
+            );
+            if shared.outside != Some(Outside::Clamp) {
+                let help = "stay inside, or take the nearest point's error with `--outside clamp`";
+                return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+            }
+            let help = "the nodes outside have the error of the volume's nearest point";
+            let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
+            messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+        }
+    }
+    Ok(())
+}
+
+/// The state in which errors are asked for.
+fn command(asked: &options::Asked, linear_mm: Vector, direction: [i8; 3]) -> Command {
+    Command { linear_mm, rotary_rad: asked.rotary_rad, tool_mm: asked.tool_mm, direction }
+}

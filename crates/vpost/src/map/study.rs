@@ -1,0 +1,218 @@
+//! The map and everything that is found in it.
+
+use error_map::diagonals::{Diagonal, body_diagonals};
+use error_map::placement::{self, Freedom, Place};
+use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
+use error_map::{Block, ErrorMap, Grid, Nodes, Plane, Statistics};
+use machine_model::{EngineId, PathModel, Range, Vector};
+use machine_profile::Profile;
+use rayon::prelude::*;
+
+use super::command;
+use super::options::Asked;
+use super::second_order::{self, SecondOrder};
+use crate::message::Failure;
+
+/// Targets along each body diagonal.
+const TARGETS: u32 = 41;
+/// Samples of a workpiece along each axis.
+const PART_NODES: u64 = 11;
+
+/// What the map shows.
+pub(super) struct Study {
+    pub machine: String,
+    pub engine: EngineId,
+    pub tool_mm: Vector,
+    pub rotary_rad: Vector,
+    pub within_mm: f64,
+    pub resolution_mm: [f64; 3],
+    pub work_offsets: Vec<(String, [f64; 3])>,
+    pub map: ErrorMap,
+    /// The volume first, then regions, planes, the workpiece.
+    pub parts: Vec<Part>,
+    pub diagonals: Vec<Diagonal>,
+    pub places: Vec<(Freedom, Place)>,
+    pub second_order: Option<SecondOrder>,
+}
+
+/// A part of the volume, its figures and its zero points.
+pub(super) struct Part {
+    pub name: String,
+    pub box_mm: [Range; 3],
+    pub figures: Statistics,
+    pub zero_points: Vec<ZeroPoint>,
+}
+
+/// One answer to "where to put the zero point".
+pub(super) struct ZeroPoint {
+    /// What it is best in.
+    pub kind: Kind,
+    /// The error that is taken away, mm.
+    pub shift_mm: Vector,
+    pub figures: Statistics,
+    pub proof: Proof,
+}
+
+/// The questions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Node,
+    Median,
+    Minimax,
+    Share,
+}
+
+/// How good the answer is.
+pub(super) enum Proof {
+    /// The node's place; sums computed of all nodes.
+    Node { place_mm: Vector, sum_mm: f64, examined: usize },
+    /// The sum, and what no shift is below.
+    Sum { sum_mm: f64, lower_bound_mm: f64 },
+    /// The ball's radius, and how many errors hold it.
+    Radius { radius_mm: f64, support: usize },
+    /// Nodes within, and what no shift exceeds.
+    Count { within: usize, at_most: usize },
+}
+
+impl Kind {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Node => "best node",
+            Self::Median => "geometric median",
+            Self::Minimax => "minimax",
+            Self::Share => "best share",
+        }
+    }
+}
+
+impl Study {
+    pub(super) fn new(
+        profile: &Profile,
+        engine: EngineId,
+        model: &dyn PathModel,
+        asked: &Asked,
+    ) -> Result<Self, Failure> {
+        let error = |q: &Vector, direction: [i8; 3]| model.error_mm(&command(asked, *q, direction));
+        let map = evaluated(asked.grid.clone(), |q| error(q, [0; 3]));
+        let parts = parts(&map, asked, |q| error(q, [0; 3]))?;
+        let box_mm = map.grid().axes().each_ref().map(Nodes::range_mm);
+        let mut places = Vec::new();
+        if let Some(size) = &asked.clamp_mm {
+            for freedom in [Freedom::Shift, Freedom::ShiftAndTurn, Freedom::Rigid] {
+                let found =
+                    placement::search(&model.volume(), size, freedom, asked.within_mm, |q| error(q, [0; 3]));
+                places.push((
+                    freedom,
+                    found.map_err(|too_large| {
+                        Failure::option(
+                            format!("`--clamp`: {too_large}"),
+                            "give the size of a box that fits, X,Y,Z in mm",
+                        )
+                    })?,
+                ));
+            }
+        }
+        Ok(Self {
+            machine: profile.name.clone(),
+            engine,
+            tool_mm: asked.tool_mm,
+            rotary_rad: asked.rotary_rad,
+            within_mm: asked.within_mm,
+            resolution_mm: profile.resolution_mm,
+            work_offsets: profile.work_offsets.clone(),
+            parts,
+            diagonals: body_diagonals(&box_mm, TARGETS, error),
+            places,
+            second_order: asked.second_order.then(|| second_order::of(profile, &map, asked)).transpose()?,
+            map,
+        })
+    }
+}
+
+/// The map of a grid, on all cores; each node is computed by itself, so their number changes nothing.
+fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
+    let errors = (0..grid.len()).into_par_iter().with_min_len(256).map(|i| error_mm(&grid.place_mm(i)));
+    let errors = errors.collect();
+    ErrorMap::new(grid, errors)
+}
+
+fn parts(
+    map: &ErrorMap,
+    asked: &Asked,
+    error_mm: impl Fn(&Vector) -> Vector + Sync,
+) -> Result<Vec<Part>, Failure> {
+    let grid = map.grid();
+    let mut blocks = vec![("volume".to_owned(), grid.all())];
+    for (name, ranges) in &asked.regions {
+        let block = grid.region(ranges);
+        if block.is_empty() {
+            return Err(Failure::option(
+                format!("`--region {name}`: no node of the grid lies in it"),
+                "make it larger, or the grid finer with `--grid`",
+            ));
+        }
+        blocks.push((name.clone(), block));
+    }
+    for (plane, at) in &asked.planes {
+        let places = grid.axes()[plane.normal()].places_mm();
+        let wanted = at.map_or_else(|| places.to_vec(), |at| vec![at]);
+        blocks.extend(wanted.into_iter().map(|at| layer(grid, *plane, at)));
+    }
+    let mut parts: Vec<Part> =
+        blocks.into_par_iter().map(|(name, block)| part(name, map, &block, asked.within_mm)).collect();
+    if let Some(ranges) = &asked.part_box_mm {
+        let nodes = ranges.map(|range| {
+            let count = if range.low < range.high { PART_NODES } else { 1 };
+            Nodes::over(range, count).expect("a range in order")
+        });
+        let own = evaluated(Grid::new(nodes).expect("few nodes"), error_mm);
+        parts.push(part("part box".to_owned(), &own, &own.grid().all(), asked.within_mm));
+    }
+    Ok(parts)
+}
+
+fn layer(grid: &Grid, plane: Plane, at_mm: f64) -> (String, Block) {
+    let block = grid.layer(plane, at_mm);
+    let axis = plane.normal();
+    let place = grid.axes()[axis].places_mm()[block.ranges()[axis].start];
+    (format!("{} at {} {place}", plane.name(), ['X', 'Y', 'Z'][axis]), block)
+}
+
+fn part(name: String, map: &ErrorMap, block: &Block, within_mm: f64) -> Part {
+    let errors = map.errors_of(block);
+    let some = "a part has nodes: empty ones were refused";
+    let answer = |kind: Kind, shift_mm: Vector, proof: Proof| ZeroPoint {
+        kind,
+        shift_mm,
+        figures: Statistics::shifted(&errors, &shift_mm, within_mm).expect(some),
+        proof,
+    };
+    let node = best_node(&errors).expect(some);
+    let place_mm = map.grid().place_mm(block.indices(map.grid()).nth(node.index).expect(some));
+    let median = geometric_median(&errors).expect(some);
+    let ball = smallest_ball(&errors).expect(some);
+    let share = best_share(&errors, within_mm).expect(some);
+    let zero_points = vec![
+        answer(
+            Kind::Node,
+            node.shift_mm,
+            Proof::Node { place_mm, sum_mm: node.sum_mm, examined: node.examined },
+        ),
+        answer(
+            Kind::Median,
+            median.shift_mm,
+            Proof::Sum { sum_mm: median.sum_mm, lower_bound_mm: median.lower_bound_mm },
+        ),
+        answer(
+            Kind::Minimax,
+            ball.centre_mm,
+            Proof::Radius { radius_mm: ball.radius_mm, support: ball.support.len() },
+        ),
+        answer(Kind::Share, share.shift_mm, Proof::Count { within: share.within, at_most: share.at_most }),
+    ];
+    let box_mm = [0, 1, 2].map(|axis| {
+        let places = &map.grid().axes()[axis].places_mm()[block.ranges()[axis].clone()];
+        Range { low: places[0], high: places[places.len() - 1] }
+    });
+    Part { name, box_mm, figures: Statistics::of(&errors, within_mm).expect(some), zero_points }
+}
