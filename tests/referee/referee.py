@@ -251,8 +251,8 @@ class Judge:
                 self.failures.append(f"{len(taken)} {kind} moves for {len(wanted)} of the original, from line {taken[0].line}")
                 continue
             if kind == "exempt":
-                for one, two, after in zip(wanted, taken, wanted[1:] + [None]):
-                    if after is not None and after.line == one.line:
+                for one, two, following in zip(wanted, taken, wanted[1:] + [None]):
+                    if following is not None and following.line == one.line:
                         # By way of a point that G91 measures from where the axes stand.
                         continue
                     named = [axis for axis, letter in enumerate("XYZ") if letter in one.named]

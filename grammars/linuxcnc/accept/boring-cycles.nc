@@ -1,11 +1,13 @@
-(G85, G86 and G89 return to R under G99 and to the initial level under G98)
+(G85 and G89 return to R under G99 and to the initial level under G98)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
 M3 S500
 G99 G85 X20. Y20. Z50. R55. F100.
 G89 X40. Z50. R55. P0.5
-G86 X60. Z50. R55. P0.5
-G98 X80. P0.5
+G80
+G0 Z60.
+G98 G85 X80. Z50. R55.
+X90.
 G80
 G0 Z60.
 M2
