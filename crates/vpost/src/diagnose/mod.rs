@@ -2,6 +2,7 @@
 
 mod json;
 mod measurements;
+mod plan;
 mod report;
 mod summary;
 mod written;
@@ -24,8 +25,11 @@ use crate::{file, profile};
 #[derive(Debug, Args)]
 pub struct Diagnose {
     /// Measurements (CSV); - for standard input.
-    #[arg(value_name = "MEASUREMENTS.csv")]
-    pub measurements: PathBuf,
+    #[arg(value_name = "MEASUREMENTS.csv", required_unless_present = "plan")]
+    pub measurements: Option<PathBuf>,
+    /// Print what to measure on this machine, and nothing else: rows to fill in, or the NC program that goes there.
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "measurements")]
+    pub plan: Option<plan::Form>,
     /// Measurements that no fit may see: the predicted shrinkage is checked on them.
     #[arg(long, value_name = "FILE")]
     pub holdout: Option<PathBuf>,
@@ -68,7 +72,10 @@ struct Measured {
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let model = Model::load(shared)?;
-    let measured = read(&arguments.measurements, &model, &arguments.ignore_column)?;
+    let Some(measurements) = &arguments.measurements else {
+        return plan::print(arguments.plan.unwrap_or(plan::Form::Points), &model, shared, messages);
+    };
+    let measured = read(measurements, &model, &arguments.ignore_column)?;
     let holdout =
         arguments.holdout.as_deref().map(|path| read(path, &model, &arguments.ignore_column)).transpose()?;
     let without = arguments

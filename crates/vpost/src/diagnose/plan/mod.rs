@@ -1,0 +1,144 @@
+//! `vpost diagnose --plan`: what to measure so that the causes can be told apart.
+
+mod lines;
+mod program;
+
+use std::fmt::Write;
+
+use clap::ValueEnum;
+use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
+use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
+use machine_model::{Command, Vector};
+
+use super::Model;
+use crate::arguments::Shared;
+use crate::file;
+use crate::message::{Failure, Messages};
+use crate::settings::Settings;
+
+use lines::{Line, lines};
+
+/// What of a plan is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// The rows to be filled in (CSV).
+    Points,
+    /// The motions (NC program in the profile's dialect).
+    Program,
+}
+
+/// Prints a plan for the profile's axes and volume, and says what it cannot separate.
+pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
+    let text = match form {
+        Form::Points => points(&plan),
+        Form::Program => program::text(&plan, &Settings::load(shared, messages)?)?,
+    };
+    file::print(text.as_bytes())?;
+    let found = confounding(&design(&plan, &model.geometry));
+    messages.note(&summary(&plan, &found));
+    Ok(())
+}
+
+/// Seconds from the start to each stop, as the machine would need them; to be replaced by what the clock said.
+fn times(plan: &[Line]) -> Vec<Vec<f64>> {
+    let mut now = 0.0;
+    let mut here: Option<Vector> = None;
+    plan.iter()
+        .map(|line| {
+            now += line.wait_s;
+            line.stops
+                .iter()
+                .map(|stop| {
+                    let way = here.map_or(0.0, |from| (stop.at_mm - from).norm());
+                    now += 60.0 * way / line.feed_mm_min + if line.flying { 0.0 } else { lines::DWELL_S };
+                    here = Some(stop.at_mm);
+                    now
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// The rows in the columns of a measurement file, readings and conditions to be filled in.
+fn points(plan: &[Line]) -> String {
+    let mut out = String::from(
+        "run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,dir_x,dir_y,dir_z,feed_mm_min,tool_x_mm,tool_y_mm,tool_z_mm,load_kg,time_s,temp_c,repeat,u_um\n",
+    );
+    for (line, times) in plan.iter().zip(times(plan)) {
+        for (stop, time) in line.stops.iter().zip(times) {
+            let (q, t, d) = (stop.at_mm, line.tool_mm, stop.direction);
+            // An axis at rest lags behind nothing: only readings on the fly have a feed.
+            let feed = if line.flying { format!("{}", line.feed_mm_min) } else { String::new() };
+            // Writing into a string cannot fail.
+            let _ = writeln!(
+                out,
+                "{},{:.3},{:.3},{:.3},,,,{},{},{},{feed},{:.3},{:.3},{:.3},,{time:.0},,{},",
+                line.run, q.x, q.y, q.z, d[0], d[1], d[2], t.x, t.y, t.z, line.repeat
+            );
+        }
+    }
+    out
+}
+
+/// The plan as measurements without readings.
+pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
+    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), geometry: geometry.clone() };
+    for (line, times) in plan.iter().zip(times(plan)) {
+        data.runs.push(line.run.clone());
+        for (stop, time) in line.stops.iter().zip(times) {
+            data.rows.push(Row {
+                run: data.runs.len() - 1,
+                command: Command {
+                    linear_mm: stop.at_mm,
+                    rotary_rad: Vector::zeros(),
+                    tool_mm: line.tool_mm,
+                    direction: stop.direction,
+                },
+                conditions: Conditions {
+                    time_s: Some(time),
+                    feed_mm_min: line.flying.then_some(line.feed_mm_min),
+                    ..Conditions::default()
+                },
+                predicted_mm: Vector::zeros(),
+                u_um: None,
+                reading: Reading::Displacement([Some(0.0); 3]),
+                line: 0,
+            });
+        }
+    }
+    data
+}
+
+/// Why two effects look alike on any lines, where they do.
+fn reason(a: EffectKind, b: EffectKind) -> &'static str {
+    use EffectKind as K;
+    match (a, b) {
+        (K::Sag(_), K::Straightness { .. }) | (K::Straightness { .. }, K::Sag(_)) => {
+            "a droop with the overhang is a bow of that axis"
+        }
+        (K::Warmup(_), K::Step(_)) | (K::Step(_), K::Warmup(_)) => "a quick warm-up is a step at its start",
+        (K::Step(_) | K::Warmup(_), K::InstrumentDrift) | (K::InstrumentDrift, K::Step(_) | K::Warmup(_)) => {
+            "a slow change is machine or instrument: watch a fixed target to tell them apart"
+        }
+        _ => "on these lines they move the tool alike",
+    }
+}
+
+fn summary(plan: &[Line], found: &Confounding) -> String {
+    let rows: usize = plan.iter().map(|l| l.stops.len()).sum();
+    let hours = times(plan).last().and_then(|t| t.last().copied()).unwrap_or(0.0) / 3600.0;
+    let mut text = format!(
+        "{rows} rows in {} lines, about {hours:.1} hours; {} effects are told apart",
+        plan.len(),
+        found.effects.len() - found.hidden.len()
+    );
+    for (a, b, value) in found.pairs(Confounding::ALIKE) {
+        let _ = write!(text, "\nexcept {a} from {b} ({value:.3}): {}", reason(a, b));
+    }
+    for kind in &found.hidden {
+        let _ = write!(text, "\nexcept {kind}, which these lines do not show");
+    }
+    text.push_str("\nthermal and load effects are asked for once temp_c and load_kg are filled in with more than one value");
+    text
+}

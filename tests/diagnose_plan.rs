@@ -1,0 +1,212 @@
+//! `vpost diagnose --plan`: the design separates the causes, the rows can be filled in, the program runs.
+
+mod common;
+
+use common::{have_interpreter, messages, referee, run};
+use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
+use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
+use machine_model::{Command, Vector};
+
+const PROFILES: [&str; 3] = [
+    "samples/diagnosis/backlash.toml",
+    "machine-profiles/stan_s500.toml",
+    "machine-profiles/generic_vmc.toml",
+];
+
+/// What the command prints and says.
+fn plan(form: &str, profile: &str, more: &[&str]) -> (String, String) {
+    let ran = run(&[&["diagnose", "--plan", form, "-m", profile], more].concat());
+    assert!(ran.status.success(), "{profile}: {}", messages(&ran));
+    (String::from_utf8(ran.stdout.clone()).expect("text"), messages(&ran))
+}
+
+/// Rows of a plan as the diagnosis would see them, read by code of this test's own.
+fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements {
+    let text = std::fs::read_to_string(common::root().join(profile)).expect("a profile");
+    let chain = text.lines().find_map(|line| line.strip_prefix("chain")).expect("a chain");
+    let chain = machine_model::Chain::parse(chain.split('"').nth(1).expect("in quotes")).expect("a chain");
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let mut data =
+        Measurements { runs: Vec::new(), rows: Vec::new(), geometry: EffectGeometry::from_chain(&chain) };
+    for line in lines.filter(|line| kept(line)) {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields.len(), header.len(), "{line}");
+        let value = |name: &str| {
+            let field = fields[header.iter().position(|h| *h == name).expect("the column")];
+            (!field.is_empty()).then(|| field.parse::<f64>().expect("a number"))
+        };
+        let three = |names: [&str; 3]| Vector::from(names.map(|n| value(n).expect("filled in")));
+        if data.runs.last().is_none_or(|run| run != fields[0]) {
+            data.runs.push(fields[0].to_owned());
+        }
+        data.rows.push(Row {
+            run: data.runs.len() - 1,
+            command: Command {
+                linear_mm: three(["x_mm", "y_mm", "z_mm"]),
+                rotary_rad: Vector::zeros(),
+                tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
+                direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
+            },
+            conditions: Conditions {
+                time_s: value("time_s"),
+                feed_mm_min: value("feed_mm_min"),
+                ..Conditions::default()
+            },
+            predicted_mm: Vector::zeros(),
+            u_um: None,
+            reading: Reading::Displacement([Some(0.0); 3]),
+            line: 0,
+        });
+    }
+    data
+}
+
+/// A warm-up moves a machine as slowly as a tracker drifts: only a fixed target tells them apart, which is no line.
+fn inherent(a: EffectKind, b: EffectKind) -> bool {
+    let warm = |k| matches!(k, EffectKind::Warmup(_));
+    let drift = |k| matches!(k, EffectKind::InstrumentDrift);
+    warm(a) && drift(b) || drift(a) && warm(b)
+}
+
+#[test]
+fn no_pair_of_effects_looks_alike_on_the_planned_lines() {
+    for profile in PROFILES {
+        let (csv, said) = plan("points", profile, &[]);
+        let found = confounding(&design(&csv, profile, &|_| true));
+        assert!(found.effects.len() > 45, "{profile}: only {} effects are asked about", found.effects.len());
+        assert!(found.hidden.is_empty(), "{profile}: {:?}", found.hidden);
+        for (a, b, value) in found.pairs(Confounding::ALIKE) {
+            assert!(inherent(a, b), "{profile}: {a} and {b}, {value}");
+            // What cannot be separated is said, with the reason.
+            let line = said.lines().find(|l| l.contains(&a.to_string()) && l.contains(&b.to_string()));
+            assert!(line.is_some_and(|l| l.contains("fixed target")), "{said}");
+        }
+    }
+}
+
+/// The check can fail: without the second and third tool an angle is a squareness, read one way a backlash is nothing.
+#[test]
+fn poorer_lines_do_look_alike() {
+    let (csv, _) = plan("points", PROFILES[0], &[]);
+    let one_tool = design(&csv, PROFILES[0], &|line| !line.contains("tool,") && !line.contains("aside,"));
+    let alike = confounding(&one_tool).pairs(Confounding::ALIKE);
+    let angular = alike.iter().filter(|(a, b, _)| {
+        [a, b].iter().any(|k| matches!(k, EffectKind::Angular { .. })) && !inherent(*a, *b)
+    });
+    assert!(angular.count() > 0, "{alike:?}");
+    let one_way = design(&csv, PROFILES[0], &|line| !line.split(',').skip(7).take(3).any(|f| f == "-1"));
+    let effects = confounding(&one_way).effects;
+    assert!(!effects.iter().any(|k| matches!(k, EffectKind::Backlash(0))), "{effects:?}");
+}
+
+/// Filled in with readings of a machine that has a backlash and a squareness, the plan finds both.
+#[test]
+fn a_plan_that_was_filled_in_names_the_causes() {
+    let (csv, _) = plan("points", PROFILES[0], &[]);
+    let mut state = 1_u64;
+    // Sum of twelve uniform numbers: a standard deviation of 1.
+    let mut noise = || {
+        (0..12)
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64
+            })
+            .sum::<f64>()
+            - 6.0
+    };
+    let filled: String = csv
+        .lines()
+        .enumerate()
+        .map(|(at, line)| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if at > 0 {
+                let number = |k: usize| fields[k].parse::<f64>().expect("a number");
+                let (y, dir_x) = (number(2), number(7));
+                // diagnosis.md: dx = -h dir_x, dx = -a y; 4 um and 30 urad.
+                let dx = -4.0 * dir_x - 0.030 * y + noise();
+                let values = [dx, noise(), noise()];
+                for (field, value) in fields[4..7].iter_mut().zip(values) {
+                    *field = format!("{value:.3}");
+                }
+            }
+            fields.join(",") + "\n"
+        })
+        .collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("filled.csv");
+    std::fs::write(&path, filled).expect("writable");
+    let ran = run(&["diagnose", path.to_str().expect("a plain path"), "-m", PROFILES[0]]);
+    let text = String::from_utf8_lossy(&ran.stdout);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let first = text.lines().next().unwrap_or_default();
+    assert!(
+        first.starts_with("NAMED") && first.contains("backlash.X") && first.contains("squareness.XY"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_program_goes_through_the_points_in_order() {
+    let profile = "machine-profiles/generic_vmc.toml";
+    let (csv, _) = plan("points", profile, &[]);
+    let (program, _) = plan("program", profile, &[]);
+    // G54 of that profile.
+    let zero = [-440.0, -250.0, -350.0];
+    let mut motions = program.lines().filter(|l| l.starts_with("G1 X") && l.contains('Z')).map(|line| {
+        let words = line.split(' ').skip(1);
+        words.zip(zero).map(|(w, z)| w[1..].parse::<f64>().expect("a number") + z).collect::<Vec<f64>>()
+    });
+    for line in csv.lines().skip(1) {
+        let point: Vec<f64> = line.split(',').skip(1).take(3).map(|f| f.parse().expect("a number")).collect();
+        let same = |m: &Vec<f64>| m.iter().zip(&point).all(|(a, b)| (a - b).abs() < 1e-6);
+        assert!(motions.any(|m| same(&m)), "the program does not come to {line}");
+    }
+    assert!(
+        program.contains("G4 X3.0") && program.contains("G49") && program.contains("M0"),
+        "dwell, length, stop"
+    );
+}
+
+/// Every dialect: a perfect machine leaves the program as it is, so vpost understands every block of it.
+#[test]
+fn the_program_is_one_that_vpost_accepts() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("plan.nc");
+    let name = path.to_str().expect("a plain path");
+    for dialect in ["fanuc", "linuxcnc", "centroid", "perspektiva", "balt-system", "sinumerik"] {
+        let (program, _) = plan("program", "machine-profiles/perfect.toml", &["-d", dialect]);
+        std::fs::write(&path, &program).expect("writable");
+        let ran = run(&[name, "-m", "machine-profiles/perfect.toml", "-d", dialect]);
+        assert!(ran.status.success(), "{dialect}: {}", messages(&ran));
+        assert!(ran.stdout == program.as_bytes(), "{dialect}: the program was changed");
+    }
+}
+
+#[test]
+fn the_second_judge_runs_the_program() {
+    if !have_interpreter() {
+        println!("skipped: linuxcnc-uspace is not installed");
+        return;
+    }
+    // The second judge interpolates tables linearly.
+    let profile = "machine-profiles/stan_s500.toml";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [input, output] = ["plan.ngc", "out.ngc"].map(|name| folder.path().join(name));
+    let (program, _) = plan("program", profile, &["-d", "linuxcnc"]);
+    std::fs::write(&input, program).expect("writable");
+    let [from, to] = [&input, &output].map(|p| p.to_str().expect("a plain path"));
+    let ran = run(&[from, "-m", profile, "-d", "linuxcnc", "-o", to]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let verdict = referee(&input, &output, profile, "linuxcnc", &[]);
+    assert_eq!(verdict["ok"], true, "{verdict:#}");
+}
+
+#[test]
+fn a_plan_needs_a_work_offset_for_its_program_only() {
+    let profile = "samples/diagnosis/backlash.toml";
+    plan("points", profile, &[]);
+    let ran = run(&["diagnose", "--plan", "program", "-m", profile, "-d", "fanuc"]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(messages(&ran).contains("--work-offset G54=0,0,0"), "{}", messages(&ran));
+}
