@@ -1,5 +1,6 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
+mod bench;
 mod corpus;
 mod engines;
 mod gap_bench;
@@ -22,6 +23,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
+    /// Measure the correction of large programs; print a page for docs/performance.md.
+    Bench(bench::Options),
     /// Correct LinuxCNC's samples, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
     /// Print docs/engines.md: the engines against one another.
@@ -42,6 +45,7 @@ enum Task {
 
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
+        Task::Bench(options) => bench::run_all(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,

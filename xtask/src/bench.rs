@@ -1,0 +1,178 @@
+//! How fast one program is corrected: made programs, the release build, ratios within one run.
+
+mod budget;
+mod measure;
+mod programs;
+
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::Context;
+use clap::Args;
+use nc_syntax::{Block, Reader};
+
+use crate::markdown::table;
+use measure::{Run, best, run};
+
+/// Options of the benchmark.
+#[derive(Debug, Args)]
+pub(crate) struct Options {
+    /// Where the programs and outputs go; they take 2.5 GB.
+    #[arg(long)]
+    folder: Option<PathBuf>,
+    /// Size of the large program, MB; the small one has 134.
+    #[arg(long, default_value_t = 1000)]
+    large: u64,
+    /// Repetitions, of which the best counts.
+    #[arg(long, default_value_t = 3)]
+    repeat: usize,
+    /// Machine profile.
+    #[arg(long, default_value = "machine-profiles/stan_s500.toml")]
+    profile: PathBuf,
+    /// Only the budget of one block.
+    #[arg(long)]
+    budget: bool,
+}
+
+const SMALL_MB: u64 = 134;
+
+/// Measures, and returns a page.
+pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
+    let mut text = budget_page(options)?;
+    if options.budget {
+        return Ok(text);
+    }
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--quiet", "-p", "vpost"])
+        .status()
+        .context("cargo")?;
+    anyhow::ensure!(built.success(), "vpost does not build");
+    let vpost = std::env::current_exe()?.with_file_name("vpost");
+    let own = tempfile::tempdir()?;
+    let folder = options.folder.as_deref().unwrap_or(own.path());
+    std::fs::create_dir_all(folder)?;
+    let small = made(folder, "dense-small.nc", SMALL_MB, programs::dense)?;
+    let large = made(folder, "dense-large.nc", options.large, programs::dense)?;
+    let mixed = made(folder, "mixed-small.nc", SMALL_MB, programs::mixed)?;
+    let output = folder.join("out.nc");
+    let correct = |input: &Path, threads: Option<usize>| {
+        let mut command = Command::new(&vpost);
+        command.arg(input).arg("-o").arg(&output).arg("-m").arg(&options.profile).args(["-d", "fanuc", "-q"]);
+        if let Some(threads) = threads {
+            command.env("RAYON_NUM_THREADS", threads.to_string());
+        }
+        best(options.repeat, || run(&mut command))
+    };
+    let megabytes = |path: &Path| -> anyhow::Result<f64> { Ok(path.metadata()?.len() as f64 / 1e6) };
+    let mut rows = Vec::new();
+    let mut row = |what: &str, path: &Path, run: Run, tokenizer: f64| -> anyhow::Result<f64> {
+        let speed = megabytes(path)? / run.wall_s;
+        rows.push(vec![
+            what.to_owned(),
+            format!("{:.0}", megabytes(path)?),
+            format!("{:.2}", run.wall_s),
+            format!("{speed:.0}"),
+            format!("{:.0}", megabytes(path)? / run.cpu_s.max(1e-3)),
+            format!("{:.2}", speed / tokenizer),
+            format!("{:.0}", run.peak_mib),
+        ]);
+        Ok(speed)
+    };
+    let tokenizer = tokenizer(&small, options.repeat)?;
+    let copied = best(options.repeat, || run(Command::new("cp").arg(&small).arg(&output)))?;
+    row("`cp`", &small, copied, tokenizer)?;
+    let one = row("dense, 1 thread", &small, correct(&small, Some(1))?, tokenizer)?;
+    let two = row("dense, 2 threads", &small, correct(&small, Some(2))?, tokenizer)?;
+    let mixed_one = row("mixed, 1 thread", &mixed, correct(&mixed, Some(1))?, tokenizer)?;
+    row("mixed, 2 threads", &mixed, correct(&mixed, Some(2))?, tokenizer)?;
+    row("dense, large, 2 threads", &large, correct(&large, Some(2))?, tokenizer)?;
+    text += &format!("\nTokenizer alone (`nc_syntax::Reader`, one thread): {tokenizer:.0} MB/s\n\n");
+    text += &table(&["what", "MB", "s", "MB/s", "MB per CPU s", "of the tokenizer", "peak MiB"], &rows);
+    text += &format!(
+        "\nThe second core adds {:.0} % of the first; mixed runs at {:.0} % of dense.\n",
+        (two / one - 1.0) * 100.0,
+        mixed_one / one * 100.0
+    );
+    Ok(text)
+}
+
+/// A program on disk; one that is there with its size is used again.
+fn made(
+    folder: &Path,
+    name: &str,
+    megabytes: u64,
+    write: fn(u64, &mut BufWriter<std::fs::File>) -> std::io::Result<()>,
+) -> anyhow::Result<PathBuf> {
+    let path = folder.join(name);
+    let bytes = megabytes * 1_000_000;
+    if path.metadata().is_ok_and(|found| found.len() >= bytes && found.len() < bytes + 100_000) {
+        return Ok(path);
+    }
+    let mut out = BufWriter::new(std::fs::File::create(&path)?);
+    write(bytes, &mut out)?;
+    out.flush()?;
+    Ok(path)
+}
+
+/// Megabytes per second of reading words and nothing else, the file in memory.
+fn tokenizer(path: &Path, repetitions: usize) -> anyhow::Result<f64> {
+    let text = std::fs::read(path)?;
+    let dialect = nc_dialect::builtin("fanuc").context("a shipped dialect")?;
+    let mut best = f64::INFINITY;
+    for _ in 0..repetitions {
+        let started = Instant::now();
+        let mut reader = Reader::new(&text, dialect);
+        let mut block = Block::default();
+        while reader.next(&mut block) {
+            std::hint::black_box(&block);
+        }
+        best = best.min(started.elapsed().as_secs_f64());
+    }
+    Ok(text.len() as f64 / 1e6 / best)
+}
+
+fn budget_page(options: &Options) -> anyhow::Result<String> {
+    let mut program = Vec::new();
+    programs::dense(8_000_000, &mut program)?;
+    let text = std::fs::read_to_string(&options.profile)?;
+    let folder = options.profile.parent().unwrap_or(Path::new("."));
+    let profile = machine_profile::load(&text, &|table| std::fs::read(folder.join(table)))
+        .map_err(|errors| anyhow::anyhow!("{errors:?}"))?;
+    let engine = profile.engine(machine_model::EngineId::RigidBody, &Default::default())?;
+    let model = engine.path_model().context("rigid-body corrects paths")?;
+    let setup = nc_program::Setup {
+        work_offsets: profile.work_offsets.clone(),
+        tools: profile.tools.clone(),
+        default_tool_mm: profile.default_tool_mm,
+        has_rotary: profile.has_rotary(),
+        rotary_matters: profile.rotary_matters(),
+        start_mm: None,
+    };
+    let job = vpost::correct::Job {
+        dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,
+        setup: &setup,
+        model,
+        options: correction::Options {
+            tolerance_mm: profile.correction.tolerance_um * 1e-3,
+            outside: correction::Outside::Refuse,
+            minimum_segment_mm: profile.correction.minimum_segment_mm,
+        },
+        decimals_mm: [3; 3],
+        force: false,
+        provenance: "BENCHMARK",
+    };
+    let budget = budget::measure(&program, &job, options.repeat.max(5))?;
+    let rows = |parts: &[(&str, f64)]| -> Vec<Vec<String>> {
+        parts.iter().map(|(what, ns)| vec![(*what).to_owned(), format!("{ns:.0}")]).collect()
+    };
+    let all = budget.parts.last().map_or(0.0, |part| part.1);
+    Ok(format!(
+        "One block of the dense program has {:.1} bytes; {:.0} MB/s in memory on one thread.\n\n{}\n{}",
+        budget.bytes_per_block,
+        budget.bytes_per_block * 1e3 / all,
+        table(&["part of a block", "ns"], &rows(&budget.parts)),
+        table(&["alone", "ns"], &rows(&budget.points))
+    ))
+}

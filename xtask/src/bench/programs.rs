@@ -1,0 +1,93 @@
+//! The programs that are measured: as long as wanted, the same bytes every time.
+
+use std::io::{self, Write};
+
+use units::math::{cos, sin};
+
+/// What opens every program: one operation with one tool.
+const OPENING: &str =
+    "%\nO1000\nG17 G21 G40 G49 G80 G90 G94\nG54\nT1 M6\nG43 H1\nS12000 M3\nG0 X0. Y0. Z30.\n";
+const CLOSING: &str = "G0 Z30.\nM5\nM30\n%\n";
+/// Millimetres from block to block, what CAM systems write for finishing.
+const STEP_MM: f64 = 0.4;
+/// The part lies within ± this of the program's zero in X and Y, mm.
+const HALF_MM: [f64; 2] = [130.0, 90.0];
+
+/// A tool that wanders over a wavy surface in small straight steps; all three axes move in every block.
+struct Surface {
+    turned: f64,
+    position: [f64; 2],
+}
+
+impl Surface {
+    fn next(&mut self) -> [f64; 3] {
+        self.turned += 0.003;
+        // A slow rosette that fills the part: the way along a Lissajous curve at nearly even speed.
+        let (u, v) = (self.turned * 0.31, self.turned * 0.43);
+        let target = [HALF_MM[0] * sin(u), HALF_MM[1] * cos(v)];
+        let way = [target[0] - self.position[0], target[1] - self.position[1]];
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt().max(1e-9);
+        for (position, way) in self.position.iter_mut().zip(way) {
+            *position += way / length * STEP_MM;
+        }
+        let [x, y] = self.position;
+        [x, y, 8.0 + 3.0 * sin(x * 0.05) * cos(y * 0.04)]
+    }
+}
+
+/// Writes at least `bytes` of straight feed motion, three coordinates in a block.
+pub(crate) fn dense(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+    let mut written = 0;
+    let mut surface = Surface { turned: 0.0, position: [0.0, HALF_MM[1]] };
+    out.write_all(OPENING.as_bytes())?;
+    let [x, y, z] = surface.next();
+    writeln!(out, "G1 X{x:.3} Y{y:.3} Z{z:.3} F1500.")?;
+    let mut block = Vec::with_capacity(64);
+    while written < bytes {
+        let [x, y, z] = surface.next();
+        block.clear();
+        writeln!(block, "X{x:.3} Y{y:.3} Z{z:.3}")?;
+        written += block.len() as u64;
+        out.write_all(&block)?;
+    }
+    out.write_all(CLOSING.as_bytes())
+}
+
+/// Writes at least `bytes` of a program as shops have them: surfaces, pockets of arcs, drilled holes, rapids,
+/// comments; nine bytes of ten are short straight moves.
+pub(crate) fn mixed(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+    let mut written = 0;
+    let mut surface = Surface { turned: 0.0, position: [0.0, HALF_MM[1]] };
+    out.write_all(OPENING.as_bytes())?;
+    let mut operation = 0_u32;
+    let mut text = Vec::new();
+    while written < bytes {
+        text.clear();
+        operation += 1;
+        let [x, y, z] = surface.next();
+        writeln!(text, "(OPERATION {operation}: SURFACE, STEP OVER 12 PERCENT)")?;
+        writeln!(text, "G0 X{x:.3} Y{y:.3}\nZ{:.3}\nG1 Z{z:.3} F400.\nF1500.", z + 2.0)?;
+        for _ in 0..400 {
+            let [x, y, z] = surface.next();
+            writeln!(text, "X{x:.3} Y{y:.3} Z{z:.3}")?;
+        }
+        writeln!(text, "G0 Z20.\n(OPERATION {operation}: POCKET)")?;
+        let (cx, cy) = (f64::from(operation * 37 % 180) - 90.0, f64::from(operation * 53 % 120) - 60.0);
+        writeln!(text, "X{:.3} Y{cy:.3}\nG1 Z4. F300.", cx + 5.0)?;
+        for ring in 0..4 {
+            let radius = 5.0 + 1.5 * f64::from(ring);
+            writeln!(text, "G1 X{:.3} Y{cy:.3} F900.", cx + radius)?;
+            writeln!(text, "G3 X{:.3} Y{cy:.3} I{:.3} J0.", cx - radius, -radius)?;
+            writeln!(text, "G3 X{:.3} Y{cy:.3} I{radius:.3} J0.", cx + radius)?;
+        }
+        writeln!(text, "G0 Z20.\n(OPERATION {operation}: HOLES)")?;
+        writeln!(text, "G99 G81 X{:.3} Y{:.3} Z-4. R12. F150.", cx - 20.0, cy)?;
+        for hole in 1..5 {
+            writeln!(text, "X{:.3} Y{:.3}", cx - 20.0 + 8.0 * f64::from(hole), cy)?;
+        }
+        writeln!(text, "G80\nG0 Z30.")?;
+        written += text.len() as u64;
+        out.write_all(&text)?;
+    }
+    out.write_all(CLOSING.as_bytes())
+}
