@@ -1,6 +1,6 @@
 //! The state that runs through a program, and one motion at a time.
 
-use machine_model::{Command, PathModel, SolveError, Vector};
+use machine_model::{Command, Everywhere, PathModel, SolveError, Vector};
 use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
 
@@ -67,9 +67,10 @@ pub struct Corrected {
 pub struct Correction {
     /// Largest distance between programmed and corrected command at an end of a piece, mm.
     pub largest_mm: f64,
-    /// Proven bound of the path deviation without correction, mm; 0 for rapids.
+    /// Proven bound of the path deviation without correction, mm; 0 for rapids, and where it was not computed
+    /// since it cannot exceed that of an earlier motion.
     pub before_mm: f64,
-    /// Proven bound of the path deviation, mm; 0 for rapids.
+    /// Proven bound of the path deviation, mm; 0 as for `before_mm`.
     pub after_mm: f64,
     /// A rapid ended outside the volume and took the nearest point's correction.
     pub clamped: bool,
@@ -89,11 +90,15 @@ pub struct Corrector<'m> {
     /// Direction of each axis' last motion.
     pub(crate) direction: [i8; 3],
     /// The last end point solved: nominal command, state and answer. The next motion starts there.
-    last: Option<(Command, Vector)>,
+    pub(crate) last: Option<(Command, Vector)>,
     /// Cycles are being written as moves since one could not stay.
     pub(crate) expanding: bool,
     /// Bottom and R as the control remembers them, program mm, and the initial level, mm.
     pub(crate) remembered: Option<crate::hole::Remembered>,
+    /// What the model does anywhere, for the tool vector and the rotary axes in force.
+    pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Everywhere>)>,
+    /// The largest bounds that any motion so far was told with: before and after, mm.
+    pub(crate) told_mm: [f64; 2],
 }
 
 /// How often a rapid's directions are decided anew: each axis turns once where it has play.
@@ -115,6 +120,8 @@ impl<'m> Corrector<'m> {
             last: None,
             expanding: false,
             remembered: None,
+            everywhere: None,
+            told_mm: [0.0; 2],
         }
     }
 
@@ -127,6 +134,30 @@ impl<'m> Corrector<'m> {
             self.expanding = false;
             self.remembered = None;
         }
+        match motion {
+            Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
+            Motion::Feed(feed) => self.heed(block, feed.end.rotary_deg),
+            Motion::Hole(hole) => self.heed(block, hole.at_r.rotary_deg),
+            Motion::Uncorrected { .. } => {}
+        }
+        let corrected = self.correct_in_state(motion, block)?;
+        let correction = &corrected.correction;
+        for (told, bound) in self.told_mm.iter_mut().zip([correction.before_mm, correction.after_mm]) {
+            *told = told.max(bound);
+        }
+        Ok(corrected)
+    }
+
+    /// Asks the model what holds everywhere, where tool or rotary axes are others than before.
+    fn heed(&mut self, block: &Block, rotary_deg: [f64; 3]) {
+        let tool = Vector::from(block.tool_mm);
+        if !self.everywhere.as_ref().is_some_and(|known| known.0 == tool && known.1 == rotary_deg) {
+            let state = self.machine(block, rotary_deg).state;
+            self.everywhere = Some((tool, rotary_deg, self.model.everywhere(&state)));
+        }
+    }
+
+    fn correct_in_state(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
         match motion {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
             Motion::Feed(feed) => self.feed(feed, block),
@@ -178,8 +209,12 @@ impl<'m> Corrector<'m> {
         {
             return Ok(*answer);
         }
-        match (self.model.solve(&target), self.options.outside) {
-            (Ok(solution), _) => Ok(solution.linear_mm),
+        let answer = match &self.everywhere {
+            Some((_, _, Some(everywhere))) => self.model.command_for(&target, everywhere),
+            _ => self.model.solve(&target).map(|solution| solution.linear_mm),
+        };
+        match (answer, self.options.outside) {
+            (Ok(command), _) => Ok(command),
             (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(machine, nominal)),
             (Err(error), _) => Err(error.into()),
         }
@@ -310,6 +345,9 @@ impl<'m> Corrector<'m> {
     }
 
     fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
+        if let Some(corrected) = self.short_line(feed, block) {
+            return Ok(corrected);
+        }
         let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
         let parts = self.monotone_parts(&whole);
@@ -342,7 +380,7 @@ impl<'m> Corrector<'m> {
     }
 
     /// Bound of the deviation that the program would have had uncorrected.
-    fn note_before(&self, whole: &Curve, block: &Block, feed: &Feed, correction: &mut Correction) {
+    pub(crate) fn note_before(&self, whole: &Curve, block: &Block, feed: &Feed, correction: &mut Correction) {
         let machine = self.machine(block, feed.end.rotary_deg);
         let extent = whole.extent(0.0, 1.0);
         let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());

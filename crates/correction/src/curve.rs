@@ -94,6 +94,8 @@ impl Curve {
     #[must_use]
     pub fn at(&self, s: f64) -> Vector {
         match self {
+            // The end itself, not what is left of it after a subtraction and an addition.
+            Self::Line(_, b) if s >= 1.0 => *b,
             Self::Line(a, b) => a + (b - a) * s,
             Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
                 let (sin, cos) = sin_cos(angle + sweep * s);

@@ -60,12 +60,13 @@ pub struct Block {
 }
 
 const AXES: [u8; 3] = *b"XYZ";
+/// Exact in an f64.
+const POWERS_OF_TEN: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
 
 impl Block {
     /// Steps in one program unit of an axis.
     fn per_unit(&self, axis: usize) -> f64 {
-        // Powers of ten up to 10^9 are exact in an f64.
-        f64::from(10u32.pow(u32::from(self.decimals[axis].min(9))))
+        POWERS_OF_TEN[usize::from(self.decimals[axis].min(9))]
     }
 
     /// The output step of an axis, mm.

@@ -18,6 +18,7 @@ mod grid;
 mod hole;
 mod line;
 mod play;
+mod short_line;
 
 pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};

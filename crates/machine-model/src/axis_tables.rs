@@ -38,6 +38,23 @@ pub struct SixBounds {
     pub kinks_on_line: Six,
 }
 
+impl SixBounds {
+    /// What holds for both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let larger = |a: &Six, b: &Six| -> Six { std::array::from_fn(|i| a[i].max(b[i])) };
+        Self {
+            value: larger(&self.value, &other.value),
+            slope: larger(&self.slope, &other.slope),
+            curvature: larger(&self.curvature, &other.curvature),
+            curvature_low: std::array::from_fn(|i| self.curvature_low[i].min(other.curvature_low[i])),
+            curvature_high: larger(&self.curvature_high, &other.curvature_high),
+            kinks: larger(&self.kinks, &other.kinks),
+            kinks_on_line: larger(&self.kinks_on_line, &other.kinks_on_line),
+        }
+    }
+}
+
 impl AxisTables {
     /// Puts up to six functions together, in the order `EX EY EZ EA EB EC`; absent ones are zero.
     ///
@@ -170,6 +187,52 @@ impl AxisTables {
             None => std::array::from_fn(|i| c0[i] + t * c1[i]),
             Some([c2, c3]) => std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
         }
+    }
+
+    /// All six and their slopes at `q`, which lies in the range; at a kink the slope of the upper side.
+    #[must_use]
+    #[inline]
+    pub fn with_slopes(&self, q: f64) -> (Six, Six) {
+        let q = q.clamp(self.grid.low(), self.grid.high());
+        let cell = self.grid.cell(q);
+        let t = q - self.grid.nodes()[cell];
+        let [c0, c1] = &self.straight[cell];
+        match self.curved.get(cell) {
+            None => (std::array::from_fn(|i| c0[i] + t * c1[i]), *c1),
+            Some([c2, c3]) => (
+                std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
+                std::array::from_fn(|i| c1[i] + t * (2.0 * c2[i] + t * (3.0 * c3[i]))),
+            ),
+        }
+    }
+
+    /// Bounds that hold on every interval of at most these lengths, mm, wherever it lies in the range.
+    #[must_use]
+    pub fn bounds_anywhere<const N: usize>(&self, lengths_mm: [f64; N]) -> [SixBounds; N] {
+        let mut all = [self.bounds_across_cells(self.range()); N];
+        let nodes = &self.grid.nodes()[1..self.grid.nodes().len() - 1];
+        for function in 0..6 {
+            let jump = |node: &f64| {
+                let beside = Range { low: node.next_down(), high: node.next_up() };
+                table::bounds_over(&self.grid, beside, |cell| self.cubic(cell, function)).kinks
+            };
+            let jumps: Vec<f64> = nodes.iter().map(jump).collect();
+            for (bounds, length_mm) in all.iter_mut().zip(lengths_mm) {
+                let (mut most, mut sum, mut first) = (0.0_f64, 0.0, 0);
+                for last in 0..nodes.len() {
+                    sum += jumps[last];
+                    while nodes[last] - nodes[first] > length_mm {
+                        sum -= jumps[first];
+                        first += 1;
+                    }
+                    most = most.max(sum);
+                }
+                // What was taken away again leaves its rounding.
+                bounds.kinks[function] = most * (1.0 + 1e-9);
+                bounds.kinks_on_line[function] = bounds.kinks[function];
+            }
+        }
+        all
     }
 
     /// Bounds of all six that hold everywhere in `range`.

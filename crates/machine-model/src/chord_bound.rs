@@ -5,7 +5,9 @@
 //! of the first derivative, component by component.
 
 use crate::axis_tables::SixBounds;
-use crate::{Move, RigidBody, Vector};
+use crate::everywhere::Everywhere;
+use crate::rigid_body::Link;
+use crate::{Command, Move, Range, RigidBody, Vector};
 
 /// How far beyond the volume the box of a stretch may reach by rounding, mm.
 const ROUNDING_MM: f64 = 1e-9;
@@ -28,6 +30,10 @@ impl Growth {
     /// Upper bound of |second derivative|.
     fn second(&self, i: usize) -> f64 {
         self.high[i].max(-self.low[i])
+    }
+    /// Upper bound of the distance from the chord, mm.
+    fn leaves_chord_mm(&self) -> f64 {
+        norm(&std::array::from_fn(|i| self.jumps[i] / 4.0 + self.second(i) / 8.0))
     }
     /// A contribution to the second derivative of unknown sign.
     fn either(&mut self, i: usize, by: f64) {
@@ -144,6 +150,42 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
     if (0..3).any(leaves) {
         return f64::INFINITY;
     }
+    let growth = growth(model, stretch, |link, range| {
+        link.tables(stretch.state.direction[link.axis]).map(|tables| tables.bounds(range))
+    });
+    growth.leaves_chord_mm() + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+}
+
+/// What holds for every straight stretch inside the volume; `None` where the model has no such bounds.
+///
+/// The bounds of [`chord_bound_mm`] grow with everything they are made of, so that those of the whole volume, of
+/// all directions, and of the worst place for a kink hold for each stretch: equation (12).
+pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
+    let volume = crate::Engine::volume(model);
+    let stretch = |speed: f64, passes: u8| Move {
+        range_mm: volume.0,
+        speed_mm: [speed; 3],
+        acceleration_mm: [0.0; 3],
+        passes,
+        state: *state,
+    };
+    let worst = model.worst_bounds();
+    let bounded = |class: usize, speed: f64, passes: u8| {
+        growth(model, &stretch(speed, passes), |link, _| {
+            worst[link.axis].as_ref().map(|bounds| bounds[class])
+        })
+    };
+    // Along any unit direction no axis is faster than 1.
+    let gradient = norm(&bounded(0, 1.0, 1).first);
+    let longest = Everywhere::longest_mm();
+    let bow =
+        |passes: u8| std::array::from_fn(|class| bounded(class, longest[class], passes).leaves_chord_mm());
+    Everywhere { gradient, volume, bow_mm: bow(1), bow_of_four_passes_mm: bow(4) }
+}
+
+/// Bounds along a stretch, `bounds` being those of an axis' tables.
+fn growth(model: &RigidBody, stretch: &Move, bounds: impl Fn(&Link, Range) -> Option<SixBounds>) -> Growth {
+    let volume = crate::Engine::volume(model);
     let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
     let (mut low, mut high): (Vector, Vector) = (tool, tool);
     let (mut nominal_speed, mut nominal_acceleration) = ([0.0; 3], [0.0; 3]);
@@ -155,8 +197,7 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
         let mut range = stretch.range_mm[axis];
         range.low = range.low.max(volume.0[axis].low);
         range.high = range.high.min(volume.0[axis].high);
-        if let Some(tables) = link.tables(stretch.state.direction[axis]) {
-            let bounds = tables.bounds(range);
+        if let Some(bounds) = bounds(link, range) {
             // What lies beyond this axis, from the measuring line on: x = nominal + error - lever.
             let off = Vector::from(error.value);
             let mut beyond = Beyond {
@@ -188,6 +229,5 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
         nominal_speed[axis] += speed;
         nominal_acceleration[axis] += acceleration;
     }
-    let leave: [f64; 3] = std::array::from_fn(|i| error.jumps[i] / 4.0 + error.second(i) / 8.0);
-    norm(&leave) + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+    error
 }

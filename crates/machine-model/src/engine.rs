@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::Everywhere;
+
 /// A vector in the machine frame, mm.
 pub type Vector = Vector3<f64>;
 
@@ -181,6 +183,23 @@ pub trait PathModel: Engine {
     /// the stretch: how far the error can leave its chord between the ends. Infinite where the
     /// model jumps inside the stretch.
     fn chord_bound_mm(&self, stretch: &Move) -> f64;
+
+    /// Bounds that hold in the whole volume for this tool and these rotary axes, whatever `linear_mm` and
+    /// `direction` are; `None` where the model has none.
+    fn everywhere(&self, _state: &Command) -> Option<Everywhere> {
+        None
+    }
+
+    /// What to command so that the tool tip comes to `target`: [`Engine::solve`] for those who come by millions.
+    ///
+    /// The tip comes within [`crate::TOLERANCE_MM`] of the target; that is proven by `everywhere`, not evaluated
+    /// once more. The answer depends on the target alone.
+    ///
+    /// # Errors
+    /// Those of [`Engine::solve`].
+    fn command_for(&self, target: &Command, _everywhere: &Everywhere) -> Result<Vector, SolveError> {
+        self.solve(target).map(|solution| solution.linear_mm)
+    }
 
     /// True where the error depends on the direction of motion.
     fn depends_on_direction(&self) -> bool {

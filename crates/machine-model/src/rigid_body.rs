@@ -1,15 +1,17 @@
 //! The reference model: rigid bodies along the chain. Equations (5) to (9) of `docs/equations.md`.
 
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 use nalgebra::Matrix3;
 
-use crate::axis_tables::{AxisTables, Six};
+use crate::axis_tables::{AxisTables, Six, SixBounds};
+use crate::everywhere::CLASSES;
 use crate::rotation::{around, small, turned_by};
-use crate::solve::solve;
+use crate::solve::{TOLERANCE_MM, solve};
 use crate::{
-    Axis, Command, Description, Engine, EngineId, Move, PathModel, Range, RotaryAxis, Solution, SolveError,
-    Vector, Volume, chord_bound,
+    Axis, Command, Description, Engine, EngineId, Everywhere, Move, PathModel, Range, RotaryAxis, Solution,
+    SolveError, Vector, Volume, chord_bound,
 };
 
 /// One linear axis, ready to be evaluated.
@@ -65,7 +67,12 @@ pub struct RigidBody {
     /// A rotary axis at the workpiece has errors.
     table_has_errors: bool,
     depends_on_direction: bool,
+    /// Per axis and class of length, for all directions: made when first asked for.
+    worst_bounds: OnceLock<WorstBounds>,
 }
+
+/// Of the axes X, Y, Z: bounds by class of length, `None` where the axis has no errors.
+type WorstBounds = [Option<Box<[SixBounds; CLASSES]>>; 3];
 
 impl RigidBody {
     /// Prepares the model.
@@ -94,13 +101,28 @@ impl RigidBody {
             description.chain.table().iter().any(|axis| !description.rotary[axis.direction()].is_perfect());
         let depends_on_direction =
             description.linear.iter().any(|axis| axis.errors_negative.is_some() || axis.backlash_mm != 0.0);
-        Ok(Self { description, links, volume, table_has_errors, depends_on_direction })
+        let worst_bounds = OnceLock::new();
+        Ok(Self { description, links, volume, table_has_errors, depends_on_direction, worst_bounds })
     }
 
     /// What it was made from.
     #[must_use]
     pub fn description(&self) -> &Description {
         &self.description
+    }
+
+    /// Bounds of the tables that hold on every short stretch of an axis, in all directions.
+    pub(crate) fn worst_bounds(&self) -> &WorstBounds {
+        self.worst_bounds.get_or_init(|| {
+            let mut by_axis: WorstBounds = [const { None }; 3];
+            for link in &self.links {
+                let each = link.by_direction.iter().map(|t| t.bounds_anywhere(Everywhere::longest_mm()));
+                by_axis[link.axis] = each
+                    .reduce(|one, other| std::array::from_fn(|class| one[class].union(&other[class])))
+                    .map(Box::new);
+            }
+            by_axis
+        })
     }
 
     /// Where the tool tip really goes: equation (9).
@@ -174,6 +196,62 @@ impl RigidBody {
             nominal[link.axis] += at;
         }
         error
+    }
+
+    /// [`Self::linear_error`] of a machine without head, and its gradient to first order: a column for each axis.
+    #[inline]
+    fn error_and_gradient(&self, q: &Vector, command: &Command) -> (Vector, [Vector; 3]) {
+        let mut nominal = command.tool_mm;
+        let mut error = Vector::zeros();
+        let mut gradient = [Vector::zeros(); 3];
+        for (place, link) in self.links.iter().enumerate().rev() {
+            let at = q[link.axis];
+            if let Some(tables) = link.tables(command.direction[link.axis]) {
+                let ([x, y, z, a, b, c], [dx, dy, dz, da, db, dc]) = tables.with_slopes(at);
+                let beyond = nominal + error - link.measured_lever_mm;
+                let turn = Vector::new(a, b, c);
+                error += Vector::new(x, y, z) + turned_by(&turn, &beyond);
+                gradient[link.axis] += Vector::new(dx, dy, dz) + Vector::new(da, db, dc).cross(&beyond);
+                // The axes that this one carries move on turned ways.
+                for carried in &self.links[place + 1..] {
+                    let mut way = Vector::zeros();
+                    way[carried.axis] = 1.0;
+                    gradient[carried.axis] += turn.cross(&way);
+                }
+            }
+            error += link.tilt * at;
+            gradient[link.axis] += link.tilt;
+            nominal[link.axis] += at;
+        }
+        (error, gradient)
+    }
+
+    /// `q + e(q) = target` by one step of Newton's method and steps of the fixed point.
+    ///
+    /// A step by the residual `r` leaves at most `gradient·|r|`, which need not be evaluated. `None` where that does
+    /// not settle at once, or leaves the volume.
+    #[inline]
+    fn newton(&self, target: &Command, everywhere: &Everywhere) -> Option<Vector> {
+        const ROUNDS: u32 = 4;
+        let wanted = &target.linear_mm;
+        if !self.volume.contains(wanted) || self.description.chain.axes().any(|axis| !axis.is_linear()) {
+            return None;
+        }
+        let (error, [x, y, z]) = self.error_and_gradient(wanted, target);
+        let times = |v: &Vector| x * v.x + y * v.y + z * v.z;
+        // (1 + G)⁻¹ e = e - G e + G² e - …
+        let mut q = wanted - (error - times(&(error - times(&error))));
+        for _ in 0..ROUNDS {
+            if !self.volume.contains(&q) {
+                return None;
+            }
+            let residual = (q - wanted) + self.linear_error(&q, target);
+            q -= residual;
+            if everywhere.gradient * residual.norm() <= TOLERANCE_MM {
+                return self.volume.contains(&q).then_some(q);
+            }
+        }
+        None
     }
 
     /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
@@ -308,6 +386,19 @@ impl PathModel for RigidBody {
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
         chord_bound::chord_bound_mm(self, stretch)
+    }
+
+    fn everywhere(&self, state: &Command) -> Option<Everywhere> {
+        // A table's errors turn with it, a head's lever with the head: their bounds are taken stretch by stretch.
+        let plain = !self.table_has_errors && self.description.chain.head().is_empty();
+        plain.then(|| chord_bound::everywhere(self, state))
+    }
+
+    fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {
+        match self.newton(target, everywhere) {
+            Some(command) => Ok(command),
+            None => self.solve(target).map(|solution| solution.linear_mm),
+        }
     }
 
     fn depends_on_direction(&self) -> bool {

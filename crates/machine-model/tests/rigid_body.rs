@@ -265,6 +265,48 @@ proptest! {
     }
 }
 
+/// What is looked up for short moves holds for each of them, and the proven inverse is the evaluated one.
+#[test]
+fn bounds_of_the_whole_volume_hold_for_every_move() {
+    let mut random = Random::new(11);
+    for seed in 0..60 {
+        let chain = if seed % 2 == 0 { "[w X Y b Z t]" } else { "[w b Z Y X t]" };
+        let model = RigidBody::new(machine(seed, chain, seed % 3 == 0, 1.0)).unwrap();
+        for _ in 0..60 {
+            let mut state = command([0.0; 3], [3.0, -2.0, -50.0]);
+            state.direction = [0, 1, 2].map(|i| random.vector(1.5)[i].round() as i8);
+            let everywhere = model.everywhere(&state).unwrap();
+            let start = Vector::new(200.0, 140.0, 100.0) + random.vector(80.0);
+            let by = random.vector(1.0) * random.vector(1.0).x.abs().powi(4) * 16.0;
+            let end = start + by;
+            let at = |q: Vector| model.error_mm(&Command { linear_mm: q, ..state });
+            let longest = by.amax();
+            for (passes, cheap) in [
+                (1, everywhere.chord_bound_mm(longest)),
+                (4, everywhere.chord_bound_of_four_passes_mm(longest)),
+            ] {
+                let own = model.chord_bound_mm(&Move {
+                    range_mm: std::array::from_fn(|i| Range {
+                        low: start[i].min(end[i]),
+                        high: start[i].max(end[i]),
+                    }),
+                    speed_mm: by.abs().into(),
+                    acceleration_mm: [0.0; 3],
+                    passes,
+                    state,
+                });
+                assert!(own <= cheap * (1.0 + 1e-12), "{own} > {cheap}");
+            }
+            let steepest = everywhere.gradient * by.norm() * (1.0 + 1e-9) + 1e-15;
+            assert!((at(end) - at(start)).norm() <= steepest, "{seed}");
+            let target = Command { linear_mm: end, ..state };
+            let quick = model.command_for(&target, &everywhere).unwrap();
+            assert!((quick + at(quick) - end).norm() <= machine_model::TOLERANCE_MM + 1e-13);
+            assert!((quick - model.solve(&target).unwrap().linear_mm).norm() <= 3e-10);
+        }
+    }
+}
+
 /// How much larger the bound is than what dense sampling finds, over many random short stretches.
 #[test]
 fn the_bound_is_tight() {

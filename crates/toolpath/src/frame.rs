@@ -20,6 +20,8 @@ pub struct Frame {
     inverse: [[f64; 3]; 3],
     /// Axis commands of the program's zero.
     offset_mm: [f64; 3],
+    /// The matrix is the identity: asked for several times in every block.
+    is_shift: bool,
 }
 
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -34,7 +36,7 @@ impl Frame {
     /// A frame parallel to the machine's.
     #[must_use]
     pub const fn shift(offset_mm: [f64; 3]) -> Self {
-        Self { matrix: IDENTITY, inverse: IDENTITY, offset_mm }
+        Self { matrix: IDENTITY, inverse: IDENTITY, offset_mm, is_shift: true }
     }
 
     /// A rotated, scaled or mirrored frame; `None` where the matrix has no inverse.
@@ -50,7 +52,7 @@ impl Frame {
             return None;
         }
         let inverse = [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(c, r) / determinant));
-        Some(Self { matrix, inverse, offset_mm })
+        Some(Self { matrix, inverse, offset_mm, is_shift: matrix == IDENTITY })
     }
 
     /// Axis commands of the program's zero, mm.
@@ -61,8 +63,8 @@ impl Frame {
 
     /// True where program axes are machine axes: each program word moves its own axis alone, by as much.
     #[must_use]
-    pub fn is_shift(&self) -> bool {
-        self.matrix == IDENTITY
+    pub const fn is_shift(&self) -> bool {
+        self.is_shift
     }
 
     /// Rows of the matrix; the identity for a shift.

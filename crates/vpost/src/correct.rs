@@ -190,7 +190,7 @@ impl Run<'_> {
         }
         let info = self.info(context, letters);
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
-        let before = self.corrector.clone();
+        let before = (step.motions.len() > 1).then(|| self.corrector.clone());
         let mut pieces: SmallVec<[nc_emit::Piece; 2]> = SmallVec::new();
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
@@ -207,7 +207,7 @@ impl Run<'_> {
                 );
             }
         }
-        if !untouched && step.motions.len() > 1 {
+        if let (false, Some(before)) = (untouched, before) {
             self.corrector = before;
             corrections.clear();
             self.repeated(block, context, letters, &step.motions, &mut pieces, &mut corrections)?;

@@ -1,0 +1,131 @@
+//! The motion that programs consist of by millions: one short straight line that goes on where the last one ended.
+//!
+//! What is written is what [`crate::line`] would write, word for word: the same answer of the model, rounded the same
+//! way. Only the proof is shorter: bounds that hold everywhere in the volume are looked up instead of being
+//! worked out for this stretch. Where they do not suffice, or a figure of the summary could depend on the exact
+//! bound, the long way is taken.
+
+use std::cmp::Ordering;
+
+use machine_model::{Command, Vector};
+use smallvec::SmallVec;
+use toolpath::{Feed, Shape};
+
+use crate::corrector::{Corrected, Correction, Corrector};
+use crate::curve::Curve;
+use crate::deviation::{Machine, Pair, Verdict};
+use crate::grid::{AxisWord, Block};
+use crate::{Piece, PieceKind};
+
+/// Room for the rounding of the few additions here, mm.
+const SLACK_MM: f64 = 1e-9;
+
+impl Corrector<'_> {
+    /// Corrects a line the short way; `None`, with nothing changed, where the long way must be taken.
+    #[inline]
+    pub(crate) fn short_line(&mut self, feed: &Feed, block: &Block) -> Option<Corrected> {
+        let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
+        let Some((last, answer)) = self.last else { return None };
+        let (start, end): (Vector, Vector) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
+        let [Some(x), Some(y), Some(z)] = self.standing else { return None };
+        let ordinary = matches!(feed.shape, Shape::Line)
+            && !block.incremental
+            && block.frame.is_shift()
+            && feed.start.rotary_deg == feed.end.rotary_deg
+            && last.linear_mm == start;
+        if !ordinary {
+            return None;
+        }
+        let mut direction = self.direction;
+        for i in 0..3 {
+            if end[i] > start[i] {
+                direction[i] = 1;
+            } else if end[i] < start[i] {
+                direction[i] = -1;
+            }
+        }
+        let state = Command { direction, ..self.machine(block, feed.end.rotary_deg).state };
+        let depends = self.model.depends_on_direction();
+        if last.tool_mm != state.tool_mm
+            || last.rotary_rad != state.rotary_rad
+            || (depends && (last.direction != direction || direction.contains(&0)))
+        {
+            return None;
+        }
+        // The axes stand at the corrected start, as the last line left them.
+        let from = Vector::new(x, y, z);
+        let stands = |i: usize| (from[i] - answer[i]).abs() <= 0.505 * block.step_mm(i);
+        if !(stands(0) && stands(1) && stands(2)) {
+            return None;
+        }
+        let target = Command { linear_mm: end, ..state };
+        let wanted = self.model.command_for(&target, everywhere).ok()?;
+
+        let offset = block.frame.offset_mm();
+        let mut axes = [AxisWord::Omit; 3];
+        let mut reached = [0.0; 3];
+        for i in 0..3 {
+            let programmed = block.has_axis(i).then_some(end[i] - offset[i]);
+            (axes[i], reached[i]) =
+                block.choose(i, wanted[i] - offset[i], programmed, Some(from[i] - offset[i]));
+        }
+        let to = block.machine(reached);
+
+        // At an end the tool is off by the rounding of its command, and what that changes in the error.
+        let rounded = (to - wanted).norm().max((from - answer).norm());
+        let at_ends = rounded * (1.0 + everywhere.gradient) + SLACK_MM;
+        let way = to - from;
+        let after_mm = at_ends + everywhere.chord_bound_mm(way.amax());
+        let limit_mm = self.limit_mm(block);
+        // The error at a place is its correction, but for what the error changes over the correction.
+        let corrected_mm = (wanted - end).norm();
+        let largest = corrected_mm.max((self.held(answer, from, depends) - start).norm());
+        let before_mm = largest * (1.0 + everywhere.gradient)
+            + SLACK_MM
+            + everywhere.chord_bound_of_four_passes_mm((end - start).amax());
+        let inside = everywhere.volume.contains(&start)
+            && everywhere.volume.contains(&from)
+            && everywhere.volume.contains(&to);
+        // Not a number is not proven either.
+        if !inside || !matches!(after_mm.partial_cmp(&limit_mm), Some(Ordering::Less)) {
+            return None;
+        }
+        let mut correction = Correction { largest_mm: largest, ..Correction::default() };
+        if after_mm > self.told_mm[1] {
+            let (nominal, commanded) = (Curve::Line(start, end), Curve::Line(from, to));
+            let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false };
+            let Verdict::Within(bound) = pair.verdict(&Machine { model: self.model, state }, limit_mm) else {
+                return None;
+            };
+            correction.after_mm = bound;
+        }
+        let (stood, came) = (self.standing, self.direction);
+        self.standing = [Some(to.x), Some(to.y), Some(to.z)];
+        self.direction = direction;
+        if depends && self.against(stood, direction, block).is_some() {
+            (self.standing, self.direction) = (stood, came);
+            return None;
+        }
+        if before_mm > self.told_mm[0] {
+            self.note_before(&Curve::Line(start, end), block, feed, &mut correction);
+        }
+        self.last = Some((target, wanted));
+        let mut pieces = SmallVec::new();
+        if axes.iter().any(|word| matches!(word, AxisWord::Write(_))) {
+            pieces.push(Piece { kind: PieceKind::Line, axes, share: 1.0 });
+        }
+        Some(Corrected { pieces, correction })
+    }
+    /// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its
+    /// way holds its place.
+    fn held(&self, mut wanted: Vector, standing: Vector, depends: bool) -> Vector {
+        if depends {
+            for i in 0..3 {
+                if (wanted[i] - standing[i]) * f64::from(self.direction[i]) < 0.0 {
+                    wanted[i] = standing[i];
+                }
+            }
+        }
+        wanted
+    }
+}

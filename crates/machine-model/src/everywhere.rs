@@ -1,0 +1,70 @@
+//! Bounds that hold in the whole volume: cheap to ask, enough for short moves.
+
+use crate::Volume;
+
+/// How many lengths are told apart: 2⁻¹² mm to 2⁵ mm.
+pub(crate) const CLASSES: usize = 18;
+/// Power of two of the shortest.
+const SHORTEST: i32 = -12;
+
+/// What a model's error does anywhere in its volume, in one state of tool and rotary axes.
+///
+/// Dense programs ask millions of times for a bound that lies far below the tolerance. This one is looked up; the
+/// bound of the stretch itself ([`crate::PathModel::chord_bound_mm`]) is only asked for where it matters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Everywhere {
+    /// Upper bound of how fast the error changes along any way: `|e(p) - e(q)| ≤ gradient·|p - q|`.
+    pub gradient: f64,
+    /// Where all of this holds.
+    pub volume: Volume,
+    pub(crate) bow_mm: [f64; CLASSES],
+    pub(crate) bow_of_four_passes_mm: [f64; CLASSES],
+}
+
+impl Everywhere {
+    /// Upper bound, mm, of how far the error leaves its chord on a straight stretch inside the volume whose
+    /// axes move by at most `longest_mm` each, in the sense of [`crate::PathModel::chord_bound_mm`] with
+    /// `passes` at 1. Infinite for long stretches.
+    #[must_use]
+    #[inline]
+    pub fn chord_bound_mm(&self, longest_mm: f64) -> f64 {
+        Self::of_class(&self.bow_mm, longest_mm)
+    }
+
+    /// The same for `passes` at 4.
+    #[must_use]
+    #[inline]
+    pub fn chord_bound_of_four_passes_mm(&self, longest_mm: f64) -> f64 {
+        Self::of_class(&self.bow_of_four_passes_mm, longest_mm)
+    }
+
+    /// Longest move of an axis by class, mm.
+    pub(crate) fn longest_mm() -> [f64; CLASSES] {
+        std::array::from_fn(|class| 2f64.powi(SHORTEST + class as i32))
+    }
+
+    #[inline]
+    fn of_class(bounds: &[f64; CLASSES], longest_mm: f64) -> f64 {
+        // The next power of two is one above the exponent; what is not a number has the largest exponent.
+        let exponent = (longest_mm.to_bits() >> 52 & 0x7FF) as i32 - 1023;
+        let class = (exponent + 1 - SHORTEST).max(0) as usize;
+        bounds.get(class).copied().unwrap_or(f64::INFINITY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_finds_the_next_larger_class() {
+        let bounds: [f64; CLASSES] = Everywhere::longest_mm();
+        for length in [0.0, 1e-9, 0.000_3, 0.4, 0.5, 0.999, 1.0, 31.9] {
+            let bound = Everywhere::of_class(&bounds, length);
+            assert!(length < bound && bound <= 2.0 * length.max(1.3e-4), "{length}: {bound}");
+        }
+        for length in [32.0, 1e300, f64::INFINITY, f64::NAN] {
+            assert_eq!(Everywhere::of_class(&bounds, length), f64::INFINITY);
+        }
+    }
+}
