@@ -333,6 +333,27 @@ impl<'m> Corrector<'m> {
         words
     }
 
+    /// Bounds that earlier motions were told with, before and after, mm: smaller ones need not be worked out.
+    pub fn set_told_mm(&mut self, told_mm: [f64; 2]) {
+        self.told_mm = told_mm;
+    }
+
+    /// The bounds of [`Corrector::set_told_mm`], and those told since.
+    #[must_use]
+    pub const fn told_mm(&self) -> [f64; 2] {
+        self.told_mm
+    }
+
+    /// True where every further motion would be corrected alike.
+    #[must_use]
+    pub fn continues_as(&self, other: &Self) -> bool {
+        self.standing == other.standing
+            && self.direction == other.direction
+            && self.last == other.last
+            && self.expanding == other.expanding
+            && self.remembered == other.remembered
+    }
+
     /// Where the output has brought the axes, axis commands in mm.
     #[must_use]
     pub const fn standing_mm(&self) -> [Option<f64>; 3] {

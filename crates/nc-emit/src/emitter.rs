@@ -43,6 +43,12 @@ impl<'d> Emitter<'d> {
         self
     }
 
+    /// True where every further block would be written alike.
+    #[must_use]
+    pub fn continues_as(&self, other: &Self) -> bool {
+        self.habits == other.habits && self.modes == other.modes
+    }
+
     /// Motion code in force in the output.
     #[must_use]
     pub fn motion(&self) -> Option<GCode> {

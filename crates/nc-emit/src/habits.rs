@@ -16,7 +16,7 @@ const COORDINATE_LETTERS: &[u8] = b"XYZABCUVWIJKR";
 ///
 /// Each habit is the one seen last; a word that says nothing about a habit (`X119.191` does not tell
 /// whether `X10` would be `X10.000`) leaves it as it is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Habits {
     spelling: Spelling,
     /// A coordinate has shown whether zeros at the end are written; else the spelling's is a guess.
@@ -278,7 +278,7 @@ impl Increments {
 }
 
 /// The modal facts about the output that writing needs.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Modes {
     /// Code in force in the group of G0 to G3.
     straight: Option<GCode>,

@@ -16,5 +16,5 @@ pub use edit::{Piece, WordEdit};
 pub use emitter::Emitter;
 pub use numbers::BlockNumbers;
 pub use provenance::{
-    find_provenance, insert_provenance, line_ending, provenance_comment, provenance_position,
+    find_provenance, insert_provenance, line_ending, provenance_comment, provenance_line, provenance_position,
 };

@@ -111,20 +111,29 @@ pub fn line_ending(text: &[u8]) -> &'static [u8] {
 /// Puts the comment on a line of its own at `position` (of [`provenance_position`]), with the text's line
 /// ending; nothing where `comment` is empty.
 pub fn insert_provenance(text: &mut Vec<u8>, position: u64, comment: &[u8]) {
-    if comment.is_empty() {
-        return;
-    }
-    let end = line_ending(text);
-    let at = usize::try_from(position).unwrap_or(text.len()).min(text.len());
+    let (at, line) = provenance_line(text, position, comment);
+    text.splice(at..at, line);
+}
+
+/// Where [`insert_provenance`] puts which bytes; `opening` is the text, or its beginning as far as the first line end
+/// behind the position.
+#[must_use]
+pub fn provenance_line(opening: &[u8], position: u64, comment: &[u8]) -> (usize, Vec<u8>) {
+    let end = line_ending(opening);
+    let at = usize::try_from(position).unwrap_or(opening.len()).min(opening.len());
     // Padding and a byte order mark stay the first thing in the file.
-    let padding =
-        text[at..].iter().take_while(|byte| at == 0 && matches!(byte, 0 | 0x7F | 0xEF | 0xBB | 0xBF)).count();
+    let padding = opening[at..]
+        .iter()
+        .take_while(|byte| at == 0 && matches!(byte, 0 | 0x7F | 0xEF | 0xBB | 0xBF))
+        .count();
     let at = at + padding;
     let mut line = Vec::with_capacity(comment.len() + 2 * end.len());
-    if at > padding && !matches!(text[at - 1], b'\n' | b'\r') {
+    if !comment.is_empty() {
+        if at > padding && !matches!(opening[at - 1], b'\n' | b'\r') {
+            line.extend_from_slice(end);
+        }
+        line.extend_from_slice(comment);
         line.extend_from_slice(end);
     }
-    line.extend_from_slice(comment);
-    line.extend_from_slice(end);
-    text.splice(at..at, line);
+    (at, line)
 }

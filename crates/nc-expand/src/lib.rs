@@ -204,6 +204,12 @@ pub fn expand<'a>(
     run::run(text, dialect, environment)
 }
 
+/// True where a block computes, jumps or calls: a program that has one is not plain.
+#[must_use]
+pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)
+}
+
 /// True where some block computes, jumps or calls.
 fn flows(text: &[u8], dialect: &Dialect) -> bool {
     if dialect.flow.macros == Macros::None {

@@ -3,46 +3,87 @@
 use memchr::{memchr_iter, memchr2};
 
 use crate::lexer::{Lexer, is_blank, skip_blanks};
-use crate::{Item, ItemKind};
+use crate::{Dialect, Item, ItemKind};
 
 /// What surrounds the program in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Envelope {
+pub struct Envelope {
     /// Bytes before the `%` that opens the program: a leader, not executed. 0 where no `%` opens it.
-    pub(crate) leader: usize,
+    pub(crate) leader: u64,
     /// From here on (just behind the `%` that closes the program) nothing is executed.
-    pub(crate) trailer: usize,
+    pub(crate) trailer: u64,
 }
 
 impl Envelope {
-    /// Finds the `%` marks: first on their line, blanks aside.
-    ///
-    /// The first one opens the program unless blocks stand before it. The last one closes it, unless it is
-    /// the one that opened it. Marks between the two are left for the reader to show.
-    pub(crate) fn find(text: &[u8], lexer: &Lexer<'_>) -> Self {
-        let mut marks = memchr_iter(b'%', text).filter(|at| first_on_line(text, *at));
-        let Some(first) = marks.next() else {
-            return Self { leader: 0, trailer: text.len() };
-        };
-        let opens = !holds_blocks(&text[..first], lexer);
-        let last = marks.next_back();
-        let closing = if opens { last } else { Some(last.unwrap_or(first)) };
-        Self { leader: if opens { first } else { 0 }, trailer: closing.map_or(text.len(), |at| at + 1) }
+    /// True where a block that starts so many bytes into the file is one of the program.
+    #[must_use]
+    pub const fn holds(&self, offset: u64) -> bool {
+        self.leader <= offset && offset < self.trailer
     }
 }
 
-fn first_on_line(text: &[u8], at: usize) -> bool {
+/// Finds the `%` marks of a program that is read part by part: first on their line, blanks aside.
+///
+/// The first one opens the program unless blocks stand before it. The last one closes it, unless it is
+/// the one that opened it. Marks between the two are left for the reader to show.
+pub struct EnvelopeFinder<'d> {
+    lexer: Lexer<'d>,
+    length: u64,
+    first: Option<u64>,
+    last: Option<u64>,
+    /// Blocks stand before the first mark.
+    blocks_before: bool,
+}
+
+impl<'d> EnvelopeFinder<'d> {
+    /// Nothing read yet.
+    #[must_use]
+    pub fn new(dialect: &'d Dialect) -> Self {
+        Self { lexer: Lexer::new(dialect), length: 0, first: None, last: None, blocks_before: false }
+    }
+
+    /// The next part of the program, which ends at the end of a line or of the program.
+    pub fn see(&mut self, part: &[u8]) {
+        let starts = self.length == 0;
+        let mut marks = memchr_iter(b'%', part).filter(|at| first_on_line(part, *at, starts));
+        if self.first.is_none() {
+            let first = marks.next();
+            let before = &part[..first.unwrap_or(part.len())];
+            self.blocks_before = self.blocks_before || holds_blocks(before, starts, &self.lexer);
+            self.first = first.map(|at| self.length + at as u64);
+        }
+        self.last = marks.next_back().map(|at| self.length + at as u64).or(self.last);
+        self.length += part.len() as u64;
+    }
+
+    /// What is known while further parts are to come: nothing closes the program yet.
+    #[must_use]
+    pub fn open(&self) -> Envelope {
+        Envelope { trailer: u64::MAX, ..self.finish() }
+    }
+
+    /// What was found, once all parts were seen.
+    #[must_use]
+    pub fn finish(&self) -> Envelope {
+        let opening = self.first.filter(|_| !self.blocks_before);
+        let closing = self.last.or(self.first.filter(|_| opening.is_none()));
+        Envelope { leader: opening.unwrap_or(0), trailer: closing.map_or(self.length, |at| at + 1) }
+    }
+}
+
+fn first_on_line(text: &[u8], at: usize, starts: bool) -> bool {
     let before = text[..at].iter().rposition(|byte| !is_blank(*byte));
     before.is_none_or(|before| {
-        matches!(text[before], b'\n' | b'\r') || text[..=before] == *crate::reader::BYTE_ORDER_MARK
+        matches!(text[before], b'\n' | b'\r')
+            || (starts && text[..=before] == *crate::reader::BYTE_ORDER_MARK)
     })
 }
 
 /// True where some line reads as a block: words a program has and nothing that cannot be read.
-fn holds_blocks(text: &[u8], lexer: &Lexer<'_>) -> bool {
+fn holds_blocks(text: &[u8], starts: bool, lexer: &Lexer<'_>) -> bool {
     let mut items: Vec<Item> = Vec::new();
     let mut at = skip_blanks(text, 0);
-    if text[at..].starts_with(crate::reader::BYTE_ORDER_MARK) {
+    if starts && text[at..].starts_with(crate::reader::BYTE_ORDER_MARK) {
         at += crate::reader::BYTE_ORDER_MARK.len();
     }
     while at < text.len() {

@@ -21,4 +21,5 @@ mod value;
 pub use block::{Block, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Number, Sign, Span, Value, Word};
 pub use content::looks_like_program;
 pub use dialect::Dialect;
-pub use reader::Reader;
+pub use envelope::{Envelope, EnvelopeFinder};
+pub use reader::{Place, Reader};

@@ -2,7 +2,7 @@
 
 use memchr::memchr2;
 
-use crate::envelope::Envelope;
+use crate::envelope::{Envelope, EnvelopeFinder};
 use crate::lexer::{Lexer, skip_blanks, trim_end};
 use crate::{Block, Dialect, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Span};
 
@@ -23,6 +23,8 @@ pub struct Reader<'a> {
     lexer: Lexer<'a>,
     envelope: Envelope,
     at: usize,
+    /// Bytes of the program before the text.
+    before: u64,
     line: u64,
     /// End of the line `at` is on: without and with its line end.
     line_end: (usize, usize),
@@ -30,13 +32,52 @@ pub struct Reader<'a> {
     name_line: bool,
 }
 
+/// Where a part of a program starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Bytes of the program before it.
+    pub offset: u64,
+    /// Its first line, from 1.
+    pub line: u64,
+    /// The next line may be the program's name: [`Reader::expects_name`] where the part before it ended.
+    pub expects_name: bool,
+}
+
+impl Place {
+    /// The start of a program.
+    pub const START: Self = Self { offset: 0, line: 1, expects_name: false };
+}
+
 impl<'a> Reader<'a> {
     /// A reader at the start of `text`.
     #[must_use]
     pub fn new(text: &'a [u8], dialect: &'a Dialect) -> Self {
-        let lexer = Lexer::new(dialect);
-        let envelope = Envelope::find(text, &lexer);
-        Self { text, lexer, envelope, at: 0, line: 1, line_end: (0, 0), name_line: false }
+        let mut finder = EnvelopeFinder::new(dialect);
+        finder.see(text);
+        Self::part(text, dialect, finder.finish(), Place::START)
+    }
+
+    /// A reader of a part of a program: `text` starts at the start of a line and ends at the end of one.
+    ///
+    /// Parts read one after the other give the blocks of the whole, `envelope` being that of the whole.
+    #[must_use]
+    pub fn part(text: &'a [u8], dialect: &'a Dialect, envelope: Envelope, place: Place) -> Self {
+        Self {
+            text,
+            lexer: Lexer::new(dialect),
+            envelope,
+            at: 0,
+            before: place.offset,
+            line: place.line,
+            line_end: (0, 0),
+            name_line: place.expects_name,
+        }
+    }
+
+    /// What the part after this one needs to know ([`Place::expects_name`]).
+    #[must_use]
+    pub const fn expects_name(&self) -> bool {
+        self.name_line
     }
 
     /// Replaces `block` by the next block; false at the end of the text, where `block` is left empty.
@@ -44,7 +85,7 @@ impl<'a> Reader<'a> {
     /// Nothing is allocated once `block.items` has grown to the longest block.
     pub fn next(&mut self, block: &mut Block<'a>) -> bool {
         block.items.clear();
-        block.offset = self.at as u64;
+        block.offset = self.before + self.at as u64;
         block.line = self.line;
         if self.at >= self.text.len() {
             block.bytes = &[];
@@ -69,9 +110,10 @@ impl<'a> Reader<'a> {
 
     /// Reads the items of the rest of a line; returns how much of it the block takes.
     fn items(&mut self, line: &[u8], items: &mut Vec<Item>) -> usize {
-        let in_leader = self.at + line.len() < self.envelope.leader;
-        if in_leader || self.at >= self.envelope.trailer {
-            let start = skip_blanks(line, if self.at == 0 { mark_length(line) } else { 0 });
+        let offset = self.before + self.at as u64;
+        let in_leader = offset + (line.len() as u64) < self.envelope.leader;
+        if in_leader || offset >= self.envelope.trailer {
+            let start = skip_blanks(line, if offset == 0 { mark_length(line) } else { 0 });
             let end = trim_end(line);
             if start < end {
                 let kind = if line.len() > MAX_BLOCK_BYTES {
@@ -83,7 +125,7 @@ impl<'a> Reader<'a> {
             }
             return line.len();
         }
-        let start = if self.at == 0 { mark_length(line) } else { 0 };
+        let start = if offset == 0 { mark_length(line) } else { 0 };
         let window = &line[..line.len().min(MAX_BLOCK_BYTES)];
         let end = self.lexer.block(window, start, self.name_line, items);
         if end == window.len() && window.len() < line.len() {

@@ -2,7 +2,7 @@
 
 use common::{conventional, dialect};
 use nc_syntax::dialect::{Paren, PointFree, Semicolon};
-use nc_syntax::{Block, Dialect, Invalid, ItemKind, Reader, Value};
+use nc_syntax::{Block, Dialect, EnvelopeFinder, Invalid, ItemKind, Place, Reader, Value};
 use proptest::prelude::*;
 
 mod common;
@@ -295,6 +295,36 @@ fn lossless(text: &[u8], dialect: &Dialect) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Cut into parts at line ends and read one after the other, a program gives the same blocks.
+fn in_parts(text: &[u8], dialect: &Dialect, every: usize) -> Result<(), TestCaseError> {
+    let ends = |at: usize| match (text[at - 1], text.get(at)) {
+        (b'\n', _) => true,
+        (b'\r', next) => !matches!(next, Some(b'\r' | b'\n')),
+        _ => false,
+    };
+    let mut cuts: Vec<usize> = (1..text.len()).filter(|at| ends(*at)).step_by(every).collect();
+    cuts.push(text.len());
+    let parts = || cuts.iter().scan(0, |from, to| Some((std::mem::replace(from, *to), *to)));
+    let mut finder = EnvelopeFinder::new(dialect);
+    parts().for_each(|(from, to)| finder.see(&text[from..to]));
+    let envelope = finder.finish();
+    let mut whole = Reader::new(text, dialect);
+    let (mut expected, mut found) = (Block::default(), Block::default());
+    let mut place = Place::START;
+    for (from, to) in parts() {
+        let mut reader = Reader::part(&text[from..to], dialect, envelope, place);
+        let mut line = place.line;
+        while reader.next(&mut found) {
+            prop_assert!(whole.next(&mut expected));
+            prop_assert_eq!(&found, &expected);
+            line = found.line + 1;
+        }
+        place = Place { offset: to as u64, line, expects_name: reader.expects_name() };
+    }
+    prop_assert!(!whole.next(&mut expected));
+    Ok(())
+}
+
 fn every_dialect() -> impl Strategy<Value = Dialect> {
     let paren = prop_oneof![
         Just(Paren::None),
@@ -323,8 +353,10 @@ proptest! {
     fn anything_like_a_program_comes_out_as_it_went_in(
         text in "([GXYZNMOFIJKRgx%/(){};,:#=<>\\[\\]\"0-9.+\\- \t\r\n\\x00]|IF|GOTO|nan|E5|SIN|sub|%\n){0,120}",
         dialect in every_dialect(),
+        every in 1usize..4,
     ) {
         lossless(text.as_bytes(), &dialect)?;
+        in_parts(text.as_bytes(), &dialect, every)?;
     }
 
     /// What is written as words is read as these words, with or without spaces.

@@ -104,7 +104,7 @@ pub(crate) fn reports(
 ) -> Vec<Report> {
     let report = |(file, diagnostics): (usize, Vec<Diagnostic>)| {
         let (name, bytes) = expanded.file(file).unwrap_or((name, text));
-        Report { source: Some(Source { name: name.to_owned(), bytes: bytes.to_vec() }), diagnostics }
+        Report { source: Some(Source::whole(name, bytes)), diagnostics }
     };
     expanded.settle(diagnostics).into_iter().map(report).collect()
 }
@@ -188,7 +188,7 @@ pub(crate) fn correct(
         } else if !expanded.warnings().is_empty() {
             corrected.figures.warnings.extend_from_slice(expanded.warnings());
             warnings.push(Report {
-                source: Some(Source { name: name.to_owned(), bytes: text.to_vec() }),
+                source: Some(Source::whole(name, text)),
                 diagnostics: expanded.warnings().to_vec(),
             });
         }

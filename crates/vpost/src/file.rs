@@ -1,13 +1,14 @@
 //! Files: read whole, written whole or not at all.
 
 use std::borrow::Cow;
-use std::io::{Read, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use diagnostic::{Code, Diagnostic};
 
+use crate::correct::Growing;
 use crate::message::Failure;
 
 /// A block is longer than any that is read.
@@ -63,43 +64,146 @@ fn read_lines(mut source: impl Read, path: &Path) -> Result<Vec<u8>, Failure> {
         if read < LONGEST_LINE {
             return Ok(bytes);
         }
-        let part = &bytes[start..];
-        let ends = part.iter().any(|byte| matches!(byte, b'\n' | b'\r'));
-        let padding = part.iter().all(|byte| matches!(byte, 0 | b' ' | 0x7F));
-        if !ends && !padding {
-            // A binary file is told as what it is.
-            if let Err(diagnostic) = nc_syntax::looks_like_program(&bytes) {
-                return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
+        check_line(&bytes, start, &name(path))?;
+    }
+}
+
+/// Refuses a text that holds a megabyte without line end, whatever follows.
+pub(crate) fn check_lines(text: &[u8], name: &str) -> Result<(), Failure> {
+    let mut start = 0;
+    while start + LONGEST_LINE <= text.len() {
+        check_line(&text[..start + LONGEST_LINE], start, name)?;
+        start += LONGEST_LINE;
+    }
+    Ok(())
+}
+
+fn check_line(bytes: &[u8], start: usize, name: &str) -> Result<(), Failure> {
+    let part = &bytes[start..];
+    let ends = memchr::memchr2(b'\n', b'\r', part).is_some();
+    let padding = || part.iter().all(|byte| matches!(byte, 0 | b' ' | 0x7F));
+    if ends || padding() {
+        return Ok(());
+    }
+    // A binary file is told as what it is.
+    if let Err(diagnostic) = nc_syntax::looks_like_program(bytes) {
+        return Err(Failure::refused(name, bytes, vec![diagnostic]));
+    }
+    let span = start as u64..start as u64 + 120;
+    let diagnostic = Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
+        .at(span, "no line end within a megabyte")
+        .help("check that this is a part program and that its line ends arrived with it");
+    Err(Failure::refused(name, bytes, vec![diagnostic]))
+}
+
+/// Outputs beyond this that are not beside their file wait on disk, smaller ones in memory.
+const SPOOLED_BYTES: usize = 16 << 20;
+
+/// Where a result grows before it is shown: beside the file it becomes, or out of sight.
+///
+/// A file is there whole or, where that fails, an earlier one is left as it was; standard output gets nothing
+/// before all of it is known to be right.
+#[derive(Debug)]
+pub(crate) struct Output<'p> {
+    path: Option<&'p Path>,
+    /// What is written to.
+    pub(crate) place: Place,
+}
+
+/// Where that is.
+#[derive(Debug)]
+pub(crate) enum Place {
+    /// Takes the place of the file in the end.
+    Beside(tempfile::NamedTempFile),
+    /// Is copied in the end: devices and pipes cannot be replaced.
+    Apart(tempfile::SpooledTempFile),
+}
+
+impl<'p> Output<'p> {
+    /// An output to a file, or to standard output.
+    pub(crate) fn new(path: Option<&'p Path>) -> Result<Self, Failure> {
+        let Some(to) = path else {
+            return Ok(Self { path, place: Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES)) });
+        };
+        let fail = |error: &std::io::Error| Failure::file(&name(to), "write", error);
+        let folder = to.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if to.is_dir() {
+            return Err(fail(&std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+        }
+        let place = if to.exists() && !to.is_file() {
+            Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES))
+        } else {
+            let beside =
+                tempfile::Builder::new().prefix(".vpost-").permissions(permissions(to)).tempfile_in(folder);
+            Place::Beside(beside.map_err(|error| fail(&error))?)
+        };
+        Ok(Self { path, place })
+    }
+
+    /// Shows it.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let named = self.path.map_or_else(|| "standard output".to_owned(), name);
+        let fail = |error: &std::io::Error| Failure::file(&named, "write", error);
+        match (self.place, self.path) {
+            (Place::Beside(beside), Some(path)) => {
+                beside.as_file().sync_all().map_err(|error| fail(&error))?;
+                beside.persist(path).map_err(|error| fail(&error.error))?;
+                Ok(())
             }
-            let span = start as u64..start as u64 + 120;
-            let diagnostic =
-                Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
-                    .at(span, "no line end within a megabyte")
-                    .help("check that this is a part program and that its line ends arrived with it");
-            return Err(Failure::refused(&name(path), &bytes, vec![diagnostic]));
+            (Place::Beside(_), None) => Ok(()),
+            (Place::Apart(mut apart), path) => {
+                apart.seek(SeekFrom::Start(0)).map_err(|error| fail(&error))?;
+                match path {
+                    Some(path) => {
+                        let mut out = std::fs::OpenOptions::new()
+                            .write(true)
+                            .open(path)
+                            .map_err(|error| fail(&error))?;
+                        std::io::copy(&mut apart, &mut out).map(|_| ()).map_err(|error| fail(&error))
+                    }
+                    None => printed(|out| std::io::copy(&mut apart, out).map(|_| ())),
+                }
+            }
+        }
+    }
+}
+
+impl Write for Place {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Beside(beside) => beside.write(bytes),
+            Self::Apart(apart) => apart.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Beside(beside) => beside.flush(),
+            Self::Apart(apart) => apart.flush(),
+        }
+    }
+}
+
+impl Growing for Place {
+    fn clear(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Beside(beside) => {
+                beside.as_file().set_len(0)?;
+                beside.rewind()
+            }
+            Self::Apart(apart) => {
+                apart.set_len(0)?;
+                apart.rewind()
+            }
         }
     }
 }
 
 /// Writes a file so that it is there whole or, where that fails, an earlier one is left as it was.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let fail = |error: &std::io::Error| Failure::file(&name(path), "write", error);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if path.is_dir() {
-        return Err(fail(&std::io::Error::from(std::io::ErrorKind::IsADirectory)));
-    }
-    // Standard output's devices and pipes cannot be replaced, only written to.
-    if path.exists() && !path.is_file() {
-        return std::fs::write(path, bytes).map_err(|error| fail(&error));
-    }
-    let mut file = tempfile::Builder::new()
-        .prefix(".vpost-")
-        .permissions(permissions(path))
-        .tempfile_in(folder)
-        .map_err(|error| fail(&error))?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(|error| fail(&error))?;
-    file.persist(path).map_err(|error| fail(&error.error))?;
-    Ok(())
+    let mut output = Output::new(Some(path))?;
+    output.place.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
+    output.finish()
 }
 
 /// A new output gets the usual permissions, an overwritten one keeps its own.
@@ -119,8 +223,12 @@ fn permissions(path: &Path) -> std::fs::Permissions {
 
 /// Prints to standard output.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    printed(|out| out.write_all(bytes))
+}
+
+fn printed(print: impl FnOnce(&mut std::io::StdoutLock<'_>) -> std::io::Result<()>) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
+    match print(&mut out).and_then(|()| out.flush()) {
         // Whoever reads has seen enough.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::Check),
         result => result.map_err(|error| Failure::file("standard output", "write to", &error)),

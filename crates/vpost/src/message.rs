@@ -13,8 +13,19 @@ use crate::arguments::Color;
 pub(crate) struct Source {
     /// Its name for people.
     pub name: String,
-    /// Its bytes.
+    /// Its bytes, or those of a part that starts with a line.
     pub bytes: Vec<u8>,
+    /// Bytes of the text before them.
+    pub offset: u64,
+    /// The line they start with, from 1.
+    pub line: u64,
+}
+
+impl Source {
+    /// A whole text.
+    pub(crate) fn whole(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
+        Self { name: name.into(), bytes: bytes.into(), offset: 0, line: 1 }
+    }
 }
 
 impl Source {
@@ -60,7 +71,7 @@ pub(crate) const OPTION: Code = Code(2);
 impl Failure {
     /// One diagnostic about a text.
     pub(crate) fn refused(name: &str, bytes: &[u8], diagnostics: Vec<Diagnostic>) -> Self {
-        let source = Source { name: name.to_owned(), bytes: bytes.to_vec() };
+        let source = Source::whole(name, bytes);
         Self::Refused(vec![Report { source: Some(source), diagnostics }])
     }
 
@@ -160,7 +171,12 @@ impl Messages {
         let code = diagnostic.code.to_string();
         let title = level.primary_title(diagnostic.message.as_str()).id(code.as_str());
         let line = match (&diagnostic.span, source) {
-            (Some(span), Some(source)) => Some((Line::around(&source.bytes, span), source.name.as_str())),
+            (Some(span), Some(source)) => {
+                let own = span.start.saturating_sub(source.offset)..span.end.saturating_sub(source.offset);
+                let mut line = Line::around(&source.bytes, &own);
+                line.number += usize::try_from(source.line).map_or(0, |first| first - 1);
+                Some((line, source.name.as_str()))
+            }
             _ => None,
         };
         let mut groups = Vec::new();

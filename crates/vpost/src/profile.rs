@@ -19,7 +19,7 @@ pub(crate) struct Loaded {
 pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     let bytes = std::fs::read(path)
         .map_err(|error| Failure::usage(file_diagnostic(&file::name(path), "read", &error)))?;
-    let source = |name: &str, bytes: &[u8]| Some(Source { name: name.to_owned(), bytes: bytes.to_vec() });
+    let source = |name: &str, bytes: &[u8]| Some(Source::whole(name, bytes));
     let name = file::name(path);
     let Ok(text) = std::str::from_utf8(&bytes) else {
         let at = std::str::from_utf8(&bytes).err().map_or(0, |error| error.valid_up_to()) as u64;

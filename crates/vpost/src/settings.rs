@@ -171,7 +171,7 @@ pub(crate) fn load_dialect(name: &str) -> Result<Dialect, Failure> {
 fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, Failure> {
     let text = String::from_utf8_lossy(bytes);
     nc_dialect::load(stem, &text).map_err(|diagnostics| {
-        let source = Some(Source { name: file_name.to_owned(), bytes: text.as_bytes().to_vec() });
+        let source = Some(Source::whole(file_name, text.as_bytes()));
         Failure::Usage(vec![Report { source, diagnostics }])
     })
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::correct::{Corrected, Figures};
+use crate::correct::{Digest, Figures, Program};
 use crate::settings::Settings;
 
 /// The JSON of `--summary`.
@@ -33,7 +33,7 @@ pub(crate) struct Summary<'a> {
 #[derive(Debug, Serialize)]
 struct File<'a> {
     name: &'a str,
-    bytes: usize,
+    bytes: u64,
     blake3: String,
 }
 
@@ -46,7 +46,7 @@ struct Profile<'a> {
 
 #[derive(Debug, Serialize)]
 struct Hash {
-    bytes: usize,
+    bytes: u64,
     blake3: String,
 }
 
@@ -63,22 +63,20 @@ pub(crate) fn um(mm: f64) -> f64 {
 }
 
 impl<'a> Summary<'a> {
-    pub(crate) fn new(name: &'a str, text: &[u8], settings: &'a Settings, corrected: &Corrected) -> Self {
-        let figures = &corrected.figures;
+    pub(crate) fn new(settings: &'a Settings, program: &'a Program) -> Self {
+        let Program { name, input, output, changed, figures, .. } = program;
+        let hex = |digest: &Digest| digest.hash.map_or_else(String::new, |hash| hash.to_hex().to_string());
         Self {
             schema: "vpost.summary/1",
             version: env!("CARGO_PKG_VERSION"),
-            input: File { name, bytes: text.len(), blake3: blake3::hash(text).to_hex().to_string() },
+            input: File { name, bytes: input.bytes, blake3: hex(input) },
             profile: Profile {
                 name: &settings.profile_name,
                 machine: &settings.profile.name,
                 blake3: settings.profile_hash.to_hex().to_string(),
             },
-            output: Hash {
-                bytes: corrected.text.len(),
-                blake3: blake3::hash(&corrected.text).to_hex().to_string(),
-            },
-            changed: corrected.text != text,
+            output: Hash { bytes: output.bytes, blake3: hex(output) },
+            changed: *changed,
             engine: settings.engine.id().name(),
             dialect: &settings.dialect.name,
             tolerance_um: um(settings.options.tolerance_mm),

@@ -1,0 +1,121 @@
+//! What is said of a program: warnings that are told once, and why a motion cannot be corrected.
+
+use std::ops::Range;
+
+use correction::CorrectionError;
+use diagnostic::Diagnostic;
+use machine_model::SolveError;
+use nc_syntax::Block;
+use toolpath::Motion;
+
+use super::{
+    COMPENSATED, LEANING_CYCLE, MUST_NOT_SPLIT, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE,
+};
+
+/// Things that happen more than once and are told once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Notices {
+    pub(crate) clamped: Notice,
+    pub(crate) leaning: Notice,
+    pub(crate) compensated: Notice,
+}
+
+/// One kind of them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Notice {
+    count: u64,
+    /// Where it happened first, and that line.
+    first: Option<(Range<u64>, u64)>,
+    largest_mm: f64,
+}
+
+/// What is to be said, and the line it is said of.
+pub(crate) type Warning = (Diagnostic, u64);
+
+impl Notice {
+    pub(crate) fn see(&mut self, span: &Range<u64>, line: u64, size_mm: f64) {
+        self.count += 1;
+        self.first.get_or_insert_with(|| (span.clone(), line));
+        self.largest_mm = self.largest_mm.max(size_mm);
+    }
+
+    fn add(&mut self, later: &Self) {
+        self.count += later.count;
+        if self.first.is_none() {
+            self.first.clone_from(&later.first);
+        }
+        self.largest_mm = self.largest_mm.max(later.largest_mm);
+    }
+}
+
+impl Notices {
+    pub(crate) fn add(&mut self, later: &Self) {
+        self.clamped.add(&later.clamped);
+        self.leaning.add(&later.leaning);
+        self.compensated.add(&later.compensated);
+    }
+
+    pub(crate) fn warnings(&self) -> Vec<Warning> {
+        let mut all = Vec::new();
+        if let Notice { count, first: Some((first, line)), .. } = &self.clamped {
+            all.push((
+                Diagnostic::warning(
+                    RAPID_OUTSIDE,
+                    format!("{count} rapid motion(s) end outside the calibrated volume"),
+                )
+                .at(first.clone(), "the first; it takes the correction of the volume's nearest point")
+                .help("nothing is cut there; calibrate a larger volume if the place matters"),
+                *line,
+            ));
+        }
+        if let Notice { count, first: Some((first, line)), largest_mm } = &self.leaning {
+            all.push((
+                Diagnostic::warning(
+                    LEANING_CYCLE,
+                    format!("{count} hole(s) are off by up to {:.1} um along their depth", largest_mm * 1e3),
+                )
+                .at(first.clone(), "this cycle is bound to the spindle and cannot be written as moves; its middle was put in place")
+                .help("the machine's drilling axis leans; thread by milling where that matters"), *line));
+        }
+        if let Notice { count, first: Some((first, line)), .. } = &self.compensated {
+            all.push((
+                Diagnostic::warning(COMPENSATED, format!("{count} motion(s) under cutter compensation"))
+                    .at(first.clone(), "the programmed contour was corrected, not the path of the tool's centre")
+                    .help("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters"), *line));
+        }
+        all
+    }
+}
+
+/// What to say of a motion that cannot be corrected.
+pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<Diagnostic> {
+    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    let word = |letter: u8| block.word(letter).map(|word| block.file_span(word.span));
+    let diagnostic = match error {
+        CorrectionError::Solve(SolveError::OutsideVolume { axis, value_mm, low_mm, high_mm }) => {
+            let span = word(*axis as u8).unwrap_or(whole);
+            let what = if matches!(motion, Motion::Hole(_)) { "this hole" } else { "this feed motion" };
+            Diagnostic::error(OUTSIDE, format!("{what} leaves the calibrated volume"))
+                .at(span, format!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm"))
+                .help(format!(
+                    "place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`",
+                    if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
+                ))
+        }
+        CorrectionError::Solve(error @ SolveError::NotConverged { .. }) => {
+            Diagnostic::error(NOT_CONVERGED, error.to_string())
+                .at(whole, "here")
+                .help("an error table with steps this steep is no machine: run `vpost profile check`")
+        }
+        CorrectionError::Solve(error) => Diagnostic::error(NOT_CONVERGED, error.to_string())
+            .at(whole, "here")
+            .help("choose another engine with `--engine`"),
+        CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
+            .at(whole, "this block cannot be split: cutter compensation or a thread is active")
+            .help("post with compensation computed in CAM, or accept more with `--tolerance`"),
+        CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.to_string())
+            .at(whole, "this motion")
+            .help("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`"),
+    };
+    vec![diagnostic]
+}

@@ -1,0 +1,353 @@
+//! One block after the other: what flows through a program, and what is done with each block.
+
+use correction::{Correction, Corrector};
+use diagnostic::Diagnostic;
+use nc_emit::{BlockNumbers, Emitter};
+use nc_program::{Context, Interpreter};
+use nc_syntax::Block;
+use smallvec::SmallVec;
+use toolpath::{Feed, FeedRate, Motion};
+use units::decimal::Decimal;
+
+use super::notices::{Notices, refusal};
+use super::{Figures, Job};
+use crate::words::{Editing, MotionCodes, Original, letters};
+
+/// What flows from block to block: all that the blocks before have to do with those that follow.
+#[derive(Clone)]
+pub(crate) struct State<'a> {
+    interpreter: Interpreter<'a>,
+    corrector: Corrector<'a>,
+    emitter: Emitter<'a>,
+    /// The last P of a cycle.
+    dwell: Option<Decimal>,
+    /// [`nc_syntax::Place::expects_name`]
+    pub(crate) expects_name: bool,
+}
+
+impl<'a> State<'a> {
+    /// At the start of a program.
+    pub(crate) fn new(job: &Job<'a>, numbers: &'a BlockNumbers) -> Self {
+        Self {
+            interpreter: Interpreter::new(job.dialect, job.setup),
+            corrector: Corrector::new(job.model, job.options),
+            emitter: Emitter::new(job.dialect).with_numbers(numbers),
+            dwell: None,
+            expects_name: false,
+        }
+    }
+
+    /// True where whatever follows comes out alike.
+    pub(crate) fn continues_as(&self, other: &Self) -> bool {
+        self.interpreter.modal() == other.interpreter.modal()
+            && self.corrector.continues_as(&other.corrector)
+            && self.emitter.continues_as(&other.emitter)
+            && self.dwell == other.dwell
+            && self.expects_name == other.expects_name
+    }
+
+    /// Bounds that were told to another state and count here too.
+    pub(crate) fn tell_as(&mut self, other: &Self) {
+        self.corrector.set_told_mm(other.corrector.told_mm());
+    }
+
+    /// Bounds in the figures of what came before: smaller ones need not be worked out.
+    pub(crate) fn set_told(&mut self, figures: &Figures) {
+        self.corrector.set_told_mm([figures.before.0, figures.after.0]);
+    }
+}
+
+/// What is counted on the way.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Tally {
+    pub(crate) figures: Figures,
+    pub(crate) notices: Notices,
+}
+
+impl Tally {
+    /// Adds what was counted in the blocks that follow.
+    pub(crate) fn add(&mut self, later: &Self) {
+        let (figures, more) = (&mut self.figures, &later.figures);
+        figures.blocks_in += more.blocks_in;
+        figures.blocks_out += more.blocks_out;
+        figures.splits += more.splits;
+        figures.approaches += more.approaches;
+        raise(&mut figures.largest, more.largest);
+        raise(&mut figures.before, more.before);
+        raise(&mut figures.after, more.after);
+        self.notices.add(&later.notices);
+    }
+}
+
+/// The first of the largest counts.
+fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
+    if value > figure.0 {
+        *figure = (value, line);
+    }
+}
+
+/// A pass over blocks.
+pub(crate) struct Pass<'a> {
+    job: &'a Job<'a>,
+    codes: MotionCodes,
+    pub(crate) state: State<'a>,
+    pub(crate) out: Vec<u8>,
+    pub(crate) tally: Tally,
+}
+
+impl<'a> Pass<'a> {
+    /// Goes on from `state`.
+    pub(crate) fn new(job: &'a Job<'a>, state: State<'a>, bytes: usize) -> Self {
+        Self {
+            job,
+            codes: MotionCodes::of(job.dialect),
+            state,
+            out: Vec::with_capacity(bytes + bytes / 8 + 64),
+            tally: Tally::default(),
+        }
+    }
+}
+
+impl Pass<'_> {
+    /// Corrects one block.
+    pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
+        self.tally.figures.blocks_in += 1;
+        let step = self.state.interpreter.step(block)?;
+        let letters = letters(block);
+        let context = &step.context;
+        if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
+            && let Some(number) = block.word(b'P').and_then(|word| word.number())
+        {
+            self.state.dwell = Some(number.decimal);
+        }
+        if step.states_position {
+            return self.state_position(block, context);
+        }
+        let info = self.info(context, letters);
+        // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
+        let before = (step.motions.len() > 1).then(|| self.state.corrector.clone());
+        let mut pieces: SmallVec<[nc_emit::Piece; 2]> = SmallVec::new();
+        let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
+        let mut untouched = true;
+        for motion in &step.motions {
+            let corrected = self
+                .state
+                .corrector
+                .correct(motion, &info)
+                .map_err(|error| refusal(&error, motion, block))?;
+            untouched &= corrected.pieces.is_empty();
+            corrections.push(corrected.correction);
+            if step.motions.len() == 1 && !corrected.pieces.is_empty() {
+                let editing = self.editing(context, letters, motion);
+                let only = corrected.pieces.len() == 1;
+                pieces.extend(
+                    corrected.pieces.iter().enumerate().map(|(k, piece)| editing.edit(piece, k == 0, only)),
+                );
+            }
+        }
+        if let (false, Some(before)) = (untouched, before) {
+            self.state.corrector = before;
+            corrections.clear();
+            self.repeated(block, context, letters, &step.motions, &mut pieces, &mut corrections)?;
+        }
+        let length = self.out.len();
+        if untouched {
+            self.pass(block, context, &step.motions)?;
+        } else {
+            self.state
+                .emitter
+                .rewrite(block, &pieces, &mut self.out)
+                .map_err(|diagnostic| vec![diagnostic])?;
+        }
+        self.note(block, context, &step.motions, &corrections, pieces.len().max(1), self.out.len() > length);
+        Ok(())
+    }
+
+    /// G92 and its like: the block says where the axes stand. In the output they stand at the corrected
+    /// place, so it must say that, or the correction would move into the frame.
+    fn state_position(&mut self, block: &Block<'_>, context: &Context) -> Result<(), Vec<Diagnostic>> {
+        let nominal = self.state.interpreter.modal().axes.linear;
+        let standing = self.state.corrector.standing_mm();
+        let inch = context.unit_mm != 1.0;
+        let decimals = self.info(context, correction::Letters::default()).decimals;
+        let mut words = Vec::new();
+        for (i, letter) in b"XYZ".iter().enumerate() {
+            let (Some(word), Some(nominal), Some(standing)) =
+                (block.word(*letter), nominal[i].known(), standing[i])
+            else {
+                continue;
+            };
+            let Some(number) = word.number() else { continue };
+            let away = (standing - nominal) / context.unit_mm;
+            if away.abs() < 1e-7 {
+                continue;
+            }
+            let value = self.job.dialect.numbers.length(number, inch).to_f64() + away;
+            // Both are decimal numbers: the sum is one, with as many decimals as the longer.
+            let exact = (decimals[i]..=7).find_map(|decimals| {
+                let counts = (value * f64::from(10u32.pow(u32::from(decimals)))).round();
+                let near = (counts / f64::from(10u32.pow(u32::from(decimals))) - value).abs() < 1e-8;
+                near.then_some((counts as i64, decimals))
+            });
+            let Some((counts, decimals)) = exact else {
+                return Err(vec![
+                    Diagnostic::error(
+                        nc_program::codes::FRAME,
+                        format!("{} cannot say where the corrected axis stands", *letter as char),
+                    )
+                    .at(block.file_span(word.span), "the place is no whole number of output steps")
+                    .help("write the shift as a work offset (G54 to G59), or approach it with G0 in millimetres"),
+                ]);
+            };
+            words.push((*letter, nc_emit::WordEdit::Write { counts, decimals }));
+        }
+        if words.is_empty() {
+            self.state.emitter.pass(block, &mut self.out);
+        } else {
+            let piece = nc_emit::Piece { motion: None, words };
+            self.state
+                .emitter
+                .rewrite(block, &[piece], &mut self.out)
+                .map_err(|diagnostic| vec![diagnostic])?;
+        }
+        self.tally.figures.blocks_out += 1;
+        Ok(())
+    }
+
+    /// A block that stays as it is; its motion code must still be in force in the output.
+    fn pass(
+        &mut self,
+        block: &Block<'_>,
+        context: &Context,
+        motions: &[Motion],
+    ) -> Result<(), Vec<Diagnostic>> {
+        let relies = motions.iter().any(|motion| !matches!(motion, Motion::Uncorrected { .. }));
+        if relies && context.motion_code.is_some() && self.state.emitter.motion() != context.motion_code {
+            let piece = nc_emit::Piece { motion: context.motion_code, words: Vec::new() };
+            return self
+                .state
+                .emitter
+                .rewrite(block, &[piece], &mut self.out)
+                .map_err(|diagnostic| vec![diagnostic]);
+        }
+        self.state.emitter.pass(block, &mut self.out);
+        Ok(())
+    }
+
+    /// The holes of a repeated cycle, a block each.
+    fn repeated(
+        &mut self,
+        block: &Block<'_>,
+        context: &Context,
+        letters: correction::Letters,
+        motions: &[Motion],
+        pieces: &mut SmallVec<[nc_emit::Piece; 2]>,
+        corrections: &mut SmallVec<[Correction; 1]>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let repeats = [b'L', b'K'].into_iter().filter(|letter| letters.contains(*letter));
+        let repeats: SmallVec<[(u8, nc_emit::WordEdit); 2]> =
+            repeats.map(|letter| (letter, nc_emit::WordEdit::Remove)).collect();
+        for (k, motion) in motions.iter().enumerate() {
+            // From the second hole on there is no block with words to keep.
+            let letters = if k == 0 { letters } else { correction::Letters::default() };
+            let info = self.info(context, letters);
+            let corrected = self
+                .state
+                .corrector
+                .correct(motion, &info)
+                .map_err(|error| refusal(&error, motion, block))?;
+            corrections.push(corrected.correction);
+            let editing = self.editing(context, letters, motion);
+            if corrected.pieces.is_empty() {
+                pieces.push(nc_emit::Piece { motion: context.motion_code, words: Vec::new() });
+            }
+            pieces.extend(
+                corrected
+                    .pieces
+                    .iter()
+                    .enumerate()
+                    .map(|(i, piece)| editing.edit(piece, k == 0 && i == 0, false)),
+            );
+            if k == 0
+                && let Some(first) = pieces.first_mut()
+            {
+                for repeat in &repeats {
+                    if !first.words.iter().any(|(letter, _)| *letter == repeat.0) {
+                        first.words.push(*repeat);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn info(&self, context: &Context, letters: correction::Letters) -> correction::Block {
+        let output = &self.job.dialect.output;
+        let inch = context.unit_mm != 1.0;
+        correction::Block {
+            frame: context.frame,
+            unit_mm: context.unit_mm,
+            decimals: if inch { [output.decimals_inch; 3] } else { self.job.decimals_mm },
+            incremental: context.incremental,
+            arc_centres_absolute: context.arc_centres_absolute,
+            letters,
+            tool_mm: context.tool_mm,
+            centre_words: output.centre_words,
+            arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
+            peck_clearance_mm: output.peck_clearance_mm,
+            chip_retreat_mm: output.chip_retreat_mm,
+        }
+    }
+
+    fn editing<'e>(
+        &'e self,
+        context: &'e Context,
+        letters: correction::Letters,
+        motion: &Motion,
+    ) -> Editing<'e> {
+        Editing {
+            codes: &self.codes,
+            context,
+            letters,
+            original: Original::of(motion),
+            decimals: self.info(context, letters).decimals,
+            inverse_time: match motion {
+                Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
+                _ => None,
+            },
+            decimals_feed: self.job.dialect.output.decimals_feed,
+            dwell: self.state.dwell,
+        }
+    }
+
+    fn note(
+        &mut self,
+        block: &Block<'_>,
+        context: &Context,
+        motions: &[Motion],
+        corrections: &[Correction],
+        blocks_out: usize,
+        written: bool,
+    ) {
+        let Tally { figures, notices } = &mut self.tally;
+        figures.blocks_out += if written { blocks_out as u64 } else { 0 };
+        figures.splits += u64::from(blocks_out > 1);
+        let line = block.line;
+        let span = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+        for (motion, correction) in motions.iter().zip(corrections) {
+            raise(&mut figures.largest, (correction.largest_mm, line));
+            raise(&mut figures.before, (correction.before_mm, line));
+            raise(&mut figures.after, (correction.after_mm, line));
+            figures.approaches += u64::from(correction.approach);
+            if correction.clamped {
+                notices.clamped.see(&span, line, 0.0);
+            }
+            if let Some(lean) = correction.leaning_mm {
+                notices.leaning.see(&span, line, lean);
+            }
+            if context.compensation && matches!(motion, Motion::Feed(_)) {
+                notices.compensated.see(&span, line, 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! One program from a reader to a file: small ones in memory, large ones in chunks.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use diagnostic::Diagnostic;
+use nc_syntax::{Place, Reader};
+
+use super::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
+use super::notices::Warning;
+use super::pass::State;
+use super::sink::{Sink, Written};
+use super::stream::{self, End, Plan};
+use super::{Figures, Job, comment_position};
+use crate::expand;
+use crate::file;
+use crate::message::{Failure, Report, Source};
+use crate::settings::Settings;
+
+/// A program up to this size is corrected in memory, all at once.
+const SMALL_BYTES: u64 = 4 << 20;
+
+/// Where a program comes from.
+pub(crate) enum Input {
+    /// A file, which can be read more than once.
+    File(PathBuf),
+    /// Anything else, by the name it has in messages.
+    Stream(String, Box<dyn Read + Send>),
+}
+
+impl Input {
+    /// A file, or standard input for `-`. Errors come when it is read.
+    pub(crate) fn open(path: &Path) -> Self {
+        if path.as_os_str() == "-" {
+            Self::Stream(file::name(path), Box::new(io::stdin()))
+        } else if path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            match File::open(path) {
+                Ok(pipe) => Self::Stream(file::name(path), Box::new(pipe)),
+                Err(_) => Self::File(path.to_owned()),
+            }
+        } else {
+            Self::File(path.to_owned())
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => file::name(path),
+            Self::Stream(name, _) => name.clone(),
+        }
+    }
+}
+
+/// What an output is written to.
+pub(crate) trait Growing: Write + Send {
+    /// Starts anew.
+    fn clear(&mut self) -> io::Result<()>;
+}
+
+/// How a program is corrected.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Manner {
+    /// Also one that was corrected before.
+    pub(crate) force: bool,
+    /// Threads for a large one; the bytes are the same for any number.
+    pub(crate) threads: usize,
+    /// Hashes of input and output are wanted.
+    pub(crate) hashes: bool,
+}
+
+/// A text by its length and hash.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Digest {
+    pub(crate) bytes: u64,
+    /// Where it was wanted.
+    pub(crate) hash: Option<blake3::Hash>,
+}
+
+impl Digest {
+    fn of(bytes: &[u8], hashes: bool) -> Self {
+        Self { bytes: bytes.len() as u64, hash: hashes.then(|| blake3::hash(bytes)) }
+    }
+}
+
+/// A program that was corrected.
+#[derive(Debug)]
+pub(crate) struct Program {
+    pub(crate) name: String,
+    pub(crate) input: Digest,
+    pub(crate) output: Digest,
+    /// The output is not the input.
+    pub(crate) changed: bool,
+    pub(crate) figures: Figures,
+    /// What is to be said.
+    pub(crate) warnings: Vec<Report>,
+}
+
+/// Corrects one program; `out` is empty, and of no use after an error.
+///
+/// `progress` is told the share that is done, 0 to 1, and may end the work. A large program takes some megabytes
+/// for each thread, whatever its size; one with flow is worked on in memory as a whole.
+///
+/// # Errors
+/// What was wrong with the program, or the file system, or what `progress` said.
+pub(crate) fn program(
+    input: Input,
+    settings: &Settings,
+    manner: Manner,
+    out: &mut impl Growing,
+    progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
+) -> Result<Program, Failure> {
+    let name = input.name();
+    let unread = |error: &io::Error| Failure::file(&name, "read", error);
+    let (path, mut rest): (Option<PathBuf>, Box<dyn Read + Send>) = match input {
+        Input::File(path) => {
+            let file = File::open(&path).map_err(|error| unread(&error))?;
+            (Some(path), Box::new(file))
+        }
+        Input::Stream(_, stream) => (None, stream),
+    };
+    let mut head = Vec::new();
+    rest.by_ref().take(SMALL_BYTES + 1).read_to_end(&mut head).map_err(|error| unread(&error))?;
+    if head.len() as u64 <= SMALL_BYTES {
+        return in_memory(head, name, settings, manner, out, progress);
+    }
+    // A stream is kept on disk: it is read more than once.
+    let kept = match path {
+        Some(path) => Kept { path, _spool: None },
+        None => Kept::spool(&head, rest).map_err(|error| unread(&error))?,
+    };
+    let large = Large { name: &name, head: &head, kept: &kept, settings, manner, progress };
+    match large.correct(out) {
+        Ok(program) => Ok(program),
+        Err(LargeEnd::AsAWhole) => {
+            drop(head);
+            out.clear().map_err(|error| unwritten(&error))?;
+            let text = file::read_program(&kept.path)?;
+            in_memory(text, name, settings, manner, out, progress)
+        }
+        Err(LargeEnd::Failed(failure)) => Err(failure),
+    }
+}
+
+fn unwritten(error: &io::Error) -> Failure {
+    Failure::file("the output", "write", error)
+}
+
+fn in_memory(
+    text: Vec<u8>,
+    name: String,
+    settings: &Settings,
+    manner: Manner,
+    out: &mut impl Growing,
+    progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
+) -> Result<Program, Failure> {
+    file::check_lines(&text, &name)?;
+    let expand::Done { corrected, warnings } =
+        expand::correct(&text, &name, settings, manner.force, progress)?;
+    out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
+    Ok(Program {
+        name,
+        input: Digest::of(&text, manner.hashes),
+        output: Digest::of(&corrected.text, manner.hashes),
+        changed: corrected.text != text,
+        figures: corrected.figures,
+        warnings,
+    })
+}
+
+/// A program on disk.
+struct Kept {
+    path: PathBuf,
+    /// Gone when this is.
+    _spool: Option<tempfile::TempPath>,
+}
+
+impl Kept {
+    fn spool(head: &[u8], mut rest: impl Read) -> io::Result<Self> {
+        let mut spool = tempfile::NamedTempFile::new()?;
+        spool.write_all(head)?;
+        io::copy(&mut rest, &mut spool)?;
+        let spool = spool.into_temp_path();
+        Ok(Self { path: spool.to_path_buf(), _spool: Some(spool) })
+    }
+
+    fn open(&self) -> io::Result<File> {
+        File::open(&self.path)
+    }
+}
+
+/// Why a large program was not corrected in chunks.
+enum LargeEnd {
+    /// It must be read as a whole: flow, and what is rare.
+    AsAWhole,
+    Failed(Failure),
+}
+
+impl From<Failure> for LargeEnd {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+struct Large<'a> {
+    name: &'a str,
+    /// The first megabytes.
+    head: &'a [u8],
+    kept: &'a Kept,
+    settings: &'a Settings,
+    manner: Manner,
+    progress: &'a (dyn Fn(f64) -> Result<(), Failure> + Sync),
+}
+
+impl Large<'_> {
+    fn correct(&self, out: &mut impl Growing) -> Result<Program, LargeEnd> {
+        // Told from the first bytes only; what ends within them is rare enough.
+        if nc_syntax::looks_like_program(self.head).is_err() {
+            return Err(LargeEnd::AsAWhole);
+        }
+        let unread = |error: &io::Error| LargeEnd::Failed(Failure::file(self.name, "read", error));
+        let open = || self.kept.open();
+        let settings = self.settings;
+        let survey = Survey::of(
+            open().map_err(|error| unread(&error))?,
+            &settings.dialect,
+            self.manner.hashes,
+            |_| -> Result<(), SurveyEnd> { (self.progress)(0.0).map_err(SurveyEnd::Failed) },
+        )
+        .map_err(|end| match end {
+            SurveyEnd::Unread(Unread::AsAWhole) => LargeEnd::AsAWhole,
+            SurveyEnd::Unread(Unread::Failed(error)) => unread(&error),
+            SurveyEnd::Failed(failure) => LargeEnd::Failed(failure),
+        })?;
+        if survey.corrected_before && !self.manner.force {
+            return Err(LargeEnd::AsAWhole);
+        }
+        let provenance = settings.provenance();
+        let job = settings.job(true, &provenance)?;
+        let plan = Plan {
+            job: &job,
+            envelope: survey.envelope,
+            start: State::new(&job, &survey.numbers),
+            threads: self.manner.threads.max(1),
+            chunk_bytes: CHUNK_BYTES,
+        };
+        let mut sink = Sink::new(&mut *out, self.manner.hashes, self.mark(&job, &plan));
+        let total = survey.bytes.max(1) as f64;
+        let stopped = std::sync::Mutex::new(None);
+        let progress = |done: u64| match (self.progress)(done as f64 / total) {
+            Ok(()) => true,
+            Err(failure) => {
+                *stopped.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(failure);
+                false
+            }
+        };
+        let source = open().map_err(|error| unread(&error))?;
+        let tally = match stream::correct(&plan, source, &mut sink, &open, &progress) {
+            Ok(tally) => tally,
+            Err(End::Refused(chunk, diagnostics)) => return Err(self.refused(chunk, diagnostics)),
+            Err(End::Flows | End::Unread(Unread::AsAWhole)) => return Err(LargeEnd::AsAWhole),
+            Err(End::Unread(Unread::Failed(error))) => return Err(unread(&error)),
+            Err(End::Unwritten(error)) => return Err(LargeEnd::Failed(unwritten(&error))),
+            Err(End::Stopped) => {
+                let stopped = stopped.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+                return Err(LargeEnd::Failed(stopped.unwrap_or(Failure::Interrupted(2))));
+            }
+        };
+        let Written { bytes, hash, changed } =
+            sink.finish(open).map_err(|error| LargeEnd::Failed(unwritten(&error)))?;
+        let mut figures = tally.figures;
+        let warnings = tally.notices.warnings();
+        figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
+        let reports: Result<Vec<Report>, LargeEnd> = warnings
+            .into_iter()
+            .map(|warning| self.report(warning).map_err(|error| unread(&error)))
+            .collect();
+        Ok(Program {
+            name: self.name.to_owned(),
+            input: Digest { bytes: survey.bytes, hash: survey.hash },
+            output: Digest { bytes, hash },
+            changed,
+            figures,
+            warnings: reports?,
+        })
+    }
+
+    /// The mark of the correction, and the bytes of output before it.
+    fn mark(&self, job: &Job<'_>, plan: &Plan<'_>) -> (u64, Vec<u8>) {
+        let comment = nc_emit::provenance_comment(job.dialect, job.provenance);
+        let reader = Reader::part(self.head, job.dialect, plan.envelope, Place::START);
+        let (at, line) = nc_emit::provenance_line(self.head, comment_position(reader), &comment);
+        (at as u64, line)
+    }
+
+    /// A program that computes somewhere behind the block that was refused is told about as a whole.
+    fn refused(&self, chunk: Chunk, diagnostics: Vec<Diagnostic>) -> LargeEnd {
+        let computes = |text: &[u8]| {
+            let mut found = false;
+            super::each_block(text, &self.settings.dialect, |block| {
+                found |= nc_expand::computes(block, &self.settings.dialect);
+            });
+            found
+        };
+        let Ok(source) = self.kept.open() else { return LargeEnd::AsAWhole };
+        let mut chunks = Chunks::new(source, CHUNK_BYTES);
+        loop {
+            match chunks.next() {
+                Ok(Some(other)) if other.index >= chunk.index && computes(&other.text) => {
+                    return LargeEnd::AsAWhole;
+                }
+                Ok(Some(_)) => {}
+                Ok(None) => break,
+                Err(_) => return LargeEnd::AsAWhole,
+            }
+        }
+        let source =
+            Source { name: self.name.to_owned(), bytes: chunk.text, offset: chunk.offset, line: chunk.line };
+        LargeEnd::Failed(Failure::Refused(vec![Report { source: Some(source), diagnostics }]))
+    }
+
+    /// A warning with the line it is about.
+    fn report(&self, (diagnostic, line): Warning) -> io::Result<Report> {
+        /// Longer lines are shown in part.
+        const BEFORE: u64 = 1 << 16;
+        let span = diagnostic.span.clone().unwrap_or(0..0);
+        let from = span.start.saturating_sub(BEFORE);
+        let mut file = self.kept.open()?;
+        file.seek(SeekFrom::Start(from))?;
+        let mut bytes = Vec::new();
+        file.take(span.end - from + 4096).read_to_end(&mut bytes)?;
+        let at = usize::try_from(span.start - from).unwrap_or(0).min(bytes.len());
+        let start = memchr::memrchr2(b'\n', b'\r', &bytes[..at]).map_or(0, |end| end + 1);
+        bytes.drain(..start);
+        let source = Source { name: self.name.to_owned(), bytes, offset: from + start as u64, line };
+        Ok(Report { source: Some(source), diagnostics: vec![diagnostic] })
+    }
+}
+
+enum SurveyEnd {
+    Unread(Unread),
+    Failed(Failure),
+}
+
+impl From<Unread> for SurveyEnd {
+    fn from(unread: Unread) -> Self {
+        Self::Unread(unread)
+    }
+}
