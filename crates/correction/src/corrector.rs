@@ -141,15 +141,18 @@ impl<'m> Corrector<'m> {
             Motion::Uncorrected { .. } => {}
         }
         let corrected = self.correct_in_state(motion, block)?;
-        let correction = &corrected.correction;
-        for (told, bound) in self.told_mm.iter_mut().zip([correction.before_mm, correction.after_mm]) {
-            *told = told.max(bound);
-        }
+        self.tell(&corrected.correction);
         Ok(corrected)
     }
 
+    pub(crate) fn tell(&mut self, correction: &Correction) {
+        for (told, bound) in self.told_mm.iter_mut().zip([correction.before_mm, correction.after_mm]) {
+            *told = told.max(bound);
+        }
+    }
+
     /// Asks the model what holds everywhere, where tool or rotary axes are others than before.
-    fn heed(&mut self, block: &Block, rotary_deg: [f64; 3]) {
+    pub(crate) fn heed(&mut self, block: &Block, rotary_deg: [f64; 3]) {
         let tool = Vector::from(block.tool_mm);
         if !self.everywhere.as_ref().is_some_and(|known| known.0 == tool && known.1 == rotary_deg) {
             let state = self.machine(block, rotary_deg).state;
@@ -366,8 +369,8 @@ impl<'m> Corrector<'m> {
     }
 
     fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
-        if let Some(corrected) = self.short_line(feed, block) {
-            return Ok(corrected);
+        if let Some(line) = self.short_line(feed, block) {
+            return Ok(one(Piece { kind: PieceKind::Line, axes: line.axes, share: 1.0 }, line.correction));
         }
         let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };

@@ -14,6 +14,14 @@ impl Letters {
         self.0 |= 1 << (letter - b'A');
     }
 
+    /// Those of X, Y, Z that are named.
+    #[must_use]
+    pub fn axes(names: [bool; 3]) -> Self {
+        let mut letters = Self::default();
+        AXES.iter().zip(names).filter(|(_, named)| *named).for_each(|(letter, _)| letters.insert(*letter));
+        letters
+    }
+
     /// True where the block holds the letter.
     #[must_use]
     pub fn contains(self, letter: u8) -> bool {

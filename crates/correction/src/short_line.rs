@@ -8,22 +8,48 @@
 use std::cmp::Ordering;
 
 use machine_model::{Command, Vector};
-use smallvec::SmallVec;
 use toolpath::{Feed, Shape};
 
-use crate::corrector::{Corrected, Correction, Corrector};
+use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
 use crate::deviation::{Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block};
-use crate::{Piece, PieceKind};
 
 /// Room for the rounding of the few additions here, mm.
 const SLACK_MM: f64 = 1e-9;
 
+/// A line that was corrected the short way: one block of output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShortLine {
+    /// X, Y, Z words; the block may stay as it is where none is to be written.
+    pub axes: [AxisWord; 3],
+    /// What was done.
+    pub correction: Correction,
+}
+
+impl ShortLine {
+    /// True where the block stays as it is.
+    #[must_use]
+    pub fn is_untouched(&self) -> bool {
+        !self.axes.iter().any(|word| matches!(word, AxisWord::Write(_)))
+    }
+}
+
 impl Corrector<'_> {
-    /// Corrects a line the short way; `None`, with nothing changed, where the long way must be taken.
+    /// Corrects a line the short way; `None`, with nothing changed, where [`Corrector::correct`] must be asked. Where
+    /// there is an answer, it would have been that of [`Corrector::correct`].
     #[inline]
-    pub(crate) fn short_line(&mut self, feed: &Feed, block: &Block) -> Option<Corrected> {
+    pub fn short_line(&mut self, feed: &Feed, block: &Block) -> Option<ShortLine> {
+        self.heed(block, feed.end.rotary_deg);
+        let line = self.proven_short(feed, block)?;
+        self.expanding = false;
+        self.remembered = None;
+        self.tell(&line.correction);
+        Some(line)
+    }
+
+    #[inline]
+    fn proven_short(&mut self, feed: &Feed, block: &Block) -> Option<ShortLine> {
         let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
         let Some((last, answer)) = self.last else { return None };
         let (start, end): (Vector, Vector) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
@@ -110,12 +136,9 @@ impl Corrector<'_> {
             self.note_before(&Curve::Line(start, end), block, feed, &mut correction);
         }
         self.last = Some((target, wanted));
-        let mut pieces = SmallVec::new();
-        if axes.iter().any(|word| matches!(word, AxisWord::Write(_))) {
-            pieces.push(Piece { kind: PieceKind::Line, axes, share: 1.0 });
-        }
-        Some(Corrected { pieces, correction })
+        Some(ShortLine { axes, correction })
     }
+
     /// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its
     /// way holds its place.
     fn held(&self, mut wanted: Vector, standing: Vector, depends: bool) -> Vector {

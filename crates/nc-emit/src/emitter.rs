@@ -136,6 +136,54 @@ impl<'d> Emitter<'d> {
         Ok(())
     }
 
+    /// Writes a block in which nothing but numbers of its X, Y and Z words change: [`Emitter::rewrite`] for those who come
+    /// by millions.
+    ///
+    /// * `counts` – what X, Y, Z become, in steps of `10^-decimals`; `None` for words that stay
+    ///
+    /// The block must hold words of plain numbers only, no letter twice, those of `counts` among them; of G
+    /// codes only the motion code in force in the output, which is also that of the block's motion.
+    ///
+    /// # Errors
+    /// VP0601 as in `rewrite`; `out` is then as it was.
+    pub fn rewrite_coordinates(
+        &mut self,
+        block: &Block<'_>,
+        counts: [Option<i64>; 3],
+        decimals: [u8; 3],
+        out: &mut Vec<u8>,
+    ) -> Result<(), Diagnostic> {
+        self.habits.learn(block);
+        let style = Style {
+            habits: &self.habits,
+            increments: Increments::new(&self.dialect.numbers, self.modes.inch),
+        };
+        let (content, end) = self.split_end(block);
+        let from = out.len();
+        let mut done = 0;
+        for item in &block.items {
+            let ItemKind::Word { letter: letter @ b'X'..=b'Z', value: Value::Number(replaced) } = item.kind
+            else {
+                continue;
+            };
+            let axis = usize::from(letter - b'X');
+            let Some(counts) = counts[axis] else { continue };
+            if !style.same_value(letter, replaced, counts, decimals[axis]) {
+                let number = number_span(block, item.span);
+                out.extend_from_slice(&content[done..number.start as usize]);
+                style.write_number(letter, Some(replaced), counts, decimals[axis], out);
+                done = number.end as usize;
+            }
+        }
+        out.extend_from_slice(&content[done..]);
+        if let Err(too_long) = self.check_length(block, &out[from..], content.len()) {
+            out.truncate(from);
+            return Err(too_long);
+        }
+        out.extend_from_slice(end);
+        Ok(())
+    }
+
     /// The common case in one pass over the words: only numbers of words that are there already change.
     ///
     /// `false` where it is another case; `out` then holds a part of the block.

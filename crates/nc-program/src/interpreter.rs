@@ -13,6 +13,7 @@ use crate::modal::{
     Shifts, ToolLength, Transform, Units, Why, WorkOffset,
 };
 use crate::motion::{self, Moved};
+use crate::plain::Plain;
 use crate::settings::{self, Environment};
 use crate::setup::Setup;
 use crate::words::{Outcome, Words};
@@ -62,8 +63,10 @@ pub struct Context {
 /// Executes a program block by block.
 #[derive(Clone, Debug)]
 pub struct Interpreter<'d> {
-    env: Environment<'d>,
-    modal: Modal,
+    pub(crate) env: Environment<'d>,
+    pub(crate) modal: Modal,
+    /// Of the state in force.
+    pub(crate) plain: Plain,
 }
 
 impl<'d> Interpreter<'d> {
@@ -104,7 +107,7 @@ impl<'d> Interpreter<'d> {
             progress: Progress::Leader,
         };
         settings::initial(&env, &mut modal);
-        Self { env, modal }
+        Self { env, modal, plain: Plain::default() }
     }
 
     /// The state after the last block that was executed.
@@ -119,6 +122,7 @@ impl<'d> Interpreter<'d> {
     /// What the block asks for cannot be told with certainty ([`crate::codes`]); the state is then as it
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
+        self.plain = Plain::Unasked;
         let before = &self.modal;
         let mut state = before.clone();
         let mut moved = Moved { repeats: 1, ..Moved::default() };
@@ -236,8 +240,13 @@ fn miscellaneous(
     Ok(())
 }
 
-#[inline]
-fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved, skip: bool) -> Context {
+pub(crate) fn context(
+    env: &Environment<'_>,
+    before: &Modal,
+    state: &Modal,
+    moved: &Moved,
+    skip: bool,
+) -> Context {
     let tool_mm = match state.tool_length {
         ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
         // Where G44 subtracts the vector, the tool points the other way.

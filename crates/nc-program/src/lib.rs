@@ -42,6 +42,7 @@ mod frames;
 mod interpreter;
 pub mod modal;
 mod motion;
+mod plain;
 mod position;
 mod settings;
 mod setup;
@@ -51,4 +52,5 @@ mod words;
 
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::Modal;
+pub use plain::PlainFeed;
 pub use setup::Setup;

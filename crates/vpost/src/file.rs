@@ -40,7 +40,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// No block is longer, padding apart: what has no line end for so long is no part program.
-const LONGEST_LINE: usize = 1 << 20;
+pub(crate) const LONGEST_LINE: usize = 1 << 20;
 
 /// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows.
 pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, Failure> {
@@ -78,11 +78,13 @@ pub(crate) fn check_lines(text: &[u8], name: &str) -> Result<(), Failure> {
     Ok(())
 }
 
+/// True where a part of a text holds a line end, or nothing but padding.
+pub(crate) fn ends_lines(part: &[u8]) -> bool {
+    memchr::memchr2(b'\n', b'\r', part).is_some() || part.iter().all(|byte| matches!(byte, 0 | b' ' | 0x7F))
+}
+
 fn check_line(bytes: &[u8], start: usize, name: &str) -> Result<(), Failure> {
-    let part = &bytes[start..];
-    let ends = memchr::memchr2(b'\n', b'\r', part).is_some();
-    let padding = || part.iter().all(|byte| matches!(byte, 0 | b' ' | 0x7F));
-    if ends || padding() {
+    if ends_lines(&bytes[start..]) {
         return Ok(());
     }
     // A binary file is told as what it is.

@@ -1,9 +1,9 @@
 //! One block after the other: what flows through a program, and what is done with each block.
 
-use correction::{Correction, Corrector};
+use correction::{AxisWord, Correction, Corrector, Letters, PieceKind};
 use diagnostic::Diagnostic;
 use nc_emit::{BlockNumbers, Emitter};
-use nc_program::{Context, Interpreter};
+use nc_program::{Context, Interpreter, PlainFeed};
 use nc_syntax::Block;
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Motion};
@@ -93,6 +93,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
+    /// What correction must know of plain blocks, as long as one follows the other; `letters` are the last one's.
+    plain: Option<Box<correction::Block>>,
 }
 
 impl<'a> Pass<'a> {
@@ -104,6 +106,7 @@ impl<'a> Pass<'a> {
             state,
             out: Vec::with_capacity(bytes + bytes / 8 + 64),
             tally: Tally::default(),
+            plain: None,
         }
     }
 }
@@ -111,9 +114,59 @@ impl<'a> Pass<'a> {
 impl Pass<'_> {
     /// Corrects one block.
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
+        if self.plain(block)? { Ok(()) } else { self.other(block) }
+    }
+
+    /// Corrects a block of coordinates and nothing else the short way; false, with nothing done, for any other.
+    pub(crate) fn plain(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
+        let State { interpreter, corrector, emitter, .. } = &mut self.state;
+        let Some(PlainFeed { feed, names, context }) = interpreter.plain_feed(block) else {
+            self.plain = None;
+            return Ok(false);
+        };
+        let info = self.plain.get_or_insert_with(|| Box::new(info(self.job, context, Letters::default())));
+        info.letters = Letters::axes(names);
+        // The block relies on the code before it, which must be in force in the output too.
+        let in_force = emitter.motion() == context.motion_code;
+        let line = if in_force { corrector.short_line(&feed, info) } else { None };
+        let Some(line) = line else {
+            let context = *context;
+            self.tally.figures.blocks_in += 1;
+            self.moved(block, &context, letters(block), &[Motion::Feed(feed)])?;
+            return Ok(true);
+        };
+        if line.is_untouched() {
+            emitter.pass(block, &mut self.out);
+        } else {
+            let inserts = line.axes.iter().zip(names).any(|(word, named)| !named && *word != AxisWord::Omit);
+            let written = if inserts {
+                let context = *context;
+                let piece = correction::Piece { kind: PieceKind::Line, axes: line.axes, share: 1.0 };
+                let editing = self.editing(&context, letters(block), &Motion::Feed(feed));
+                let edited = editing.edit(&piece, true, true);
+                self.state.emitter.rewrite(block, &[edited], &mut self.out)
+            } else {
+                let counts = line.axes.map(|word| match word {
+                    AxisWord::Write(counts) => Some(counts),
+                    AxisWord::Keep | AxisWord::Omit => None,
+                });
+                emitter.rewrite_coordinates(block, counts, info.decimals, &mut self.out)
+            };
+            written.map_err(|diagnostic| vec![diagnostic])?;
+        }
+        let figures = &mut self.tally.figures;
+        figures.blocks_in += 1;
+        figures.blocks_out += 1;
+        raise(&mut figures.largest, (line.correction.largest_mm, block.line));
+        raise(&mut figures.before, (line.correction.before_mm, block.line));
+        raise(&mut figures.after, (line.correction.after_mm, block.line));
+        Ok(true)
+    }
+
+    /// Corrects a block that is not plain.
+    pub(crate) fn other(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
         let step = self.state.interpreter.step(block)?;
-        let letters = letters(block);
         let context = &step.context;
         if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
             && let Some(number) = block.word(b'P').and_then(|word| word.number())
@@ -123,13 +176,24 @@ impl Pass<'_> {
         if step.states_position {
             return self.state_position(block, context);
         }
+        self.moved(block, context, letters(block), &step.motions)
+    }
+
+    /// Corrects the motions of a block and writes it.
+    fn moved(
+        &mut self,
+        block: &Block<'_>,
+        context: &Context,
+        letters: Letters,
+        motions: &[Motion],
+    ) -> Result<(), Vec<Diagnostic>> {
         let info = self.info(context, letters);
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
-        let before = (step.motions.len() > 1).then(|| self.state.corrector.clone());
+        let before = (motions.len() > 1).then(|| self.state.corrector.clone());
         let mut pieces: SmallVec<[nc_emit::Piece; 2]> = SmallVec::new();
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
-        for motion in &step.motions {
+        for motion in motions {
             let corrected = self
                 .state
                 .corrector
@@ -137,7 +201,7 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block))?;
             untouched &= corrected.pieces.is_empty();
             corrections.push(corrected.correction);
-            if step.motions.len() == 1 && !corrected.pieces.is_empty() {
+            if motions.len() == 1 && !corrected.pieces.is_empty() {
                 let editing = self.editing(context, letters, motion);
                 let only = corrected.pieces.len() == 1;
                 pieces.extend(
@@ -148,18 +212,18 @@ impl Pass<'_> {
         if let (false, Some(before)) = (untouched, before) {
             self.state.corrector = before;
             corrections.clear();
-            self.repeated(block, context, letters, &step.motions, &mut pieces, &mut corrections)?;
+            self.repeated(block, context, letters, motions, &mut pieces, &mut corrections)?;
         }
         let length = self.out.len();
         if untouched {
-            self.pass(block, context, &step.motions)?;
+            self.pass(block, context, motions)?;
         } else {
             self.state
                 .emitter
                 .rewrite(block, &pieces, &mut self.out)
                 .map_err(|diagnostic| vec![diagnostic])?;
         }
-        self.note(block, context, &step.motions, &corrections, pieces.len().max(1), self.out.len() > length);
+        self.note(block, context, motions, &corrections, pieces.len().max(1), self.out.len() > length);
         Ok(())
     }
 
@@ -169,7 +233,7 @@ impl Pass<'_> {
         let nominal = self.state.interpreter.modal().axes.linear;
         let standing = self.state.corrector.standing_mm();
         let inch = context.unit_mm != 1.0;
-        let decimals = self.info(context, correction::Letters::default()).decimals;
+        let decimals = self.info(context, Letters::default()).decimals;
         let mut words = Vec::new();
         for (i, letter) in b"XYZ".iter().enumerate() {
             let (Some(word), Some(nominal), Some(standing)) =
@@ -239,7 +303,7 @@ impl Pass<'_> {
         &mut self,
         block: &Block<'_>,
         context: &Context,
-        letters: correction::Letters,
+        letters: Letters,
         motions: &[Motion],
         pieces: &mut SmallVec<[nc_emit::Piece; 2]>,
         corrections: &mut SmallVec<[Correction; 1]>,
@@ -249,7 +313,7 @@ impl Pass<'_> {
             repeats.map(|letter| (letter, nc_emit::WordEdit::Remove)).collect();
         for (k, motion) in motions.iter().enumerate() {
             // From the second hole on there is no block with words to keep.
-            let letters = if k == 0 { letters } else { correction::Letters::default() };
+            let letters = if k == 0 { letters } else { Letters::default() };
             let info = self.info(context, letters);
             let corrected = self
                 .state
@@ -281,30 +345,11 @@ impl Pass<'_> {
         Ok(())
     }
 
-    fn info(&self, context: &Context, letters: correction::Letters) -> correction::Block {
-        let output = &self.job.dialect.output;
-        let inch = context.unit_mm != 1.0;
-        correction::Block {
-            frame: context.frame,
-            unit_mm: context.unit_mm,
-            decimals: if inch { [output.decimals_inch; 3] } else { self.job.decimals_mm },
-            incremental: context.incremental,
-            arc_centres_absolute: context.arc_centres_absolute,
-            letters,
-            tool_mm: context.tool_mm,
-            centre_words: output.centre_words,
-            arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
-            peck_clearance_mm: output.peck_clearance_mm,
-            chip_retreat_mm: output.chip_retreat_mm,
-        }
+    fn info(&self, context: &Context, letters: Letters) -> correction::Block {
+        info(self.job, context, letters)
     }
 
-    fn editing<'e>(
-        &'e self,
-        context: &'e Context,
-        letters: correction::Letters,
-        motion: &Motion,
-    ) -> Editing<'e> {
+    fn editing<'e>(&'e self, context: &'e Context, letters: Letters, motion: &Motion) -> Editing<'e> {
         Editing {
             codes: &self.codes,
             context,
@@ -349,5 +394,24 @@ impl Pass<'_> {
                 notices.compensated.see(&span, line, 0.0);
             }
         }
+    }
+}
+
+/// What correction must know of a block.
+fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
+    let output = &job.dialect.output;
+    let inch = context.unit_mm != 1.0;
+    correction::Block {
+        frame: context.frame,
+        unit_mm: context.unit_mm,
+        decimals: if inch { [output.decimals_inch; 3] } else { job.decimals_mm },
+        incremental: context.incremental,
+        arc_centres_absolute: context.arc_centres_absolute,
+        letters,
+        tool_mm: context.tool_mm,
+        centre_words: output.centre_words,
+        arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
+        peck_clearance_mm: output.peck_clearance_mm,
+        chip_retreat_mm: output.chip_retreat_mm,
     }
 }

@@ -120,8 +120,9 @@ pub(crate) fn program(
         Input::Stream(_, stream) => (None, stream),
     };
     let mut head = Vec::new();
-    rest.by_ref().take(SMALL_BYTES + 1).read_to_end(&mut head).map_err(|error| unread(&error))?;
-    if head.len() as u64 <= SMALL_BYTES {
+    rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
+    file::check_lines(&head, &name)?;
+    if (head.len() as u64) < SMALL_BYTES {
         return in_memory(head, name, settings, manner, out, progress);
     }
     // A stream is kept on disk: it is read more than once.
@@ -154,7 +155,6 @@ fn in_memory(
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
-    file::check_lines(&text, &name)?;
     let expand::Done { corrected, warnings } =
         expand::correct(&text, &name, settings, manner.force, progress)?;
     out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
@@ -179,7 +179,16 @@ impl Kept {
     fn spool(head: &[u8], mut rest: impl Read) -> io::Result<Self> {
         let mut spool = tempfile::NamedTempFile::new()?;
         spool.write_all(head)?;
-        io::copy(&mut rest, &mut spool)?;
+        let mut part = Vec::new();
+        // What has no line end will be refused when it is read, however much of it there is.
+        while file::ends_lines(&part) {
+            part.clear();
+            let read = (&mut rest).take(file::LONGEST_LINE as u64).read_to_end(&mut part)?;
+            spool.write_all(&part)?;
+            if read < file::LONGEST_LINE {
+                break;
+            }
+        }
         let spool = spool.into_temp_path();
         Ok(Self { path: spool.to_path_buf(), _spool: Some(spool) })
     }
