@@ -1,0 +1,135 @@
+//! The short way to correct a short line says what the long way says, word for word and figure for figure.
+
+use correction::{Block, Corrector, Letters, Options, Outside};
+use machine_model::{
+    AxisTables, Chain, Command, Description, Engine, EngineId, Everywhere, Interpolation, LinearAxis, Move,
+    PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
+};
+use proptest::prelude::*;
+use toolpath::{Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
+
+/// A model of which nothing is known everywhere: the short way is never taken.
+struct Bare(RigidBody);
+
+impl Engine for Bare {
+    fn id(&self) -> EngineId {
+        self.0.id()
+    }
+    fn volume(&self) -> Volume {
+        self.0.volume()
+    }
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.0.solve(target)
+    }
+}
+
+impl PathModel for Bare {
+    fn error_mm(&self, command: &Command) -> Vector {
+        self.0.error_mm(command)
+    }
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        self.0.chord_bound_mm(stretch)
+    }
+    fn everywhere(&self, _state: &Command) -> Option<Everywhere> {
+        None
+    }
+    fn depends_on_direction(&self) -> bool {
+        self.0.depends_on_direction()
+    }
+}
+
+fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> RigidBody {
+    let mut values = values.iter().copied().cycle();
+    let mut linear = [0, 1, 2].map(|_| LinearAxis::perfect(Range { low: 0.0, high: 120.0 }));
+    for axis in &mut linear {
+        let functions: [Option<Table>; 6] = std::array::from_fn(|i| {
+            let size = if i < 3 { 0.004 } else { 2e-5 };
+            let nodes = [0.0, 27.0, 63.0, 90.0, 120.0];
+            let values = nodes.iter().map(|_| values.next().unwrap_or(0.0) * size).collect();
+            Some(Table::new(nodes.to_vec(), values, interpolation).unwrap())
+        });
+        axis.errors = AxisTables::new(&functions);
+        axis.backlash_mm = backlash_mm;
+    }
+    RigidBody::new(Description {
+        chain: Chain::parse("[w X Y b Z t]").unwrap(),
+        linear,
+        rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
+    })
+    .unwrap()
+}
+
+/// One step of a program: how far along X, Y, Z in output steps, and which axes are named though they stand.
+type Way = ([i32; 3], u8);
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_short_way_says_what_the_long_way_says(
+        values in proptest::collection::vec(-1.0f64..1.0, 90),
+        ways in proptest::collection::vec((prop::array::uniform3(-900i32..900), 0u8..8), 1..60),
+        play in prop_oneof![Just(0.0), Just(0.006)],
+        monotone: bool,
+        one_way: bool,
+    ) {
+        let ways: Vec<Way> = ways;
+        let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
+        let model = machine(&values, play, interpolation);
+        let bare = Bare(model.clone());
+        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+        let (mut short, mut long) = (Corrector::new(&model, options), Corrector::new(&bare, options));
+        let mut block = Block {
+            frame: Frame::shift([60.0, 60.0, 60.0]),
+            unit_mm: 1.0,
+            decimals: [3; 3],
+            incremental: false,
+            arc_centres_absolute: false,
+            letters: Letters::axes([true; 3]),
+            tool_mm: [1.0, -2.0, -40.0],
+            centre_words: true,
+            arc_radius_tolerance_mm: 0.02,
+            peck_clearance_mm: 0.5,
+            chip_retreat_mm: 0.5,
+        };
+        let at = |steps: [i32; 3]| Position {
+            linear_mm: steps.map(|step| f64::from(step) / 1000.0 + 60.0),
+            rotary_deg: [0.0; 3],
+        };
+        let unknown = Partial::default();
+        let rapid = Motion::Rapid { start: unknown, end: at([0; 3]).into() };
+        prop_assert_eq!(short.correct(&rapid, &block).unwrap().pieces, long.correct(&rapid, &block).unwrap().pieces);
+        let mut steps = [0; 3];
+        let mut told = [[0.0_f64; 2]; 2];
+        let (mut taken, count) = (0, ways.len());
+        for (way, named) in ways {
+            let from = steps;
+            for i in 0..3 {
+                steps[i] += if one_way { way[i].abs() } else { way[i] };
+                steps[i] = steps[i].clamp(-50_000, 50_000);
+            }
+            let names = [0, 1, 2].map(|i| steps[i] != from[i] || named >> i & 1 == 1);
+            block.letters = Letters::axes(names);
+            let feed = Feed {
+                start: at(from),
+                end: at(steps),
+                shape: Shape::Line,
+                rate: FeedRate::PerMinute,
+                may_split: true,
+            };
+            taken += usize::from(short.clone().short_line(&feed, &block).is_some());
+            let (a, b) = (short.correct(&Motion::Feed(feed), &block).unwrap(), long.correct(&Motion::Feed(feed), &block).unwrap());
+            prop_assert_eq!(&a.pieces, &b.pieces);
+            prop_assert!((a.correction.largest_mm - b.correction.largest_mm).abs() < 1e-9);
+            prop_assert_eq!(a.correction.approach, b.correction.approach);
+            for (told, correction) in told.iter_mut().zip([&a.correction, &b.correction]) {
+                *told = [told[0].max(correction.before_mm), told[1].max(correction.after_mm)];
+            }
+            // What the short way does not tell would not have raised the largest.
+            prop_assert!((told[0][0] - told[1][0]).abs() < 1e-9 && (told[0][1] - told[1][1]).abs() < 1e-9, "{:?}", told);
+        }
+        // Else this test would say nothing.
+        prop_assert!(taken * 10 >= count * 9 || play > 0.0, "{} of {}", taken, count);
+    }
+}
