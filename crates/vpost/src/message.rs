@@ -18,20 +18,26 @@ pub(crate) struct Source {
     /// Bytes of the text before them.
     pub offset: u64,
     /// The line they start with, from 1.
-    pub line: u64,
+    pub first_line: u64,
 }
 
 impl Source {
     /// A whole text.
     pub(crate) fn whole(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { name: name.into(), bytes: bytes.into(), offset: 0, line: 1 }
+        Self { name: name.into(), bytes: bytes.into(), offset: 0, first_line: 1 }
     }
-}
 
-impl Source {
-    /// The number of the line that holds this byte, from 1.
+    /// The number of the line that holds this byte of the text, from 1.
     pub(crate) fn line(&self, at: u64) -> usize {
-        Line::around(&self.bytes, &(at..at)).number
+        self.around(&(at..at)).number
+    }
+
+    /// The line a span of the text is in.
+    fn around(&self, span: &Range<u64>) -> Line {
+        let own = span.start.saturating_sub(self.offset)..span.end.saturating_sub(self.offset);
+        let mut line = Line::around(&self.bytes, &own);
+        line.number += usize::try_from(self.first_line).map_or(0, |first| first - 1);
+        line
     }
 }
 
@@ -171,12 +177,7 @@ impl Messages {
         let code = diagnostic.code.to_string();
         let title = level.primary_title(diagnostic.message.as_str()).id(code.as_str());
         let line = match (&diagnostic.span, source) {
-            (Some(span), Some(source)) => {
-                let own = span.start.saturating_sub(source.offset)..span.end.saturating_sub(source.offset);
-                let mut line = Line::around(&source.bytes, &own);
-                line.number += usize::try_from(source.line).map_or(0, |first| first - 1);
-                Some((line, source.name.as_str()))
-            }
+            (Some(span), Some(source)) => Some((source.around(span), source.name.as_str())),
             _ => None,
         };
         let mut groups = Vec::new();

@@ -1,13 +1,14 @@
 //! Where the time of one block goes: the work is done in ever longer parts, and the differences are the parts.
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use correction::{Corrector, Options};
 use machine_model::{Command, Move, PathModel, Range, Vector};
 use nc_program::Interpreter;
 use nc_syntax::{Block, Dialect, Reader};
 use vpost::correct::{Job, correct};
+
+use super::measure::own_cpu_s;
 
 /// Nanoseconds per block of each part.
 pub(crate) struct Budget {
@@ -19,13 +20,13 @@ pub(crate) struct Budget {
     pub(crate) bytes_per_block: f64,
 }
 
-/// Shortest of some repetitions, seconds.
+/// Least of some repetitions, seconds of the processor.
 fn best(repetitions: usize, mut work: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..repetitions {
-        let started = Instant::now();
+        let started = own_cpu_s();
         work();
-        best = best.min(started.elapsed().as_secs_f64());
+        best = best.min(own_cpu_s() - started);
     }
     best
 }

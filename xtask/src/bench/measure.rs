@@ -51,6 +51,12 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<Run> {
     Ok(found)
 }
 
+/// Seconds of the processor that this thread took so far: others' work on the machine does not count.
+pub(crate) fn own_cpu_s() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split_whitespace().next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0) / 1e9
+}
+
 /// The quickest of several runs: on a machine that others use too, the rest is their share.
 pub(crate) fn best(runs: usize, mut once: impl FnMut() -> anyhow::Result<Run>) -> anyhow::Result<Run> {
     let mut best = once()?;

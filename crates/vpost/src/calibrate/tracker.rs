@@ -158,7 +158,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
-    let source = || Some(crate::message::Source { name: name.to_owned(), bytes: Vec::new() });
+    let source = || Some(crate::message::Source::whole(name, []));
     let say = |message: String, help: &str| {
         let diagnostics = vec![Diagnostic::warning(MISSING, message).help(help)];
         messages.report(&Report { source: source(), diagnostics });

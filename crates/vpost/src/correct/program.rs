@@ -155,7 +155,7 @@ fn in_memory(
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
-    let expand::Done { corrected, warnings } =
+    let expand::Done { corrected, warnings, .. } =
         expand::correct(&text, &name, settings, manner.force, progress)?;
     out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
     Ok(Program {
@@ -323,8 +323,12 @@ impl Large<'_> {
                 Err(_) => return LargeEnd::AsAWhole,
             }
         }
-        let source =
-            Source { name: self.name.to_owned(), bytes: chunk.text, offset: chunk.offset, line: chunk.line };
+        let source = Source {
+            name: self.name.to_owned(),
+            bytes: chunk.text,
+            offset: chunk.offset,
+            first_line: chunk.line,
+        };
         LargeEnd::Failed(Failure::Refused(vec![Report { source: Some(source), diagnostics }]))
     }
 
@@ -341,7 +345,8 @@ impl Large<'_> {
         let at = usize::try_from(span.start - from).unwrap_or(0).min(bytes.len());
         let start = memchr::memrchr2(b'\n', b'\r', &bytes[..at]).map_or(0, |end| end + 1);
         bytes.drain(..start);
-        let source = Source { name: self.name.to_owned(), bytes, offset: from + start as u64, line };
+        let source =
+            Source { name: self.name.to_owned(), bytes, offset: from + start as u64, first_line: line };
         Ok(Report { source: Some(source), diagnostics: vec![diagnostic] })
     }
 }
