@@ -57,7 +57,7 @@ impl Place {
     fn command(&self, threads: usize, profile: &str) -> Command {
         let mut command = vpost();
         command.env("RAYON_NUM_THREADS", threads.to_string());
-        command.args(["-m", profile, "-d", "fanuc", "--outside", "clamp"]);
+        command.args(["-m", profile, "-d", "fanuc"]);
         command
     }
 
@@ -134,7 +134,7 @@ fn a_refusal_at_the_end_names_its_line_and_leaves_the_output() {
     std::fs::write(&out, "as it was").expect("written");
     let ran = place.correct(3, PROFILE, &["-o", out.to_str().expect("plain")]);
     assert_eq!(ran.status.code(), Some(1));
-    assert!(messages(&ran).contains(&format!("in.nc:{line}:13")), "{}", messages(&ran));
+    assert!(messages(&ran).contains(&format!("in.nc:{line}:14")), "{}", messages(&ran));
     assert_eq!(read(&out), b"as it was");
     let ran = place.correct(3, PROFILE, &[]);
     assert!(ran.status.code() == Some(1) && ran.stdout.is_empty());
