@@ -51,7 +51,7 @@ impl Corrector<'_> {
     #[inline]
     fn proven_short(&mut self, feed: &Feed, block: &Block) -> Option<ShortLine> {
         let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
-        let Some((last, answer)) = self.last else { return None };
+        let (last, answer) = self.last?;
         let (start, end): (Vector, Vector) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
         let [Some(x), Some(y), Some(z)] = self.standing else { return None };
         let ordinary = matches!(feed.shape, Shape::Line)

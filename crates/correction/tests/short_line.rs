@@ -46,18 +46,18 @@ fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> Ri
             let size = if i < 3 { 0.004 } else { 2e-5 };
             let nodes = [0.0, 27.0, 63.0, 90.0, 120.0];
             let values = nodes.iter().map(|_| values.next().unwrap_or(0.0) * size).collect();
-            Some(Table::new(nodes.to_vec(), values, interpolation).unwrap())
+            Some(Table::new(nodes.to_vec(), values, interpolation).expect("a table"))
         });
         axis.errors = AxisTables::new(&functions);
         axis.backlash_mm = backlash_mm;
     }
     RigidBody::new(Description {
-        chain: Chain::parse("[w X Y b Z t]").unwrap(),
+        chain: Chain::parse("[w X Y b Z t]").expect("a chain"),
         linear,
         rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
         squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
     })
-    .unwrap()
+    .expect("a machine")
 }
 
 /// One step of a program: how far along X, Y, Z in output steps, and which axes are named though they stand.

@@ -123,7 +123,7 @@ pub(crate) fn program(
     rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
     file::check_lines(&head, &name)?;
     if (head.len() as u64) < SMALL_BYTES {
-        return in_memory(head, name, settings, manner, out, progress);
+        return in_memory(&head, name, settings, manner, out, progress);
     }
     // A stream is kept on disk: it is read more than once.
     let kept = match path {
@@ -137,7 +137,7 @@ pub(crate) fn program(
             drop(head);
             out.clear().map_err(|error| unwritten(&error))?;
             let text = file::read_program(&kept.path)?;
-            in_memory(text, name, settings, manner, out, progress)
+            in_memory(&text, name, settings, manner, out, progress)
         }
         Err(LargeEnd::Failed(failure)) => Err(failure),
     }
@@ -148,7 +148,7 @@ fn unwritten(error: &io::Error) -> Failure {
 }
 
 fn in_memory(
-    text: Vec<u8>,
+    text: &[u8],
     name: String,
     settings: &Settings,
     manner: Manner,
@@ -156,11 +156,11 @@ fn in_memory(
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
     let expand::Done { corrected, warnings, .. } =
-        expand::correct(&text, &name, settings, manner.force, progress)?;
+        expand::correct(text, &name, settings, manner.force, progress)?;
     out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
     Ok(Program {
         name,
-        input: Digest::of(&text, manner.hashes),
+        input: Digest::of(text, manner.hashes),
         output: Digest::of(&corrected.text, manner.hashes),
         changed: corrected.text != text,
         figures: corrected.figures,

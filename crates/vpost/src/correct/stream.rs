@@ -283,14 +283,13 @@ where
 
     /// Makes a chunk true to the state it starts from, and writes it.
     fn settle_one(&self, done: Done<'a>, state: State<'a>) -> Result<(State<'a>, Tally), End> {
-        let (chunk, parts, tally, end) = self.made_true(done, state);
+        let (chunk, out, tally, end) = self.made_true(done, state);
         let end = match end {
             Ok(state) => state,
             Err(Stop::Refused(diagnostics)) => return Err(End::Refused(chunk, diagnostics)),
             Err(Stop::Flows) => return Err(End::Flows),
         };
-        let (out, from) = parts;
-        lock(&self.sink).put(&chunk.text, &out[from..], self.again).map_err(End::Unwritten)?;
+        lock(&self.sink).put(&chunk.text, &out, self.again).map_err(End::Unwritten)?;
         if (self.progress)(chunk.offset + chunk.text.len() as u64) {
             Ok((end, tally))
         } else {
@@ -298,13 +297,12 @@ where
         }
     }
 
-    /// The output of a chunk (from a byte on), its figures and its end, as they are from `state` on.
-    #[expect(clippy::type_complexity, reason = "taken apart where it is made")]
+    /// The output of a chunk, its figures and its end, as they are from `state` on.
     fn made_true(
         &self,
         done: Done<'a>,
         state: State<'a>,
-    ) -> (Chunk, (Vec<u8>, usize), Tally, Result<State<'a>, Stop>) {
+    ) -> (Chunk, Vec<u8>, Tally, Result<State<'a>, Stop>) {
         let Done { chunk, mut out, stretches, end } = done;
         let mut tally = Tally::default();
         let mut meets = 0;
@@ -324,17 +322,17 @@ where
             again = pass.out;
             match ended {
                 Ok(true) => meets = next - 1,
-                Ok(false) => return (chunk, (again, 0), tally, Ok(pass.state)),
-                Err(stop) => return (chunk, (again, 0), tally, Err(stop)),
+                Ok(false) => return (chunk, again, tally, Ok(pass.state)),
+                Err(stop) => return (chunk, again, tally, Err(stop)),
             }
         }
         stretches[meets..].iter().for_each(|stretch| tally.add(&stretch.tally));
         if meets == 0 {
-            return (chunk, (out, 0), tally, end);
+            return (chunk, out, tally, end);
         }
         // What was done again takes the place of what it replaces.
         out.splice(..stretches[meets].out, again);
-        (chunk, (out, 0), tally, end)
+        (chunk, out, tally, end)
     }
 }
 
