@@ -1,6 +1,7 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
 mod bench;
+mod calibration;
 mod corpus;
 mod engines;
 mod gap_bench;
@@ -25,6 +26,14 @@ struct Arguments {
 enum Task {
     /// Measure the correction of large programs; print a page for docs/performance.md.
     Bench(bench::Options),
+    /// Calibrate machines of known truth and write docs/calibration-benchmark.md.
+    CalibrationCoverage(calibration::Options),
+    /// Write the sample measurements of `calibrate` into a folder.
+    CalibrationSamples {
+        /// Where they go.
+        #[arg(default_value = "samples/calibration")]
+        folder: std::path::PathBuf,
+    },
     /// Correct LinuxCNC's samples, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
     /// Print docs/engines.md: the engines against one another.
@@ -46,6 +55,8 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
         Task::Bench(options) => bench::run_all(&options)?,
+        Task::CalibrationCoverage(options) => calibration::run(&options)?,
+        Task::CalibrationSamples { folder } => calibration::write_samples(&folder)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,

@@ -1,7 +1,7 @@
 //! Measurements to machine profiles: what an instrument read becomes error functions with their uncertainty.
 //!
 //! Millimetres and radians throughout, as in [`machine_model`]; no files, no text formats, no clock. Every result
-//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (45) of
+//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40) and (47) to (51) of
 //! `docs/equations.md`.
 
 pub mod change;
@@ -9,9 +9,12 @@ mod error;
 pub mod functions;
 pub mod iso230_2;
 mod least_squares;
+pub mod linear_ballbar;
+pub mod rotary_ballbar;
 mod student;
 pub mod tracker;
 mod traverse;
+pub mod volumetric;
 
 pub use error::CalibrationError;
 pub use least_squares::{Estimate, solve};

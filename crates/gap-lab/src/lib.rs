@@ -12,6 +12,7 @@
 //!
 //! Units inside: mm, rad, kg, s, °C, mm/min. Files: as the column names say.
 
+pub mod calibration;
 mod case;
 mod catalogue;
 mod collinearity;

@@ -200,6 +200,8 @@ pub enum ProfileCommand {
         /// Machine profile (TOML).
         profile: PathBuf,
     },
+    /// Write the model in a form that a control takes.
+    Export(crate::export::Export),
     /// Print the JSON Schema of profiles.
     Schema,
 }

@@ -6,12 +6,15 @@ use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, OPTION};
+use crate::message::{Failure, Messages, OPTION, Report};
 
 /// An effect depends on a condition that nobody gave.
 pub(crate) const UNKNOWN_CONDITION: Code = Code(401);
 /// The engine cannot take the profile's effects into account.
 pub(crate) const ENGINE_WITHOUT_EFFECTS: Code = Code(402);
+
+/// Warning: another temperature than that of the calibration.
+const OTHER_TEMPERATURE: Code = Code(1111);
 
 const NAMES: [&str; 7] = ["temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "load_kg", "feed_mm_min"];
 
@@ -62,6 +65,41 @@ pub(crate) fn conditions(shared: &Shared) -> Result<Conditions, Failure> {
 /// One temperature for all axes beside one of an axis says two things of that axis.
 fn overlaps(name: &str, seen: &[&str]) -> bool {
     seen.iter().any(|other| other.starts_with("temp") && (*other == "temp_c" || name == "temp_c"))
+}
+
+/// Warns where the machine is warmer or colder than it was calibrated, and no effect of the profile says what that does: steel
+/// (11.5 µm/m/K) over the longest edge of the calibrated volume, where that exceeds the tolerance.
+pub(crate) fn warn_of_temperature(
+    profile: &Profile,
+    shared: &Shared,
+    tolerance_um: f64,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    const STEEL_UM_PER_M_K: f64 = 11.5;
+    let Some(calibrated_c) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) else { return Ok(()) };
+    let temperatures = conditions(shared)?.temp_c;
+    let mut worst: Option<(char, f64, f64)> = None;
+    for (axis, temperature) in temperatures.iter().enumerate() {
+        let letter = ['X', 'Y', 'Z'][axis];
+        let said = profile.effects.iter().any(|e| e.id == format!("thermal.{letter}"));
+        let Some(temperature) = temperature.filter(|_| !said) else { continue };
+        let range = profile.volume().0[axis];
+        let length_m = (range.high - range.low) * 1e-3;
+        let um = (temperature - calibrated_c).abs() * STEEL_UM_PER_M_K * length_m;
+        if length_m.is_finite() && um > tolerance_um && worst.is_none_or(|(_, _, most)| um > most) {
+            worst = Some((letter, temperature, um));
+        }
+    }
+    if let Some((letter, temperature, um)) = worst {
+        let message = format!(
+            "the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}"
+        );
+        let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(format!(
+            "calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect"
+        ));
+        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+    }
+    Ok(())
 }
 
 /// The engine of a name or of the profile, with the profile's effects under the conditions of the command line.

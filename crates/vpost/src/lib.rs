@@ -11,6 +11,7 @@ mod conditions;
 pub mod correct;
 pub mod diagnose;
 mod expand;
+pub mod export;
 mod file;
 mod grammar;
 pub mod map;

@@ -28,7 +28,7 @@ pub(crate) struct Settings {
 
 impl Settings {
     /// Reads profile and dialect, builds the engine, applies the options.
-    pub(crate) fn load(shared: &Shared, _messages: &Messages) -> Result<Self, Failure> {
+    pub(crate) fn load(shared: &Shared, messages: &Messages) -> Result<Self, Failure> {
         let path = machine(shared)?;
         let loaded = profile::load(path)?;
         let profile = loaded.profile;
@@ -46,6 +46,7 @@ impl Settings {
                 "give micrometres above zero: `--tolerance 1`",
             ));
         }
+        conditions::warn_of_temperature(&profile, shared, tolerance_um, messages)?;
         let outside = match (shared.outside, profile.correction.outside) {
             (Some(arguments::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => {
                 Outside::Refuse

@@ -2,9 +2,7 @@
 
 use std::fmt::Write;
 
-use calibration::functions::{
-    self, Function, FunctionReading, SquarenessConvention, refined, straight_line, without_slope,
-};
+use calibration::functions::{self, Function, FunctionReading, refined, without_slope};
 use calibration::iso230_2;
 use clap::{Args, ValueEnum};
 use diagnostic::Diagnostic;
@@ -18,6 +16,7 @@ use crate::message::{Failure, Messages};
 use super::codes::{MISSING, UNITS, UNSAID, failure, question};
 use super::formats::{self, Reference, Series, Values};
 use super::output::{Output, Target, warn};
+use super::squareness;
 
 /// `vpost calibrate interferometer FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -108,7 +107,7 @@ impl Between {
 }
 
 /// Everything read of one axis: its six functions.
-type Functions = [Option<Function>; 6];
+pub(super) type Functions = [Option<Function>; 6];
 
 /// `vpost calibrate interferometer`
 pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
@@ -116,8 +115,11 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         return Err(Failure::option("a step of finer tables is above zero", "write `--refine 2`"));
     }
     let mut all: Vec<Series> = Vec::new();
+    let mut angles_read: Option<[f64; 3]> = None;
     for spec in &arguments.files {
-        for series in formats::read(spec, arguments.values, &arguments.target.ignore_column)? {
+        let content = formats::read(spec, arguments.values, &arguments.target.ignore_column)?;
+        angles_read = angles_read.or(content.angles_rad);
+        for series in content.series {
             // Further runs of the same function may come in a file of their own.
             let same = |s: &&mut Series| s.axis == series.axis && s.function == series.function;
             match all.iter_mut().find(same) {
@@ -151,7 +153,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         }
         axes[series.axis.direction()][series.function] = Some(function);
     }
-    let angles = squareness(arguments, &axes)?;
+    let angles = squareness::from_the_user(arguments, angles_read, &axes)?;
     if arguments.target.output.is_none() && arguments.target.against.is_none() {
         summary(&mut out, &axes);
         return file::print(out.as_bytes());
@@ -196,69 +198,6 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         },
     )?;
     output.write(&arguments.target, messages)
-}
-
-/// Three numbers of `XY=12,ZX=-3,YZ=5`, µrad, with the convention and what becomes of the slopes.
-fn squareness(
-    arguments: &Interferometer,
-    axes: &[Functions; 3],
-) -> Result<Option<machine_model::Squareness>, Failure> {
-    let Some(given) = &arguments.squareness else { return Ok(None) };
-    let mut read = [None; 3];
-    for part in given.split(',') {
-        let wrong = || {
-            Failure::option(
-                format!("`--squareness {given}` cannot be read"),
-                "write µrad, as in `--squareness XY=12,ZX=-3,YZ=5`",
-            )
-        };
-        let (name, value) = part.split_once('=').ok_or_else(wrong)?;
-        let place = ["XY", "ZX", "YZ"]
-            .iter()
-            .position(|known| name.trim().eq_ignore_ascii_case(known))
-            .ok_or_else(wrong)?;
-        read[place] = Some(value.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong)?);
-    }
-    let convention = match arguments.squareness_convention {
-        Some(Convention::RightHanded) => SquarenessConvention::RightHanded,
-        Some(Convention::LargerThan90) => SquarenessConvention::LargerThan90,
-        None => {
-            return Err(question(
-                "what does a positive squareness mean? instruments disagree",
-                "add `--squareness-convention right-handed` (ISO 230-1: ZX positive where the angle between +Z and +X is below 90°) or `--squareness-convention larger-than90` (positive above 90° in every plane)",
-            ));
-        }
-    };
-    if arguments.straightness_slopes.is_none()
-        && let Some((name, urad)) = steepest(axes)
-    {
-        return Err(question(
-            format!(
-                "{name} has a slope of {urad:.1} urad: is it part of the squareness that was read, or beside it?"
-            ),
-            "add `--straightness-slopes remove` where the squareness holds it already, or `--straightness-slopes keep`",
-        ));
-    }
-    let [xy, zx, yz] = read.map(|v| v.unwrap_or(0.0) * 1e-6);
-    Ok(Some(functions::squareness([xy, zx, yz], convention)))
-}
-
-/// The straightness with the largest slope, where that matters: more than 1 µm over its length.
-fn steepest(axes: &[Functions; 3]) -> Option<(String, f64)> {
-    let mut worst: Option<(String, f64)> = None;
-    for (axis, functions) in axes.iter().enumerate() {
-        for (f, function) in functions.iter().enumerate().take(3).filter(|(f, _)| *f != axis) {
-            let Some(function) = function else { continue };
-            let slope = straight_line(&function.positions_mm, &function.mean).0;
-            let length = function.positions_mm[function.positions_mm.len() - 1] - function.positions_mm[0];
-            if (slope * length).abs() > 1e-3
-                && worst.as_ref().is_none_or(|(_, w)| slope.abs() * 1e6 > w.abs())
-            {
-                worst = Some((format!("E{}{}", Axis::ALL[f], Axis::ALL[axis]), slope * 1e6));
-            }
-        }
-    }
-    worst
 }
 
 /// Deviations that are much too small or too large for their unit.

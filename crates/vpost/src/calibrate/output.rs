@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use calibration::functions::straight_line;
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Chain};
+use machine_model::{Axis, Chain, Squareness};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
@@ -110,6 +111,29 @@ impl Output {
                 "write the axes as in `--chain \"[w X Y b Z t]\"`",
             )
         })
+    }
+
+    /// The angles between axes that slopes of the base's straightness tables already hold, over these ranges of X, Y, Z. A slope is
+    /// counted once: what is held is taken off an angle that was measured (docs/decisions.md).
+    pub(super) fn squareness_held(&self, ranges_mm: [(f64, f64); 3]) -> Squareness {
+        let slope = |axis: usize, towards: usize| -> f64 {
+            let Some(rows) = self.base.as_ref().and_then(|base| base.rows[axis].as_ref()) else { return 0.0 };
+            let (low, high) = ranges_mm[axis];
+            let inside = |q: f64| low - 1e-9 <= q && q <= high + 1e-9;
+            let (positions, values): (Vec<f64>, Vec<f64>) = rows
+                .positions
+                .iter()
+                .zip(&rows.rows)
+                .filter(|(q, _)| inside(**q))
+                .map(|(q, row)| (*q, row[towards]))
+                .unzip();
+            if positions.len() < 2 { 0.0 } else { straight_line(&positions, &values).0 }
+        };
+        Squareness {
+            ec0y_rad: -(slope(1, 0) + slope(0, 1)),
+            eb0z_rad: slope(2, 0) + slope(0, 2),
+            ea0z_rad: -(slope(2, 1) + slope(1, 2)),
+        }
     }
 
     /// Puts a table beside the profile and gives the name by which the profile calls it.
@@ -230,7 +254,7 @@ pub(super) fn error_table(axis: Axis, positions_mm: &[f64], functions: &[Option<
 }
 
 /// A number with at most so many decimals, without zeros at its end and without minus zero.
-pub(super) fn short(value: f64, decimals: usize) -> String {
+pub(crate) fn short(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }

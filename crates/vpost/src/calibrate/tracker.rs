@@ -215,24 +215,6 @@ fn judge(found: &TrackerCalibration, messages: &Messages) -> Result<(), Failure>
     }
 }
 
-/// Slope of the table's function, least-squares line, over the part of the table inside `range`.
-fn held_slope(rows: &machine_profile::ErrorRows, function: usize, range: (f64, f64)) -> f64 {
-    let inside = |q: f64| range.0 - 1e-9 <= q && q <= range.1 + 1e-9;
-    let points: Vec<(f64, f64)> = rows
-        .positions
-        .iter()
-        .zip(&rows.rows)
-        .filter(|(q, _)| inside(**q))
-        .map(|(q, row)| (*q, row[function]))
-        .collect();
-    let n = points.len() as f64;
-    let (mean_q, mean_e) =
-        (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    let spread: f64 = points.iter().map(|p| (p.0 - mean_q) * (p.0 - mean_q)).sum();
-    let common: f64 = points.iter().map(|p| (p.0 - mean_q) * (p.1 - mean_e)).sum();
-    if points.len() < 2 || spread == 0.0 { 0.0 } else { common / spread }
-}
-
 /// The interval tables: directions of every interval with their standard uncertainties.
 fn cosines(found: &TrackerCalibration, as_published: bool) -> String {
     let mut text = String::from("axis,from_mm,to_mm,cos_x,cos_y,cos_z,u_cos_x,u_cos_y,u_cos_z\n");
@@ -272,16 +254,14 @@ fn write_profile(output: &mut Output, found: &TrackerCalibration, replace: bool,
         !replace && output.base.as_ref().is_some_and(|base| base.rows.iter().any(Option::is_some));
     let mut squareness = found.squareness;
     if has_tables {
-        // A slope is counted once: what the straightness tables hold is not said again as an angle.
-        let held = |axis: usize, towards: usize| {
+        let ends = |axis: usize| {
             let nodes = &found.traverses[axis].nodes;
-            let range = (nodes[0].commanded_mm, nodes[nodes.len() - 1].commanded_mm);
-            let rows = output.base.as_ref().and_then(|base| base.rows[axis].as_ref());
-            rows.map_or(0.0, |rows| held_slope(rows, towards, range))
+            (nodes[0].commanded_mm, nodes[nodes.len() - 1].commanded_mm)
         };
-        squareness.ec0y_rad += held(1, 0) + held(0, 1);
-        squareness.eb0z_rad -= held(2, 0) + held(0, 2);
-        squareness.ea0z_rad += held(2, 1) + held(1, 2);
+        let held = output.squareness_held([0, 1, 2].map(ends));
+        squareness.ec0y_rad -= held.ec0y_rad;
+        squareness.eb0z_rad -= held.eb0z_rad;
+        squareness.ea0z_rad -= held.ea0z_rad;
     } else {
         for (axis, errors) in found.axes.iter().enumerate() {
             let function = |k: usize| Some(errors.errors_mm.iter().map(|e| e[k]).collect());

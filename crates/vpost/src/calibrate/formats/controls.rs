@@ -1,0 +1,156 @@
+//! Tables of controls: LinuxCNC's triplets, Heidenhain's AXISPOS tables, ISG CSV.
+
+use machine_model::Axis;
+
+use crate::message::Failure;
+
+use super::{Content, Series, Told, Values, numbers, reading, symbol, unreadable};
+
+/// LinuxCNC: nominal, forward, reverse.
+pub(super) fn triplets(name: &str, text: &str, told: &Told<'_>) -> Result<Series, Failure> {
+    let (function, axis) = told.function(name)?;
+    if function != axis.direction() {
+        return Err(Failure::option(
+            format!("{name}: a compensation file holds the positioning of its own axis"),
+            format!("write `{name}=E{axis}{axis}`"),
+        ));
+    }
+    let values =
+        told.values(name, "positions (COMP_FILE_TYPE = 0) or --values corrections (COMP_FILE_TYPE = 1)")?;
+    let mut readings = Vec::new();
+    for line in text.lines().map(str::trim).filter(|l| !l.is_empty() && !l.starts_with('#')) {
+        let Some(Ok([nominal, forward, reverse])) = numbers(line).map(<[f64; 3]>::try_from) else { continue };
+        let error = |v: f64| match values {
+            Values::Positions => v - nominal,
+            Values::Errors => v,
+            Values::Corrections => -v,
+        };
+        readings.push(reading("1", nominal, error(forward), 1));
+        readings.push(reading("1", nominal, error(reverse), -1));
+    }
+    Ok(Series { axis, function, readings, source: name.to_owned(), reference_asked: false })
+}
+
+/// Heidenhain: AXISPOS, optionally BACKLASH (the value towards minus), and a column named by the axis that is compensated.
+pub(super) fn heidenhain(name: &str, text: &str, told: &Told<'_>) -> Result<Vec<Series>, Failure> {
+    let (_, axis) = told.function(name)?;
+    let values = told.values(name, "errors or --values corrections")?;
+    let sign = if values == Values::Corrections { -1.0 } else { 1.0 };
+    let mut header: Vec<String> = Vec::new();
+    let mut found: Vec<Series> = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let words: Vec<&str> = line.split_whitespace().filter(|w| *w != "|").collect();
+        if words.iter().any(|w| w.eq_ignore_ascii_case("AXISPOS")) {
+            header = words.iter().map(|w| w.to_uppercase()).collect();
+            continue;
+        }
+        let Some(cells) = numbers(line).filter(|n| !header.is_empty() && !n.is_empty()) else { continue };
+        // A line number may lead.
+        let skip = cells.len().saturating_sub(header.len());
+        let cells = &cells[skip..];
+        if cells.len() != header.len() {
+            return Err(unreadable(
+                name,
+                number + 1,
+                format!("{} numbers for {} columns", cells.len(), header.len()),
+                "give every row all columns",
+            ));
+        }
+        let cell = |title: &str| header.iter().position(|h| h == title).map(|k| cells[k]);
+        let Some(position) = cell("AXISPOS") else { continue };
+        for compensated in Axis::ALL.into_iter().filter(|a| a.is_linear()) {
+            let Some(value) = cell(&compensated.to_string()) else { continue };
+            let function = compensated.direction();
+            if !found.iter().any(|s| s.function == function) {
+                found.push(Series {
+                    axis,
+                    function,
+                    readings: Vec::new(),
+                    source: name.to_owned(),
+                    reference_asked: false,
+                });
+            }
+            let Some(series) = found.iter_mut().find(|s| s.function == function) else { continue };
+            let backlash = cell("BACKLASH").filter(|_| function == axis.direction());
+            series.readings.push(reading("1", position, sign * value, i8::from(backlash.is_some())));
+            if let Some(negative) = backlash {
+                series.readings.push(reading("1", position, sign * negative, -1));
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(unreadable(
+            name,
+            1,
+            "no column is named by an axis",
+            "a column X, Y or Z holds the values of that axis",
+        ));
+    }
+    Ok(found)
+}
+
+/// ISG CSV: a heading `X EXX EYX …`, mm and rad; `#` begins a further block.
+pub(super) fn isg(name: &str, text: &str) -> Result<Content, Failure> {
+    let mut found: Vec<Series> = Vec::new();
+    let mut angles: Option<[f64; 3]> = None;
+    let mut header: Vec<String> = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.split("//").next().unwrap_or_default().trim();
+        if line.is_empty() {
+            continue;
+        }
+        if line.starts_with('#') {
+            header.clear();
+            continue;
+        }
+        if header.is_empty() {
+            header = line.split_whitespace().map(str::to_uppercase).collect();
+            continue;
+        }
+        let Some(cells) = numbers(line).filter(|n| n.len() == header.len()) else {
+            return Err(unreadable(
+                name,
+                number + 1,
+                format!("expected {} numbers", header.len()),
+                "mm and rad, separated by spaces",
+            ));
+        };
+        let angle = |title: &String| ["C0Y", "B0Z", "A0Z"].iter().position(|known| known == title);
+        if let Some(places) = header.iter().map(angle).collect::<Option<Vec<usize>>>() {
+            let own = angles.get_or_insert([0.0; 3]);
+            for (place, value) in places.into_iter().zip(&cells) {
+                own[place] = *value;
+            }
+            continue;
+        }
+        let Some(axis) = header[0].chars().next().and_then(Axis::from_letter).filter(|a| a.is_linear())
+        else {
+            let help = "a block begins with the axis: `X EXX EYX …`; of constant errors only C0Y, B0Z and A0Z are read";
+            return Err(unreadable(name, number + 1, format!("`{}` is no linear axis", header[0]), help));
+        };
+        for (title, value) in header.iter().zip(&cells).skip(1) {
+            let Some((function, own)) = symbol(title).filter(|(_, own)| *own == axis) else {
+                return Err(unreadable(
+                    name,
+                    number + 1,
+                    format!("`{title}` is no error function of {axis}"),
+                    "write EXX, EYX, … of the block's axis",
+                ));
+            };
+            let same = |s: &Series| s.axis == own && s.function == function;
+            if !found.iter().any(same) {
+                found.push(Series {
+                    axis: own,
+                    function,
+                    readings: Vec::new(),
+                    source: name.to_owned(),
+                    reference_asked: true,
+                });
+            }
+            if let Some(series) = found.iter_mut().find(|s| same(s)) {
+                series.readings.push(reading("1", cells[0], *value, 0));
+            }
+        }
+    }
+    Ok(Content { series: found, angles_rad: angles })
+}

@@ -1,0 +1,85 @@
+//! Squareness as an instrument or a file gave it, and what must be asked of it.
+
+use calibration::functions::{self, SquarenessConvention, straight_line};
+use machine_model::{Axis, Squareness};
+
+use crate::message::Failure;
+
+use super::codes::question;
+use super::interferometer::{Convention, Functions, Interferometer};
+
+/// The squareness to write, in the model's signs; `None` where nobody gave one.
+///
+/// * `from_file_rad` – XY, ZX, YZ as a file had them
+pub(super) fn from_the_user(
+    arguments: &Interferometer,
+    from_file_rad: Option<[f64; 3]>,
+    axes: &[Functions; 3],
+) -> Result<Option<Squareness>, Failure> {
+    let read_rad = match &arguments.squareness {
+        Some(text) => given(text)?.map(|urad| urad * 1e-6),
+        None => match from_file_rad {
+            Some(angles) => angles,
+            None => return Ok(None),
+        },
+    };
+    let convention = match arguments.squareness_convention {
+        Some(Convention::RightHanded) => SquarenessConvention::RightHanded,
+        Some(Convention::LargerThan90) => SquarenessConvention::LargerThan90,
+        None => {
+            return Err(question(
+                "what does a positive squareness mean? instruments disagree",
+                "add `--squareness-convention right-handed` (ISO 230-1: ZX positive where the angle between +Z and +X is below 90°) or `--squareness-convention larger-than90` (positive above 90° in every plane)",
+            ));
+        }
+    };
+    if arguments.straightness_slopes.is_none()
+        && let Some((name, urad)) = steepest(axes)
+    {
+        return Err(question(
+            format!(
+                "{name} has a slope of {urad:.1} urad: is it part of the squareness that was read, or beside it?"
+            ),
+            "add `--straightness-slopes remove` where the squareness holds it already, or `--straightness-slopes keep`",
+        ));
+    }
+    Ok(Some(functions::squareness(read_rad, convention)))
+}
+
+/// Three numbers of `XY=12,ZX=-3,YZ=5`, µrad.
+fn given(text: &str) -> Result<[f64; 3], Failure> {
+    let mut read = [0.0; 3];
+    for part in text.split(',') {
+        let wrong = || {
+            Failure::option(
+                format!("`--squareness {text}` cannot be read"),
+                "write µrad, as in `--squareness XY=12,ZX=-3,YZ=5`",
+            )
+        };
+        let (name, value) = part.split_once('=').ok_or_else(wrong)?;
+        let place = ["XY", "ZX", "YZ"]
+            .iter()
+            .position(|known| name.trim().eq_ignore_ascii_case(known))
+            .ok_or_else(wrong)?;
+        read[place] = value.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong)?;
+    }
+    Ok(read)
+}
+
+/// The straightness with the largest slope, where that matters: more than 1 µm over its length.
+fn steepest(axes: &[Functions; 3]) -> Option<(String, f64)> {
+    let mut worst: Option<(String, f64)> = None;
+    for (axis, functions) in axes.iter().enumerate() {
+        for (f, function) in functions.iter().enumerate().take(3).filter(|(f, _)| *f != axis) {
+            let Some(function) = function else { continue };
+            let slope = straight_line(&function.positions_mm, &function.mean).0;
+            let length = function.positions_mm[function.positions_mm.len() - 1] - function.positions_mm[0];
+            if (slope * length).abs() > 1e-3
+                && worst.as_ref().is_none_or(|(_, w)| slope.abs() * 1e6 > w.abs())
+            {
+                worst = Some((format!("E{}{}", Axis::ALL[f], Axis::ALL[axis]), slope * 1e6));
+            }
+        }
+    }
+    worst
+}

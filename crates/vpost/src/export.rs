@@ -1,0 +1,252 @@
+//! `vpost profile export`: the model in the forms that controls take.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use diagnostic::{Code, Diagnostic};
+use machine_model::{Axis, Command, PathModel, Six, Vector};
+use machine_profile::Profile;
+
+use crate::calibrate::short;
+use crate::message::{Failure, Messages, Report};
+use crate::{file, profile};
+
+/// Warning: the form holds less than the profile.
+const LOST: Code = Code(1112);
+
+/// `vpost profile export`
+#[derive(Debug, Args)]
+pub struct Export {
+    /// Machine profile (TOML).
+    #[arg(value_name = "PROFILE.toml")]
+    pub profile: PathBuf,
+    /// The form.
+    #[arg(long, value_enum)]
+    pub format: Format,
+    /// Folder for the files.
+    #[arg(short = 'O', long = "output-folder", value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Distance of the lattice's points, mm.
+    #[arg(long, value_name = "MM", default_value_t = 50.0)]
+    pub step: f64,
+    /// Whether the lattice holds what the machine does wrong or what the control adds.
+    #[arg(long, value_enum, default_value_t = Sign::Errors)]
+    pub lattice: Sign,
+}
+
+/// Forms that controls take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// LinuxCNC compensation files (COMP_FILE_TYPE = 0): nominal, forward, reverse.
+    Linuxcnc,
+    /// ISG CSV: tables of each axis and the angles between them, mm and rad.
+    Isg,
+    /// A lattice of vectors.
+    Lattice,
+    /// The product's own tables.
+    Csv,
+}
+
+/// What a lattice holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sign {
+    /// Real minus commanded: dx_um dy_um dz_um.
+    Errors,
+    /// What the control adds, the negative of it: cx_um cy_um cz_um.
+    Corrections,
+}
+
+/// Error functions of an axis at a place, for a direction (0: mean of both).
+fn six(profile: &Profile, axis: usize, q: f64, direction: i8) -> Six {
+    let data = &profile.description.linear[axis];
+    let at = |tables: &Option<machine_model::AxisTables>| tables.as_ref().map(|t| t.at(q));
+    let positive = at(&data.errors).unwrap_or_default();
+    let mut values = match (at(&data.errors_negative), direction) {
+        (Some(negative), -1) => negative,
+        (Some(negative), 0) => std::array::from_fn(|k| 0.5 * (positive[k] + negative[k])),
+        _ => positive,
+    };
+    // The whole reversal value: after coming from above the axis stands further.
+    values[axis] -= 0.5 * data.backlash_mm * f64::from(direction);
+    values
+}
+
+/// Places at which an axis' tables have nodes.
+fn nodes(profile: &Profile, axis: usize) -> Vec<f64> {
+    profile.rows[axis].as_ref().map_or_else(Vec::new, |rows| rows.positions.clone())
+}
+
+/// True where motion towards minus differs from motion towards plus.
+fn has_two_directions(profile: &Profile, axis: usize) -> bool {
+    let data = &profile.description.linear[axis];
+    data.errors_negative.is_some() || data.backlash_mm != 0.0
+}
+
+/// Functions of an axis that have a column.
+fn given(profile: &Profile, axis: usize) -> Vec<usize> {
+    let rows = profile.rows[axis].as_ref();
+    rows.map_or_else(Vec::new, |rows| {
+        (0..6).filter(|&k| rows.given[k] || (k == axis && has_two_directions(profile, axis))).collect()
+    })
+}
+
+/// `vpost profile export`
+pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure> {
+    let profile = profile::load(&arguments.profile)?.profile;
+    if !(arguments.step > 0.0 && arguments.step.is_finite()) {
+        return Err(Failure::option("a step is above zero", "write `--step 50`"));
+    }
+    std::fs::create_dir_all(&arguments.folder)
+        .map_err(|error| Failure::file(&file::name(&arguments.folder), "make", &error))?;
+    let lost = match arguments.format {
+        Format::Linuxcnc => linuxcnc(&profile, &arguments.folder)?,
+        Format::Isg => isg(&profile, &arguments.folder)?,
+        Format::Lattice => lattice(&profile, arguments)?,
+        Format::Csv => own(&profile, &arguments.folder)?,
+    };
+    let mut lost = lost;
+    if !profile.effects.is_empty() {
+        lost.push("the profile's [[effect]] entries".to_owned());
+    }
+    if !lost.is_empty() {
+        let diagnostic = Diagnostic::warning(LOST, format!("this form does not hold {}", lost.join("; ")))
+            .help("correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well");
+        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+    }
+    Ok(())
+}
+
+/// One file per axis. No comments: LinuxCNC stops reading at the first line that is not three numbers.
+fn linuxcnc(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
+    let mut lost =
+        vec!["straightness, angles and squareness: a compensation file moves its own axis only".to_owned()];
+    for axis in 0..3 {
+        let places = nodes(profile, axis);
+        if places.is_empty() {
+            continue;
+        }
+        let letter = Axis::ALL[axis].letter();
+        if places.len() > 256 {
+            lost.push(format!("all of the {} nodes of {letter}: LinuxCNC reads 256", places.len()));
+        }
+        let mut text = String::new();
+        for q in places.iter().take(256) {
+            let real = |direction: i8| short(q + six(profile, axis, *q, direction)[axis], 7);
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{} {} {}", short(*q, 6), real(1), real(-1));
+        }
+        file::write(&folder.join(format!("{}.comp", letter.to_ascii_lowercase())), text.as_bytes())?;
+    }
+    Ok(lost)
+}
+
+/// One file with a block per axis and one of angles.
+fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
+    let mut text = String::from("// Errors along the measured lines, mean of both directions; mm and rad.\n");
+    let mut lost = Vec::new();
+    for axis in 0..3 {
+        let functions = given(profile, axis);
+        if functions.is_empty() {
+            continue;
+        }
+        let letter = Axis::ALL[axis].letter();
+        if has_two_directions(profile, axis) {
+            lost.push(format!("the direction of motion of {letter}"));
+        }
+        if profile.description.linear[axis].measured_tool_mm != Vector::zeros()
+            || profile.description.linear[axis].measured_at_mm != Vector::zeros()
+        {
+            lost.push(format!("where {letter} was measured (measured_at_mm)"));
+        }
+        let names: Vec<String> = functions.iter().map(|k| format!("E{}{letter}", Axis::ALL[*k])).collect();
+        let _ = writeln!(text, "{letter} {}", names.join(" "));
+        for q in nodes(profile, axis) {
+            let values = six(profile, axis, q, 0);
+            let cells: Vec<String> = functions.iter().map(|k| short(values[*k], 12)).collect();
+            let _ = writeln!(text, "{} {}", short(q, 6), cells.join(" "));
+        }
+        text.push_str("#\n");
+    }
+    let s = profile.description.squareness;
+    let _ = writeln!(
+        text,
+        "C0Y B0Z A0Z\n{} {} {}",
+        short(s.ec0y_rad, 12),
+        short(s.eb0z_rad, 12),
+        short(s.ea0z_rad, 12)
+    );
+    file::write(&folder.join("errors.isg"), text.as_bytes())?;
+    Ok(lost)
+}
+
+/// Vectors on a lattice over the calibrated volume, its far faces included.
+fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure> {
+    let volume = profile.volume();
+    let places: [Vec<f64>; 3] = [0, 1, 2].map(|i| {
+        let range = volume.0[i];
+        let cells = ((range.high - range.low) / arguments.step - 1e-9).ceil().max(1.0) as usize;
+        (0..=cells).map(|k| (range.low + k as f64 * arguments.step).min(range.high)).collect()
+    });
+    let points: usize = places.iter().map(Vec::len).product();
+    if points > 1_000_000 {
+        return Err(Failure::option(format!("a lattice of {points} points"), "use a larger `--step`"));
+    }
+    let model = profile.rigid_body_without_effects();
+    let tool_mm = Vector::from(profile.default_tool_mm);
+    let (sign, head) = match arguments.lattice {
+        Sign::Errors => (1.0, "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,dx_um,dy_um,dz_um\n"),
+        Sign::Corrections => (-1.0, "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,cx_um,cy_um,cz_um\n"),
+    };
+    let mut text = String::from(head);
+    for z in &places[2] {
+        for y in &places[1] {
+            for x in &places[0] {
+                let at = Vector::new(*x, *y, *z);
+                let command =
+                    Command { linear_mm: at, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3] };
+                let error = model.error_mm(&command) * (1e3 * sign);
+                let cells: Vec<String> = at
+                    .iter()
+                    .chain(tool_mm.iter())
+                    .map(|v| short(*v, 6))
+                    .chain(error.iter().map(|v| short(*v, 4)))
+                    .collect();
+                let _ = writeln!(text, "lattice,{}", cells.join(","));
+            }
+        }
+    }
+    file::write(&arguments.folder.join("lattice.csv"), text.as_bytes())?;
+    let mut lost = Vec::new();
+    if (0..3).any(|i| has_two_directions(profile, i)) {
+        lost.push("the direction of motion".to_owned());
+    }
+    lost.push("other tools than the default one".to_owned());
+    Ok(lost)
+}
+
+/// The tables as `vpost calibrate interferometer` reads them.
+fn own(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
+    for axis in 0..3 {
+        let functions = given(profile, axis);
+        if functions.is_empty() {
+            continue;
+        }
+        let letter = Axis::ALL[axis].letter();
+        let unit = |k: usize| if k < 3 { "um" } else { "urad" };
+        let names: Vec<String> =
+            functions.iter().map(|k| format!("E{}{letter}_{}", Axis::ALL[*k], unit(*k))).collect();
+        let mut text = format!("run,dir,position_mm,{}\n", names.join(","));
+        let directions: &[i8] = if has_two_directions(profile, axis) { &[1, -1] } else { &[0] };
+        for direction in directions {
+            for q in nodes(profile, axis) {
+                let values = six(profile, axis, q, *direction);
+                let cells: Vec<String> =
+                    functions.iter().map(|k| short(values[*k] * if *k < 3 { 1e3 } else { 1e6 }, 4)).collect();
+                let _ = writeln!(text, "1,{direction},{},{}", short(q, 6), cells.join(","));
+            }
+        }
+        file::write(&folder.join(format!("{}.csv", letter.to_ascii_lowercase())), text.as_bytes())?;
+    }
+    Ok(vec!["squareness, rotary axes, tools and offsets: they stand in the profile".to_owned()])
+}
