@@ -4,14 +4,18 @@ use std::fmt::Write;
 
 use gap_diagnosis::{Diagnosis, Verdict};
 
-use super::json::round;
-
 /// The text.
 pub(super) fn text(d: &Diagnosis) -> String {
     let mut out = String::new();
     // Writing into a string cannot fail.
     let _ = write(&mut out, d);
     out
+}
+
+/// What nothing else explains, to what it explains alone, in percent.
+fn share(unique: f64, alone: f64) -> String {
+    let (low, high) = (format!("{:.0}", 100.0 * unique), format!("{:.0}", 100.0 * alone));
+    if low == high { format!("{low} %") } else { format!("{low}..{high} %") }
 }
 
 fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
@@ -43,9 +47,8 @@ fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
         writeln!(out, "\ncause   {}  {first}", cause.effect)?;
         writeln!(
             out,
-            "        {:.0}..{:.0} % of the gap; RMS {:.1} -> {:.1} um",
-            100.0 * cause.share_unique,
-            100.0 * cause.share_alone,
+            "        {} of the gap; RMS {:.1} -> {:.1} um",
+            share(cause.share_unique, cause.share_alone),
             cause.rms_before_um,
             cause.rms_after_um
         )?;
@@ -84,7 +87,8 @@ fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
         writeln!(out, "not named: {absorber}")?;
     }
     if let Some(next) = &d.next_measurement {
-        writeln!(out, "next    {} ({} sigma)", next.text, round(next.expected_sigma))?;
+        writeln!(out, "next    {}", next.text)?;
+        writeln!(out, "        (they would then lie {:.0} standard deviations apart)", next.expected_sigma)?;
     }
     if !d.outlier_lines.is_empty() {
         let lines: Vec<String> = d.outlier_lines.iter().take(12).map(u64::to_string).collect();
