@@ -244,7 +244,11 @@ fn pictures_of_a_report() {
         println!("skipped: chromium is not installed");
         return;
     };
-    let report = stan();
+    pictures(browser, &stan(), "diagnosis");
+}
+
+/// Light, dark and print.
+fn pictures(browser: &str, report: &Report, what: &str) {
     // Paper has no command line option: its styles are given to the screen.
     let paper = report.folder.path().join("paper.html");
     std::fs::write(&paper, text(&report.page).replace("@media print", "@media all")).expect("writable");
@@ -252,7 +256,7 @@ fn pictures_of_a_report() {
     for (name, page, option) in
         [("light", &report.page, "--light"), ("dark", &report.page, dark), ("print", &paper, "--light")]
     {
-        let picture = report.folder.path().join(format!("diagnosis_{name}.png"));
+        let picture = report.folder.path().join(format!("{what}_{name}.png"));
         let more = [
             "--window-size=900,1100".to_owned(),
             option.to_owned(),
@@ -262,7 +266,120 @@ fn pictures_of_a_report() {
         let bytes = std::fs::read(&picture).expect("a picture");
         assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{name}: {} bytes", bytes.len());
         if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
-            std::fs::copy(&picture, root().join(format!("docs/img/diagnosis_{name}.png"))).expect("docs/img");
+            std::fs::copy(&picture, root().join(format!("docs/img/{what}_{name}.png"))).expect("docs/img");
         }
     }
+}
+
+/// A map of the STAN S500 with everything in it.
+fn map() -> Report {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let page = folder.path().join("map.html");
+    let name = page.to_str().expect("a plain path");
+    let ran = run(&[
+        "map",
+        "-m",
+        "machine-profiles/stan_s500.toml",
+        "--grid",
+        "22x22x21",
+        "--plane",
+        "XY=100",
+        "--part-box",
+        "100..220,60..140,20..60",
+        "--clamp",
+        "120,80,40",
+        "--second-order",
+        "--html",
+        name,
+    ]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    Report { folder, page }
+}
+
+#[test]
+fn a_map_opens_without_a_message_is_small_and_the_same_each_time() {
+    let (report, again) = (map(), map());
+    let page = text(&report.page);
+    assert!(page == text(&again.page), "two runs differ");
+    assert!(page.len() < 3_000_000, "{} bytes for 10,164 nodes", page.len());
+    let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    assert_eq!(data["schema"], "vpost.map/1");
+    assert_eq!(data["nodes"], 10_164);
+    let counted: u64 =
+        data["histogram"]["before"].as_array().expect("counts").iter().filter_map(|n| n.as_u64()).sum();
+    assert_eq!(counted, 10_164, "the histogram counts every node");
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let visit = visit(browser, &report.page);
+    assert!(
+        visit.console.is_empty() && visit.requests.is_empty(),
+        "{:?} {:?}",
+        visit.console,
+        visit.requests
+    );
+    assert_eq!(visit.dom.matches("<section ").count(), 11);
+    assert_eq!(visit.dom.matches("<svg ").count(), 7);
+    // Thinned in the drawing, not in the numbers: 11 of each axis, twice.
+    assert_eq!(visit.dom.matches("<circle ").count(), 2 * 11 * 11 * 11);
+}
+
+#[test]
+fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let act = "document.documentElement.id='acted'";
+    let profile = folder.path().join("<b onmouseover=x>\"m&m.toml");
+    let original = std::fs::read_to_string(root().join("samples/map/kondia_like.toml")).expect("a sample");
+    let machine = format!("<img src=x onerror={act}></title></script><script>{act}</script> 'q' \u{202e}gpj");
+    std::fs::write(&profile, original.replace("Kondia-like (invented errors)", &machine)).expect("writable");
+    let page = folder.path().join("map.html");
+    let region = format!("<svg/onload={act}>\"=0..500,0..500,0..500");
+    let ran = run(&[
+        "map",
+        "-m",
+        profile.to_str().expect("a plain path"),
+        "--region",
+        &region,
+        "--grid",
+        "5x5x5",
+        "--html",
+        page.to_str().expect("a plain path"),
+    ]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let html = text(&page);
+    assert_eq!(html.matches("<script").count(), 1, "the data block is the only one");
+    assert!(html.contains("&lt;svg/onload=") && html.contains("&lt;img src=x onerror="), "they are shown");
+    assert!(html.contains("U+202E"));
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let policy = html.find("<meta http-equiv").expect("a policy");
+    let end = policy + html[policy..].find('>').expect("it ends") + 1;
+    let unprotected = folder.path().join("unprotected.html");
+    std::fs::write(&unprotected, format!("{}{}", &html[..policy], &html[end..])).expect("writable");
+    for page in [&page, &unprotected] {
+        let visit = visit(browser, page);
+        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
+        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
+        assert!(
+            visit.console.is_empty() && visit.requests.is_empty(),
+            "{:?} {:?}",
+            visit.console,
+            visit.requests
+        );
+    }
+}
+
+#[test]
+fn pictures_of_a_map() {
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let report = map();
+    pictures(browser, &report, "map");
 }

@@ -5,6 +5,7 @@ mod calibration;
 mod corpus;
 mod engines;
 mod gap_bench;
+mod map_speed;
 mod markdown;
 mod picture;
 mod reproduction;
@@ -46,6 +47,8 @@ enum Task {
         #[arg(default_value = "samples/diagnosis")]
         folder: std::path::PathBuf,
     },
+    /// Time error maps and zero-point searches; use a release build.
+    MapSpeed,
     /// Draw the README's picture.
     Picture(picture::Options),
     /// Print docs/reproduction.md: printed numbers beside ours.
@@ -61,6 +64,7 @@ fn main() -> anyhow::Result<()> {
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
+        Task::MapSpeed => map_speed::page(),
         Task::Picture(options) => picture::write(&options)?,
         Task::Reproduction => reproduction::page(),
     };

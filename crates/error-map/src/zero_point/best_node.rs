@@ -32,7 +32,7 @@ const SAME: f64 = 1e-12;
 pub fn best_node(errors_mm: &[Vector]) -> Option<BestNode> {
     let median = geometric_median(errors_mm)?;
     let cloud = Cloud::new(errors_mm);
-    let [coarse, fine] = Clusters::levels(errors_mm, [4, 9]);
+    let bounds = Clusters::levels(errors_mm, [4, 9, 13]);
     let mut best: Option<(BestNode, f64)> = None;
     let mut examined = 0;
     let mut try_node = |index: usize, best: &mut Option<(BestNode, f64)>| {
@@ -59,7 +59,7 @@ pub fn best_node(errors_mm: &[Vector]) -> Option<BestNode> {
     for index in (0..errors_mm.len()).filter(|index| *index != first) {
         let limit = best.map_or(f64::INFINITY, |(found, _)| found.sum_mm * (1.0 + SAME));
         let at = &errors_mm[index];
-        if coarse.lower_bound(at) <= limit && fine.lower_bound(at) <= limit {
+        if bounds.iter().all(|bound| bound.lower_bound(at) <= limit) {
             try_node(index, &mut best);
         }
     }

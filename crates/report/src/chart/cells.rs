@@ -35,11 +35,11 @@ pub struct Matrix {
 }
 
 /// Steps of lightness in the palette.
-const SHADES: usize = 10;
+pub(super) const SHADES: usize = 10;
 const PER_ROW: usize = 3;
 const SIDE: f64 = 168.0;
 
-fn shade(value: f64, largest: f64) -> usize {
+pub(super) fn shade(value: f64, largest: f64) -> usize {
     if largest <= 0.0 || !value.is_finite() {
         return 0;
     }
@@ -75,8 +75,10 @@ pub fn slices(title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
         }
         (text(46.0, height + 24.0, "m", "0"))
         (text(46.0 + 24.0 * SHADES as f64, height + 24.0, "m e", &format!("{} {unit}", number(largest))))
-        (rect("cell none", (330.0, height), 24.0, 10.0))
-        (text(360.0, height + 9.0, "m", "not measured"))
+        @if all.iter().any(|slice| slice.values.iter().any(Option::is_none)) {
+            (rect("cell none", (330.0, height), 24.0, 10.0))
+            (text(360.0, height + 9.0, "m", "not measured"))
+        }
     };
     svg(height + 30.0, title, &format!("one scale for all slices, 0 to {} {unit}", number(largest)), &body)
 }

@@ -5,13 +5,16 @@
 
 mod bars;
 mod cells;
+mod curves;
 mod dots;
 mod lines;
+pub mod solid;
 
 use maud::{Markup, html};
 
 pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
+pub use curves::{Curves, Histogram, curves, histogram};
 pub use dots::{Panel, Points, panels};
 pub use lines::{Arrow, View, cumulative, views};
 

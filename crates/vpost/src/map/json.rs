@@ -4,6 +4,7 @@ use error_map::Statistics;
 use machine_model::{Range, Vector};
 use serde_json::{Value, json};
 
+use super::drawn::classes;
 use super::second_order::SecondOrder;
 use super::study::{Part, Proof, Study, ZeroPoint};
 use super::text::freedom_name;
@@ -11,6 +12,7 @@ use super::text::freedom_name;
 /// The file's bytes.
 pub(super) fn bytes(study: &Study) -> Vec<u8> {
     let grid = study.map.grid();
+    let sizes = classes(study);
     let document = json!({
         "schema": "vpost.map/1",
         "machine": study.machine,
@@ -42,6 +44,12 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
             "before": figures(&place.fit.before),
             "after": figures(&place.fit.after),
         })).collect::<Vec<_>>(),
+        "curves": study.curves.iter().map(|c| json!({
+            "axis": (["X", "Y", "Z"][c.axis]),
+            "at_mm": c.at_mm.iter().map(|v| round(*v, 6)).collect::<Vec<_>>(),
+            "d_um": c.errors_mm.iter().map(micrometres).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+        "histogram": { "width_um": um(sizes.width_mm), "before": sizes.before, "after": sizes.after },
         "second_order": study.second_order.as_ref().map(second_order),
     });
     let mut text = serde_json::to_vec_pretty(&document).expect("plain values always serialise");

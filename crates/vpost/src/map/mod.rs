@@ -1,8 +1,10 @@
 //! `vpost map`: what the machine does wrong over its volume, and where to put the zero point.
 
+mod drawn;
 mod export;
 mod json;
 mod options;
+mod page;
 mod second_order;
 mod study;
 mod text;
@@ -56,6 +58,9 @@ pub struct Map {
     /// Write all figures (JSON).
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write the map as one page with drawings (HTML).
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
     /// Write the map for ParaView (VTK).
     #[arg(long, value_name = "FILE")]
     pub vtk: Option<PathBuf>,
@@ -81,7 +86,34 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
+    if let Some(path) = &arguments.html {
+        let facts = facts(arguments, shared, &profile, machine(shared)?, &loaded.hash);
+        let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
+        file::write(path, page::html(&study, &facts, &json).as_bytes())?;
+    }
     file::print(text::page(&study).as_bytes())
+}
+
+/// What was asked, as it was typed.
+fn facts(
+    arguments: &Map,
+    shared: &Shared,
+    profile: &machine_profile::Profile,
+    path: &std::path::Path,
+    hash: &blake3::Hash,
+) -> page::Facts {
+    let mut options = vec![("--grid", arguments.grid.clone())];
+    options.extend(arguments.region.iter().map(|v| ("--region", v.clone())));
+    options.extend(arguments.plane.iter().map(|v| ("--plane", v.clone())));
+    options.extend(arguments.part_box.iter().map(|v| ("--part-box", v.clone())));
+    options.extend(arguments.clamp.iter().map(|v| ("--clamp", v.clone())));
+    options.extend(shared.at.iter().map(|v| ("--at", v.clone())));
+    page::Facts {
+        chain: profile.chain().to_string(),
+        profile: file::name(path),
+        profile_hash: hash.to_string(),
+        options,
+    }
 }
 
 fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {

@@ -81,7 +81,8 @@ fn ranges(text: &str) -> Option<[Range; 3]> {
 
 fn region(given: &str) -> Result<(String, [Range; 3]), Failure> {
     let example = "table=0..200,0..140,0..100";
-    let (name, text) = given.split_once('=').ok_or_else(|| wrong("--region", given, example))?;
+    // Names may hold anything; the ranges hold no equals sign.
+    let (name, text) = given.rsplit_once('=').ok_or_else(|| wrong("--region", given, example))?;
     let ranges = ranges(text).ok_or_else(|| wrong("--region", given, example))?;
     Ok((name.trim().to_owned(), ranges))
 }

@@ -9,6 +9,7 @@ use machine_profile::Profile;
 use rayon::prelude::*;
 
 use super::command;
+use super::drawn::{Curve, curves};
 use super::options::Asked;
 use super::second_order::{self, SecondOrder};
 use crate::message::Failure;
@@ -33,6 +34,8 @@ pub(super) struct Study {
     pub diagonals: Vec<Diagonal>,
     pub places: Vec<(Freedom, Place)>,
     pub second_order: Option<SecondOrder>,
+    /// Errors along each axis through the middle.
+    pub curves: Vec<Curve>,
 }
 
 /// A part of the volume, its figures and its zero points.
@@ -124,6 +127,7 @@ impl Study {
             diagonals: body_diagonals(&box_mm, TARGETS, error),
             places,
             second_order: asked.second_order.then(|| second_order::of(profile, &map, asked)).transpose()?,
+            curves: curves(&map, model, asked),
             map,
         })
     }

@@ -124,7 +124,7 @@ fn zero_points(study: &Study, part: &Part, out: &mut String) {
     }
 }
 
-fn proof(zero: &ZeroPoint, part: &Part) -> String {
+pub(super) fn proof(zero: &ZeroPoint, part: &Part) -> String {
     let n = part.figures.nodes as f64;
     let name = zero.kind.name();
     match &zero.proof {
@@ -188,38 +188,40 @@ fn places(study: &Study, out: &mut String) {
 
 fn second_order(found: &SecondOrder, out: &mut String) {
     let _ = writeln!(out, "\nsecond order of rotations, {} nodes", found.nodes);
-    let _ = writeln!(
-        out,
-        "  whole chain: exact product and first-order sum differ by at most {} um, at {}",
-        fixed(found.chain_difference_mm * 1e3, 6),
-        triple(&found.chain_place_mm, 3)
-    );
-    let _ = match &found.threshold {
-        Some(threshold) => writeln!(
-            out,
-            "  products of errors reach {} um where all angles are k = {} times as large (largest {} urad)",
-            fixed(found.limit_mm * 1e3, 0),
-            fixed(threshold.scale, 2),
-            fixed(threshold.angle_rad * 1e6, 1)
+    for line in second_order_lines(found) {
+        let _ = writeln!(out, "  {line}");
+    }
+}
+
+/// What products of errors do, in three sentences.
+pub(super) fn second_order_lines(found: &SecondOrder) -> [String; 3] {
+    let limit = fixed(found.limit_mm * 1e3, 0);
+    [
+        format!(
+            "whole chain: exact product and first-order sum differ by at most {} um, at {}",
+            fixed(found.chain_difference_mm * 1e3, 6),
+            triple(&found.chain_place_mm, 3)
         ),
-        None => writeln!(
-            out,
-            "  products of errors stay below {} um for angles up to 0.1 rad",
-            fixed(found.limit_mm * 1e3, 0)
+        match &found.threshold {
+            Some(threshold) => format!(
+                "products of errors reach {limit} um where all angles are k = {} times as large (largest {} urad)",
+                fixed(threshold.scale, 2),
+                fixed(threshold.angle_rad * 1e6, 1)
+            ),
+            None => format!("products of errors stay below {limit} um for angles up to 0.1 rad"),
+        },
+        format!(
+            "nine rotations of the tool vector {} in any order, at {}: first order {} um, all plus {}, all minus {}, exact {} to {} ({} orders)",
+            triple(&found.tool_mm, 3),
+            triple(&found.place_mm, 3),
+            fixed(found.first_mm * 1e3, 6),
+            fixed(found.plus_mm * 1e3, 6),
+            fixed(found.minus_mm * 1e3, 6),
+            fixed(found.interval.low_mm * 1e3, 6),
+            fixed(found.interval.high_mm * 1e3, 6),
+            found.interval.orders
         ),
-    };
-    let _ = writeln!(
-        out,
-        "  nine rotations of the tool vector {} in any order, at {}: first order {} um, all plus {}, all minus {}, exact {} to {} ({} orders)",
-        triple(&found.tool_mm, 3),
-        triple(&found.place_mm, 3),
-        fixed(found.first_mm * 1e3, 6),
-        fixed(found.plus_mm * 1e3, 6),
-        fixed(found.minus_mm * 1e3, 6),
-        fixed(found.interval.low_mm * 1e3, 6),
-        fixed(found.interval.high_mm * 1e3, 6),
-        found.interval.orders
-    );
+    ]
 }
 
 impl ZeroPoint {

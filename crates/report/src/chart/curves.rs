@@ -1,0 +1,107 @@
+//! Curves over a variable, and how often an amount occurs.
+
+use maud::{Markup, html};
+
+use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
+use crate::scale::{Scale, px};
+use crate::text::number;
+
+/// Values over a variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// What runs along it, with its unit.
+    pub label: String,
+    /// Places along it, ascending.
+    pub at: Vec<f64>,
+    /// For each series its values at these places.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// How many of the values lie in each of equally wide classes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// Upper end of the last class; the first begins at 0.
+    pub largest: f64,
+    /// Counts before.
+    pub before: Vec<u64>,
+    /// Counts after.
+    pub after: Vec<u64>,
+}
+
+const HEIGHT: f64 = 130.0;
+const STEP: f64 = HEIGHT + 46.0;
+const TOP: f64 = 30.0;
+const LEFT: f64 = 52.0;
+const RIGHT: f64 = WIDTH - 16.0;
+
+/// Panels below each other, all on one vertical scale, so that sizes can be compared.
+///
+/// * `series` – classes and names of the series, as many as every panel has
+#[must_use]
+pub fn curves(title: &str, panels: &[Curves], series: &[(&str, &str)], unit: &str) -> Markup {
+    let all = || panels.iter().flat_map(|p| p.values.iter().flatten()).copied().filter(|v| v.is_finite());
+    let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
+    let margin = 0.06 * (high - low);
+    let keys: Vec<(String, &str)> =
+        series.iter().map(|(class, words)| (class.replace('s', "k"), *words)).collect();
+    let keys: Vec<(&str, &str)> = keys.iter().map(|(class, words)| (class.as_str(), *words)).collect();
+    let body = html! {
+        (legend(LEFT, 14.0, &keys))
+        @for (row, panel) in panels.iter().enumerate() {
+            @let top = TOP + STEP * row as f64;
+            @let ends = (panel.at.first().copied().unwrap_or(0.0), panel.at.last().copied().unwrap_or(1.0));
+            @let x = Scale::new(ends, (LEFT + 4.0, RIGHT - 4.0));
+            @let y = Scale::new((low - margin, high + margin), (top + HEIGHT, top));
+            (rect("frame", (LEFT, top), RIGHT - LEFT, HEIGHT))
+            (ticks_left(&y, 5, LEFT, RIGHT))
+            (ticks_below(&x, 8, top, top + HEIGHT))
+            (line("zero", (LEFT, y.at(0.0)), (RIGHT, y.at(0.0))))
+            @for ((class, _), values) in series.iter().zip(&panel.values) {
+                path class={ "line " (class) } d=(path(&panel.at, values, &x, &y)) {}
+            }
+            (text(0.5 * (LEFT + RIGHT), top + HEIGHT + 30.0, "m c", &panel.label))
+        }
+    };
+    let described = format!("from {} to {} {unit}, one scale for all", number(low), number(high));
+    svg(TOP + STEP * panels.len() as f64, title, &described, &body)
+}
+
+fn path(at: &[f64], values: &[f64], x: &Scale, y: &Scale) -> String {
+    at.iter().zip(values).filter(|(_, v)| v.is_finite()).fold(String::new(), |mut path, (at, value)| {
+        path.push(if path.is_empty() { 'M' } else { 'L' });
+        path.push_str(&format!("{} {}", px(x.at(*at)), px(y.at(*value))));
+        path
+    })
+}
+
+/// Columns: filled before, outlined after.
+#[must_use]
+pub fn histogram(title: &str, h: &Histogram, limit: Option<(f64, &str)>, label: &str, unit: &str) -> Markup {
+    let (top, bottom) = (36.0, 226.0);
+    let most = h.before.iter().chain(&h.after).copied().max().unwrap_or(0).max(1);
+    let x = Scale::new((0.0, h.largest), (LEFT, RIGHT));
+    let y = Scale::new((0.0, most as f64 * 1.05), (bottom, top));
+    let width = (RIGHT - LEFT) / h.before.len().max(1) as f64;
+    let outline = h.after.iter().enumerate().fold(format!("M{} {}", px(LEFT), px(bottom)), |path, (k, n)| {
+        path + &format!("V{}H{}", px(y.at(*n as f64)), px(LEFT + width * (k + 1) as f64))
+    });
+    let body = html! {
+        (legend(LEFT, 14.0, &[("k1", "before"), ("k0", "after")]))
+        (rect("frame", (LEFT, top), RIGHT - LEFT, bottom - top))
+        (ticks_left(&y, 5, LEFT, RIGHT))
+        (ticks_below(&x, 10, top, bottom))
+        @for (k, n) in h.before.iter().enumerate().filter(|(_, n)| **n > 0) {
+            @let up = y.at(*n as f64);
+            (rect("gone", (LEFT + width * k as f64 + 0.5, up), width - 1.0, bottom - up))
+        }
+        path class="line s0" style="stroke-width:2" d={ (outline) "V" (px(bottom)) } {}
+        @if let Some((value, name)) = limit.filter(|(value, _)| *value <= h.largest) {
+            (line("limit", (x.at(value), top), (x.at(value), bottom)))
+            (text(x.at(value) + 4.0, top - 6.0, "", &format!("{name} {} {unit}", number(value))))
+        }
+        (text(0.5 * (LEFT + RIGHT), bottom + 30.0, "m c", label))
+    };
+    let total = |counts: &[u64]| counts.iter().sum::<u64>();
+    let described = format!("{} values before, {} after", total(&h.before), total(&h.after));
+    svg(bottom + 38.0, title, &described, &body)
+}
