@@ -8,7 +8,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::arguments::{EngineForm, Merge, Plan, Run};
-use super::folder::{Company, OutputFolder};
+use super::folder::{self, Company, OutputFolder};
 use super::inputs::{self, Item};
 use super::job::Job;
 use super::journal::{self, Journal, Records};
@@ -85,7 +85,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
 pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failure> {
     let manifest = Manifest::read(&arguments.manifest)?;
     let root = manifest.output();
-    let folder = match OutputFolder::open(root, Company::Alone) {
+    let open = match OutputFolder::open(root, Company::Alone) {
         Ok(folder) => Some(folder),
         Err(Failure::Later(_)) => {
             messages.note("shards are still at work");
@@ -99,8 +99,8 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
     let missing: Vec<usize> = (0..proofs.len()).filter(|index| proofs[*index].is_none()).collect();
     let results = Results { records: proofs.into_iter().flatten().collect(), resumed: 0 };
     // Where the file system cannot say that nobody else is at work, the journals stay apart.
-    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_locked()) {
-        Journal::begin(&folder.journal(), journal::WHOLE)?.end(records, &results.records)?;
+    if let Some(open) = open.as_ref().filter(|open| open.is_locked()) {
+        Journal::begin(&open.journal(), journal::WHOLE)?.end(records, &results.records)?;
     }
     match (arguments.missing, arguments.shards) {
         (Some(form), Some(of)) => {
@@ -137,8 +137,8 @@ fn proof(item: &Item, manifest: &Manifest, records: &Records) -> Option<Record> 
         .collect();
     let done = candidates.iter().find(|record| record.status.is_done());
     if let Some(done) = done {
-        let bytes = std::fs::read(manifest.output().join(&item.output)).ok()?;
-        let intact = done.output_blake3.as_deref() == Some(blake3::hash(&bytes).to_hex().as_str());
+        let (_, hash) = folder::hash(&manifest.output().join(&item.output)).ok()?;
+        let intact = done.output_blake3.as_deref() == Some(hash.to_hex().as_str());
         return intact.then(|| (*done).clone());
     }
     candidates.into_iter().find(|record| record.status == Status::Refused).cloned()

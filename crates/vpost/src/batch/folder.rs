@@ -11,13 +11,13 @@
 //! end with their process, so being alone is known, not guessed from ages or process numbers.
 
 use std::fs::{File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use blake3::{Hash, Hasher};
 use diagnostic::{Code, Diagnostic};
-use tempfile::NamedTempFile;
 
-use crate::file;
+use crate::file::{self, Place};
 use crate::message::{Failure, Report};
 
 /// Someone else works in the output folder.
@@ -86,39 +86,49 @@ impl OutputFolder {
         self.root.join(output)
     }
 
-    /// The bytes at an output's place; none where nothing is there.
-    pub(crate) fn present(&self, output: &str) -> io::Result<Option<Vec<u8>>> {
-        match std::fs::read(self.place(output)) {
-            Ok(bytes) => Ok(Some(bytes)),
+    /// The hash of what is at an output's place; none where nothing is there.
+    pub(crate) fn present(&self, output: &str) -> io::Result<Option<Hash>> {
+        match hash(&self.place(output)) {
+            Ok((_, hash)) => Ok(Some(hash)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error),
         }
     }
 
-    /// Writes an output: whole under its final name, or an earlier one stays as it was.
-    pub(crate) fn write(&self, output: &str, bytes: &[u8]) -> io::Result<()> {
-        let place = self.place(output);
-        if let Some(folder) = place.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        let mut temporary = self.temporary()?;
-        temporary.write_all(bytes)?;
-        // On Linux all outputs are brought to the disk together, at the end: see `sync`.
-        if !cfg!(target_os = "linux") {
-            temporary.as_file().sync_all()?;
-        }
-        temporary.persist(place).map_err(|error| error.error)?;
-        Ok(())
+    /// True where the file at an output's place says that vpost corrected it.
+    pub(crate) fn bears_mark(&self, output: &str) -> io::Result<bool> {
+        // The mark stands where a program opens.
+        let mut head = Vec::new();
+        File::open(self.place(output))?.take(1 << 20).read_to_end(&mut head)?;
+        Ok(nc_emit::find_provenance(&head).is_some())
     }
 
-    fn temporary(&self) -> io::Result<NamedTempFile> {
+    /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put).
+    pub(crate) fn temporary(&self) -> io::Result<Place> {
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        builder.tempfile_in(&self.temporaries)
+        builder.tempfile_in(&self.temporaries).map(Place::Beside)
+    }
+
+    /// Puts an output in its place: whole under its final name, or an earlier one stays as it was.
+    pub(crate) fn put(&self, temporary: Place, output: &str) -> io::Result<()> {
+        let Place::Beside(temporary) = temporary else {
+            return Err(io::Error::from(io::ErrorKind::InvalidInput));
+        };
+        let place = self.place(output);
+        if let Some(folder) = place.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        // On Linux all outputs are brought to the disk together, at the end: see `sync`.
+        if !cfg!(target_os = "linux") {
+            temporary.as_file().sync_all()?;
+        }
+        temporary.persist(place).map_err(|error| error.error)?;
+        Ok(())
     }
 
     /// Brings everything written so far to the disk: what is reported as done survives a power cut.
@@ -130,6 +140,14 @@ impl OutputFolder {
         rustix::fs::syncfs(File::open(&self.root)?)?;
         Ok(())
     }
+}
+
+/// Length and hash of a file, however large.
+pub(crate) fn hash(path: &Path) -> io::Result<(u64, Hash)> {
+    let mut hasher = Hasher::new();
+    let mut file = File::open(path)?;
+    hasher.update_reader(&mut file)?;
+    Ok((hasher.count(), hasher.finalize()))
 }
 
 /// Takes the lock together with other shards. One of them may be alone for as long as sweeping takes.

@@ -1,11 +1,13 @@
 //! How programs are corrected, as a value that can be hashed: with the same one the same input gives the same bytes.
 
+use std::path::Path;
+
 use blake3::{Hash, Hasher};
 
 use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
-use crate::expand::{self, Done};
-use crate::file::Interrupt;
+use crate::correct::{self, Input, Manner, Program};
+use crate::file::{Interrupt, Place};
 use crate::message::{Failure, Messages, Report};
 use crate::settings::Settings;
 
@@ -26,20 +28,33 @@ impl Job {
     }
 
     /// Corrects a program. The one place where batch meets the correction.
-    pub(crate) fn correct(&self, text: &[u8], name: &str, interrupt: &Interrupt) -> Result<Done, Failure> {
-        expand::correct(text, name, &self.settings, false, |_| interrupt.check())
+    ///
+    /// `threads`: for a large program; the bytes are the same for any number.
+    pub(crate) fn correct(
+        &self,
+        input: &Path,
+        threads: usize,
+        out: &mut Place,
+        interrupt: &Interrupt,
+    ) -> Result<Program, Failure> {
+        let manner = Manner { force: false, threads, hashes: true };
+        correct::program(Input::File(input.to_owned()), &self.settings, manner, out, &|_| interrupt.check())
     }
+}
 
-    /// The record of a program that was corrected.
-    pub(crate) fn done(&self, mut record: Record, text: &[u8], done: &Done) -> Record {
-        let out = &done.corrected.text;
-        record.status = if out == text { Status::Unchanged } else { Status::Corrected };
-        record.output_blake3 = Some(blake3::hash(out).to_hex().to_string());
-        record.bytes_out = Some(out.len() as u64);
-        record.figures = Some((&done.corrected.figures).into());
-        record.warnings = done.warnings.iter().flat_map(faults).collect();
-        record.subprograms = done.lookups.clone();
-        record
+/// The record of a program that was corrected.
+pub(crate) fn corrected(record: Record, done: &Program) -> Record {
+    let hex = |hash: Option<Hash>| hash.map(|hash| hash.to_hex().to_string());
+    Record {
+        status: if done.changed { Status::Corrected } else { Status::Unchanged },
+        input_blake3: hex(done.input.hash),
+        output_blake3: hex(done.output.hash),
+        bytes_in: done.input.bytes,
+        bytes_out: Some(done.output.bytes),
+        figures: Some((&done.figures).into()),
+        warnings: done.warnings.iter().flat_map(faults).collect(),
+        subprograms: done.lookups.clone(),
+        ..record
     }
 }
 

@@ -9,6 +9,7 @@ use diagnostic::{Code, Diagnostic};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::folder;
 use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{Outside, Shared};
@@ -141,13 +142,10 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
     let hashed: Vec<Result<Program, Failure>> = items
         .par_iter()
         .map(|item| {
-            let bytes = file::read(&item.input)?;
-            Ok(Program {
-                output: item.output.clone(),
-                input: item.input.clone(),
-                bytes: bytes.len() as u64,
-                blake3: blake3::hash(&bytes).to_hex().to_string(),
-            })
+            let (bytes, hash) = folder::hash(&item.input)
+                .map_err(|error| Failure::file(&file::name(&item.input), "read", &error))?;
+            let blake3 = hash.to_hex().to_string();
+            Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
         .collect();
     let mut lines = Vec::new();

@@ -10,7 +10,7 @@ use std::sync::mpsc;
 use blake3::Hash;
 use diagnostic::{Code, Diagnostic};
 
-use super::folder::OutputFolder;
+use super::folder::{OutputFolder, hash};
 use super::inputs::Item;
 use super::job::{self, Job};
 use super::journal::{Journal, Records};
@@ -73,14 +73,15 @@ impl Batch<'_> {
         progress: &Progress,
         messages: &Messages,
     ) -> Result<Results, Failure> {
-        let threads = self.threads.min(items.len()).max(1);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+        let threads = self.threads;
+        let workers = threads.min(items.len()).max(1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(workers).build().map_err(|error| {
             Failure::option(format!("{threads} threads cannot be had: {error}"), "fewer: `--jobs 2`")
         })?;
         let next = AtomicUsize::new(0);
         let (sender, receiver) = mpsc::channel();
         pool.in_place_scope(|scope| {
-            for _ in 0..threads {
+            for _ in 0..workers {
                 let (sender, next) = (sender.clone(), &next);
                 scope.spawn(move |_| {
                     while self.interrupt.check().is_ok()
@@ -90,7 +91,9 @@ impl Batch<'_> {
                         }
                     {
                         // Whoever listens no more has a reason that is told there.
-                        if sender.send((index, self.guarded(item))).is_err() {
+                        // The last programs are shared by the threads that would have none.
+                        let threads = (threads / (items.len() - index)).max(1);
+                        if sender.send((index, self.guarded(item, threads))).is_err() {
                             break;
                         }
                     }
@@ -115,8 +118,8 @@ impl Batch<'_> {
     }
 
     /// A defect of ours in one program is that program's failure.
-    fn guarded(&self, item: &Item) -> Result<Outcome, Failure> {
-        catch_unwind(AssertUnwindSafe(|| self.one(item))).unwrap_or_else(|_| {
+    fn guarded(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
+        catch_unwind(AssertUnwindSafe(|| self.one(item, threads))).unwrap_or_else(|_| {
             let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
             let diagnostic =
                 Diagnostic::error(DEFECT, format!("vpost broke down on {}", item.input.display()))
@@ -145,9 +148,9 @@ impl Batch<'_> {
     }
 
     /// One program; fails only where the work was interrupted.
-    fn one(&self, item: &Item) -> Result<Outcome, Failure> {
+    fn one(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
         let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
-        match self.corrected(item, &mut outcome) {
+        match self.corrected(item, threads, &mut outcome) {
             Ok(()) => {}
             Err(failure @ Failure::Interrupted(_)) => return Err(failure),
             Err(failure) => {
@@ -159,44 +162,37 @@ impl Batch<'_> {
         Ok(outcome)
     }
 
-    fn corrected(&self, item: &Item, outcome: &mut Outcome) -> Result<(), Failure> {
-        let name = file::name(&item.input);
-        let text = file::read_program(&item.input).map_err(|failure| match (failure, &item.blake3) {
-            (Failure::File(_, std::io::ErrorKind::NotFound), Some(_)) => {
-                changed(&item.input, "is not there any more")
-            }
-            (failure, _) => failure,
-        })?;
-        let hash = blake3::hash(&text);
-        let hex = hash.to_hex().to_string();
-        if item.blake3.as_ref().is_some_and(|planned| *planned != hex) {
-            return Err(changed(&item.input, "holds other bytes"));
-        }
+    fn corrected(&self, item: &Item, threads: usize, outcome: &mut Outcome) -> Result<(), Failure> {
         let record = &mut outcome.record;
-        record.bytes_in = text.len() as u64;
-        record.input_blake3 = Some(hex);
-        if !self.force
-            && let Some(known) = self.known(record)?
-        {
+        // Read once more than a first run needs: only where the hash may save the work, or decide about it.
+        let resumes = !self.force && self.earlier.contains_key(&item.output);
+        if resumes || item.blake3.is_some() {
+            let (bytes, hash) = hash(&item.input).map_err(|error| gone(item, &error))?;
+            record.bytes_in = bytes;
+            planned(item, hash)?;
+            record.input_blake3 = Some(hash.to_hex().to_string());
+        }
+        if resumes && let Some(known) = self.known(record)? {
             *record = Record { input: record.input.clone(), ..known };
             outcome.resumed = true;
             return Ok(());
         }
-        let done = self.job.correct(&text, &name, self.interrupt)?;
-        let out = &done.corrected.text;
-        let finished = self.job.done(record.clone(), &text, &done);
-        let fail = |error: std::io::Error| {
-            Failure::file(&file::name(&self.folder.place(&item.output)), "write", &error)
-        };
+        let place = self.folder.place(&item.output);
+        let fail = |error: std::io::Error| Failure::file(&file::name(&place), "write", &error);
+        let mut temporary = self.folder.temporary().map_err(fail)?;
+        let done = self.job.correct(&item.input, threads, &mut temporary, self.interrupt)?;
+        if let Some(hash) = done.input.hash {
+            planned(item, hash)?;
+        }
         let present = self.folder.present(&item.output).map_err(fail)?;
         match present {
-            Some(present) if present == *out => {}
-            Some(present) if !self.force && !self.is_ours(&item.output, &present) => {
-                return Err(foreign(&self.folder.place(&item.output)));
+            Some(present) if done.output.hash == Some(present) => {}
+            Some(present) if !self.force && !self.is_ours(&item.output, present).map_err(fail)? => {
+                return Err(foreign(&place));
             }
-            _ => self.folder.write(&item.output, out).map_err(fail)?,
+            _ => self.folder.put(temporary, &item.output).map_err(fail)?,
         }
-        *record = finished;
+        *record = job::corrected(record.clone(), &done);
         outcome.told = done.warnings;
         Ok(())
     }
@@ -214,16 +210,34 @@ impl Batch<'_> {
         let present = self.folder.present(&record.output).map_err(|error| {
             Failure::file(&file::name(&self.folder.place(&record.output)), "read", &error)
         })?;
-        let intact = present.is_some_and(|bytes| is(known.output_blake3.as_deref(), blake3::hash(&bytes)));
+        let intact = present.is_some_and(|hash| is(known.output_blake3.as_deref(), hash));
         Ok(intact.then(|| known.clone()))
     }
 
     /// True for a file that an earlier run wrote, or that says it was corrected.
-    fn is_ours(&self, output: &str, present: &[u8]) -> bool {
-        let hash = blake3::hash(present);
+    fn is_ours(&self, output: &str, present: Hash) -> std::io::Result<bool> {
         let mut known = self.earlier.get(output).into_iter().flatten();
-        known.any(|record| is(record.output_blake3.as_deref(), hash))
-            || nc_emit::find_provenance(present).is_some()
+        if known.any(|record| is(record.output_blake3.as_deref(), present)) {
+            return Ok(true);
+        }
+        self.folder.bears_mark(output)
+    }
+}
+
+/// The program is what the manifest says, if one says anything.
+fn planned(item: &Item, hash: Hash) -> Result<(), Failure> {
+    match &item.blake3 {
+        Some(planned) if !is(Some(planned), hash) => Err(changed(&item.input, "holds other bytes")),
+        _ => Ok(()),
+    }
+}
+
+/// A program cannot be read: if it was there when the plan was made, that is a change.
+fn gone(item: &Item, error: &std::io::Error) -> Failure {
+    if item.blake3.is_some() && error.kind() == std::io::ErrorKind::NotFound {
+        changed(&item.input, "is not there any more")
+    } else {
+        Failure::file(&file::name(&item.input), "read", error)
     }
 }
 

@@ -13,7 +13,7 @@ use super::pass::State;
 use super::sink::{Sink, Written};
 use super::stream::{self, End, Plan};
 use super::{Figures, Job, comment_position};
-use crate::expand;
+use crate::expand::{self, Lookup};
 use crate::file;
 use crate::message::{Failure, Report, Source};
 use crate::settings::Settings;
@@ -94,6 +94,8 @@ pub(crate) struct Program {
     pub(crate) figures: Figures,
     /// What is to be said.
     pub(crate) warnings: Vec<Report>,
+    /// Subprograms that were looked for.
+    pub(crate) lookups: Vec<Lookup>,
 }
 
 /// Corrects one program; `out` is empty, and of no use after an error.
@@ -155,7 +157,7 @@ fn in_memory(
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
-    let expand::Done { corrected, warnings, .. } =
+    let expand::Done { corrected, warnings, lookups } =
         expand::correct(text, &name, settings, manner.force, progress)?;
     out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
     Ok(Program {
@@ -165,6 +167,7 @@ fn in_memory(
         changed: corrected.text != text,
         figures: corrected.figures,
         warnings,
+        lookups,
     })
 }
 
@@ -291,6 +294,8 @@ impl Large<'_> {
             changed,
             figures,
             warnings: reports?,
+            // What calls subprograms is worked on as a whole.
+            lookups: Vec::new(),
         })
     }
 
