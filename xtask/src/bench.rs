@@ -1,5 +1,6 @@
 //! How fast one program is corrected: made programs, the release build, ratios within one run.
 
+pub(crate) mod batch;
 mod budget;
 mod measure;
 mod programs;

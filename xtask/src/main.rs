@@ -35,6 +35,8 @@ enum Task {
         #[arg(default_value = "samples/calibration")]
         folder: std::path::PathBuf,
     },
+    /// Measure the correction of many small programs; print a section for docs/performance.md.
+    BenchBatch(bench::batch::Options),
     /// Correct LinuxCNC's samples, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
     /// Print docs/engines.md: the engines against one another.
@@ -60,6 +62,7 @@ fn main() -> anyhow::Result<()> {
         Task::Bench(options) => bench::run_all(&options)?,
         Task::CalibrationCoverage(options) => calibration::run(&options)?,
         Task::CalibrationSamples { folder } => calibration::write_samples(&folder)?,
+        Task::BenchBatch(options) => bench::batch::run_all(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,

@@ -71,7 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(failure) => {
             messages.failure(&failure);
             ExitCode::from(match failure {
-                Failure::Refused(_) | Failure::File(..) | Failure::Check => REFUSED,
+                Failure::Refused(_) | Failure::File(_) | Failure::Check => REFUSED,
                 Failure::Usage(_) => USAGE,
                 Failure::Interrupted(signal) => 128 + signal,
                 Failure::Later(_) => TRY_AGAIN,

@@ -55,8 +55,8 @@ pub(crate) struct Report {
 pub(crate) enum Failure {
     /// The program was refused: exit status 1.
     Refused(Vec<Report>),
-    /// A file could not be read or written, for this reason: exit status 1.
-    File(Report, std::io::ErrorKind),
+    /// A file could not be read or written: exit status 1.
+    File(Report),
     /// A check failed and its result was printed: exit status 1.
     Check,
     /// Usage, profile or grammar: exit status 2.
@@ -93,10 +93,7 @@ impl Failure {
 
     /// A file cannot be read or written.
     pub(crate) fn file(name: &str, verb: &str, error: &std::io::Error) -> Self {
-        Self::File(
-            Report { source: None, diagnostics: vec![file_diagnostic(name, verb, error)] },
-            error.kind(),
-        )
+        Self::File(Report { source: None, diagnostics: vec![file_diagnostic(name, verb, error)] })
     }
 }
 
@@ -141,7 +138,7 @@ impl Messages {
                     self.report(report);
                 }
             }
-            Failure::File(report, _) | Failure::Later(report) => self.report(report),
+            Failure::File(report) | Failure::Later(report) => self.report(report),
             Failure::Interrupted(_) => self.line("interrupted: nothing was written"),
             Failure::Check | Failure::Said(_) => {}
         }

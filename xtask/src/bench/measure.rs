@@ -11,7 +11,7 @@ use anyhow::{Context, bail};
 pub(crate) struct Run {
     /// Seconds on the clock.
     pub(crate) wall_s: f64,
-    /// Seconds of processors, all threads, the system's share included.
+    /// Seconds of processors, all threads and what they started, the system's share included.
     pub(crate) cpu_s: f64,
     /// Largest resident memory, MiB.
     pub(crate) peak_mib: f64,
@@ -37,7 +37,7 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<Run> {
         let stat = std::fs::read_to_string(folder.join("stat")).context("reading /proc needs Linux")?;
         let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
         let ticks = |at: usize| fields.get(at).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
-        found.cpu_s = (ticks(11) + ticks(12)) / TICKS_PER_SECOND;
+        found.cpu_s = (11..=14).map(ticks).sum::<f64>() / TICKS_PER_SECOND;
         if fields.first() == Some(&"Z") {
             found.wall_s = started.elapsed().as_secs_f64();
             break;

@@ -39,7 +39,7 @@ pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Re
 pub(crate) fn run(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     share(arguments, shared, messages).map_err(|failure| match failure {
         // Of a disk that is full or a share that is gone the next attempt may know nothing.
-        Failure::File(report, _) => Failure::Later(report),
+        Failure::File(report) => Failure::Later(report),
         failure => failure,
     })
 }

@@ -155,6 +155,13 @@ impl Batch<'_> {
             Err(failure @ Failure::Interrupted(_)) => return Err(failure),
             Err(failure) => {
                 fail(&mut outcome, failure);
+                // A refusal is of certain bytes; those of a program that changed since the plan decide nothing.
+                if item.blake3.is_none()
+                    && let Ok((bytes, hash)) = hash(&item.input)
+                {
+                    outcome.record.bytes_in = bytes;
+                    outcome.record.input_blake3 = Some(hash.to_hex().to_string());
+                }
                 outcome.record.older_output =
                     self.earlier.contains_key(&item.output) && self.folder.place(&item.output).exists();
             }
@@ -270,7 +277,7 @@ fn foreign(place: &Path) -> Failure {
 fn fail(outcome: &mut Outcome, failure: Failure) {
     let (status, reports) = match failure {
         Failure::Refused(reports) | Failure::Usage(reports) => (Status::Refused, reports),
-        Failure::File(report, _) | Failure::Later(report) => (Status::Failed, vec![report]),
+        Failure::File(report) | Failure::Later(report) => (Status::Failed, vec![report]),
         Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => (Status::Refused, Vec::new()),
     };
     outcome.record.status = status;
