@@ -1,5 +1,6 @@
 //! Printed numbers beside ours: `docs/reproduction.md`.
 
+mod calibration;
 mod rotations;
 mod solutions;
 mod targets;
@@ -27,6 +28,8 @@ pub(crate) fn page() -> String {
     text += &solutions::kmtpp();
     text += &rotations::section();
     text += &targets::section();
+    text += "\n";
+    text += &calibration::section();
     text
 }
 
