@@ -382,7 +382,7 @@ impl<'a> State<'a> {
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         if gain / reducible < LEAST_SHARE {
-            return refuse("its share is below 5 % of what can be explained");
+            return refuse("its share is below 2 % of what can be explained");
         }
         if !self.predicts(&with, fit.level) {
             return refuse("it does not predict lines it has not seen");

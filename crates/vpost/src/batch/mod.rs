@@ -1,7 +1,7 @@
 //! `vpost batch`: many programs, on all cores of one machine or on many machines.
 //!
-//! Here, a run finds the programs ([`inputs`]), corrects each on its own ([`work`]), puts outputs into place whole
-//! ([`folder`]) and keeps a journal of what is done ([`journal`]).
+//! Here, a run finds the programs (`inputs`), corrects each on its own (`work`), puts outputs into place whole
+//! (`folder`) and keeps a journal of what is done (`journal`).
 
 mod arguments;
 mod cluster;
