@@ -383,3 +383,86 @@ fn pictures_of_a_map() {
     let report = map();
     pictures(browser, &report, "map");
 }
+
+/// A sample, corrected and checked.
+fn check(sample: &Path, dialect: &str) -> Report {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (page, corrected) = (folder.path().join("check.html"), folder.path().join("out.nc"));
+    let plain = |path: &Path| path.to_str().expect("a plain path").to_owned();
+    let (sample, corrected, name) = (plain(sample), plain(&corrected), plain(&page));
+    let with = ["-m", "machine-profiles/stan_s500.toml", "--dialect", dialect, "-q"];
+    let ran = run(&[&[sample.as_str(), "-o", &corrected], &with[..]].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let ran = run(&[&["check", sample.as_str(), &corrected, "--html", &name], &with[..]].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    Report { folder, page }
+}
+
+#[test]
+fn a_check_shows_the_path_and_the_worst_blocks() {
+    let report = check(Path::new("samples/plate_linuxcnc.nc"), "linuxcnc");
+    let page = text(&report.page);
+    assert!(page.len() < 3_000_000, "{} bytes", page.len());
+    let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    assert_eq!(data["schema"], "vpost.check/1");
+    // The worst line is the first of the list, with its block.
+    let line = data["deviation_before_line"].as_u64().expect("a line");
+    let posted = text(&root().join("samples/plate_linuxcnc.nc"));
+    let block = posted.lines().nth(line as usize - 1).expect("that line");
+    let first = page.split("As posted</h3>").nth(1).and_then(|t| t.split("</tr>").nth(1)).expect("a row");
+    assert!(first.contains(&format!(">{line}<")) && first.contains(block.trim_end()), "{first}\n{block}");
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let visit = visit(browser, &report.page);
+    assert!(
+        visit.console.is_empty() && visit.requests.is_empty(),
+        "{:?} {:?}",
+        visit.console,
+        visit.requests
+    );
+    assert_eq!(visit.dom.matches("<svg ").count(), 2);
+    pictures(browser, &report, "check");
+}
+
+#[test]
+fn nothing_in_a_program_can_act_in_a_check() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let act = "document.documentElement.id='acted'";
+    let comment = format!("(<script>{act}</script><img src=x onerror={act}> \"q\" 'a' &amp; ");
+    let mut bytes = b"G21 G90 G17 G94\nG54\nG0 X0 Y0 Z50.\n".to_vec();
+    for block in ["G1 Z5. F200 ", "G1 X60. Y40. ", "G1 X0. Y20. "] {
+        bytes.extend_from_slice(block.as_bytes());
+        bytes.extend_from_slice(comment.as_bytes());
+        bytes.extend_from_slice(b"\xcf\xe5\xf0\xf1\xef\xe5\xea\xf2\xe8\xe2\xe0)\n");
+    }
+    bytes.extend_from_slice(b"M30\n");
+    let program = folder.path().join("<b onmouseover=x>&.nc");
+    std::fs::write(&program, bytes).expect("writable");
+    let report = check(&program, "fanuc");
+    let page = text(&report.page);
+    assert_eq!(page.matches("<script").count(), 1, "the data block is the only one");
+    assert!(page.contains("&lt;script&gt;") && page.contains("&lt;b onmouseover=x&gt;"), "they are shown");
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let policy = page.find("<meta http-equiv").expect("a policy");
+    let end = policy + page[policy..].find('>').expect("it ends") + 1;
+    let unprotected = report.folder.path().join("unprotected.html");
+    std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
+    for page in [&report.page, &unprotected] {
+        let visit = visit(browser, page);
+        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
+        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
+        assert!(
+            visit.console.is_empty() && visit.requests.is_empty(),
+            "{:?} {:?}",
+            visit.console,
+            visit.requests
+        );
+    }
+}

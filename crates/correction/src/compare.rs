@@ -80,6 +80,21 @@ pub struct Comparison {
     pub mismatches: Vec<Mismatch>,
     /// Moves to a corrected start that the correction put in.
     pub approaches: usize,
+    /// Every programmed feed motion, in order.
+    pub traces: Vec<Trace>,
+}
+
+/// A programmed feed motion, and how far the tool is from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trace {
+    /// Line of its file.
+    pub line: u64,
+    /// Where it leads, axis commands.
+    pub curve: Curve,
+    /// Largest distance from it where it is run uncorrected, mm.
+    pub before_mm: f64,
+    /// Largest distance of the corrected motions made for it, mm.
+    pub after_mm: f64,
 }
 
 /// After this many differences the two programs are different programs.
@@ -184,11 +199,14 @@ pub fn compare(model: &dyn PathModel, wanted: &Program, commanded: &Program, lim
     let (wanted, commanded) = (feeding(wanted), feeding(commanded));
     let mut result = Comparison { wanted: wanted.len(), commanded: commanded.len(), ..Comparison::default() };
     for w in &wanted {
+        let mut before_mm = 0.0f64;
         for_samples(&w.curve, |s| {
             let at = w.curve.at(s);
             let real = at + model.error_mm(&Command { linear_mm: at, ..w.state });
-            result.before.note(distance(&w.curve, &real, project(&w.curve, &real, s)), w.line);
+            before_mm = before_mm.max(distance(&w.curve, &real, project(&w.curve, &real, s)));
         });
+        result.before.note(before_mm, w.line);
+        result.traces.push(Trace { line: w.line, curve: w.curve, before_mm, after_mm: 0.0 });
     }
     let mut matcher = Matcher { model, wanted: &wanted, limit_mm, at: 0, s: 0.0, result };
     for piece in &commanded {
@@ -257,7 +275,7 @@ impl Matcher<'_> {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
             if fit.distance_mm <= self.limit_mm && (w.hole || fit.back_mm <= self.limit_mm) {
-                self.result.after.note(fit.distance_mm, w.line);
+                self.note(at, fit.distance_mm);
                 let done = (1.0 - fit.s) * w.length_mm <= self.limit_mm;
                 (self.at, self.s) = if done { (at + 1, 0.0) } else { (at, fit.s) };
                 return;
@@ -284,7 +302,7 @@ impl Matcher<'_> {
             self.result.approaches += 1;
             return;
         }
-        self.result.after.note(fit.distance_mm, w.line);
+        self.note(at, fit.distance_mm);
         self.mismatch(Mismatch::TooFar {
             wanted_line: w.line,
             commanded_line: piece.line,
@@ -308,9 +326,15 @@ impl Matcher<'_> {
         let fit = self.fit(hole, piece, 1.0);
         let belongs = fit.distance_mm <= self.limit_mm;
         if belongs {
-            self.result.after.note(fit.distance_mm, hole.line);
+            self.note(self.at - 1, fit.distance_mm);
         }
         belongs
+    }
+
+    fn note(&mut self, at: usize, distance_mm: f64) {
+        self.result.after.note(distance_mm, self.wanted[at].line);
+        let trace = &mut self.result.traces[at];
+        trace.after_mm = trace.after_mm.max(distance_mm);
     }
 
     fn mismatch(&mut self, mismatch: Mismatch) {

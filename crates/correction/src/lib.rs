@@ -20,7 +20,7 @@ mod line;
 mod play;
 mod short_line;
 
-pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, compare};
+pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, Trace, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};

@@ -158,6 +158,9 @@ pub struct Check {
     /// The result as JSON on standard output.
     #[arg(long)]
     pub json: bool,
+    /// Write the result as one page: the tool path coloured by its error, the worst blocks (HTML).
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
 }
 
 /// `vpost predict`

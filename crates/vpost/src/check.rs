@@ -1,5 +1,7 @@
 //! The closed loop: two programs through the machine model, their tool paths compared.
 
+mod page;
+
 use correction::{Comparison, Mismatch, Step, compare};
 use diagnostic::Diagnostic;
 use nc_program::Interpreter;
@@ -51,7 +53,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let findings = findings(&comparison, &wanted, &commanded);
     let passed = findings.is_empty();
     let um = |mm: f64| (mm * 1e6).round() / 1e3;
-    if arguments.json {
+    if arguments.json || arguments.html.is_some() {
         let outcome = Outcome {
             schema: "vpost.check/1",
             passed,
@@ -68,8 +70,28 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         };
         let mut text = serde_json::to_vec_pretty(&outcome).expect("plain values always serialise");
         text.push(b'\n');
-        file::print(&text)?;
-    } else {
+        if let Some(path) = &arguments.html {
+            let posted = file::read_program(&arguments.input)?;
+            let facts = page::Facts {
+                input: &file::name(&arguments.input),
+                output: &file::name(&arguments.output),
+                text: &file::decoded(&posted),
+                machine: &settings.profile.name,
+                profile: &settings.profile_name,
+                profile_hash: &settings.profile_hash.to_string(),
+                engine: model.id().name(),
+                limit_mm,
+                passed,
+                findings: &findings,
+            };
+            let json = String::from_utf8_lossy(&text);
+            file::write(path, page::html(&comparison, &facts, &json).as_bytes())?;
+        }
+        if arguments.json {
+            file::print(&text)?;
+        }
+    }
+    if !arguments.json {
         let mut text = format!(
             "{} feed motions in, {} out\nbefore: the tool is up to {:8.3} um off its path (line {})\nafter:  the tool is up to {:8.3} um off its path (line {}), allowed are {:.3} um\n",
             comparison.wanted,

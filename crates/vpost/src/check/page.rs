@@ -1,0 +1,207 @@
+//! The check as one page: the tool path coloured by its error before and after, the worst blocks by line.
+
+use correction::{Comparison, Curve, Trace};
+use maud::{Markup, html};
+use report::chart::solid::{Solid, Stretch, path};
+use report::page::{Page, Section, figure, table};
+use report::text::{number, shown};
+
+/// What the page is made of.
+pub(super) struct Facts<'a> {
+    /// Names of the programs, and the text of the one as posted.
+    pub input: &'a str,
+    pub output: &'a str,
+    pub text: &'a str,
+    pub machine: &'a str,
+    pub profile: &'a str,
+    pub profile_hash: &'a str,
+    pub engine: &'a str,
+    pub limit_mm: f64,
+    pub passed: bool,
+    pub findings: &'a [String],
+}
+
+/// Blocks listed.
+const WORST: usize = 20;
+/// Places of a path that are drawn, at most.
+const MOST_PLACES: usize = 20_000;
+/// A sample of an arc turns by no more.
+const TURN_RAD: f64 = 0.2;
+
+pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str) -> String {
+    let sections = vec![
+        Section { id: "result", title: "Result", body: result(comparison, facts) },
+        Section { id: "path", title: "The tool path", body: paths(comparison, facts) },
+        Section { id: "worst", title: "Worst blocks", body: worst(comparison, facts) },
+        Section { id: "provenance", title: "Where this comes from", body: provenance(facts) },
+    ];
+    Page {
+        title: &format!("Check \u{2013} {}", facts.output),
+        head: head(comparison, facts),
+        sections,
+        json,
+        foot: &format!(
+            "vpost {} check. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.check/1).",
+            env!("CARGO_PKG_VERSION")
+        ),
+    }
+    .into_html()
+}
+
+fn head(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+    html! {
+        p.muted { "Both programs through the machine model: " (shown(facts.machine)) ", " (shown(facts.output)) }
+        p { span.verdict { (if facts.passed { "PASSED" } else { "FAILED" }) } }
+        h1 {
+            "As posted the tool is up to " (um(comparison.before.largest_mm)) " \u{b5}m off its path, as corrected up to "
+            (um(comparison.after.largest_mm)) " \u{b5}m; allowed are " (um(facts.limit_mm)) " \u{b5}m"
+        }
+    }
+}
+
+fn result(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+    html! {
+        dl {
+            dt { "feed motions" } dd { (comparison.wanted) " as posted, " (comparison.commanded) " as corrected" }
+            dt { "largest before" } dd { (um(comparison.before.largest_mm)) " \u{b5}m, line " (comparison.before.line) }
+            dt { "largest after" } dd { (um(comparison.after.largest_mm)) " \u{b5}m, line " (comparison.after.line) }
+            dt { "moves to a corrected start" } dd { (comparison.approaches) }
+        }
+        @if !facts.findings.is_empty() {
+            h3 { "Findings" }
+            ul { @for finding in facts.findings { li { (shown(finding)) } } }
+        }
+    }
+}
+
+fn paths(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+    let Some(solid) = solid(&comparison.traces) else {
+        return html! { p { "The program feeds nowhere: there is no path to draw." } };
+    };
+    let before = comparison.before.largest_mm * 1e3;
+    let after = comparison.after.largest_mm.max(facts.limit_mm) * 1e3;
+    let drawing = |title: &str, value: fn(&Trace) -> f64, largest: f64| {
+        let all = stretches(&comparison.traces, value, largest);
+        path(title, solid, &all, largest, "\u{b5}m")
+    };
+    html! {
+        (figure(&drawing("Tool path as posted", |t| t.before_mm * 1e3, before),
+            "Axis commands of the feed motions as posted, coloured by the largest distance of the tool from each motion.", None))
+        (figure(&drawing("Tool path as corrected", |t| t.after_mm * 1e3, after),
+            "The same motions, coloured by the distance that is left after the correction, on a scale of its own that ends at what is allowed, or at the largest if that is more.", None))
+    }
+}
+
+/// The box around everything that is fed.
+fn solid(traces: &[Trace]) -> Option<Solid> {
+    let mut ranges = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+    for place in traces.iter().flat_map(|trace| places(&trace.curve)) {
+        for (range, value) in ranges.iter_mut().zip(place) {
+            *range = (range.0.min(value), range.1.max(value));
+        }
+    }
+    ranges.iter().all(|(low, high)| low <= high).then_some(Solid { ranges })
+}
+
+/// Places along a motion, ends included.
+fn places(curve: &Curve) -> impl Iterator<Item = [f64; 3]> + use<'_> {
+    let pieces = (curve.turning_rad() / TURN_RAD).ceil().clamp(1.0, 200.0) as u32;
+    (0..=pieces).map(move |k| curve.at(f64::from(k) / f64::from(pieces)).into())
+}
+
+/// Motions of one colour that follow one another are one stretch; places closer than can be seen are left out, the
+/// more the longer the program is.
+fn stretches(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64) -> Vec<Stretch> {
+    let Some(Solid { ranges }) = solid(traces) else { return Vec::new() };
+    let size = ranges.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+    let mut apart = size / 1500.0;
+    loop {
+        let found = stretches_apart(traces, value, largest, apart);
+        if found.iter().map(|s| s.places.len()).sum::<usize>() <= MOST_PLACES || apart >= size {
+            return found;
+        }
+        apart *= 1.5;
+    }
+}
+
+fn stretches_apart(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64, apart: f64) -> Vec<Stretch> {
+    let near = |a: &[f64; 3], b: &[f64; 3], reach: f64| {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() <= reach * reach
+    };
+    let shade = |v: f64| if largest > 0.0 { (v / largest * 10.0).floor() } else { 0.0 };
+    let mut all: Vec<Stretch> = Vec::new();
+    let mut end = None;
+    for trace in traces {
+        let value = value(trace);
+        let mut way = places(&trace.curve);
+        let Some(from) = way.next() else { continue };
+        let joins = end.is_some_and(|end: [f64; 3]| near(&end, &from, 1e-6));
+        let goes_on = joins && all.last().is_some_and(|s| shade(s.value) == shade(value));
+        if !goes_on {
+            // A stretch that was thinned is drawn to its end before another begins.
+            if let (Some(last), Some(end)) = (all.last_mut(), end) {
+                last.places.push(end);
+            }
+            all.push(Stretch { places: vec![from], value });
+        }
+        let Some(stretch) = all.last_mut() else { continue };
+        for place in way {
+            if stretch.places.last().is_none_or(|last| !near(last, &place, apart)) {
+                stretch.places.push(place);
+            }
+            end = Some(place);
+        }
+    }
+    if let (Some(last), Some(end)) = (all.last_mut(), end) {
+        last.places.push(end);
+    }
+    all
+}
+
+fn worst(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+    let lines: Vec<&str> = facts.text.lines().collect();
+    let list = |of: fn(&(f64, f64)) -> f64| {
+        // A line may be several motions: the worst of them counts.
+        let mut by_line: std::collections::BTreeMap<u64, (f64, f64)> = std::collections::BTreeMap::new();
+        for trace in &comparison.traces {
+            let found = by_line.entry(trace.line).or_default();
+            *found = (found.0.max(trace.before_mm), found.1.max(trace.after_mm));
+        }
+        let mut all: Vec<(u64, (f64, f64))> = by_line.into_iter().collect();
+        all.sort_by(|a, b| of(&b.1).total_cmp(&of(&a.1)).then(a.0.cmp(&b.0)));
+        let rows: Vec<Vec<String>> = all
+            .into_iter()
+            .take(WORST)
+            .map(|(line, (before, after))| {
+                let text = usize::try_from(line).ok().and_then(|n| lines.get(n.checked_sub(1)?));
+                let text = report::text::short(text.copied().unwrap_or_default(), 80);
+                vec![line.to_string(), um(before), um(after), text]
+            })
+            .collect();
+        table(&["line", "before, \u{b5}m", "after, \u{b5}m", "block"], &[0, 1, 2], &rows)
+    };
+    html! {
+        h3 { "As posted" }
+        (list(|found| found.0))
+        h3 { "As corrected" }
+        (list(|found| found.1))
+        p.muted { "Lines of " (shown(facts.input)) "." }
+    }
+}
+
+fn provenance(facts: &Facts<'_>) -> Markup {
+    html! {
+        dl {
+            dt { "as posted" } dd { (shown(facts.input)) }
+            dt { "as corrected" } dd { (shown(facts.output)) }
+            dt { "machine" } dd { (shown(facts.machine)) }
+            dt { "profile and its tables" } dd { (shown(facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
+            dt { "model" } dd { (facts.engine) }
+            dt { "made by" } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.check/1" }
+        }
+    }
+}
+
+fn um(mm: f64) -> String {
+    number(mm * 1e3)
+}
