@@ -112,18 +112,35 @@ struct Feeding {
     hole: bool,
 }
 
+/// Where the axes are and which way they came.
+#[derive(Default)]
+struct Way {
+    at: [Option<f64>; 3],
+    direction: [i8; 3],
+}
+
+impl Way {
+    /// An axis moves; from an unknown place by an unknown way.
+    fn axis(&mut self, i: usize, from: Option<f64>, to: Option<f64>) {
+        self.direction[i] = match (from, to) {
+            (Some(from), Some(to)) if to > from => 1,
+            (Some(from), Some(to)) if to < from => -1,
+            (Some(_), Some(_)) => self.direction[i],
+            _ => 0,
+        };
+        self.at[i] = to;
+    }
+
+    fn line(&mut self, from: &Vector, to: &Vector) -> [i8; 3] {
+        (0..3).for_each(|i| self.axis(i, Some(from[i]), Some(to[i])));
+        self.direction
+    }
+}
+
 /// The feed paths of a program, in order.
 fn feeding(program: &Program) -> Vec<Feeding> {
-    let mut direction = [0i8; 3];
+    let mut way = Way::default();
     let mut found = Vec::new();
-    let mut turn = |from: &Vector, to: &Vector| {
-        for i in 0..3 {
-            if to[i] != from[i] {
-                direction[i] = if to[i] > from[i] { 1 } else { -1 };
-            }
-        }
-        direction
-    };
     for step in program {
         let mut push = |curve: Curve, rotary_deg: [f64; 3], direction: [i8; 3], hole: bool| {
             let state = Command {
@@ -137,7 +154,7 @@ fn feeding(program: &Program) -> Vec<Feeding> {
         match &step.motion {
             Motion::Feed(feed) => {
                 let (from, to) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
-                let turned = turn(&from, &to);
+                let turned = way.line(&from, &to);
                 push(Curve::new(from, to, &feed.shape), feed.end.rotary_deg, turned, false);
             }
             Motion::Hole(hole) => {
@@ -145,18 +162,24 @@ fn feeding(program: &Program) -> Vec<Feeding> {
                 let top = Vector::from(hole.at_r.linear_mm);
                 let mut bottom = top;
                 bottom[normal] = hole.bottom_mm;
-                turn(&hole.start.linear_mm.into(), &top);
-                let turned = turn(&top, &bottom);
-                turn(&bottom, &top);
+                way.line(&hole.start.linear_mm.into(), &top);
+                let turned = way.line(&top, &bottom);
+                way.line(&bottom, &hole.end().linear_mm.into());
                 push(Curve::new(top, bottom, &Shape::Line), hole.at_r.rotary_deg, turned, true);
             }
             Motion::Rapid { start, end } => {
-                // Axis by axis: another axis may not be known yet.
-                let known = |i: usize| start.linear_mm[i].zip(end.linear_mm[i]).unwrap_or((0.0, 0.0));
-                let [x, y, z] = [known(0), known(1), known(2)];
-                turn(&Vector::new(x.0, y.0, z.0), &Vector::new(x.1, y.1, z.1));
+                for i in 0..3 {
+                    way.axis(i, start.linear_mm[i], end.linear_mm[i]);
+                }
             }
-            Motion::Uncorrected { .. } => {}
+            // By whatever way the control takes.
+            Motion::Uncorrected { end } => {
+                for i in 0..3 {
+                    if end.linear_mm[i].is_none() || end.linear_mm[i] != way.at[i] {
+                        way.axis(i, None, end.linear_mm[i]);
+                    }
+                }
+            }
         }
     }
     found
@@ -265,7 +288,7 @@ impl Matcher<'_> {
     }
 
     fn take(&mut self, piece: &Feeding) {
-        if self.again(piece) {
+        if !self.drills_anew(piece) && self.again(piece) {
             return;
         }
         let mut at = self.at;
@@ -290,18 +313,22 @@ impl Matcher<'_> {
             at += 1;
             s0 = 0.0;
         }
+        // A short move that ends where the last motion ended, or where the next one goes on, is an approach.
+        let end = piece.curve.at(1.0);
+        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        let there = |w: &Feeding, s: f64| (w.curve.at(s) - real).norm() <= self.limit_mm;
+        let last = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]);
+        let next = first.as_ref().map(|(at, _)| &self.wanted[*at]);
+        let approach = last.is_some_and(|w| there(w, 1.0)) || next.is_some_and(|w| there(w, self.s.clamp(0.0, 1.0)));
+        if piece.length_mm < 1.0 && approach {
+            self.result.approaches += 1;
+            return;
+        }
         let Some((at, fit)) = first else {
             self.mismatch(Mismatch::Extra { commanded_line: piece.line });
             return;
         };
         let w = &self.wanted[at];
-        // A short move that ends where the programmed motion goes on is an approach.
-        let end = piece.curve.at(1.0);
-        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
-        if piece.length_mm < 1.0 && (w.curve.at(self.s.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm {
-            self.result.approaches += 1;
-            return;
-        }
         self.note(at, fit.distance_mm);
         self.mismatch(Mismatch::TooFar {
             wanted_line: w.line,
@@ -316,6 +343,19 @@ impl Matcher<'_> {
         };
     }
 
+    /// The next hole, from its top, be it where the last one was.
+    fn drills_anew(&self, piece: &Feeding) -> bool {
+        let Some(next) = self.wanted.get(self.at).filter(|w| w.hole && self.s == 0.0) else { return false };
+        let place = |s: f64| {
+            let at = piece.curve.at(s);
+            project(&next.curve, &(at + self.model.error_mm(&Command { linear_mm: at, ..piece.state })), s)
+        };
+        let from = place(0.0);
+        from.abs() * next.length_mm <= self.limit_mm
+            && place(1.0) > from
+            && self.fit(next, piece, 0.0).distance_mm <= self.limit_mm
+    }
+
     /// A further feed in the hole just drilled: the way back of a boring cycle, a piece of it.
     fn again(&mut self, piece: &Feeding) -> bool {
         let Some(hole) =
@@ -324,11 +364,17 @@ impl Matcher<'_> {
             return false;
         };
         let fit = self.fit(hole, piece, 1.0);
-        let belongs = fit.distance_mm <= self.limit_mm;
-        if belongs {
+        if fit.distance_mm <= self.limit_mm {
             self.note(self.at - 1, fit.distance_mm);
+            return true;
         }
-        belongs
+        // Play taken up before the way back: only where it ends counts.
+        let end = piece.curve.at(1.0);
+        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        let s = project(&hole.curve, &real, 1.0);
+        let approach = piece.length_mm < 1.0 && distance(&hole.curve, &real, s) <= self.limit_mm;
+        self.result.approaches += usize::from(approach);
+        approach
     }
 
     fn note(&mut self, at: usize, distance_mm: f64) {

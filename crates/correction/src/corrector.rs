@@ -41,6 +41,9 @@ pub enum CorrectionError {
         /// What one block would miss by, µm.
         distance_um: f64,
     },
+    /// Lost motion in a turned frame, where every word moves several axes, this way and that by its rounding.
+    #[error("motion in a rotated frame on a machine with lost motion")]
+    TurnedFrame,
     /// Splitting does not help: a jump of the model, or the shortest piece allowed.
     #[error(
         "the path would be {distance_um:.2} um off however short its pieces; the tolerance is {tolerance_um} um"
@@ -125,6 +128,13 @@ impl<'m> Corrector<'m> {
         }
     }
 
+    /// The same with the axes standing at a known place before the first motion, axis commands in mm.
+    #[must_use]
+    pub fn standing_at(mut self, start_mm: [f64; 3]) -> Self {
+        self.standing = start_mm.map(Some);
+        self
+    }
+
     /// Corrects one motion of a block.
     ///
     /// # Errors
@@ -133,6 +143,12 @@ impl<'m> Corrector<'m> {
         if !matches!(motion, Motion::Hole(_)) {
             self.expanding = false;
             self.remembered = None;
+        }
+        if matches!(motion, Motion::Feed(_) | Motion::Hole(_))
+            && !block.frame.is_axial()
+            && self.model.depends_on_direction()
+        {
+            return Err(CorrectionError::TurnedFrame);
         }
         match motion {
             Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
@@ -248,6 +264,12 @@ impl<'m> Corrector<'m> {
 
     fn rapid(&mut self, start: &Partial, end: &Partial, block: &Block) -> Result<Corrected, CorrectionError> {
         let mut correction = Correction::default();
+        for i in 0..3 {
+            if start.linear_mm[i].is_none() && end.linear_mm[i].is_some() {
+                // From wherever, as after a block that may have been skipped: nothing of the axis holds any more.
+                (self.standing[i], self.direction[i]) = (None, 0);
+            }
+        }
         let Some(nominal) = end.complete() else {
             // Some axis is not known yet, so the error is not: the words stay, and the first motion
             // whose end is known in all axes brings the correction.
@@ -285,6 +307,9 @@ impl<'m> Corrector<'m> {
             }
             self.standing = before;
         };
+        if !block.frame.is_axial() {
+            self.turn_as_moved(before);
+        }
         correction.largest_mm = (wanted - end_mm).norm();
         self.last = Some((Command { linear_mm: end_mm, ..machine.state }, wanted));
         Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
@@ -332,6 +357,7 @@ impl<'m> Corrector<'m> {
             let programmed = own.then_some(nominal[i]);
             (words[i], reached[i]) = block.choose(i, wanted[i], programmed, standing[i]);
         }
+        block.complete(&mut words, &mut reached, standing);
         self.standing = Into::<[f64; 3]>::into(block.machine(reached)).map(Some);
         words
     }

@@ -55,6 +55,9 @@ pub struct Block {
     pub arc_centres_absolute: bool,
     /// Words of the block.
     pub letters: Letters,
+    /// Axes that stand in the words of a block together or not at all: the frame was just turned, scaled or mirrored,
+    /// and controls differ in where a left-out axis then stands.
+    pub whole: [bool; 3],
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
     /// The dialect writes arcs by centre words; else by R.
@@ -80,6 +83,11 @@ impl Block {
     /// The output step of an axis, mm.
     pub fn step_mm(&self, axis: usize) -> f64 {
         self.unit_mm / self.per_unit(axis)
+    }
+
+    /// What an output step of a program axis moves its machine axis by, mm (axial frames).
+    pub fn axis_step_mm(&self, axis: usize) -> f64 {
+        self.frame.matrix()[axis][axis].abs() * self.step_mm(axis)
     }
 
     /// Length of the vector of half output steps, mm: the rounding that the path promise allows.
@@ -125,6 +133,16 @@ impl Block {
         let origin = if self.incremental { standing_mm.unwrap_or(0.0) } else { 0.0 };
         let counts = ((wanted_mm - origin) / self.unit_mm * self.per_unit(axis)).round();
         (AxisWord::Write(counts as i64), origin + self.from_counts(axis, counts as i64))
+    }
+
+    /// Adds words for the axes that must not be left out beside others; `reached`: where the words bring the axes.
+    pub fn complete(&self, words: &mut [AxisWord; 3], reached: &mut [f64; 3], standing_mm: [Option<f64>; 3]) {
+        let open = |i: &usize| self.whole[*i];
+        if (0..3).filter(open).any(|i| words[i] != AxisWord::Omit) {
+            for i in (0..3).filter(open).filter(|i| words[*i] == AxisWord::Omit).collect::<Vec<_>>() {
+                (words[i], reached[i]) = self.write(i, reached[i], standing_mm[i]);
+            }
+        }
     }
 
     /// Program millimetres of a count of steps.

@@ -7,16 +7,16 @@ use toolpath::{CycleKind, Hole};
 use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS};
 use crate::curve::Curve;
 use crate::deviation::{Machine, Pair, Verdict};
-use crate::grid::{AxisWord, Block};
+use crate::grid::{AxisWord, Block, Letters};
 use crate::{Piece, PieceKind};
 
-/// Bottom and R words as the control remembers them, program mm (increments under G91), and the level
-/// the control returns to under G98, axis command, mm.
+/// Bottom and R words as the control remembers them, program mm (increments under G91), and where the series
+/// of holes began, axis command, mm: G98 returns there, R counts from there under G91.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Remembered {
     bottom: f64,
     r: f64,
-    initial_mm: f64,
+    began_mm: f64,
     incremental: bool,
     /// No R or bottom of this series was rewritten.
     as_programmed: bool,
@@ -117,8 +117,8 @@ impl<'m> Corrector<'m> {
         let [first, second, normal] = hole.plane.axes();
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
-        let initial_mm = match self.remembered {
-            Some(remembered) => remembered.initial_mm,
+        let began_mm = match self.remembered {
+            Some(remembered) => remembered.began_mm,
             None => standing[normal],
         };
         let standing_program = self.standing_program(block);
@@ -132,6 +132,8 @@ impl<'m> Corrector<'m> {
             let programmed = block.has_axis(i).then_some(own[i]);
             (axes[i], reached[i]) = block.choose(i, middle[i], programmed, standing_program[i]);
         }
+        block.complete(&mut axes, &mut reached, standing_program);
+        axes[normal] = AxisWord::Omit;
         // Along the hole: R from the initial level and the bottom from R under G91.
         let level = |mm: f64| {
             let mut p = at_r;
@@ -141,7 +143,7 @@ impl<'m> Corrector<'m> {
         let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
         let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
         let (r_origin, own_r_origin) =
-            if block.incremental { (level(initial_mm), level(hole.initial_mm)) } else { (0.0, 0.0) };
+            if block.incremental { (level(began_mm), level(hole.began_mm)) } else { (0.0, 0.0) };
         // What the control remembers of R and bottom: what the program told it while nothing was rewritten;
         // else what this output told it last, in the same of G90 and G91.
         let last = self.remembered;
@@ -178,13 +180,17 @@ impl<'m> Corrector<'m> {
         }
         let r_reached = r_origin + r_value;
         axes[normal] = b;
+        if axes.iter().all(|word| *word == AxisWord::Omit) && block.letters == Letters::default() {
+            // A repetition at the same place, which has no block of its own yet: only an axis word drills it.
+            (axes[first], reached[first]) = block.write(first, reached[first], standing_program[first]);
+        }
         let untouched =
             [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, AxisWord::Keep | AxisWord::Omit));
         let as_programmed = last.is_none_or(|last| last.as_programmed) && !written(r) && !written(b);
         self.remembered = Some(Remembered {
             bottom: b_value,
             r: r_value,
-            initial_mm,
+            began_mm,
             incremental: block.incremental,
             as_programmed,
         });
@@ -213,7 +219,9 @@ impl<'m> Corrector<'m> {
         }
         let mut end = from;
         if hole.cycle.return_to_initial {
-            end[normal] = initial_mm;
+            // Never below R.
+            let r_mm = from[normal];
+            end[normal] = if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict)

@@ -37,14 +37,15 @@ pub(crate) type Try<'m> =
 impl<'m> Corrector<'m> {
     /// The axes that came from `before` to where they stand against `direction`, and which way; 0 for the others.
     ///
-    /// In a turned frame every axis moves by the rounding of all: there the question has no answer.
+    /// In a turned frame every axis moves by the rounding of all: there the question has no answer, and nothing
+    /// but rapids is corrected.
     pub(crate) fn against(
         &self,
         before: [Option<f64>; 3],
         direction: [i8; 3],
         block: &Block,
     ) -> Option<[i8; 3]> {
-        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+        if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
         let way = |i: usize| match (before[i], self.standing[i]) {
@@ -56,6 +57,17 @@ impl<'m> Corrector<'m> {
         };
         let found = [way(0), way(1), way(2)];
         (found != [0; 3]).then_some(found)
+    }
+
+    /// Turns the axes the way they went from `before`: in a turned frame each moves by the rounding of all.
+    pub(crate) fn turn_as_moved(&mut self, before: [Option<f64>; 3]) {
+        for i in 0..3 {
+            if let (Some(from), Some(to)) = (before[i], self.standing[i])
+                && (to - from).abs() > SAME_MM
+            {
+                self.direction[i] = if to > from { 1 } else { -1 };
+            }
+        }
     }
 
     /// Turns axes: what is computed from here on is for these directions.
@@ -107,18 +119,21 @@ impl<'m> Corrector<'m> {
 
     /// Axes whose direction is not known and which an approach would move, and which way.
     pub(crate) fn first_moves(&self, wanted: &Vector, direction: [i8; 3], block: &Block) -> Option<[i8; 3]> {
-        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+        if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
-        let way =
-            |i: usize| match self.standing[i] {
-                Some(standing)
-                    if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.step_mm(i) =>
-                {
-                    if wanted[i] > standing { 1 } else { -1 }
+        let way = |i: usize| match self.standing[i] {
+            Some(standing)
+                if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.axis_step_mm(i) =>
+            {
+                if wanted[i] > standing {
+                    1
+                } else {
+                    -1
                 }
-                _ => 0,
-            };
+            }
+            _ => 0,
+        };
         let found = [way(0), way(1), way(2)];
         (found != [0; 3]).then_some(found)
     }
@@ -133,7 +148,7 @@ impl<'m> Corrector<'m> {
         direction: [i8; 3],
         block: &Block,
     ) -> Option<[i8; 3]> {
-        if !self.model.depends_on_direction() || !block.frame.is_shift() {
+        if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
         let mut turned = [0; 3];
@@ -141,7 +156,7 @@ impl<'m> Corrector<'m> {
             let Some(standing) = self.standing[i] else { continue };
             let way = wanted[i] - standing;
             if way * f64::from(direction[i]) < 0.0 {
-                if way.abs() <= 0.5 * self.options.tolerance_mm + block.step_mm(i) {
+                if way.abs() <= 0.5 * self.options.tolerance_mm + block.axis_step_mm(i) {
                     wanted[i] = standing;
                 } else {
                     turned[i] = -direction[i];

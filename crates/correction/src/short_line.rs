@@ -57,6 +57,7 @@ impl Corrector<'_> {
         let ordinary = matches!(feed.shape, Shape::Line)
             && !block.incremental
             && block.frame.is_shift()
+            && block.whole == [false; 3]
             && feed.start.rotary_deg == feed.end.rotary_deg
             && last.linear_mm == start;
         if !ordinary {

@@ -13,6 +13,8 @@ use crate::splice::{Splices, Style, number_span};
 const BLOCK_TOO_LONG: Code = Code(601);
 /// A word that cannot be edited: missing, doubled, or not a plain number.
 const WORD_NOT_EDITABLE: Code = Code(603);
+/// 15 digits are read back exactly; no more.
+const MOST_STEPS: u64 = 1_000_000_000_000_000;
 /// G9: exact stop, at the end of this block's motion only.
 const EXACT_STOP: GCode = GCode(90);
 
@@ -98,6 +100,12 @@ impl<'d> Emitter<'d> {
                 .at(block.offset..block.offset + block.bytes.len() as u64, "this block")
                 .help("this is a fault of vpost; please report it with the program"));
         };
+        let written = |edit: &WordEdit| if let WordEdit::Write { counts, .. } = edit { counts.unsigned_abs() } else { 0 };
+        if pieces.iter().flat_map(|piece| &piece.words).any(|(_, edit)| written(edit) >= MOST_STEPS) {
+            return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a corrected word of more than 15 digits")
+                .at(block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64, "exact in no control")
+                .help("no machine goes there: check the unit and the decimal points of this block"));
+        }
         self.habits.learn(block);
         let in_force = self.modes.motion_for(self.dialect, block);
         self.modes.read(self.dialect, block);

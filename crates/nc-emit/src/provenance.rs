@@ -72,6 +72,11 @@ pub fn provenance_position<'b, 't: 'b>(blocks: impl IntoIterator<Item = &'b Bloc
     let mut percent_seen = false;
     for block in blocks {
         let mut opens = false;
+        // A block that moves may be rewritten, whatever it opens with.
+        let moves = |item: &nc_syntax::Item| matches!(item.kind, ItemKind::Word { letter, .. } if b"XYZABCUVWIJKR".contains(&letter));
+        if block.items.iter().any(moves) {
+            return position;
+        }
         for item in &block.items {
             match item.kind {
                 ItemKind::Percent if percent_seen => return position,

@@ -92,9 +92,9 @@ pub(crate) fn holes(
     let mut at = require_known(words, &state.axes, "the drilling cycle")?;
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
     // first hole finds the axis known, the start of the series did.
-    let initial_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
+    let began_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
     // Controls end a cycle at the level further from the bottom.
-    let initial_mm = if r_mm >= bottom_mm { initial_mm.max(r_mm) } else { initial_mm.min(r_mm) };
+    let initial_mm = if r_mm >= bottom_mm { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
@@ -113,6 +113,7 @@ pub(crate) fn holes(
             start: at,
             at_r,
             bottom_mm,
+            began_mm,
             initial_mm,
             cycle: parameters,
             rate: rate(state, 0.0),

@@ -128,7 +128,8 @@ pub(crate) fn settle(words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()
         return Ok(());
     }
     let open = Letters::of_axes(state.unsettled);
-    if !words.has(open) {
+    // An increment beside them is refused too: its start would have to be said.
+    if !words.has(open) && (state.distance == Distance::Absolute || !words.has(AXIS_LETTERS)) {
         return Ok(());
     }
     if state.distance == Distance::Absolute && words.letters.and(open) == open {

@@ -58,6 +58,8 @@ pub struct Context {
     pub skip: bool,
     /// K or L of a cycle; 1 otherwise.
     pub repeats: u32,
+    /// Axes that a motion names together: a rotation, scaling or mirror was switched since they were last named.
+    pub whole: [bool; 3],
 }
 
 /// Executes a program block by block.
@@ -265,5 +267,9 @@ pub(crate) fn context(
         compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
         skip,
         repeats: moved.repeats,
+        whole: [0, 1, 2].map(|i| {
+            let (was, is) = (before.transform.touches()[i], state.transform.touches()[i]);
+            before.unsettled[i] || before.transform != state.transform && (was || is)
+        }),
     }
 }

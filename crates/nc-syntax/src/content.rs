@@ -56,7 +56,9 @@ pub fn looks_like_program(bytes: &[u8]) -> Result<(), Diagnostic> {
         return binary("text in UTF-16", "save it as plain text: `iconv -f UTF-16LE -t UTF-8 IN > OUT`");
     }
     let control = sample.iter().filter(|byte| **byte < 0x20 && !padding(byte)).count();
-    if (control + nul) * 20 > sample.len() {
+    // A run of NULs is padding wherever it stands, as between two programs of one tape.
+    let runs = sample.chunk_by(|a, b| a == b).filter(|run| run[0] == 0).count();
+    if (control + runs) * 20 > sample.len() - nul {
         return binary("binary data", "give the part program itself: plain text, one block per line");
     }
     Ok(())
@@ -85,6 +87,12 @@ mod tests {
         ] {
             assert_eq!(code(bytes), None);
         }
+    }
+
+    #[test]
+    fn padding_may_stand_between_blocks() {
+        let blocks = b"G1 X10.5 Y20.25\nG1 X11.5 Y21.75\n";
+        assert_eq!(code(&[blocks, &[0; 60][..], blocks, &[0; 60], blocks].concat()), None);
     }
 
     #[test]

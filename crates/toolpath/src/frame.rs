@@ -67,6 +67,12 @@ impl Frame {
         self.is_shift
     }
 
+    /// True where each program word moves its own axis alone, be it mirrored or scaled.
+    #[must_use]
+    pub fn is_axial(&self) -> bool {
+        (0..3).all(|r| (0..3).all(|c| r == c || self.matrix[r][c] == 0.0))
+    }
+
     /// Rows of the matrix; the identity for a shift.
     #[must_use]
     pub const fn matrix(&self) -> &[[f64; 3]; 3] {

@@ -2,6 +2,8 @@
 
 mod page;
 
+use std::path::Path;
+
 use correction::{Comparison, Mismatch, Step, compare};
 use diagnostic::Diagnostic;
 use nc_program::Interpreter;
@@ -46,9 +48,12 @@ struct Outcome<'a> {
 pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let settings = Settings::load(shared, messages)?;
     let model = settings.path_model()?;
-    let wanted = program(&arguments.input, &settings)?;
-    let commanded = program(&arguments.output, &settings)?;
-    let limit_mm = settings.options.tolerance_mm + wanted.scale * rounding_mm(&settings, wanted.inch);
+    let read = |path: &Path| Ok((file::name(path), file::read_program(path)?));
+    let (wanted_name, wanted) = read(&arguments.input)?;
+    let wanted = program(&wanted_name, &wanted, &settings)?;
+    let (commanded_name, commanded) = read(&arguments.output)?;
+    let commanded = program(&commanded_name, &commanded, &settings)?;
+    let limit_mm = limit_mm(&wanted, &settings);
     let comparison = compare(model, &wanted.steps, &commanded.steps, limit_mm);
     let findings = findings(&comparison, &wanted, &commanded);
     let passed = findings.is_empty();
@@ -113,6 +118,24 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     if passed { Ok(()) } else { Err(Failure::Check) }
 }
 
+/// What is wrong with a corrected program; programs with the names they have in messages.
+pub(crate) fn findings_between(
+    posted: (&str, &[u8]),
+    corrected: (&str, &[u8]),
+    settings: &Settings,
+) -> Result<Vec<String>, Failure> {
+    let wanted = program(posted.0, posted.1, settings)?;
+    let commanded = program(corrected.0, corrected.1, settings)?;
+    let comparison =
+        compare(settings.path_model()?, &wanted.steps, &commanded.steps, limit_mm(&wanted, settings));
+    Ok(findings(&comparison, &wanted, &commanded))
+}
+
+/// The tolerance and what rounding adds to it.
+fn limit_mm(wanted: &Program, settings: &Settings) -> f64 {
+    settings.options.tolerance_mm + wanted.scale * rounding_mm(settings, wanted.inch)
+}
+
 /// Half an output step on each axis, as a distance.
 fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
     let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
@@ -125,15 +148,12 @@ fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
         .sqrt()
 }
 
-fn program(path: &std::path::Path, settings: &Settings) -> Result<Program, Failure> {
-    let text = file::read_program(path)?;
-    let name = file::name(path);
-    nc_syntax::looks_like_program(&text)
-        .map_err(|diagnostic| Failure::refused(&name, &text, vec![diagnostic]))?;
-    let expanded = expand::expanded(&text, &name, settings)?;
-    let refuse = |diagnostics: Vec<Diagnostic>| {
-        Failure::Refused(expand::reports(&expanded, &name, &text, diagnostics))
-    };
+fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Failure> {
+    nc_syntax::looks_like_program(text)
+        .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
+    let expanded = expand::expanded(text, name, settings)?;
+    let refuse =
+        |diagnostics: Vec<Diagnostic>| Failure::Refused(expand::reports(&expanded, name, text, diagnostics));
     let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false, scale: 1.0 };
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
     let mut reader = Reader::new(expanded.text(), &settings.dialect);
@@ -183,7 +203,12 @@ fn sets_something(entry: &CodeEntry) -> bool {
     entry.group != MOTION_GROUP
         && !matches!(
             entry.action,
-            Action::Dwell | Action::Cycle(_) | Action::CycleCancel | Action::ReturnInitial | Action::ReturnR
+            Action::Dwell
+                | Action::DwellP
+                | Action::Cycle(_)
+                | Action::CycleCancel
+                | Action::ReturnInitial
+                | Action::ReturnR
         )
 }
 

@@ -21,6 +21,8 @@ const LARGEST_FILE: u64 = 64 << 20;
 pub(crate) struct Flow {
     presets: Vec<Preset>,
     folders: Vec<PathBuf>,
+    /// Where work ends that would not.
+    pub limits: Limits,
 }
 
 impl Flow {
@@ -43,7 +45,7 @@ impl Flow {
                 ));
             }
         }
-        Ok(Self { presets, folders: shared.include.clone() })
+        Ok(Self { presets, folders: shared.include.clone(), limits: Limits::default() })
     }
 
     /// Values of variables.
@@ -88,7 +90,7 @@ fn expanded_with<'a>(
     read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Expanded<'a>, Failure> {
     let environment =
-        Environment { variables: &settings.flow.presets, read_external: read, limits: Limits::default() };
+        Environment { variables: &settings.flow.presets, read_external: read, limits: settings.flow.limits };
     nc_expand::expand(text, &settings.dialect, &environment).map_err(|refusal| match refusal.file {
         None => Failure::refused(name, text, refusal.diagnostics),
         Some((name, text)) => Failure::refused(&name, &text, refusal.diagnostics),

@@ -20,6 +20,7 @@ mod points;
 mod predict;
 mod profile;
 mod profile_command;
+pub mod session;
 mod settings;
 mod solve;
 mod summary;

@@ -132,26 +132,36 @@ impl Messages {
 
     /// Prints a failure.
     pub(crate) fn failure(&self, failure: &Failure) {
+        let text = self.text(failure);
+        if !text.is_empty() {
+            self.line(&text);
+        }
+    }
+
+    /// A failure's text; its warnings only where the user wants them.
+    pub(crate) fn text(&self, failure: &Failure) -> String {
         match failure {
             Failure::Refused(reports) | Failure::Usage(reports) => {
-                for report in reports {
-                    self.report(report);
-                }
+                reports.iter().flat_map(|report| self.rendered(report)).collect::<Vec<_>>().join("\n")
             }
-            Failure::File(report) | Failure::Later(report) => self.report(report),
-            Failure::Interrupted(_) => self.line("interrupted: nothing was written"),
-            Failure::Check | Failure::Said(_) => {}
+            Failure::File(report) | Failure::Later(report) => {
+                self.rendered(report).collect::<Vec<_>>().join("\n")
+            }
+            Failure::Interrupted(_) => "interrupted: nothing was written".to_owned(),
+            Failure::Check | Failure::Said(_) => String::new(),
         }
     }
 
     /// Prints diagnostics; warnings only where the user wants them.
     pub(crate) fn report(&self, report: &Report) {
-        for diagnostic in &report.diagnostics {
-            if diagnostic.severity == Severity::Warning && self.quiet {
-                continue;
-            }
-            self.line(&self.render(diagnostic, report.source.as_ref()));
+        for text in self.rendered(report) {
+            self.line(&text);
         }
+    }
+
+    fn rendered(&self, report: &Report) -> impl Iterator<Item = String> {
+        let told = report.diagnostics.iter().filter(|d| d.severity != Severity::Warning || !self.quiet);
+        told.map(|diagnostic| self.render(diagnostic, report.source.as_ref()))
     }
 
     /// Prints a line about progress or result, unless quiet.

@@ -87,6 +87,14 @@ impl Notices {
     }
 }
 
+/// A block under block delete that would become several.
+pub(crate) fn half_skipped(block: &Block<'_>, pieces: usize) -> Diagnostic {
+    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    Diagnostic::error(MUST_NOT_SPLIT, format!("this motion would need {pieces} blocks"))
+        .at(whole, "and may be skipped: a switch thrown between two of them leaves half a motion")
+        .help("take the block delete away, jump over the motion instead, or accept more with `--tolerance`")
+}
+
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<Diagnostic> {
     let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
@@ -113,6 +121,9 @@ pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
             .at(whole, "this block cannot be split: cutter compensation or a thread is active")
             .help("post with compensation computed in CAM, or accept more with `--tolerance`"),
+        CorrectionError::TurnedFrame => Diagnostic::error(nc_program::codes::FRAME, error.to_string())
+            .at(whole, "each word moves several axes, and each axis back and forth by its rounding: its play has no side")
+            .help("let the CAM write the rotated coordinates, or correct with a profile without backlash"),
         CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.to_string())
             .at(whole, "this motion")
             .help("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`"),

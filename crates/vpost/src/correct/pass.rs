@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Motion};
 use units::decimal::Decimal;
 
-use super::notices::{Notices, refusal};
+use super::notices::{Notices, half_skipped, refusal};
 use super::{Figures, Job};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -28,9 +28,13 @@ pub(crate) struct State<'a> {
 impl<'a> State<'a> {
     /// At the start of a program.
     pub(crate) fn new(job: &Job<'a>, numbers: &'a BlockNumbers) -> Self {
+        let corrector = Corrector::new(job.model, job.options);
         Self {
             interpreter: Interpreter::new(job.dialect, job.setup),
-            corrector: Corrector::new(job.model, job.options),
+            corrector: match job.setup.start_mm {
+                Some(start_mm) => corrector.standing_at(start_mm),
+                None => corrector,
+            },
             emitter: Emitter::new(job.dialect).with_numbers(numbers),
             dwell: None,
             expects_name: false,
@@ -213,6 +217,9 @@ impl Pass<'_> {
             self.state.corrector = before;
             corrections.clear();
             self.repeated(block, context, letters, motions, &mut pieces, &mut corrections)?;
+        }
+        if context.skip && pieces.len() > 1 {
+            return Err(vec![half_skipped(block, pieces.len())]);
         }
         let length = self.out.len();
         if untouched {
@@ -408,6 +415,7 @@ fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,
         letters,
+        whole: context.whole,
         tool_mm: context.tool_mm,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,

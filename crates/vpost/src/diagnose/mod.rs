@@ -121,13 +121,7 @@ impl Model {
                 })?)
             }
         };
-        let mut geometry = EffectGeometry::from_chain(profile.chain());
-        for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&profile.description.rotary) {
-            *to = from.centre_mm;
-        }
-        if let Some(temperature) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) {
-            geometry.reference_temp_c = temperature;
-        }
+        let geometry = geometry(&profile);
         let effects = profile
             .effects
             .iter()
@@ -172,6 +166,24 @@ impl Model {
             tolerance_um: shared.tolerance.unwrap_or(self.profile.correction.tolerance_um),
         })
     }
+}
+
+fn geometry(profile: &Profile) -> EffectGeometry {
+    let mut geometry = EffectGeometry::from_chain(profile.chain());
+    for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&profile.description.rotary) {
+        *to = from.centre_mm;
+    }
+    if let Some(temperature) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) {
+        geometry.reference_temp_c = temperature;
+    }
+    geometry
+}
+
+/// Reads measurements, and leaves it at that.
+pub(crate) fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
+    let (data, table) =
+        measurements::read("measurements", bytes, setup_tool(profile), &[], &geometry(profile))?;
+    measurements::commands_and_frames(&table, &data, profile)
 }
 
 fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Measured, Failure> {

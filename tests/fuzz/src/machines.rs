@@ -1,0 +1,83 @@
+//! The machines that programs are corrected for.
+
+use std::cell::OnceCell;
+use std::path::Path;
+
+use vpost::session::Session;
+
+use super::LIMITS;
+
+/// Every shipped dialect, each with the letter that chooses it: small for one machine, capital for the other.
+pub const DIALECTS: [&str; 6] = ["fanuc", "linuxcnc", "perspektiva", "sinumerik", "balt-system", "centroid"];
+const LETTERS: [u8; 6] = *b"flpsbc";
+
+/// For whom a program is corrected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Machine {
+    /// Crooked in everything, the place at the start given.
+    Crooked,
+    /// Backlash, and tables of slopes without jumps.
+    Backlash,
+    /// Without errors.
+    Perfect,
+}
+
+/// Dialect and machine of an input, and the rest of it. A first byte that is none of the letters chooses too.
+#[must_use]
+pub fn split(bytes: &[u8]) -> (&'static str, Machine, &[u8]) {
+    let Some((first, rest)) = bytes.split_first() else { return (DIALECTS[0], Machine::Crooked, bytes) };
+    let small = first.to_ascii_lowercase();
+    let index = LETTERS.iter().position(|letter| *letter == small).unwrap_or(usize::from(first % 6));
+    let machine = if first.is_ascii_uppercase() { Machine::Backlash } else { Machine::Crooked };
+    (DIALECTS[index], machine, rest)
+}
+
+/// The session of a dialect and machine, loaded once.
+pub(crate) fn session(dialect: &str, machine: Machine) -> &'static Session {
+    thread_local! {
+        static LOADED: [OnceCell<&'static Session>; 18] = const { [const { OnceCell::new() }; 18] };
+    }
+    let row = DIALECTS.iter().position(|known| *known == dialect).expect("a shipped dialect");
+    LOADED.with(|loaded| {
+        *loaded[3 * row + machine as usize].get_or_init(|| Box::leak(Box::new(load(dialect, machine))))
+    })
+}
+
+fn load(dialect: &str, machine: Machine) -> Session {
+    // From `crates/vpost` and from `tests/fuzz` alike.
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let file = |name: &str| root.join(name).to_str().expect("a plain path").to_owned();
+    // Coarse: the number of pieces goes with the root of the tolerance, and shows nothing new.
+    let tolerance = ["--tolerance", "4", "-d", dialect];
+    let offsets = ["--work-offset", "G54=100,80,40", "--work-offset", "G55=110,75,41"];
+    let options = match machine {
+        Machine::Crooked => {
+            let profile = file("tests/profiles/corpus.toml");
+            [&["-m", &profile, "--start-at", "100,80,300"][..], &tolerance]
+                .concat()
+                .into_iter()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        }
+        Machine::Backlash => {
+            let profile = file("machine-profiles/generic_vmc.toml");
+            [&["-m", &profile][..], &tolerance].concat().into_iter().map(str::to_owned).collect()
+        }
+        Machine::Perfect => {
+            let profile = file("machine-profiles/perfect.toml");
+            [&["-m", &profile, "--start-at", "100,80,300"][..], &offsets, &tolerance]
+                .concat()
+                .into_iter()
+                .map(str::to_owned)
+                .collect()
+        }
+    };
+    let options: Vec<&str> = options.iter().map(String::as_str).collect();
+    Session::new(&options, LIMITS).unwrap_or_else(|refusal| panic!("{}", refusal.0))
+}
+
+/// The letter that chooses a dialect.
+#[must_use]
+pub fn letter(dialect: &str) -> u8 {
+    DIALECTS.iter().position(|known| *known == dialect).map_or(LETTERS[0], |at| LETTERS[at])
+}
