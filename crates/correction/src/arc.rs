@@ -213,6 +213,10 @@ impl<'m> Corrector<'m> {
         for du in [0, -1, 1] {
             for dv in [0, -1, 1] {
                 let chosen = [counts[0] + du, counts[1] + dv];
+                if chosen == [0, 0] && !block.arc_centres_absolute {
+                    // An arc about its own start.
+                    continue;
+                }
                 let mut at = from_program;
                 at[u] = origin(u) + block.from_counts(u, chosen[0]);
                 at[v] = origin(v) + block.from_counts(v, chosen[1]);

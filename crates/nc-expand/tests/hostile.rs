@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use nc_expand::{Environment, Limits, expand};
 
 /// Generous against a busy machine; the release build needs a tenth.
-const SOON: Duration = Duration::from_secs(5);
+const SOON: Duration = Duration::from_secs(60);
 
 /// The code of a refused program, which must come soon.
 fn refusal(dialect: &str, text: &str) -> u16 {
