@@ -72,6 +72,7 @@ fn ended(arguments: &[&str], feed: impl FnOnce(&mut dyn Write) + Send) -> Ended 
     })
 }
 
+#[expect(clippy::print_stdout, reason = "the figures that docs/testing.md asks for")]
 fn refused(name: &str, ran: &Ended, code: &str) {
     println!("{name}: {code} after {:.3} s, {} MB", ran.took.as_secs_f64(), ran.peak_mb.unwrap_or_default());
     let said: String = ran.said.chars().take(600).collect();

@@ -30,7 +30,7 @@ axis.X = { travel_mm = [-3000, 3000], resolution_mm = 0.001, errors = "X.csv" }
 axis.Y = { travel_mm = [-3000, 3000], resolution_mm = 0.001, errors = "Y.csv" }
 axis.Z = { travel_mm = [-3000, 3000], resolution_mm = 0.001, errors = "Z.csv" }
 squareness = { EC0Y_urad = 1100, EB0Z_urad = 440, EA0Z_urad = -500 }
-work_offsets_mm = { G54 = [10, 20, 30] }
+work_offsets_mm = { G54 = [10, 20, 30], G55 = [-35, 12.5, 7] }
 """
 PLANES = {17: (0, 1, "IJ"), 18: (2, 0, "KI"), 19: (1, 2, "JK")}
 ORDER = "NGXYZIJKRQPFM"
@@ -62,6 +62,7 @@ class Program:
         self.style, self.separator, self.end = pick(["fixed", "point", "free", "short"]), pick([" ", ""]), pick(["\n", "\r\n"])
         self.numbered, self.inch = self.random.random() < 0.4, self.random.random() < 0.2
         self.unit, self.decimals = (INCH, 4) if self.inch else (1.0, 3)
+        self.labels = 0
         self.lines, self.at, self.mode, self.plane, self.incremental = [], [0.0] * 3, 0, 17, False
         self.block("G20" if self.inch else "G21", "G17", "G90", "G54")
         self.block("S1000", "M3")
@@ -128,10 +129,14 @@ class Program:
                 self.straight(1, range(3), self.near, ["G1"], [f"F{self.random.randint(3, 50)}"])
             self.block("G94")
             self.block("F200")
+        elif choice < 0.26 and not self.incremental:
+            self.frame()
+        elif choice < 0.31 and not self.incremental:
+            self.flow()
         elif choice < 0.65:
             axes = [axis for axis in range(3) if self.random.random() < 0.6] or [self.random.randrange(3)]
             tail = ["M9"] if self.random.random() < 0.05 else []
-            self.straight(0 if choice < 0.33 else 1, axes, self.near, None, tail)
+            self.straight(0 if choice < 0.41 else 1, axes, self.near, None, tail)
         else:
             self.arc(self.random.choice([2, 3]))
 
@@ -155,6 +160,30 @@ class Program:
         self.at[2] = self.grid(self.at[2] + 5)
         self.at[:2] = hole
         self.straight(0, range(3), lambda axis: self.at[axis], ["G0"])
+
+    def frame(self):
+        """Another work offset, or a shift of all; then a place in all axes."""
+        shift = [AXES[axis] + self.number(self.grid(self.random.uniform(-30, 30))) for axis in range(3)]
+        self.block(*self.random.choice([["G54"], ["G55"], ["G52", *shift], ["G52", "X0", "Y0", "Z0"], ["G92.1"]]))
+        self.straight(0, range(3), lambda _: self.random.uniform(-150, 150), ["G0"])
+
+    def flow(self):
+        """A loop, a repetition, a condition, a subroutine, an expression; then a place in all axes."""
+        self.labels += 1
+        name, turns = f"o{self.labels}", self.random.randint(1, 5)
+        a, b = (f"{self.random.uniform(-9, 9) / self.unit:.3f}" for _ in range(2))
+        bodies = [
+            [f"#{self.labels}=0", f"{name} while [#{self.labels} LT {turns}]", f"G1 X[{a}+#{self.labels}*0.5] Y[{b}*SIN[#{self.labels}*30]]",
+             f"#{self.labels}=[#{self.labels}+1]", f"{name} endwhile"],
+            [f"{name} repeat [{turns}]", f"G91 G1 X{a} Y{b}", f"{name} endrepeat", "G90"],
+            [f"#<w>=[{a}*2]", f"{name} if [#<w> GT 0]", "G1 X[#<w>/3]", f"{name} else", "G1 Y[ABS[#<w>]]", f"{name} endif"],
+            [f"{name} sub", "G1 X#1 Y[#2-#1]", f"{name} endsub"] + [f"{name} call [{a}] [{b}]"] * turns,
+            [f"G1 X[SQRT[{turns}]] Y[[{a}+{b}]/4] Z[{turns}**2/9]"],
+        ]
+        # O-words take no block number.
+        self.lines += self.random.choice(bodies)
+        self.mode = 1
+        self.straight(0, range(3), lambda _: self.random.uniform(-150, 150), ["G0"])
 
     def arc(self, code):
         u, v, letters = PLANES[self.plane]

@@ -19,6 +19,9 @@ pub(crate) struct Options {
     /// Folder of the samples, with all folders in it.
     #[arg(long, default_value = "/usr/share/linuxcnc/ncfiles")]
     samples: PathBuf,
+    /// Folder of an interpreter's test suite instead: LinuxCNC's sources have one in `tests`.
+    #[arg(long)]
+    suite: Option<PathBuf>,
     /// Machine profile.
     #[arg(long, default_value = "tests/profiles/linuxcnc_samples.toml")]
     profile: PathBuf,
@@ -35,6 +38,25 @@ pub(crate) struct Options {
     #[arg(long, default_value = "docs/corpus.md")]
     page: PathBuf,
 }
+
+impl Options {
+    fn folder(&self) -> &Path {
+        self.suite.as_deref().unwrap_or(&self.samples)
+    }
+}
+
+const SAMPLES: &str = "# LinuxCNC's samples\n\nMade by `cargo run -p xtask -- corpus`: every program that comes with LinuxCNC, corrected for a wide crooked machine \
+         (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include`. Where a message names an option as the way out (`--set` for a variable, `--start-at`), it is given: 100 for a \
+         variable. Each corrected one goes through the closed loop \
+         (`vpost check`) and before the second judge (LinuxCNC's interpreter and a machine model that share no code with vpost). Most samples are subroutines alone (VP0141); \
+         how these are executed when something calls them is compared with LinuxCNC's interpreter by the test `interpreter` of `nc-expand`.\n\n";
+
+const SUITE_HEADING: &str = "# LinuxCNC's test suite\n";
+const SUITE: &str = "# LinuxCNC's test suite\n\n\
+    The same of the programs that LinuxCNC's developers test their interpreter and their trajectory planner with: corners of the language, \
+    errors on purpose, toolpaths of posts. They come with its source code, not with its package: get the sources of LinuxCNC (their repository on \
+    GitHub is LinuxCNC/linuxcnc), then `cargo run -p xtask -- corpus --suite SOURCES/tests`. A test's expectation is not looked at; many of \
+    these programs are meant to fail.\n\n";
 
 /// Longest time for one run of a tool.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -80,23 +102,28 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         None => crate::gap_bench::released()?,
     };
     let mut paths = Vec::new();
-    programs(&options.samples, &mut paths)?;
+    programs(options.folder(), &mut paths)?;
     paths.sort();
     if let Some(only) = &options.only {
         paths.retain(|path| path.display().to_string().contains(only));
     }
     if paths.is_empty() {
-        bail!("no programs in {}", options.samples.display());
+        bail!("no programs in {}", options.folder().display());
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;
     let samples = pool.install(|| {
         paths.par_iter().map(|path| sample(&vpost, options, path)).collect::<anyhow::Result<Vec<_>>>()
     })?;
-    let page = page(&samples);
+    let intro = if options.suite.is_some() { SUITE } else { SAMPLES };
+    let made = section(&samples, intro);
     if options.only.is_none() {
-        std::fs::write(&options.page, &page)?;
+        let page = std::fs::read_to_string(&options.page).unwrap_or_default();
+        let (before, after) = page.split_at(page.find(SUITE_HEADING).unwrap_or(page.len()));
+        let (one, other) =
+            if options.suite.is_some() { (before, made.as_str()) } else { (made.as_str(), after) };
+        std::fs::write(&options.page, format!("{}\n\n{other}", one.trim_end()).trim_end().to_owned() + "\n")?;
     }
-    Ok(page)
+    Ok(made)
 }
 
 fn programs(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
@@ -112,7 +139,7 @@ fn programs(folder: &Path, found: &mut Vec<PathBuf>) -> anyhow::Result<()> {
 }
 
 fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample> {
-    let name = path.strip_prefix(&options.samples)?.display().to_string();
+    let name = path.strip_prefix(options.folder())?.display().to_string();
     let folder = path.parent().unwrap_or(Path::new("."));
     let work = tempfile::tempdir()?;
     let out = work.path().join("out.ngc");
@@ -270,7 +297,7 @@ fn first_line(text: &str) -> String {
     text.lines().next().unwrap_or("no answer").to_owned()
 }
 
-fn page(samples: &[Sample]) -> String {
+fn section(samples: &[Sample], intro: &str) -> String {
     let total = samples.len();
     let corrected: Vec<(&Sample, &Verdict, &Verdict)> = samples
         .iter()
@@ -292,13 +319,7 @@ fn page(samples: &[Sample]) -> String {
     let refused = total - corrected.len() - broken - idle;
     let alone =
         samples.iter().filter(|s| matches!(&s.fate, Fate::Refused(code, _) if code == "VP0141")).count();
-    let mut text = String::from(
-        "# LinuxCNC's samples\n\nMade by `cargo run -p xtask -- corpus`: every program that comes with LinuxCNC, corrected for a wide crooked machine \
-         (`tests/profiles/linuxcnc_samples.toml`), with the program's own folder as `--include`. Where a message names an option as the way out (`--set` for a variable, `--start-at`), it is given: 100 for a \
-         variable. Each corrected one goes through the closed loop \
-         (`vpost check`) and before the second judge (LinuxCNC's interpreter and a machine model that share no code with vpost). Most samples are subroutines alone (VP0141); \
-         how these are executed when something calls them is compared with LinuxCNC's interpreter by the test `interpreter` of `nc-expand`.\n\n",
-    );
+    let mut text = String::from(intro);
     text += &table(
         &["", "programs"],
         &[

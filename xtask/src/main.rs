@@ -37,7 +37,7 @@ enum Task {
     },
     /// Measure the correction of many small programs; print a section for docs/performance.md.
     BenchBatch(bench::batch::Options),
-    /// Correct LinuxCNC's samples, judge each result twice, and write docs/corpus.md.
+    /// Correct LinuxCNC's samples or its test suite, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
     /// Print docs/engines.md: the engines against one another.
     Engines,

@@ -319,7 +319,8 @@ impl Matcher<'_> {
         let there = |w: &Feeding, s: f64| (w.curve.at(s) - real).norm() <= self.limit_mm;
         let last = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]);
         let next = first.as_ref().map(|(at, _)| &self.wanted[*at]);
-        let approach = last.is_some_and(|w| there(w, 1.0)) || next.is_some_and(|w| there(w, self.s.clamp(0.0, 1.0)));
+        let approach =
+            last.is_some_and(|w| there(w, 1.0)) || next.is_some_and(|w| there(w, self.s.clamp(0.0, 1.0)));
         if piece.length_mm < 1.0 && approach {
             self.result.approaches += 1;
             return;

@@ -118,8 +118,9 @@ impl<'m> Corrector<'m> {
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
         let began_mm = match self.remembered {
-            Some(remembered) => remembered.began_mm,
-            None => standing[normal],
+            Some(remembered) if hole.start.linear_mm[normal] != hole.began_mm => remembered.began_mm,
+            // The first hole of a series, be it right behind another series, or one that stands there again.
+            _ => standing[normal],
         };
         let standing_program = self.standing_program(block);
         // In the plane: half way between what the top and what the bottom need.
@@ -221,7 +222,8 @@ impl<'m> Corrector<'m> {
         if hole.cycle.return_to_initial {
             // Never below R.
             let r_mm = from[normal];
-            end[normal] = if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
+            end[normal] =
+                if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict)

@@ -61,8 +61,8 @@ impl<'m> Corrector<'m> {
 
     /// Turns the axes the way they went from `before`: in a turned frame each moves by the rounding of all.
     pub(crate) fn turn_as_moved(&mut self, before: [Option<f64>; 3]) {
-        for i in 0..3 {
-            if let (Some(from), Some(to)) = (before[i], self.standing[i])
+        for (i, from) in before.into_iter().enumerate() {
+            if let (Some(from), Some(to)) = (from, self.standing[i])
                 && (to - from).abs() > SAME_MM
             {
                 self.direction[i] = if to > from { 1 } else { -1 };

@@ -100,10 +100,15 @@ impl<'d> Emitter<'d> {
                 .at(block.offset..block.offset + block.bytes.len() as u64, "this block")
                 .help("this is a fault of vpost; please report it with the program"));
         };
-        let written = |edit: &WordEdit| if let WordEdit::Write { counts, .. } = edit { counts.unsigned_abs() } else { 0 };
+        let written = |edit: &WordEdit| {
+            if let WordEdit::Write { counts, .. } = edit { counts.unsigned_abs() } else { 0 }
+        };
         if pieces.iter().flat_map(|piece| &piece.words).any(|(_, edit)| written(edit) >= MOST_STEPS) {
             return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a corrected word of more than 15 digits")
-                .at(block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64, "exact in no control")
+                .at(
+                    block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64,
+                    "exact in no control",
+                )
                 .help("no machine goes there: check the unit and the decimal points of this block"));
         }
         self.habits.learn(block);

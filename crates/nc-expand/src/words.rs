@@ -23,7 +23,9 @@ impl Run<'_, '_> {
         let mut number = complex.number.filter(|_| drop_number);
         let cycle = statement.flags.cycle.unwrap_or(self.cycle);
         for word in &complex.words {
-            if let Some(span) = number.filter(|span| span.start <= word.span.start && word.span.start < span.end) {
+            if let Some(span) =
+                number.filter(|span| span.start <= word.span.start && word.span.start < span.end)
+            {
                 // The block number itself is computed, and goes.
                 text.extend_from_slice(&base[from..span.start as usize]);
                 from = span.end.max(word.span.end) as usize;
