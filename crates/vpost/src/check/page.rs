@@ -50,13 +50,18 @@ pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str) -> St
 
 fn head(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
     html! {
-        p.muted { "Both programs through the machine model: " (shown(facts.machine)) ", " (shown(facts.output)) }
+        p.muted { "Both programs through the machine model: " (shown(facts.machine)) ", " (shown(file_name(facts.output))) }
         p { span.verdict { (if facts.passed { "PASSED" } else { "FAILED" }) } }
         h1 {
             "As posted the tool is up to " (um(comparison.before.largest_mm)) " \u{b5}m off its path, as corrected up to "
             (um(comparison.after.largest_mm)) " \u{b5}m; allowed are " (um(facts.limit_mm)) " \u{b5}m"
         }
     }
+}
+
+/// A name without its folders, which stand at the end of the page.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 fn result(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
