@@ -158,3 +158,41 @@ fn what_only_the_user_knows_is_asked() {
     assert!(messages(&output).contains("VP1101"), "{}", messages(&output));
     assert!(root().join(&files[0]).exists());
 }
+
+#[test]
+fn both_directions_give_the_reversal_value() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut files = Vec::new();
+    for axis in 0..3 {
+        let letter = ["x", "y", "z"][axis];
+        let mut text = String::from("x_mm,y_mm,z_mm,xm_mm,ym_mm,zm_mm,dir_x,dir_y,dir_z,repeat\n");
+        for repeat in 0..3_i32 {
+            for sign in [1.0, -1.0] {
+                for k in 0..6 {
+                    let mut at = [0.0; 3];
+                    at[axis] = 50.0 * f64::from(k);
+                    let mut read = at;
+                    // 1 mm/m too long, 8 µm of play, a micrometre of noise.
+                    read[axis] += 1e-3 * at[axis] - 0.004 * sign + 0.001 * f64::from((repeat + k) % 3 - 1);
+                    let cells: Vec<String> = at.iter().chain(&read).map(|v| format!("{v:.4}")).collect();
+                    let mut directions = ["0"; 3];
+                    directions[axis] = if sign > 0.0 { "1" } else { "-1" };
+                    text.push_str(&format!("{},{},{repeat}\n", cells.join(","), directions.join(",")));
+                }
+            }
+        }
+        let path = folder.path().join(format!("{letter}.csv"));
+        std::fs::write(&path, text).expect("written");
+        files.push(path.to_str().expect("plain").to_owned());
+    }
+    let made = folder.path().join("made.toml");
+    let output = calibrate(&["tracker", &files[0], &files[1], &files[2], "--chain", "[w X Y b Z t]"], &made);
+    assert!(output.status.success(), "{}", messages(&output));
+    let profile = std::fs::read_to_string(&made).expect("written");
+    assert_eq!(profile.matches("backlash_um = 8.0").count(), 3, "{profile}");
+    assert!(
+        text(&output).contains("scale X    +1000.0") && text(&output).contains("reversal   x -8.00"),
+        "{}",
+        text(&output)
+    );
+}

@@ -270,6 +270,14 @@ fn write_profile(output: &mut Output, found: &TrackerCalibration, replace: bool,
             let letter = Axis::ALL[axis].letter();
             output.text.remove(&["axis", &letter.to_string(), "errors_negative"]);
             output.text.remove(&["axis", &letter.to_string(), "backlash_um"]);
+            if let Some(reversal) = found.traverses[axis].reversal_mm {
+                // The nodes are means of both directions; the profile counts from above minus from below.
+                output.text.set_number(
+                    &["axis", &letter.to_string(), "backlash_um"],
+                    -reversal[axis] * 1e3,
+                    3,
+                );
+            }
             let others: Vec<(char, f64)> =
                 (0..3).filter(|&k| k != axis).map(|k| (Axis::ALL[k].letter(), found.origin_mm[k])).collect();
             output.text.set_measured_at(letter, &others, [0.0; 3]);
