@@ -171,7 +171,7 @@ impl<'m> Corrector<'m> {
     pub(crate) fn heed(&mut self, block: &Block, rotary_deg: [f64; 3]) {
         let tool = Vector::from(block.tool_mm);
         if !self.everywhere.as_ref().is_some_and(|known| known.0 == tool && known.1 == rotary_deg) {
-            let state = self.machine(block, rotary_deg).state;
+            let state = self.state(block, rotary_deg);
             self.everywhere = Some((tool, rotary_deg, self.model.everywhere(&state)));
         }
     }
@@ -200,12 +200,20 @@ impl<'m> Corrector<'m> {
     pub(crate) fn machine(&self, block: &Block, rotary_deg: [f64; 3]) -> Machine<'m> {
         Machine {
             model: self.model,
-            state: Command {
-                linear_mm: Vector::zeros(),
-                rotary_rad: Vector::from(rotary_deg.map(f64::to_radians)),
-                tool_mm: block.tool_mm.into(),
-                direction: self.direction,
-            },
+            state: self.state(block, rotary_deg),
+            everywhere: self.everywhere.as_ref().and_then(|known| known.2),
+            told_mm: self.told_mm[1],
+        }
+    }
+
+    /// What the error depends on besides the place.
+    #[inline]
+    pub(crate) fn state(&self, block: &Block, rotary_deg: [f64; 3]) -> Command {
+        Command {
+            linear_mm: Vector::zeros(),
+            rotary_rad: Vector::from(rotary_deg.map(f64::to_radians)),
+            tool_mm: block.tool_mm.into(),
+            direction: self.direction,
         }
     }
 

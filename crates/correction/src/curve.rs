@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use machine_model::{Range, Vector};
+use machine_model::{Range, Vector, Volume};
 use toolpath::Shape;
 use units::math::{atan2, sin_cos};
 
@@ -220,6 +220,32 @@ impl Curve {
                 extent.acceleration[*u] = r * turn * turn * cos + 2.0 * dr * turn * sin;
                 extent.acceleration[*v] = r * turn * turn * sin + 2.0 * dr * turn * cos;
                 extent
+            }
+        }
+    }
+
+    /// Upper bounds of the first and second derivative of any axis on the part from s0 to s1, with s running 0..=1
+    /// over that part: quicker than [`Curve::extent`], and rougher. `None` for a line, where they would be no rougher.
+    pub(crate) fn fastest(&self, s0: f64, s1: f64) -> Option<(f64, f64)> {
+        let Self::Arc { sweep, radius, normal, .. } = self else { return None };
+        let h = s1 - s0;
+        let (r, turn) = (radius[0].max(radius[1]), sweep.abs() * h);
+        let (growth, rise) = ((radius[1] - radius[0]).abs() * h, (normal[1] - normal[0]).abs() * h);
+        Some(((r * turn + growth).max(rise), r * turn * turn + 2.0 * growth * turn))
+    }
+
+    /// True where all of the circle that an arc is a part of lies in the volume.
+    pub(crate) fn lies_inside(&self, volume: &Volume) -> bool {
+        match self {
+            Self::Line(a, b) => volume.contains(a) && volume.contains(b),
+            Self::Arc { axes: [u, v, n], centre, radius, normal, .. } => {
+                let r = radius[0].max(radius[1]);
+                let holds = |axis: usize, low: f64, high: f64| {
+                    volume.0[axis].low <= low && high <= volume.0[axis].high
+                };
+                holds(*u, centre[0] - r, centre[0] + r)
+                    && holds(*v, centre[1] - r, centre[1] + r)
+                    && holds(*n, normal[0].min(normal[1]), normal[0].max(normal[1]))
             }
         }
     }

@@ -1,6 +1,6 @@
 //! How far the real tool leaves the programmed path: computed at places, bounded between them.
 
-use machine_model::{Command, Move, PathModel, Vector};
+use machine_model::{Command, Everywhere, Move, PathModel, Vector};
 
 use crate::curve::Curve;
 
@@ -19,6 +19,10 @@ pub(crate) struct Machine<'m> {
     pub(crate) model: &'m dyn PathModel,
     /// Tool vector, rotary axes and directions; its linear position is not used.
     pub(crate) state: Command,
+    /// What holds for that state in the whole volume, where the model says so.
+    pub(crate) everywhere: Option<Everywhere>,
+    /// A bound up to this need not be worked out exactly, mm: an earlier motion was told with it.
+    pub(crate) told_mm: f64,
 }
 
 impl Machine<'_> {
@@ -100,6 +104,15 @@ impl Pair<'_> {
 
     /// Upper bound of the distance between two places where it is known, mm.
     fn bound(&self, machine: &Machine<'_>, a: &Place, b: &Place) -> f64 {
+        if let Some(everywhere) = &machine.everywhere
+            && let Some((speed_mm, acceleration_mm)) = self.commanded.fastest(a.s, b.s)
+            && self.commanded.lies_inside(&everywhere.volume)
+        {
+            let cheap = self.between(a, b, everywhere.chord_bound_of_curve_mm(speed_mm, acceleration_mm));
+            if cheap <= machine.told_mm {
+                return cheap;
+            }
+        }
         let extent = self.commanded.extent(a.s, b.s);
         let leaves_chord = machine.model.chord_bound_mm(&Move {
             range_mm: extent.range,
@@ -107,7 +120,13 @@ impl Pair<'_> {
             acceleration_mm: extent.acceleration,
             passes: if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 },
             state: machine.state,
-        }) + self.commanded.difference_bound(self.wanted, a.s, b.s);
+        });
+        self.between(a, b, leaves_chord)
+    }
+
+    /// Equation (P4), the error leaving its chord by at most `error_mm`.
+    fn between(&self, a: &Place, b: &Place, error_mm: f64) -> f64 {
+        let leaves_chord = error_mm + self.commanded.difference_bound(self.wanted, a.s, b.s);
         if !leaves_chord.is_finite() {
             // The model jumps here. Infinity times a curvature of zero is not a number, and `max` would forget it.
             return f64::INFINITY;

@@ -71,7 +71,7 @@ impl Corrector<'_> {
                 direction[i] = -1;
             }
         }
-        let state = Command { direction, ..self.machine(block, feed.end.rotary_deg).state };
+        let state = Command { direction, ..self.state(block, feed.end.rotary_deg) };
         let depends = self.model.depends_on_direction();
         if last.tool_mm != state.tool_mm
             || last.rotary_rad != state.rotary_rad
@@ -121,7 +121,9 @@ impl Corrector<'_> {
         if after_mm > self.told_mm[1] {
             let (nominal, commanded) = (Curve::Line(start, end), Curve::Line(from, to));
             let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false };
-            let Verdict::Within(bound) = pair.verdict(&Machine { model: self.model, state }, limit_mm) else {
+            let Verdict::Within(bound) =
+                pair.verdict(&Machine { state, ..self.machine(block, feed.end.rotary_deg) }, limit_mm)
+            else {
                 return None;
             };
             correction.after_mm = bound;

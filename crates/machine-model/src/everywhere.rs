@@ -11,7 +11,7 @@ const SHORTEST: i32 = -12;
 ///
 /// Dense programs ask millions of times for a bound that lies far below the tolerance. This one is looked up; the
 /// bound of the stretch itself ([`crate::PathModel::chord_bound_mm`]) is only asked for where it matters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Everywhere {
     /// Upper bound of how fast the error changes along any way: `|e(p) - e(q)| ≤ gradient·|p - q|`.
     pub gradient: f64,
@@ -36,6 +36,15 @@ impl Everywhere {
     #[inline]
     pub fn chord_bound_of_four_passes_mm(&self, longest_mm: f64) -> f64 {
         Self::of_class(&self.bow_of_four_passes_mm, longest_mm)
+    }
+
+    /// The same for any stretch inside the volume that passes a place at most four times: its axes have at most these
+    /// first and second derivatives, mm, s running from 0 to 1. Bending adds no more than the error's gradient makes
+    /// of it.
+    #[must_use]
+    #[inline]
+    pub fn chord_bound_of_curve_mm(&self, speed_mm: f64, acceleration_mm: f64) -> f64 {
+        self.chord_bound_of_four_passes_mm(speed_mm) + self.gradient * acceleration_mm / 8.0
     }
 
     /// Longest move of an axis by class, mm.

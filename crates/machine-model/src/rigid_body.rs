@@ -234,7 +234,9 @@ impl RigidBody {
     fn newton(&self, target: &Command, everywhere: &Everywhere) -> Option<Vector> {
         const ROUNDS: u32 = 4;
         let wanted = &target.linear_mm;
-        if !self.volume.contains(wanted) || self.description.chain.axes().any(|axis| !axis.is_linear()) {
+        if !self.volume.contains(wanted)
+            || (self.description.chain.has_rotary() && self.rotary_inside(target).is_err())
+        {
             return None;
         }
         let (error, [x, y, z]) = self.error_and_gradient(wanted, target);

@@ -55,34 +55,42 @@ pub fn counts(value: f64, per_unit: f64) -> Option<i64> {
 }
 
 /// Appends `counts × 10^-decimals` as text. Never writes an exponent or a negative zero.
+#[inline]
 pub fn write(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
-    let mut digits = [b'0'; 40];
+    // From the last digit to the sign, then out at once.
+    let mut text = [b'0'; 40];
     let decimals = usize::from(decimals.min(18));
     let mut left = counts.unsigned_abs();
-    let mut at = digits.len();
-    while left > 0 || digits.len() - at <= decimals {
-        at -= 1;
-        digits[at] = b'0' + (left % 10) as u8;
-        left /= 10;
+    let point = text.len() - decimals;
+    for place in text[point..].iter_mut().rev() {
+        (left, *place) = (left / 10, b'0' + (left % 10) as u8);
     }
-    let (whole, mut part) = digits[at..].split_at(digits.len() - at - decimals);
+    let mut end = text.len();
     if !spelling.trailing_zeros {
-        while let [rest @ .., b'0'] = part {
-            part = rest;
+        while end > point && text[end - 1] == b'0' {
+            end -= 1;
         }
     }
-    if counts < 0 {
-        out.push(b'-');
-    } else if spelling.plus {
-        out.push(b'+');
+    let whole = end == point;
+    let mut at = point;
+    if !whole || (spelling.trailing_point && (decimals > 0 || !spelling.trailing_zeros)) {
+        at -= 1;
+        text[at] = b'.';
     }
-    if whole != b"0" || spelling.leading_zero || part.is_empty() {
-        out.extend_from_slice(whole);
+    if left > 0 || spelling.leading_zero || whole {
+        loop {
+            at -= 1;
+            (left, text[at]) = (left / 10, b'0' + (left % 10) as u8);
+            if left == 0 {
+                break;
+            }
+        }
     }
-    if !part.is_empty() || (spelling.trailing_point && (decimals > 0 || !spelling.trailing_zeros)) {
-        out.push(b'.');
+    if counts < 0 || spelling.plus {
+        at -= 1;
+        text[at] = if counts < 0 { b'-' } else { b'+' };
     }
-    out.extend_from_slice(part);
+    out.extend_from_slice(&text[at..end]);
 }
 
 #[cfg(test)]
