@@ -1,7 +1,5 @@
 //! The steps that every block goes through, one by one: `cargo bench -p xtask`. Whole programs: `xtask bench`.
 
-#![expect(missing_docs, reason = "criterion's macros make functions without")]
-
 use std::hint::black_box;
 use std::path::Path;
 
