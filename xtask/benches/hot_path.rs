@@ -72,6 +72,7 @@ fn hot_path(c: &mut Criterion) {
         unit_mm: 1.0,
         decimals: [3; 3],
         incremental: false,
+        whole: [false; 3],
         arc_centres_absolute: false,
         letters: Letters::axes([true; 3]),
         tool_mm: [0.0; 3],
