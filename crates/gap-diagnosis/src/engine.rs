@@ -239,6 +239,49 @@ impl<'a> State<'a> {
             }
         }
         self.prune();
+        self.imitate();
+    }
+
+    /// Forms of other effects whose free numbers imitate the causes: a knock at the time the load came on is a
+    /// rival of the load, whatever times a grid happens to hold.
+    fn imitate(&mut self) {
+        let sub = self.gram.select(&model_columns(&self.library, &self.parts));
+        let solution = sub.solve(self.space.rho(self.fit.level), self.source);
+        let mut first = self.library.nuisances;
+        for part in self.parts.clone() {
+            let own = self.library.candidates[part.candidate].kind;
+            let count = self.library.candidates[part.candidate].variants[part.variant].columns.len();
+            let terms = &solution.terms[first..first + count];
+            let values: Vec<f64> = solution.coefficients[first..first + count].iter().map(|v| -v).collect();
+            first += count;
+            // The gap is what `residuals` starts from.
+            let displaced: Vec<f64> = crate::fit::residuals(terms, &values, self.source)
+                .iter()
+                .zip(self.source.scalars)
+                .map(|(r, s)| r - s.gap_um)
+                .collect();
+            for axis in 0..3 {
+                let allowed = |kind: EffectKind| kind != own && !self.without.contains(&kind);
+                let kind = EffectKind::Step(axis);
+                if let Some((time_s, _)) =
+                    propose::knock(self.source, &displaced, axis).filter(|_| allowed(kind))
+                {
+                    let columns = self.library.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
+                    let form = Variant { columns, enriched: false, only_rival: true };
+                    self.library.add_variants(kind, vec![form], 0);
+                }
+                let kind = EffectKind::Local(axis);
+                let narrowest = narrowest_mm(self.data, axis);
+                if let Some((centre, width, _)) =
+                    propose::damage(self.source, &displaced, axis, narrowest).filter(|_| allowed(kind))
+                {
+                    let mut forms = self.library.place(kind, centre, width);
+                    forms.iter_mut().for_each(|form| form.only_rival = true);
+                    self.library.add_variants(kind, forms, 0);
+                }
+            }
+        }
+        self.grow();
     }
 
     /// New columns with their products, then everything whitened again.
