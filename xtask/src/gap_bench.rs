@@ -8,6 +8,7 @@ mod answer;
 mod outcome;
 mod page;
 mod scores;
+mod speed;
 mod table;
 mod transport;
 mod voxels;
@@ -69,10 +70,10 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         specs
             .par_iter()
             .map(|spec| {
-                let case = spec.build();
-                if options.only.as_ref().is_some_and(|only| !case.id.contains(only.as_str())) {
+                if options.only.as_ref().is_some_and(|only| !spec.id().contains(only.as_str())) {
                     return Ok(None);
                 }
+                let case = spec.build();
                 let folder = root.join(&case.id);
                 let outcome = examine(&vpost, &folder, case)?;
                 if options.keep.is_none() {
@@ -86,17 +87,23 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     for outcome in outcomes {
         found.extend(outcome?);
     }
-    if options.keep.is_none() {
-        std::fs::remove_dir_all(&temporary)?;
-    } else {
+    if options.keep.is_some() {
         std::fs::write(root.join("outcomes.csv"), table::outcomes_csv(&found))?;
     }
+    let speed = match options.only {
+        None => speed::measure(&vpost, &root)?,
+        Some(_) => Vec::new(),
+    };
     let run = page::Run {
+        speed,
         seed: options.seed,
         jobs: options.jobs,
         elapsed: started.elapsed(),
         version: version(&vpost)?,
     };
+    if options.keep.is_none() {
+        std::fs::remove_dir_all(&temporary)?;
+    }
     let page = page::page(&found, &run);
     if options.only.is_none() {
         std::fs::write(&options.page, &page)
@@ -159,11 +166,9 @@ fn examine(vpost: &Path, folder: &Path, case: Case) -> anyhow::Result<Outcome> {
     if let Some(id) = &case.without {
         command.args(["--without", id]);
     }
-    let started = Instant::now();
-    let failure = attempt(command, folder, "diagnose")?;
-    let seconds = started.elapsed().as_secs_f64();
+    let ran = attempt(command, folder, "diagnose")?;
     let path = folder.join("answer.json");
-    let answer = match failure {
+    let answer = match ran.failure {
         Some(words) => Err(words),
         None => read(&path),
     };
@@ -171,7 +176,7 @@ fn examine(vpost: &Path, folder: &Path, case: Case) -> anyhow::Result<Outcome> {
         Ok(answer) => transport::check(vpost, folder, &case, answer),
         Err(_) => None,
     };
-    Ok(Outcome { case, answer, seconds, transport })
+    Ok(Outcome { case, answer, seconds: ran.seconds, transport })
 }
 
 fn read(path: &Path) -> Result<Answer, String> {
@@ -179,10 +184,20 @@ fn read(path: &Path) -> Result<Answer, String> {
     serde_json::from_str(&text).map_err(|e| format!("the JSON is not of the contract: {e}"))
 }
 
-/// Runs a command to its end, its output in files of that `name`; what went wrong, or `None`.
-fn attempt(mut command: Command, folder: &Path, name: &str) -> anyhow::Result<Option<String>> {
+/// How a command ended.
+struct Ran {
+    /// What went wrong.
+    failure: Option<String>,
+    seconds: f64,
+    /// Largest resident memory seen, MiB; `None` where the system does not tell.
+    peak_mib: Option<f64>,
+}
+
+/// Runs a command to its end, its output in files of that `name`.
+fn attempt(mut command: Command, folder: &Path, name: &str) -> anyhow::Result<Ran> {
     let errors = folder.join(format!("{name}.err"));
     let output = folder.join(format!("{name}.out"));
+    let started = Instant::now();
     let mut child = command
         .current_dir(folder)
         .env("RAYON_NUM_THREADS", "1")
@@ -191,8 +206,8 @@ fn attempt(mut command: Command, folder: &Path, name: &str) -> anyhow::Result<Op
         .stderr(std::fs::File::create(&errors)?)
         .spawn()
         .context("cannot start the command under test")?;
-    let started = Instant::now();
     let mut pause = Duration::from_millis(1);
+    let mut peak_mib = None;
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -200,15 +215,28 @@ fn attempt(mut command: Command, folder: &Path, name: &str) -> anyhow::Result<Op
         if started.elapsed() > PATIENCE {
             child.kill()?;
             child.wait()?;
-            return Ok(Some(format!("no answer after {} s", PATIENCE.as_secs())));
+            let failure = Some(format!("no answer after {} s", PATIENCE.as_secs()));
+            return Ok(Ran { failure, seconds: PATIENCE.as_secs_f64(), peak_mib });
         }
+        // The system keeps the high-water mark itself; only the last pause before the end is not seen.
+        peak_mib = peak_mib_of(child.id()).or(peak_mib);
         std::thread::sleep(pause);
         pause = (pause * 2).min(Duration::from_millis(10));
     };
+    let seconds = started.elapsed().as_secs_f64();
     if status.success() {
-        return Ok(None);
+        return Ok(Ran { failure: None, seconds, peak_mib });
     }
     let words = std::fs::read_to_string(errors).unwrap_or_default();
     let first = words.lines().next().unwrap_or("no message").to_owned();
-    Ok(Some(format!("exit {}: {first}", status.code().map_or("by signal".into(), |c| c.to_string()))))
+    let failure = format!("exit {}: {first}", status.code().map_or("by signal".into(), |c| c.to_string()));
+    Ok(Ran { failure: Some(failure), seconds, peak_mib })
+}
+
+/// High-water mark of a process's resident memory, as Linux tells it.
+fn peak_mib_of(process: u32) -> Option<f64> {
+    let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(kib / 1024.0)
 }

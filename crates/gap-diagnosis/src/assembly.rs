@@ -6,6 +6,7 @@ use crate::align::{aligned, rms, row_lengths};
 use crate::diagnose::Options;
 use crate::diagnosis::{Cause, Diagnosis, Gap, Leftover, Lookalike, Verdict};
 use crate::engine::{Explained, f_tail};
+use crate::library::Library;
 use crate::linear::explained;
 use crate::locate::places;
 use crate::noise::{Noise, NoiseSource, estimate};
@@ -37,7 +38,7 @@ pub(crate) struct Ranked {
 
 impl Ranked {
     /// Rivals that the data cannot tell from it.
-    fn told(&self) -> impl Iterator<Item = &Rival> {
+    pub(crate) fn told(&self) -> impl Iterator<Item = &Rival> {
         self.rivals.iter().filter(|r| r.cannot_be_told())
     }
 
@@ -130,10 +131,7 @@ impl<'a> Assembly<'a> {
 
     /// Positions of a part's columns in the solution.
     pub(crate) fn positions(&self, place: usize) -> std::ops::Range<usize> {
-        let length = |p: &Part| self.model.library.candidates[p.candidate].variants[p.variant].columns.len();
-        let before: usize = self.model.parts.iter().take(place).map(length).sum();
-        let start = self.model.library.nuisances + before;
-        start..start + length(&self.model.parts[place])
+        positions(&self.model.library, &self.model.parts, place)
     }
 
     /// Columns of the measuring frame: the first six.
@@ -190,6 +188,7 @@ impl<'a> Assembly<'a> {
         };
         let verdict = verdict(&evidence);
         let mut notes = self.notes();
+        notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
         let sentence = if unsure {
             notes.extend(causes.iter().map(seen_but_unsure));
@@ -322,6 +321,13 @@ impl<'a> Assembly<'a> {
             })
             .collect()
     }
+}
+
+/// Positions of a part's columns among those of a model, the set-up's first.
+pub(crate) fn positions(library: &Library, parts: &[Part], place: usize) -> std::ops::Range<usize> {
+    let length = |p: &Part| library.candidates[p.candidate].variants[p.variant].columns.len();
+    let start = library.nuisances + parts.iter().take(place).map(length).sum::<usize>();
+    start..start + length(&parts[place])
 }
 
 /// What a file that cannot carry a correction hints at.

@@ -3,7 +3,6 @@
 use machine_model::effects::{EffectKind, Shape};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::crossval::{Folding, Folds};
 use crate::fit::Solution;
 use crate::gram::{Gram, Kept, Source};
 use crate::library::{Library, Variant, narrowest_mm};
@@ -11,7 +10,7 @@ use crate::noise::outliers;
 use crate::observation::{Measurements, Scalar};
 use crate::propose::{self, Pitches};
 use crate::refine::Stage;
-use crate::search::{Move, next_move, without};
+use crate::search::{Move, next_move};
 use crate::space::{Fit, Part, Space};
 use crate::term::Term;
 
@@ -172,17 +171,18 @@ fn explain_once(
     }
 }
 
-struct State<'a> {
-    data: &'a Measurements,
-    source: &'a Source<'a>,
+/// A search under way.
+pub(crate) struct State<'a> {
+    pub(crate) data: &'a Measurements,
+    pub(crate) source: &'a Source<'a>,
     without: &'a [EffectKind],
-    library: Library,
+    pub(crate) library: Library,
     kept: Kept,
     pitches: [Pitches; 3],
-    gram: Gram,
-    space: Space,
-    parts: Vec<Part>,
-    fit: Fit,
+    pub(crate) gram: Gram,
+    pub(crate) space: Space,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) fit: Fit,
     refused: Option<Refused>,
 }
 
@@ -400,116 +400,6 @@ impl<'a> State<'a> {
             indices.push(index);
         }
         shape.map(|s| (s, indices))
-    }
-
-    /// Why an effect that scores must not be named; `None` where it may.
-    fn objection(&self, part: Part, fit: &Fit) -> Option<Refused> {
-        let mut with = self.parts.clone();
-        with.push(part);
-        let kind = self.library.candidates[part.candidate].kind;
-        let (before, rank_before) = self.residual(&self.parts, fit.level);
-        let gain = (before - fit.residual).max(0.0);
-        let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
-        let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
-        let effective = self.effective_degrees(part, fit.level, degrees);
-        let ratio = gain / columns / (fit.residual / degrees).max(1e-12);
-        // Once with everything, once with the runs' offsets left free: within the runs no drift between
-        // them can deceive, and the better of two tests costs a factor of two.
-        let p = 2.0
-            * self.library.questions(part.candidate)
-            * f_tail(ratio, columns, effective).min(self.within_runs(&with));
-        let share = gain / before.max(1e-12);
-        let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
-        if p > LEVEL {
-            return refuse("the F test");
-        }
-        let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
-        if gain / reducible < LEAST_SHARE {
-            return refuse("its share is below 2 % of what can be explained");
-        }
-        if !self.predicts(&with, fit.level) {
-            return refuse("it does not predict lines it has not seen");
-        }
-        None
-    }
-
-    fn residual(&self, parts: &[Part], level: usize) -> (f64, usize) {
-        let columns = self.space.columns(&self.library, parts);
-        let (explained, rank) =
-            crate::linear::explained(self.space.products(level), &columns, self.space.reference());
-        ((self.space.total(level) - explained).max(0.0), rank)
-    }
-
-    /// F test of the last part with the runs' offsets left free.
-    fn within_runs(&self, with: &[Part]) -> f64 {
-        let level = crate::space::RHO_GRID.len() - 1;
-        let (before, rank_before) = self.residual(&with[..with.len() - 1], level);
-        let (after, rank_after) = self.residual(with, level);
-        let columns = rank_after.saturating_sub(rank_before) as f64;
-        let degrees = self.space.degrees - 3.0 * self.source.runs as f64 - rank_after as f64;
-        if columns < 1.0 || degrees < 1.0 {
-            return 1.0;
-        }
-        f_tail((before - after) / columns / (after / degrees).max(1e-12), columns, degrees)
-    }
-
-    /// Degrees of freedom of the noise that an effect competes with: few where only the differences
-    /// between runs show it (Satterthwaite's combination of within and between).
-    fn effective_degrees(&self, part: Part, level: usize, within: f64) -> f64 {
-        let columns = self.space.columns(&self.library, &[part]);
-        let last_level = crate::space::RHO_GRID.len() - 1;
-        let information = |l: usize| -> f64 {
-            columns
-                .iter()
-                .map(|c| self.space.products(l)[(*c, *c)] / self.space.reference()[*c].max(1e-300))
-                .sum()
-        };
-        let (here, free) = (information(level), information(last_level));
-        let share = if here > 0.0 { (free / here).clamp(0.0, 1.0) } else { 1.0 };
-        let between = (self.source.runs as f64 - 2.0).max(1.0);
-        1.0 / (share * share / within + (1.0 - share) * (1.0 - share) / between)
-    }
-
-    /// True where the last of `with` helps to predict lines left out.
-    fn predicts(&self, with: &[Part], level: usize) -> bool {
-        let columns = model_columns(&self.library, with);
-        let terms: Vec<Term> = columns.iter().map(|c| self.library.terms[*c]).collect();
-        let nuisances = self.library.nuisances;
-        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
-        let own =
-            with.last().map_or(0, |p| self.library.candidates[p.candidate].variants[p.variant].columns.len());
-        let (base, added) = all.split_at(all.len() - own);
-        let rho = self.space.rho(level);
-        let passes = |folding| {
-            let folds = Folds::new(&terms, nuisances, rho, self.source, folding);
-            let (gain, error) = folds.gain(base, &all);
-            (gain > error, folds.concentration(added))
-        };
-        let (passed, concentration) = passes(Folding::Runs);
-        let few = self.source.runs < 8 || concentration > 0.3;
-        passed || (few && passes(Folding::Stretches).0)
-    }
-
-    /// Takes out causes that others have made superfluous.
-    fn prune(&mut self) {
-        loop {
-            let level = self.fit.level;
-            let (full, _) = self.residual(&self.parts, level);
-            let reducible = (self.space.total(level) - full).max(1e-12);
-            let weakest = (0..self.parts.len())
-                .map(|place| {
-                    let rest = without(&self.parts, place);
-                    ((self.residual(&rest, level).0 - full) / reducible, rest)
-                })
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            match weakest {
-                Some((share, rest)) if share < LEAST_SHARE && self.parts.len() > 1 => {
-                    self.parts = rest;
-                    self.fit = self.space.fit(&self.library, &self.parts);
-                }
-                _ => break,
-            }
-        }
     }
 }
 

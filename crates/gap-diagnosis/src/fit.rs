@@ -57,6 +57,16 @@ impl Gram {
         (0..self.products.nrows()).map(|i| self.products[(i, i)]).collect()
     }
 
+    /// Coefficients of all columns under a run-offset ratio.
+    #[must_use]
+    pub(crate) fn coefficients(&self, rho: f64) -> Vec<f64> {
+        let (whitened, _) = self.whitened(rho);
+        let count = self.terms.len();
+        let columns: Vec<usize> = (0..count).collect();
+        let b: Vec<f64> = columns.iter().map(|c| whitened[(*c, count)]).collect();
+        Factor::new(&whitened, &columns, &self.squares()).solve(&b, count).iter().copied().collect()
+    }
+
     /// Solves for all columns under a run-offset ratio.
     #[must_use]
     pub(crate) fn solve(&self, rho: f64, source: &Source<'_>) -> Solution {

@@ -5,12 +5,12 @@ use machine_model::{Vector, Volume};
 use crate::align::FREE_OFFSETS;
 use crate::assembly::Assembly;
 use crate::crossval::{Folding, Folds};
-use crate::diagnosis::Shrinkage;
+use crate::diagnosis::{Cause, Shrinkage};
 use crate::engine::{model_columns, source};
-use crate::gram::Gram;
+use crate::gram::{Gram, Source};
 use crate::noise::tail_factor;
 use crate::observation::{Measurements, Row, Scalar};
-use crate::shrinkage::{Strength, transported};
+use crate::shrinkage::{Alternative, LEAST_WEIGHT, Strength, transported};
 use crate::space::Part;
 use crate::term::Term;
 
@@ -84,6 +84,57 @@ impl Assembly<'_> {
         }
     }
 
+    /// Every rival of the first causes in the place of its cause, on other commands.
+    fn alternatives(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Vec<Alternative> {
+        let model = self.model;
+        let named = self.taken_off(count);
+        let source = source(data, scalars);
+        let scale = 1.0 / (scalars.len().max(1) as f64 * self.noise_variance().max(1e-12));
+        let mut found = Vec::new();
+        for ranked in self.ordered.iter().take(count) {
+            for rival in ranked.told() {
+                let weight = units::math::exp(-0.5 * rival.behind.max(0.0));
+                if weight <= LEAST_WEIGHT {
+                    continue;
+                }
+                let mut parts = model.parts.clone();
+                parts[ranked.place] = rival.part;
+                let sub = model.gram.select(&model_columns(&model.library, &parts));
+                let values = sub.coefficients(model.solution.rho);
+                let first = self.ordered.iter().take(count).map(|r| r.place);
+                let instead = first.flat_map(|place| {
+                    crate::assembly::positions(&model.library, &parts, place)
+                        .map(|i| (sub.terms[i], values[i]))
+                });
+                let (instead, minus): (Vec<_>, Vec<_>) =
+                    (instead.clone().collect(), instead.map(|(t, v)| (t, -v)).collect());
+                let difference: Vec<_> = named.iter().copied().chain(minus).collect();
+                let square = |terms: &[(Term, f64)]| scale * self.aligned_square(terms, &source);
+                found.push(Alternative { weight, square: square(&instead), difference: square(&difference) });
+            }
+        }
+        found
+    }
+
+    /// Square of what some terms displace, set-up and run offsets of any size taken out, µm².
+    fn aligned_square(&self, terms: &[(Term, f64)], source: &Source<'_>) -> f64 {
+        let displaced: Vec<Scalar> = source
+            .scalars
+            .iter()
+            .map(|s| {
+                let row = &source.rows[s.row];
+                let sum: f64 = terms.iter().map(|(t, v)| v * t.value(s, row, source.geometry)).sum();
+                Scalar { gap_um: sum, ..*s }
+            })
+            .collect();
+        let source = Source { scalars: &displaced, ..*source };
+        let (whitened, _) = Gram::new(self.set_up_terms().to_vec(), &source).whitened(FREE_OFFSETS);
+        let columns: Vec<usize> = (0..whitened.nrows() - 1).collect();
+        let squares: Vec<f64> = columns.iter().map(|i| whitened[(*i, *i)]).collect();
+        let last = columns.len();
+        (whitened[(last, last)] - crate::linear::explained(&whitened, &columns, &squares).0).max(0.0)
+    }
+
     /// Mean square of the residual on unseen lines and its standard error, in units of the noise variance.
     ///
     /// With few runs a left-out run or stretch is an extrapolation, not a new line of the same kind: then the
@@ -118,6 +169,49 @@ impl Assembly<'_> {
         (m, (spread / (each.len() as f64 - 1.0).max(1.0) / each.len().max(1) as f64).sqrt())
     }
 
+    /// What the reader of a forecast for other commands must know: where they lie outside what was measured, and
+    /// where the rivals of a cause would have it otherwise.
+    pub(crate) fn forecast_notes(&self, holdout: &Measurements, causes: &[Cause]) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut beyond: Vec<&str> = Vec::new();
+        let values: [(&'static str, fn(&Row) -> Option<f64>); 6] = [
+            ("X", |r| Some(r.command.linear_mm.x)),
+            ("Y", |r| Some(r.command.linear_mm.y)),
+            ("Z", |r| Some(r.command.linear_mm.z)),
+            ("the tool's length", |r| Some(r.command.tool_mm.z)),
+            ("the feed", |r| r.conditions.feed_mm_min),
+            ("the load", |r| r.conditions.load_kg),
+        ];
+        for (name, value) in values {
+            let ends = |data: &Measurements| {
+                let known = data.rows.iter().filter_map(value);
+                known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+            };
+            let ((low, high), (from, to)) = (ends(self.data), ends(holdout));
+            // A tenth of the range beyond its ends is still the same neighbourhood.
+            let slack = 0.1 * (high - low) + 1e-6;
+            if from < low - slack || to > high + slack {
+                beyond.push(name);
+            }
+        }
+        if !beyond.is_empty() {
+            notes.push(format!(
+                "The hold-out lies outside what was measured in {}: the predicted shrinkage is an extrapolation there.",
+                beyond.join(", ")
+            ));
+        }
+        if let Some(open) = causes.iter().find(|c| {
+            !c.cannot_be_told_from.is_empty() && c.shrink_predicted.high - c.shrink_predicted.low > 0.2
+        }) {
+            notes.push(format!(
+                "Whether {} or {} is the cause decides how far the gap shrinks on the hold-out: settle that before correcting there.",
+                open.effect,
+                open.cannot_be_told_from.join(", ")
+            ));
+        }
+        notes
+    }
+
     pub(crate) fn shrink(&self, count: usize, holdout: Option<&Measurements>) -> Shrinkage {
         let model = self.model;
         let (m, m_error) = self.misfit(count);
@@ -126,17 +220,20 @@ impl Assembly<'_> {
             // A residual does not contain the uncertainty of the numbers that were fitted to it.
             data.spread = 0.0;
         }
-        let target = match holdout {
+        let (mut target, rivals) = match holdout {
             Some(h) if h.has_magnitudes() => {
                 let estimate = crate::align::displacements(h, &self.taken_off(count));
-                Some(self.strength(h, &h.scalars(Some(&estimate)), count))
+                (self.strength(h, &h.scalars(Some(&estimate)), count), Vec::new())
             }
-            Some(h) => Some(self.strength(h, &h.scalars(None), count)),
-            None => None,
+            Some(h) => {
+                let scalars = h.scalars(None);
+                (self.strength(h, &scalars, count), self.alternatives(h, &scalars, count))
+            }
+            // On the rows themselves rivals do the same: that is why they are rivals.
+            None => (data, Vec::new()),
         };
-        let mut target = target.unwrap_or(data);
         target.noise *=
             tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
-        transported(m, m_error, &data, &target)
+        transported(m, m_error, &data, &target, &rivals)
     }
 }

@@ -27,12 +27,12 @@ mod refine;
 mod remedy;
 mod rivals;
 mod search;
-
 mod sentence;
 mod shrinkage;
 mod space;
 mod structure;
 mod term;
+mod trial;
 mod unseen;
 mod verdict;
 

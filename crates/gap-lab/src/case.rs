@@ -132,6 +132,12 @@ struct Attempt {
 const STRICT_ATTEMPTS: u64 = 40;
 
 impl CaseSpec {
+    /// Name of the case: kind and place in the catalogue.
+    #[must_use]
+    pub fn id(&self) -> String {
+        format!("{}-{:04}", self.kind.word(), self.index)
+    }
+
     /// Makes the case. The same specification gives the same bytes.
     ///
     /// # Panics
@@ -297,7 +303,7 @@ impl CaseSpec {
         let fresh_noise = draw(fresh_kind, offset, &fresh, dice);
         let field: Vec<[f64; 3]> =
             fresh.rows.iter().map(|r| a.machine.displacement(r, &contribution(r)).map(|d| d * 1e3)).collect();
-        let id = format!("{}-{:04}", self.kind.word(), self.index);
+        let id = self.id();
         let tool = a.layout.rows.first().map_or([0.0; 3], |r| r.tool);
         let text = |layout: &Layout, noise: &[[f64; 3]], prefix: &str| {
             files::measurement(&a.machine, layout, &read(layout, noise), self.observation, declared, prefix)

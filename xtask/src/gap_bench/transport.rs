@@ -59,7 +59,7 @@ pub(crate) fn check(vpost: &Path, folder: &Path, case: &Case, answer: &Answer) -
 fn predict(vpost: &Path, folder: &Path, profile: &str) -> Option<Vec<[f64; 3]>> {
     let mut command = Command::new(vpost);
     command.args(["predict", "points.csv", "-m", profile]);
-    if attempt(command, folder, "predict").ok()?.is_some() {
+    if attempt(command, folder, "predict").ok()?.failure.is_some() {
         return None;
     }
     let text = std::fs::read_to_string(folder.join("predict.out")).ok()?;
