@@ -172,9 +172,10 @@ impl Assembly<'_> {
     /// What the reader of a forecast for other commands must know: where they lie outside what was measured, and
     /// where the rivals of a cause would have it otherwise.
     pub(crate) fn forecast_notes(&self, holdout: &Measurements, causes: &[Cause]) -> Vec<String> {
+        type Value = fn(&Row) -> Option<f64>;
         let mut notes = Vec::new();
         let mut beyond: Vec<&str> = Vec::new();
-        let values: [(&'static str, fn(&Row) -> Option<f64>); 6] = [
+        let values: [(&str, Value); 6] = [
             ("X", |r| Some(r.command.linear_mm.x)),
             ("Y", |r| Some(r.command.linear_mm.y)),
             ("Z", |r| Some(r.command.linear_mm.z)),

@@ -32,6 +32,8 @@ mod shrinkage;
 mod space;
 mod structure;
 mod term;
+#[cfg(test)]
+mod tests;
 mod trial;
 mod unseen;
 mod verdict;

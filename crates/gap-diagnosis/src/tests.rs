@@ -1,0 +1,298 @@
+//! The parts of the diagnosis on small measurements whose truth is written beside them.
+
+use machine_model::effects::{Conditions, EffectGeometry, EffectKind, Shape};
+use machine_model::{Command, Vector};
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::engine::{LEVEL, explain, f_tail, source};
+use crate::gram::Gram;
+use crate::library::Library;
+use crate::noise::{NoiseSource, estimate, outliers};
+use crate::observation::{Measurements, Reading, Row, Scalar};
+use crate::space::{RHO_GRID, Space};
+use crate::term::Term;
+use crate::{Options, Verdict, diagnose};
+
+/// How the plan of these tests is measured.
+#[derive(Clone, Copy)]
+struct Plan {
+    feeds: &'static [f64],
+    tools_mm: &'static [f64],
+    sigma_um: f64,
+    run_sigma_um: f64,
+    seed: u64,
+}
+
+const GOOD: Plan =
+    Plan { feeds: &[500.0, 3000.0], tools_mm: &[-80.0, -200.0], sigma_um: 1.0, run_sigma_um: 0.4, seed: 1 };
+
+/// Four lines along every axis of a cube of 400 mm, both ways, every line twice, each line a run.
+fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
+    let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
+    // The sum of twelve uniform numbers is normal enough up to three sigma.
+    let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+    let (mut rows, mut runs, mut time_s) = (Vec::new(), Vec::new(), 0.0);
+    for line in 0..12 {
+        let (axis, corner) = (line % 3, line / 3);
+        let offset = Vector::new(normal(), normal(), normal()) * plan.run_sigma_um;
+        for pass in 0..4 {
+            for k in 0..17 {
+                // Uneven steps: even ones cannot tell a period from a curve.
+                let along = if pass % 2 == 0 { k } else { 16 - k };
+                let place = 25.0 * f64::from(along) + 7.0 * (f64::from(along) * 0.618).fract();
+                let mut at = Vector::new(40.0, 40.0, 40.0);
+                at[(axis + 1) % 3] += 300.0 * (corner & 1) as f64;
+                at[(axis + 2) % 3] += 300.0 * (corner >> 1) as f64;
+                at[axis] = place;
+                let mut direction = [0; 3];
+                direction[axis] = if pass % 2 == 0 { 1 } else { -1 };
+                time_s += 5.0;
+                let mut row = Row {
+                    run: line,
+                    command: Command {
+                        linear_mm: at,
+                        rotary_rad: Vector::zeros(),
+                        tool_mm: Vector::new(0.0, 0.0, plan.tools_mm[corner % plan.tools_mm.len()]),
+                        direction,
+                    },
+                    conditions: Conditions {
+                        time_s: Some(time_s),
+                        feed_mm_min: Some(plan.feeds[pass / 2 % plan.feeds.len()]),
+                        ..Conditions::default()
+                    },
+                    predicted_mm: Vector::zeros(),
+                    u_um: None,
+                    reading: Reading::Magnitude(0.0),
+                    line: rows.len() as u64 + 2,
+                };
+                let gap = field_um(&row) + offset + Vector::new(normal(), normal(), normal()) * plan.sigma_um;
+                row.reading = Reading::Displacement([Some(gap.x), Some(gap.y), Some(gap.z)]);
+                rows.push(row);
+            }
+        }
+        runs.push(format!("r{line}"));
+    }
+    Measurements { runs, rows, geometry: EffectGeometry::default() }
+}
+
+fn nothing(_: &Row) -> Vector {
+    Vector::zeros()
+}
+
+fn backlash_um(row: &Row) -> Vector {
+    Vector::new(-4.0 * f64::from(row.command.direction[0]), 0.0, 0.0)
+}
+
+fn names(answer: &crate::Diagnosis) -> Vec<&str> {
+    answer.causes.iter().map(|c| c.effect.as_str()).collect()
+}
+
+#[test]
+fn repeats_and_neighbours_find_the_noise_and_not_the_curve() {
+    let plan = Plan { feeds: &[1000.0], ..GOOD };
+    let curve = |row: &Row| Vector::new(0.0, 0.0, 1e-3 * (row.command.linear_mm.x - 200.0).powi(2));
+    let data = measured(plan, curve);
+    let scalars = data.scalars(None);
+    let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+    let noise = estimate(&data.rows, &scalars, &values).unwrap();
+    assert_eq!(noise.source, NoiseSource::Repeats);
+    // 12 runs × 34 places × 3 components; the deviation of s is sigma / sqrt(2 · degrees), times 4.
+    assert!((noise.degrees - 12.0 * 34.0 * 3.0).abs() < 0.5, "{}", noise.degrees);
+    assert!((noise.variance.sqrt() - 1.0).abs() < 4.0 / (2.0 * noise.degrees).sqrt(), "{noise:?}");
+    // Two feeds: no command is measured twice.
+    let data = measured(GOOD, curve);
+    let scalars = data.scalars(None);
+    let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+    let noise = estimate(&data.rows, &scalars, &values).unwrap();
+    assert_eq!(noise.source, NoiseSource::Neighbours);
+    // The second difference of the curve over 25 mm adds 2e-3 · 25² / 2 = 0.6 µm to a third of the equations.
+    assert!((0.85..1.3).contains(&noise.variance.sqrt()), "{noise:?}");
+}
+
+#[test]
+fn one_wrong_row_is_an_outlier_and_three_together_are_not() {
+    let mut data = measured(GOOD, nothing);
+    let wrong = |row: &mut Row| {
+        if let Reading::Displacement([x, ..]) = &mut row.reading {
+            *x = x.map(|v| v + 12.0);
+        }
+    };
+    wrong(&mut data.rows[30]);
+    (100..103).for_each(|k| wrong(&mut data.rows[k]));
+    let scalars = data.scalars(None);
+    let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+    assert_eq!(outliers(&data.rows, &scalars, &values), [30]);
+}
+
+#[test]
+fn whitening_is_the_inverse_of_the_covariance() {
+    let data = measured(GOOD, backlash_um);
+    // Two runs suffice, and a matrix of 60 is soon inverted.
+    let scalars: Vec<Scalar> =
+        data.scalars(None).into_iter().filter(|s| data.rows[s.row].run < 2 && s.row % 7 == 0).collect();
+    let data_source =
+        crate::gram::Source { rows: &data.rows, scalars: &scalars, runs: 2, geometry: &data.geometry };
+    let terms = vec![
+        Term::SetupShift(0),
+        Term::SetupRotation(2),
+        Term::Effect { kind: EffectKind::Backlash(0), index: 0, shape: Shape::default() },
+    ];
+    let rho = 0.7;
+    let n = scalars.len();
+    let covariance = DMatrix::from_fn(n, n, |i, j| {
+        let (a, b) = (&scalars[i], &scalars[j]);
+        let shared =
+            if data.rows[a.row].run == data.rows[b.row].run { rho * a.along.dot(&b.along) } else { 0.0 };
+        shared + if i == j { 1.0 } else { 0.0 }
+    });
+    let column = |k: usize| {
+        DVector::from_fn(n, |i, _| {
+            terms.get(k).map_or(scalars[i].gap_um, |t| {
+                t.value(&scalars[i], &data.rows[scalars[i].row], &data.geometry)
+            })
+        })
+    };
+    let (found, log_determinant) = Gram::new(terms.clone(), &data_source).whitened(rho);
+    let inverse = covariance.clone().try_inverse().unwrap();
+    for i in 0..4 {
+        for j in 0..4 {
+            let expected = column(i).dot(&(&inverse * column(j)));
+            assert!((found[(i, j)] - expected).abs() < 1e-9 * expected.abs().max(1.0), "{i} {j}");
+        }
+    }
+    assert!((log_determinant - units::math::ln(covariance.determinant())).abs() < 1e-9);
+}
+
+#[test]
+fn columns_added_later_give_the_same_space_as_columns_there_from_the_start() {
+    let data = measured(GOOD, backlash_um);
+    let scalars = data.scalars(None);
+    let source = source(&data, &scalars);
+    let library = Library::new(&data, &[]);
+    let (early, late) = library.terms.split_at(library.terms.len() - 40);
+    let mut kept = crate::gram::Kept::default();
+    let mut gram = Gram::new(Vec::new(), &source);
+    gram.extend(early.to_vec(), &source, Some(&mut kept));
+    let mut space = Space::new(&gram, library.nuisances);
+    gram.extend(late.to_vec(), &source, Some(&mut kept));
+    space.grow(&gram);
+    let whole = Space::new(&Gram::new(library.terms.clone(), &source), library.nuisances);
+    for level in 0..RHO_GRID.len() {
+        let (a, b) = (space.products(level), whole.products(level));
+        assert_eq!(a.shape(), b.shape());
+        let scale = |i: usize, j: usize| (whole.reference()[i] * whole.reference()[j]).sqrt();
+        for i in 0..a.nrows() {
+            for j in 0..a.ncols() {
+                assert!((a[(i, j)] - b[(i, j)]).abs() <= 1e-9 * scale(i, j).max(1e-9), "{level} {i} {j}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_is_found_at_its_time() {
+    let step =
+        |row: &Row| Vector::new(0.0, if row.conditions.time_s > Some(1503.0) { 3.0 } else { 0.0 }, 0.0);
+    let answer = diagnose(&measured(Plan { run_sigma_um: 0.0, ..GOOD }, step), None, &Options::default());
+    assert_eq!((answer.verdict, names(&answer)), (Verdict::Named, vec!["step.Y"]), "{}", answer.sentence);
+    let value = |name: &str| answer.causes[0].parameters.iter().find(|p| p.name == name).unwrap();
+    // Rows lie 5 s apart.
+    assert!((value("time_s").value - 1503.0).abs() < 5.0, "{:?}", value("time_s"));
+    assert!((value("shift_um").value - 3.0).abs() < value("shift_um").u95.unwrap() * 2.0);
+}
+
+/// Places 25 mm apart show a period of 40 mm as a slow curve: it is found, and because it could be any curve it is a rival
+/// and never a name.
+#[test]
+fn a_period_is_found_and_not_named_where_places_are_too_far_apart() {
+    let wave = |row: &Row| {
+        Vector::new(3.0 * units::math::sin(std::f64::consts::TAU * row.command.linear_mm.x / 40.3), 0.0, 0.0)
+    };
+    let data = measured(GOOD, wave);
+    let scalars = data.scalars(None);
+    let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+    let source = source(&data, &scalars);
+    let (found, asked) = crate::propose::Pitches::new(&source, 0).best(&source, &values, 0);
+    // 400 mm of travel resolve 40.3² / 400 = 4 mm between neighbours of equal power; a tenth of that is enough here.
+    assert!((found[0] - 40.3).abs() < 0.5 && asked > 17, "{found:?} of {asked}");
+    assert!(crate::propose::is_coarse(&source, 0, 40.3));
+    let answer = diagnose(&data, None, &Options::default());
+    assert!(!names(&answer).contains(&"pitch.X") && answer.verdict != Verdict::Named, "{}", answer.sentence);
+    assert!(answer.causes.iter().any(|c| c.cannot_be_told_from.iter().any(|r| r == "pitch.X")));
+}
+
+/// A frame that is turned moves the tip: with two tools of different length a set-up fitted to the axis commands would
+/// leave micrometres, and name a cause for them.
+#[test]
+fn a_set_up_acts_on_the_tip() {
+    let turned = |row: &Row| {
+        let tip = row.command.linear_mm + row.command.tool_mm;
+        Vector::new(30.0, -20.0, 12.0) + Vector::new(0.08, -0.05, 0.06).cross(&tip)
+    };
+    let answer = diagnose(&measured(GOOD, turned), None, &Options::default());
+    assert_eq!(answer.verdict, Verdict::NoGap, "{}", answer.sentence);
+    let expected = [80.0, -50.0, 60.0];
+    let close = |(found, wanted): (&f64, &f64)| (found - wanted).abs() < 3.0;
+    assert!(answer.setup.rotation_urad.iter().zip(&expected).all(close), "{:?}", answer.setup);
+}
+
+#[test]
+fn one_feed_cannot_tell_lag_from_backlash_and_two_can() {
+    let two = diagnose(&measured(GOOD, backlash_um), None, &Options::default());
+    assert_eq!((two.verdict, names(&two)), (Verdict::Named, vec!["backlash.X"]), "{}", two.sentence);
+    let far = two.causes[0].nearest.iter().find(|n| n.effect == "servo-lag.X").unwrap();
+    assert!(far.correlation < crate::rivals::ALIKE, "{far:?}");
+    let one = diagnose(&measured(Plan { feeds: &[1000.0], ..GOOD }, backlash_um), None, &Options::default());
+    assert_eq!(one.verdict, Verdict::Ambiguous, "{}", one.sentence);
+    let cause = &one.causes[0];
+    let set: Vec<&str> =
+        std::iter::once(&cause.effect).chain(&cause.cannot_be_told_from).map(String::as_str).collect();
+    assert!(set.contains(&"backlash.X") && set.contains(&"servo-lag.X"), "{set:?}");
+    let alike =
+        cause.nearest.iter().find(|n| n.effect.ends_with("lag.X") || n.effect == "backlash.X").unwrap();
+    assert!(alike.correlation > 0.999, "{alike:?}");
+}
+
+/// Weighted Bonferroni: the level is shared by the effects, and each effect's by its forms.
+#[test]
+fn every_question_costs_its_share_of_the_level() {
+    let data = measured(GOOD, backlash_um);
+    let library = Library::new(&data, &[]);
+    let spent: f64 = (0..library.candidates.len())
+        .map(|c| library.candidates[c].asked() as f64 * LEVEL / library.questions(c))
+        .sum();
+    assert!((spent - LEVEL).abs() < 1e-12, "{spent}");
+    let model = explain(&data, &data.scalars(None), &[]);
+    assert_eq!(model.parts.len(), 1);
+    // F(1, n) of t²: two-sided Student; 2.0² at 60 degrees is 0.0500.
+    assert!((f_tail(4.0, 1.0, 60.0) - 0.0500).abs() < 1e-4);
+    assert!((f_tail(0.0, 1.0, 60.0) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn noise_is_no_gap_for_any_draw() {
+    for seed in 10..20 {
+        let answer = diagnose(&measured(Plan { seed, ..GOOD }, nothing), None, &Options::default());
+        assert_eq!(answer.verdict, Verdict::NoGap, "{seed}: {}", answer.sentence);
+    }
+}
+
+#[test]
+fn the_same_rows_give_the_same_answer() {
+    let data = measured(GOOD, backlash_um);
+    let holdout = measured(Plan { seed: 2, ..GOOD }, backlash_um);
+    let say = || format!("{:?}", diagnose(&data, Some(&holdout), &Options::default()));
+    assert_eq!(say(), say());
+}
+
+/// Predicted and achieved shrinkage on lines that were not fitted.
+#[test]
+fn the_forecast_holds_on_fresh_lines() {
+    let data = measured(GOOD, backlash_um);
+    let holdout = measured(Plan { seed: 2, ..GOOD }, backlash_um);
+    let answer = diagnose(&data, Some(&holdout), &Options::default());
+    let (promised, kept) = (answer.causes[0].shrink_predicted, answer.holdout.unwrap().shrink);
+    assert!((promised.mid - kept).abs() < 0.05, "{promised:?} {kept}");
+}
