@@ -87,14 +87,6 @@ impl Notices {
     }
 }
 
-/// A block under block delete that would become several.
-pub(crate) fn half_skipped(block: &Block<'_>, pieces: usize) -> Diagnostic {
-    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
-    Diagnostic::error(MUST_NOT_SPLIT, format!("this motion would need {pieces} blocks"))
-        .at(whole, "and may be skipped: a switch thrown between two of them leaves half a motion")
-        .help("take the block delete away, jump over the motion instead, or accept more with `--tolerance`")
-}
-
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<Diagnostic> {
     let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Motion};
 use units::decimal::Decimal;
 
-use super::notices::{Notices, half_skipped, refusal};
+use super::notices::{Notices, refusal};
 use super::{Figures, Job};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -217,9 +217,6 @@ impl Pass<'_> {
             self.state.corrector = before;
             corrections.clear();
             self.repeated(block, context, letters, motions, &mut pieces, &mut corrections)?;
-        }
-        if context.skip && pieces.len() > 1 {
-            return Err(vec![half_skipped(block, pieces.len())]);
         }
         let length = self.out.len();
         if untouched {
