@@ -3,7 +3,7 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 51] = [
+pub const ACTION_NAMES: [&str; 53] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -51,6 +51,8 @@ pub const ACTION_NAMES: [&str; 51] = [
     "scaling-off",
     "mirror-on",
     "mirror-off",
+    "polar-on",
+    "polar-off",
     "length-from-words",
     "dwell-p",
     "pass",
@@ -108,6 +110,8 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "scaling-off" => Action::ScalingOff,
         "mirror-on" => Action::MirrorOn,
         "mirror-off" => Action::MirrorOff,
+        "polar-on" => Action::PolarOn,
+        "polar-off" => Action::PolarOff,
         "length-from-words" => Action::LengthFromWords,
         "dwell-p" => Action::DwellP,
         "pass" => Action::Pass { takes_words: false },

@@ -76,6 +76,7 @@ pub const fn treatment(action: &Action) -> Treatment {
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
         Action::Dwell | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
+        Action::PolarOn | Action::PolarOff => Treatment::Executed,
         _ => Treatment::Followed,
     }
 }
@@ -155,6 +156,11 @@ fn note(action: &Action) -> String {
         Action::RotationOn => "in the plane, by R about both words of the plane; arcs stay arcs".to_owned(),
         Action::ScalingOn => "about X, Y and Z by P, or by I, J and K without arcs; no cycles".to_owned(),
         Action::MirrorOn => "about the words; G2 and G3 change places".to_owned(),
+        Action::PolarOn => {
+            "radius and angle are written out as the plane's words: in G90, about the program's zero"
+                .to_owned()
+        }
+        Action::PolarOff => "ends G16".to_owned(),
         Action::LengthFromWords => "the tool length is in the words".to_owned(),
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
         Action::Pass { takes_words: false } => String::new(),

@@ -84,6 +84,7 @@ fn dialect(
         grammar;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
+    let polar_words = codes.iter().any(|entry| entry.action == Action::PolarOn);
     Dialect {
         name: name.to_owned(),
         title,
@@ -124,6 +125,8 @@ fn dialect(
             },
             packed_repeats: flow.packed_repeats,
             full_circle_atan: flow.full_circle_atan,
+            corner_words: flow.corner_words,
+            polar_words,
         },
         cycle_levels: match cycles.levels {
             Levels::Held => CycleLevels::Held,

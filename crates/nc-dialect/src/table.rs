@@ -95,6 +95,8 @@ pub(crate) struct FlowRules {
     pub(crate) packed_repeats: bool,
     #[serde(default)]
     pub(crate) full_circle_atan: bool,
+    #[serde(default)]
+    pub(crate) corner_words: bool,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]

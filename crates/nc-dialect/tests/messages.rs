@@ -22,7 +22,7 @@ fn a_misspelt_action() {
     insta::assert_snapshot!(changed(r#"does = "inch""#, r#"does = "inches""#), @r#"
     error[VP0804]: `inches` is not something a code does
       at `"inches"`: G20 cannot do this
-      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, length-from-words, dwell-p, pass, pass-with-words
+      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 
@@ -31,7 +31,7 @@ fn an_action_nothing_is_near_to() {
     insta::assert_snapshot!(changed(r#"does = "dwell-p""#, r#"does = "warten""#), @r#"
     error[VP0804]: `warten` is not something a code does
       at `"warten"`: G4 cannot do this
-      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, length-from-words, dwell-p, pass, pass-with-words
+      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 

@@ -50,3 +50,5 @@ pub const LOST_OUTPUT: Code = Code(140);
 /// The file defines subroutines and executes nothing: there is no path to correct.
 /// Remedy: the program that calls them, with `--include`.
 pub const NOTHING_EXECUTED: Code = Code(141);
+/// A corner (`,R`, `,C`) or a polar word (G16) whose shape no manual makes certain. Remedy: points, arcs and lines.
+pub const SHORTHAND: Code = Code(142);

@@ -15,6 +15,9 @@
 //! * Assignments, conditions, loops and calls: the line as a comment, where it is reached the first time. Each
 //!   pass of a called program opens with a comment such as `(O1000 CALL 2 OF 3)`.
 //!
+//! * Corners (`,R5.`, `,C2.`) and polar words (G16): the line as a comment, then the points, arcs and lines they
+//!   stand for.
+//!
 //! # What is refused
 //!
 //! What decides a motion and is known only on the machine: system variables, variables nobody set,
@@ -36,6 +39,7 @@ mod o_word;
 mod output;
 mod program;
 mod run;
+mod shorthand;
 mod statement;
 mod value;
 mod variables;
@@ -94,7 +98,10 @@ pub struct Expanded<'a> {
     text: Cow<'a, [u8]>,
     /// Called files: name and bytes.
     files: Vec<(String, Vec<u8>)>,
-    segments: Vec<Segment>,
+    /// From the source to the program without flow; `None` where it has none.
+    flow: Option<Vec<Segment>>,
+    /// From there to the program without corners and polar words.
+    shorthand: Option<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -132,39 +139,36 @@ impl Expanded<'_> {
         self.files.get(index.checked_sub(1)?).map(|(name, text)| (name.as_str(), text.as_slice()))
     }
 
+    /// What was done, for the comment in the output.
+    #[must_use]
+    pub const fn what(&self) -> &'static str {
+        match (self.flow.is_some(), self.shorthand.is_some()) {
+            (false, false) => "",
+            (true, false) => "PROGRAM FLOW EXPANDED",
+            (false, true) => "SHORTHAND WRITTEN OUT",
+            (true, true) => "PROGRAM FLOW EXPANDED, SHORTHAND WRITTEN OUT",
+        }
+    }
+
     /// Where bytes of the plain program come from: the same bytes where they were copied, else the block
     /// they stand for.
     #[must_use]
     pub fn origin(&self, span: &Range<u64>) -> Origin {
-        if !self.changed() {
-            return Origin { file: 0, span: span.clone() };
+        let mut origin = Origin { file: 0, span: span.clone() };
+        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+            origin = output::origin(segments, &origin.span);
         }
-        let after = self.segments.partition_point(|segment| segment.flat <= span.start);
-        let Some(segment) = after.checked_sub(1).and_then(|at| self.segments.get(at)) else {
-            return Origin { file: 0, span: 0..0 };
-        };
-        let end = segment.source + segment.length;
-        let span = if segment.exact {
-            let shift = |at: u64| (segment.source + (at - segment.flat)).min(end);
-            shift(span.start)..shift(span.end.max(span.start))
-        } else {
-            segment.source..end
-        };
-        Origin { file: usize::from(segment.file), span }
+        origin
     }
 
     /// The line of the source that a line of the plain program comes from, with its file.
     #[must_use]
     pub fn source_line(&self, line: u64) -> (usize, u64) {
-        let after = self.segments.partition_point(|segment| u64::from(segment.flat_line) <= line);
-        match after.checked_sub(1).and_then(|at| self.segments.get(at)) {
-            Some(segment) if segment.exact => {
-                let below = line.saturating_sub(u64::from(segment.flat_line));
-                (usize::from(segment.file), u64::from(segment.line) + below)
-            }
-            Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
-            None => (0, line),
+        let mut place = (0, line);
+        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+            place = output::source_line(segments, place.1);
         }
+        place
     }
 
     /// Puts the places of diagnostics about the plain program into the source files: by file, in order.
@@ -193,34 +197,60 @@ pub fn expand<'a>(
     dialect: &Dialect,
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
-    if !flows(text, dialect) {
-        return Ok(Expanded {
-            text: Cow::Borrowed(text),
-            files: Vec::new(),
-            segments: Vec::new(),
-            warnings: Vec::new(),
-        });
+    let work = Work::of(text, dialect);
+    let plain = Expanded {
+        text: Cow::Borrowed(text),
+        files: Vec::new(),
+        flow: None,
+        shorthand: None,
+        warnings: Vec::new(),
+    };
+    let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
+    if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
+        let (text, segments) = shorthand::write_out(&expanded.text, dialect).map_err(|fault| {
+            let settled = expanded.settle(vec![*fault]);
+            let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
+            let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
+            Refusal { diagnostics, file }
+        })?;
+        (expanded.text, expanded.shorthand) = (Cow::Owned(text), Some(segments));
     }
-    run::run(text, dialect, environment)
+    Ok(expanded)
 }
 
-/// True where a block computes, jumps or calls: a program that has one is not plain.
+/// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]
 pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
-    dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)
+    (dialect.flow.macros != Macros::None && statement::needs_work(block, dialect))
+        || shorthand::needed(block, dialect)
 }
 
-/// True where some block computes, jumps or calls.
-fn flows(text: &[u8], dialect: &Dialect) -> bool {
-    if dialect.flow.macros == Macros::None {
-        return false;
-    }
-    let mut reader = Reader::new(text, dialect);
-    let mut block = Block::default();
-    while reader.next(&mut block) {
-        if statement::needs_work(&block, dialect) {
-            return true;
+/// What a program asks for.
+#[derive(Clone, Copy, Default)]
+struct Work {
+    /// Some block computes, jumps or calls.
+    flow: bool,
+    /// Some block has shorthand.
+    shorthand: bool,
+}
+
+impl Work {
+    fn of(text: &[u8], dialect: &Dialect) -> Self {
+        let mut work = Self::default();
+        let may_flow = dialect.flow.macros != Macros::None;
+        let may_be_short = dialect.flow.corner_words || dialect.flow.polar_words;
+        if !may_flow && !may_be_short {
+            return work;
         }
+        let mut reader = Reader::new(text, dialect);
+        let mut block = Block::default();
+        while reader.next(&mut block) {
+            work.flow |= may_flow && statement::needs_work(&block, dialect);
+            work.shorthand |= may_be_short && shorthand::needed(&block, dialect);
+            if (work.flow || !may_flow) && (work.shorthand || !may_be_short) {
+                break;
+            }
+        }
+        work
     }
-    false
 }

@@ -1,8 +1,12 @@
 //! The flat text, and where each byte of it comes from.
 
+use std::ops::Range;
+
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{Paren, Semicolon};
 use units::decimal::{self, Spelling};
+
+use crate::Origin;
 
 /// A stretch of the flat text.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +105,14 @@ impl Output {
         }
     }
 
+    /// A line of its own that stands for a stretch of the source.
+    pub(crate) fn line(&mut self, bytes: &[u8], from: From) {
+        self.fresh_line();
+        self.segment(from, false);
+        self.push(bytes);
+        self.push(self.line_ending);
+    }
+
     fn push(&mut self, bytes: &[u8]) {
         self.lines = self.lines.saturating_add(line_ends(bytes));
         self.text.extend_from_slice(bytes);
@@ -132,6 +144,37 @@ impl Output {
         }));
         self.text.extend_from_slice(self.close);
         self.push(self.line_ending);
+    }
+}
+
+fn before(segments: &[Segment], key: impl Fn(&Segment) -> bool) -> Option<&Segment> {
+    segments.partition_point(key).checked_sub(1).and_then(|at| segments.get(at))
+}
+
+/// Where bytes of the flat text come from.
+pub(crate) fn origin(segments: &[Segment], span: &Range<u64>) -> Origin {
+    let Some(segment) = before(segments, |segment| segment.flat <= span.start) else {
+        return Origin { file: 0, span: 0..0 };
+    };
+    let end = segment.source + segment.length;
+    let span = if segment.exact {
+        let shift = |at: u64| (segment.source + (at - segment.flat)).min(end);
+        shift(span.start)..shift(span.end.max(span.start))
+    } else {
+        segment.source..end
+    };
+    Origin { file: usize::from(segment.file), span }
+}
+
+/// File and line that a line of the flat text comes from.
+pub(crate) fn source_line(segments: &[Segment], line: u64) -> (usize, u64) {
+    match before(segments, |segment| u64::from(segment.flat_line) <= line) {
+        Some(segment) if segment.exact => {
+            let below = line.saturating_sub(u64::from(segment.flat_line));
+            (usize::from(segment.file), u64::from(segment.line) + below)
+        }
+        Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
+        None => (0, line),
     }
 }
 

@@ -121,6 +121,12 @@ pub(crate) fn apply<'d>(
                 }
             }
         }
+        if code.entry.action == Action::PolarOn {
+            let message = format!("{} was not written out", words.text(code.span));
+            return Err(words
+                .refuse(codes::REFUSED_CODE, message, code.span, "its words are radius and angle")
+                .help("write the points in X and Y, G15 in force"));
+        }
         if let Action::Refuse { reason, help } = &code.entry.action {
             let message = format!("{} is refused: {reason}", words.text(code.span));
             return Err(words
@@ -347,7 +353,9 @@ fn set<'d>(
         Action::FeedInverseTime => state.feed_mode = FeedMode::InverseTime,
         Action::FeedPerMinute => state.feed_mode = FeedMode::PerMinute,
         Action::FeedPerRevolution => state.feed_mode = FeedMode::PerRevolution,
-        Action::Pass { takes_words: false } | Action::Refuse { .. } => {}
+        Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
+        // Written out before; where it is not, refused below.
+        Action::PolarOn => {}
         Action::Pass { takes_words: true } => return Owner::Arguments,
         Action::Dwell => return Owner::Dwell,
         Action::Reference => return Owner::Reference,

@@ -127,6 +127,10 @@ pub enum Action {
     MirrorOn,
     /// G50.1: no mirror of the axes named.
     MirrorOff,
+    /// G16: the plane's words are radius and angle. Written out before anything else, or refused.
+    PolarOn,
+    /// G15
+    PolarOff,
     /// G43.1: the tool length is in the words.
     LengthFromWords,
     /// G4 of which only P is the time: axis words belong to the motion (LinuxCNC).
@@ -313,6 +317,10 @@ pub struct Flow {
     pub packed_repeats: bool,
     /// `ATAN[y]/[x]` lies between 0 and 360 degrees; where false between -180 and 180.
     pub full_circle_atan: bool,
+    /// `,R5.` and `,C2.` at the end of a line round or cut its corner with the next one.
+    pub corner_words: bool,
+    /// Some code is [`Action::PolarOn`].
+    pub polar_words: bool,
 }
 
 /// Everything that differs between controls.

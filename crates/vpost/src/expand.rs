@@ -164,7 +164,8 @@ pub(crate) fn correct(
     })?;
     let mut provenance = settings.provenance();
     if expanded.changed() {
-        provenance.push_str(" PROGRAM FLOW EXPANDED");
+        provenance.push(' ');
+        provenance.push_str(expanded.what());
     }
     // Looked for above, in the text as it was given.
     let job = Job { force: true, ..settings.job(force, &provenance)? };

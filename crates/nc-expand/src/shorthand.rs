@@ -1,0 +1,610 @@
+//! Shorthand of drawings: polar words (G16) and corners (`,R5.`, `,C2.`) written out as plain blocks.
+//!
+//! Both say where the tool goes by something that only the control works out. What they mean is told by the
+//! manuals for the plain case, and only that is written out; the rest is refused:
+//!
+//! * Polar: in G90, about the program's zero, both words named once, then each held until it is named again:
+//!   first axis = radius · cos angle, second = radius · sin angle.
+//! * Corner between two lines of the plane, in G90, the next line in the next block. With u and v the unit
+//!   vectors from the corner along the two lines and θ the angle between them, a chamfer of c goes from c·u to
+//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside.
+//!
+//! The numbers written have 6 decimals; what that neglects is half a nanometre.
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, GCode, PlaneCode};
+use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
+use units::math;
+
+use crate::codes;
+use crate::output::{From, Output, Segment, Style, word};
+
+/// X, Y, Z.
+const AXES: [u8; 3] = *b"XYZ";
+/// Below this the two lines of a corner are one line, or run back on each other, rad. Controls treat such a corner
+/// as none.
+const STRAIGHT_RAD: f64 = 0.0175;
+/// By so much a tangent point may lie behind the start of its line, in units of the program: rounded ends.
+const BEHIND: f64 = 1e-6;
+
+type Fault = Box<Diagnostic>;
+
+/// True where the block has shorthand that this dialect writes out.
+pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
+    if !(dialect.flow.corner_words || dialect.flow.polar_words) {
+        return false;
+    }
+    block.items.iter().any(|item| match item.kind {
+        ItemKind::CommaWord { .. } => dialect.flow.corner_words,
+        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+            action(number, dialect) == Some(&Action::PolarOn)
+        }
+        _ => false,
+    })
+}
+
+fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
+    number.tenths().and_then(|tenths| dialect.code(GCode(tenths))).map(|entry| &entry.action)
+}
+
+/// The motion code in force.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Motion {
+    Rapid,
+    Line,
+    Arc,
+    Cycle,
+    None,
+}
+
+/// What has to be known of the program between two blocks; lengths in units of the program.
+#[derive(Clone)]
+struct State {
+    motion: Motion,
+    /// First and second axis of the plane, and its normal.
+    plane: [usize; 3],
+    absolute: bool,
+    inch: bool,
+    at: [Option<f64>; 3],
+    /// G16: radius and angle in degrees, once named.
+    polar: Option<[Option<f64>; 2]>,
+}
+
+/// A line that ends in a corner, waiting for the next one.
+struct Corner<'a> {
+    block: Block<'a>,
+    from: [f64; 2],
+    to: [f64; 2],
+    round: bool,
+    size: f64,
+    comma: Span,
+    /// The arc of an earlier corner stands before it, so that it must say that it is a line.
+    behind_corner: bool,
+}
+
+/// Words and codes of a block.
+struct Words<'b, 'a> {
+    block: &'b Block<'a>,
+    dialect: &'b Dialect,
+}
+
+impl Words<'_, '_> {
+    fn number(&self, letter: u8) -> Option<(Number, Span)> {
+        self.block.items.iter().find_map(|item| match item.kind {
+            ItemKind::Word { letter: found, value: Value::Number(number) } if found == letter => {
+                Some((number, item.span))
+            }
+            _ => None,
+        })
+    }
+    fn length(&self, letter: u8, inch: bool) -> Option<f64> {
+        self.number(letter).map(|(number, _)| self.dialect.numbers.length(number, inch).to_f64())
+    }
+    fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
+        self.block.items.iter().filter_map(|item| match item.kind {
+            ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+                Some((action(number, self.dialect)?, item.span))
+            }
+            _ => None,
+        })
+    }
+    fn comma(&self) -> Option<&Item> {
+        self.block.items.iter().find(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
+    }
+    fn skipped(&self) -> bool {
+        self.block.items.iter().any(|item| item.kind == ItemKind::Skip)
+    }
+    /// Nothing but names and comments.
+    fn idle(&self) -> bool {
+        self.block.items.iter().all(|item| matches!(item.kind, ItemKind::Comment | ItemKind::Name))
+    }
+    fn refuse(&self, span: Span, message: &str, label: &str, help: &str) -> Fault {
+        Box::new(
+            Diagnostic::error(codes::SHORTHAND, message.to_owned())
+                .at(self.block.file_span(span), label.to_owned())
+                .help(help.to_owned()),
+        )
+    }
+}
+
+impl State {
+    fn initial(dialect: &Dialect) -> Self {
+        let mut state = Self {
+            motion: Motion::None,
+            plane: [0, 1, 2],
+            absolute: true,
+            inch: false,
+            at: [None; 3],
+            polar: None,
+        };
+        for action in dialect.initial.iter().filter_map(|code| dialect.code(*code)).map(|row| &row.action) {
+            state.set(action);
+        }
+        state
+    }
+
+    /// Whose words the block has: true where they are the motion's.
+    fn set(&mut self, action: &Action) -> bool {
+        match action {
+            Action::Rapid => self.motion = Motion::Rapid,
+            Action::Line => self.motion = Motion::Line,
+            Action::ArcClockwise | Action::ArcCounterClockwise => self.motion = Motion::Arc,
+            Action::Cycle(_) => self.motion = Motion::Cycle,
+            Action::CycleCancel => self.motion = Motion::None,
+            Action::Plane(plane) => {
+                self.plane = match plane {
+                    PlaneCode::Xy => [0, 1, 2],
+                    PlaneCode::Zx => [2, 0, 1],
+                    PlaneCode::Yz => [1, 2, 0],
+                }
+            }
+            Action::Inch | Action::Millimetre => {
+                let inch = *action == Action::Inch;
+                if self.inch != inch {
+                    (self.inch, self.at) = (inch, [None; 3]);
+                }
+            }
+            Action::Absolute => self.absolute = true,
+            Action::Incremental => self.absolute = false,
+            Action::PolarOff => self.polar = None,
+            Action::Dwell | Action::Pass { takes_words: true } => return false,
+            Action::Pass { takes_words: false }
+            | Action::DwellP
+            | Action::CompensationOn
+            | Action::CompensationOff
+            | Action::FeedInverseTime
+            | Action::FeedPerMinute
+            | Action::FeedPerRevolution
+            | Action::ReturnInitial
+            | Action::ReturnR
+            | Action::ArcCentresAbsolute
+            | Action::ArcCentresIncremental
+            | Action::PolarOn => {}
+            // Whatever moves the frame, or the axes by rules of the control.
+            _ => {
+                self.at = [None; 3];
+                return false;
+            }
+        }
+        true
+    }
+
+    /// After the block as it stands.
+    fn step(&mut self, words: &Words<'_, '_>) {
+        let mut owned = true;
+        // G80 beside a motion ends the cycle first.
+        for cancels in [true, false] {
+            for (action, _) in words.actions().filter(|(a, _)| (**a == Action::CycleCancel) == cancels) {
+                owned &= self.set(action);
+            }
+        }
+        let machine = |number: Number| {
+            let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
+            row.is_some_and(|row| row.loses_position != [false; 3])
+        };
+        if words.number(b'M').is_some_and(|(number, _)| machine(number)) || words.skipped() {
+            self.at = [None; 3];
+        } else if owned {
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                let Some(value) = words.length(letter, self.inch) else { continue };
+                self.at[axis] = match (self.motion, self.absolute) {
+                    // The axis along the hole comes back to a level.
+                    (Motion::Cycle, _) if axis == self.plane[2] => None,
+                    (_, true) => Some(value),
+                    (_, false) => self.at[axis].map(|at| at + value),
+                };
+            }
+        }
+    }
+}
+
+/// The program with its shorthand written out, and where each stretch of it comes from.
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+    let mut writer = Writer { dialect, out: Output::new(dialect, text), state: State::initial(dialect) };
+    let mut reader = Reader::new(text, dialect);
+    let mut block = Block::default();
+    let mut corner: Option<Corner<'_>> = None;
+    let mut between: Vec<Block<'_>> = Vec::new();
+    while reader.next(&mut block) {
+        match corner.take() {
+            Some(waiting) if (Words { block: &block, dialect }).idle() => {
+                between.push(block.clone());
+                corner = Some(waiting);
+            }
+            Some(waiting) => corner = writer.next_line(&waiting, &mut between, &block)?,
+            None => corner = writer.block(&block)?,
+        }
+    }
+    match corner {
+        None => Ok((writer.out.text, writer.out.segments)),
+        Some(corner) => {
+            let words = Words { block: &corner.block, dialect };
+            Err(words.refuse(corner.comma, NO_NEXT, "nothing follows", POST_IT))
+        }
+    }
+}
+
+const NO_NEXT: &str = "a corner without a next line";
+const POST_IT: &str = "post roundings as arcs and chamfers as lines";
+
+struct Writer<'d> {
+    dialect: &'d Dialect,
+    out: Output,
+    state: State,
+}
+
+impl<'d> Writer<'d> {
+    /// A block that follows no corner.
+    fn block<'a>(&mut self, block: &Block<'a>) -> Result<Option<Corner<'a>>, Fault> {
+        let words = Words { block, dialect: self.dialect };
+        if words.comma().is_some() && self.dialect.flow.corner_words {
+            let before = self.state.at;
+            return self.corner(block, before).map(Some);
+        }
+        let turns_on = words.actions().find(|(action, _)| **action == Action::PolarOn);
+        if self.state.polar.is_some() || turns_on.is_some() {
+            self.polar(&words, turns_on.map(|(_, span)| span))?;
+            return Ok(None);
+        }
+        self.state.step(&words);
+        self.out.copy(block.bytes, from(block));
+        Ok(None)
+    }
+
+    /// A line with `,R` or `,C` from a place that is known, to be written once the next one is known.
+    fn corner<'a>(&mut self, block: &Block<'a>, before: [Option<f64>; 3]) -> Result<Corner<'a>, Fault> {
+        let words = Words { block, dialect: self.dialect };
+        let Some(&Item { kind: ItemKind::CommaWord { letter, value }, span }) = words.comma() else {
+            return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, "", POST_IT));
+        };
+        let refuse = |label: &str| words.refuse(span, "a corner that cannot be written out", label, POST_IT);
+        let (b'R' | b'C', Value::Number(size)) = (letter, value) else {
+            return Err(refuse("only a rounding `,R` or a chamfer `,C` with a number can"));
+        };
+        let [first, second, _] = self.state.plane;
+        self.state.step(&words);
+        self.plain_line(&words, span)?;
+        let [Some(u), Some(v)] = [before[first], before[second]] else {
+            return Err(refuse(
+                "where the line starts is not known: name both axes of the plane before it, in G90",
+            ));
+        };
+        let to = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        let size = self.dialect.numbers.length(size, self.state.inch).to_f64();
+        if size <= 0.0 {
+            return Err(refuse("its size must be above zero"));
+        }
+        Ok(Corner {
+            block: block.clone(),
+            from: [u, v],
+            to,
+            round: letter == b'R',
+            size,
+            comma: span,
+            behind_corner: false,
+        })
+    }
+
+    /// Refuses what is no line of the plane in G90; `span` says where.
+    fn plain_line(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
+        let normal = AXES[self.state.plane[2]];
+        let others = words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
+        let moves = self.state.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
+        let label = if self.state.motion != Motion::Line {
+            "G1 was expected on both sides of a corner"
+        } else if !self.state.absolute {
+            "under G91; write G90"
+        } else if self.state.polar.is_some() {
+            "under G16; write the points in X and Y"
+        } else if words.skipped() {
+            "behind block delete there are two corners"
+        } else if others {
+            "another code stands in a block of the corner"
+        } else if words.number(normal).is_some() || b"ABCUVWIJKR".iter().any(|l| words.number(*l).is_some()) {
+            "a word that leaves the plane, or belongs to an arc"
+        } else if !moves {
+            "a line in the plane was expected"
+        } else {
+            return Ok(());
+        };
+        Err(words.refuse(span, "a corner that cannot be written out", label, POST_IT))
+    }
+
+    /// Writes the line with the corner, what lies between, the corner, and this line.
+    fn next_line<'a>(
+        &mut self,
+        corner: &Corner<'_>,
+        between: &mut Vec<Block<'_>>,
+        block: &Block<'a>,
+    ) -> Result<Option<Corner<'a>>, Fault> {
+        let words = Words { block, dialect: self.dialect };
+        let at = Words { block: &corner.block, dialect: self.dialect };
+        let before = self.state.at;
+        let further = words.comma().is_some();
+        self.state.step(&words);
+        let whole = block.items.first().map_or(Span { start: 0, end: 0 }, |item| item.span);
+        self.plain_line(&words, words.comma().map_or(whole, |item| item.span))?;
+        let [first, second, _] = self.state.plane;
+        let next = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        let Some(shape) = Shape::of(corner, next) else {
+            let label = "the lines are too short for it, or go straight on or back";
+            return Err(at.refuse(corner.comma, "a corner that cannot be written out", label, POST_IT));
+        };
+        let mut line = if corner.behind_corner { b"G1 ".to_vec() } else { Vec::new() };
+        self.point(&mut line, shape.from);
+        self.rewritten(&corner.block, &line);
+        for block in between.drain(..) {
+            self.out.copy(block.bytes, from(&block));
+        }
+        let mut line: Vec<u8> = if corner.round && shape.left { b"G3 ".to_vec() } else { b"G2 ".to_vec() };
+        if !corner.round {
+            line = b"G1 ".to_vec();
+        }
+        self.point(&mut line, shape.to);
+        if corner.round {
+            for (axis, k) in [(first, 0), (second, 1)] {
+                line.push(b' ');
+                number(&mut line, b"IJK"[axis], shape.centre[k] - rounded(shape.from[k]));
+            }
+        }
+        self.out.line(&line, from(&corner.block));
+        if further {
+            // The next line starts where this corner ends.
+            let mut start = before;
+            (start[first], start[second]) = (Some(rounded(shape.to[0])), Some(rounded(shape.to[1])));
+            let mut waiting = self.corner(block, start)?;
+            (waiting.to, waiting.behind_corner) = (next, true);
+            return Ok(Some(waiting));
+        }
+        let mut line = b"G1 ".to_vec();
+        self.point(&mut line, next);
+        self.rewritten(block, &line);
+        Ok(None)
+    }
+
+    /// A block under G16, or the one that switches it on.
+    fn polar(&mut self, words: &Words<'_, '_>, on: Option<Span>) -> Result<(), Fault> {
+        let refuse = |span: Span, label: &str| {
+            words.refuse(
+                span,
+                "polar words that cannot be written out",
+                label,
+                "write the points in X and Y, G15 in force",
+            )
+        };
+        let plane = self.state.plane;
+        let axis_word =
+            |axes: &[usize]| axes.iter().find_map(|axis| words.number(AXES[*axis])).map(|(_, span)| span);
+        let mut owned = true;
+        let mut off = false;
+        for (action, span) in words.actions() {
+            off |= *action == Action::PolarOff;
+            match action {
+                Action::Reference | Action::Probe | Action::Inch | Action::Millimetre | Action::Plane(_)
+                    if self.state.polar.is_some() =>
+                {
+                    return Err(refuse(
+                        span,
+                        "what its words mean under G16 differs from control to control",
+                    ));
+                }
+                _ => {}
+            }
+            owned &= self.state.clone().set(action);
+        }
+        if on.is_some() && self.state.polar.is_none() {
+            self.state.polar = Some([None; 2]);
+        }
+        let plane_word =
+            axis_word(&plane[..2]).or_else(|| axis_word(&[0, 1, 2]).filter(|_| on.is_some() || off));
+        let (held, at) = (self.state.polar, self.state.at);
+        self.state.step(words);
+        if let (Some(span), true) = (plane_word, on.is_some() || off) {
+            return Err(refuse(span, "motion in the block that switches G16: are its words polar?"));
+        }
+        if self.state.plane != plane && on.is_none() && !off {
+            return Err(refuse(whole(words.block), "the plane changes under G16"));
+        }
+        let (Some(span), Some(held), true) = (plane_word, held, owned) else {
+            self.unswitched(words, on);
+            return Ok(());
+        };
+        if words.skipped() || !self.state.absolute {
+            return Err(refuse(
+                span,
+                "in G90, and not behind block delete: else the pole is where the tool stands",
+            ));
+        }
+        if self.state.motion == Motion::None {
+            return Err(refuse(span, "no motion code is in force"));
+        }
+        if self.state.motion == Motion::Arc && b"IJK".iter().any(|letter| words.number(*letter).is_some()) {
+            return Err(refuse(span, "an arc under G16 takes R"));
+        }
+        if self.state.motion == Motion::Arc && words.number(b'R').is_none() {
+            return Err(refuse(span, "an arc under G16 takes R"));
+        }
+        let radius = words.length(AXES[plane[0]], self.state.inch).or(held[0]);
+        let angle = words.length(AXES[plane[1]], false).or(held[1]);
+        let (Some(radius), Some(angle)) = (radius, angle) else {
+            return Err(refuse(
+                span,
+                "radius and angle were expected, until each has been named once under G16",
+            ));
+        };
+        if radius < 0.0 {
+            return Err(refuse(span, "a radius below zero"));
+        }
+        self.state.polar = Some([Some(radius), Some(angle)]);
+        let (sin, cos) = sin_cos_deg(angle);
+        let point = [radius * cos, radius * sin];
+        self.state.at = at;
+        (self.state.at[plane[0]], self.state.at[plane[1]]) =
+            (Some(rounded(point[0])), Some(rounded(point[1])));
+        if let Some(value) = words.length(AXES[plane[2]], self.state.inch) {
+            self.state.at[plane[2]] = (self.state.motion != Motion::Cycle).then_some(value);
+        }
+        let mut line = Vec::new();
+        self.point(&mut line, point);
+        self.rewritten(words.block, &line);
+        Ok(())
+    }
+
+    /// The block without its G16, which the output is not under.
+    fn unswitched(&mut self, words: &Words<'_, '_>, on: Option<Span>) {
+        match on {
+            None => self.out.copy(words.block.bytes, from(words.block)),
+            Some(span) => {
+                let block = words.block;
+                self.out.comment(shown(block), from(block));
+                let bytes = [&block.bytes[..span.start as usize], &block.bytes[span.end as usize..]].concat();
+                if bytes.iter().any(|byte| byte.is_ascii_alphanumeric()) {
+                    self.out.write(&bytes, from(block));
+                }
+            }
+        }
+    }
+
+    /// First and second axis' words.
+    fn point(&self, line: &mut Vec<u8>, point: [f64; 2]) {
+        let [first, second, _] = self.state.plane;
+        let mut both = [(first, point[0]), (second, point[1])];
+        both.sort_by_key(|(axis, _)| *axis);
+        for (at, (axis, value)) in both.into_iter().enumerate() {
+            if at > 0 {
+                line.push(b' ');
+            }
+            number(line, AXES[axis], value);
+        }
+    }
+
+    /// The block as a comment, then the block with `words` in place of its words of the plane, its corner and,
+    /// where `words` has one, its motion code.
+    fn rewritten(&mut self, block: &Block<'_>, words: &[u8]) {
+        self.out.comment(shown(block), from(block));
+        let [first, second, _] = self.state.plane;
+        let replaces_motion = words.starts_with(b"G");
+        let taken = |item: &Item| match item.kind {
+            ItemKind::CommaWord { .. } => true,
+            ItemKind::Word { letter, .. } if letter == AXES[first] || letter == AXES[second] => true,
+            ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
+                replaces_motion && action(number, self.dialect) == Some(&Action::Line)
+            }
+            _ => false,
+        };
+        let (mut text, mut done, mut placed) = (Vec::new(), 0, false);
+        for item in block.items.iter().filter(|item| taken(item)) {
+            let (start, end) = (item.span.start as usize, item.span.end as usize);
+            let kept = &block.bytes[done..start];
+            if placed {
+                text.extend_from_slice(kept.trim_ascii_end());
+            } else {
+                text.extend_from_slice(kept);
+                text.extend_from_slice(words);
+                placed = true;
+            }
+            done = end;
+            let behind = block.bytes.get(done).copied();
+            if behind.is_some_and(|byte| byte.is_ascii_alphabetic()) {
+                text.push(b' ');
+            }
+        }
+        text.extend_from_slice(&block.bytes[done..]);
+        self.out.write(&text, from(block));
+    }
+}
+
+/// A corner's ends and centre in the plane.
+struct Shape {
+    from: [f64; 2],
+    to: [f64; 2],
+    centre: [f64; 2],
+    /// The path turns towards the second axis from the first.
+    left: bool,
+}
+
+impl Shape {
+    fn of(corner: &Corner<'_>, next: [f64; 2]) -> Option<Self> {
+        let away = |p: [f64; 2]| {
+            let d = [p[0] - corner.to[0], p[1] - corner.to[1]];
+            let length = math::hypot(d[0], d[1]);
+            ([d[0] / length, d[1] / length], length)
+        };
+        let ((u, before), (v, after)) = (away(corner.from), away(next));
+        let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+        let inside = math::atan2(cross.abs(), dot);
+        if !(inside > STRAIGHT_RAD && inside < std::f64::consts::PI - STRAIGHT_RAD) {
+            return None;
+        }
+        let cut = if corner.round { corner.size / math::tan(0.5 * inside) } else { corner.size };
+        if cut > before + BEHIND || cut > after + BEHIND {
+            return None;
+        }
+        let along = |d: [f64; 2], by: f64| [corner.to[0] + by * d[0], corner.to[1] + by * d[1]];
+        // The centre lies on the line that halves the angle.
+        let half = [u[0] + v[0], u[1] + v[1]];
+        let reach = corner.size / math::sin(0.5 * inside) / math::hypot(half[0], half[1]);
+        // Coming along -u and leaving along v.
+        Some(Self { from: along(u, cut), to: along(v, cut), centre: along(half, reach), left: cross < 0.0 })
+    }
+}
+
+/// Sine and cosine of degrees, exact at quarter turns.
+fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
+    match angle_deg.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        angle => math::sin_cos(angle.to_radians()),
+    }
+}
+
+/// As it will be read back.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
+    // Fifteen digits hold whatever a program's own numbers make.
+    let _ = word(line, letter, value, Style::Decimals(6));
+}
+
+fn from(block: &Block<'_>) -> From {
+    From {
+        file: 0,
+        offset: block.offset,
+        length: block.bytes.len() as u64,
+        line: u32::try_from(block.line).unwrap_or(u32::MAX),
+    }
+}
+
+/// The block without its end.
+fn shown<'a>(block: &Block<'a>) -> &'a [u8] {
+    let text = block.bytes.trim_ascii_end();
+    text.strip_suffix(b";").unwrap_or(text)
+}
+
+fn whole(block: &Block<'_>) -> Span {
+    crate::statement::whole(block)
+}

@@ -1,0 +1,17 @@
+%
+O0001
+(lines and arcs under G16, and back)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G0 X60. Y0
+G1 Z50. F200.
+G16
+G1 X60. Y30.
+Y60.
+G3 X60. Y120. R60.
+G1 X80. Y90. Z48.
+G15
+G1 X20. Y20.
+G0 Z60.
+M30
+%

@@ -1,0 +1,10 @@
+%
+O0001
+(expect VP0142: the tangent point would lie behind the start)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X40. ,R40.
+Y40.
+M30
+%

@@ -1,0 +1,11 @@
+%
+O0001
+(expect VP0142: I and J under G16)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G16
+G1 X20. Y30. F200.
+G2 Y60. I5. J5.
+G15
+M30
+%
