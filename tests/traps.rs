@@ -205,18 +205,15 @@ fn starts_stay_before_the_motion() {
     }
 }
 
-/// A block for the switch stays one block with its mark, or is refused: half a motion is nobody's.
+/// A block that becomes several stays one for the switch.
 #[test]
-fn what_may_be_skipped_is_not_split() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let program = folder.path().join("part.nc");
-    let text = |x: &str| format!("{HEAD}G1 Z50. F200.\n/X{x}\nG0 X10. Y10. Z60.\nM30\n");
+fn block_delete_is_copied_to_every_piece() {
     for dialect in ["fanuc", "linuxcnc", "perspektiva", "centroid"] {
-        let out = corrected(dialect, &text("12."));
-        assert_eq!(out.lines().filter(|line| line.starts_with('/')).count(), 1, "{dialect}:\n{out}");
-        std::fs::write(&program, text("900.")).expect("writable");
-        let ran = run(&[program.to_str().expect("a plain path"), "-m", PROFILE, "-d", dialect]);
-        assert!(ran.stdout.is_empty() && messages(&ran).contains("VP0503"), "{dialect}: {}", messages(&ran));
+        let text = format!("{HEAD}G1 Z50. F200.\n/X900. Y700.\nG0 X10. Y10. Z60.\nM30\n");
+        let out = corrected(dialect, &text);
+        let skipped = out.lines().filter(|line| line.starts_with('/')).count();
+        let feeds = body(&out).len() - 3;
+        assert!(skipped > 3 && skipped == feeds, "{dialect}: {skipped} of {feeds}\n{out}");
     }
 }
 

@@ -265,6 +265,13 @@ impl Splices {
                 }
                 Text::Motion { code, place } => put(place, separator, out, |out| style.write_g(code, out)),
             }
+            // `Z0.003` before `E90` would read as one number to some, in a file that writes no blanks.
+            let next = content.get(splice.span.end as usize);
+            if next.is_some_and(|byte| byte.eq_ignore_ascii_case(&b'E'))
+                && out.last().is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.')
+            {
+                out.push(b' ');
+            }
         }
         out.extend_from_slice(&content[done.min(content.len())..]);
     }
