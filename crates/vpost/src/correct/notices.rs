@@ -87,6 +87,14 @@ impl Notices {
     }
 }
 
+/// A corrected hole under block delete: what it says would hold for the next holes only where it is executed.
+pub(crate) fn hole_skipped(block: &Block<'_>) -> Diagnostic {
+    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    Diagnostic::error(nc_program::codes::BLOCK_DELETE, "a hole that may be skipped has levels of its own after correction")
+        .at(whole, "its Z and R differ from those of the holes before, and the next holes would inherit them only where it is executed")
+        .help("delete the `/`, or post a program without this hole")
+}
+
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<Diagnostic> {
     let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;

@@ -6,10 +6,10 @@ use nc_emit::{BlockNumbers, Emitter};
 use nc_program::{Context, Interpreter, PlainFeed};
 use nc_syntax::Block;
 use smallvec::SmallVec;
-use toolpath::{Feed, FeedRate, Motion};
+use toolpath::{Feed, FeedRate, Hole, Motion};
 use units::decimal::Decimal;
 
-use super::notices::{Notices, refusal};
+use super::notices::{Notices, hole_skipped, refusal};
 use super::{Figures, Job};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -218,6 +218,12 @@ impl Pass<'_> {
             corrections.clear();
             self.repeated(block, context, letters, motions, &mut pieces, &mut corrections)?;
         }
+        if context.skip
+            && let Some(Motion::Hole(hole)) = motions.first()
+            && holds_levels(&pieces, hole)
+        {
+            return Err(vec![hole_skipped(block)]);
+        }
         let length = self.out.len();
         if untouched {
             self.pass(block, context, motions)?;
@@ -419,4 +425,13 @@ fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block
         peck_clearance_mm: output.peck_clearance_mm,
         chip_retreat_mm: output.chip_retreat_mm,
     }
+}
+
+/// The pieces of a hole say more than its place: levels that the next holes inherit, or moves instead of the cycle.
+fn holds_levels(pieces: &[nc_emit::Piece], hole: &Hole) -> bool {
+    let normal = b"XYZ"[hole.plane.axes()[2]];
+    let level = |(letter, edit): &(u8, nc_emit::WordEdit)| {
+        (*letter == normal || *letter == b'R') && matches!(edit, nc_emit::WordEdit::Write { .. })
+    };
+    pieces.len() > 1 || pieces.iter().any(|piece| piece.words.iter().any(level))
 }
