@@ -66,6 +66,12 @@ fn canonical(program: &Path, folder: &Path) -> Option<Vec<String>> {
     (ran.status.success() && errors.trim() == "executing").then_some(lines)
 }
 
+/// The same of a program that must run: on a busy machine the interpreter now and then ends without a word, and only
+/// what it refuses three times is refused.
+fn canonical_of_plain(program: &Path, folder: &Path) -> Option<Vec<String>> {
+    (0..3).find_map(|_| canonical(program, folder))
+}
+
 /// True where the plain program holds a code that correction refuses anyway: a turning cycle that reads a
 /// subroutine as its contour, a modal state saved for the end of a subroutine.
 fn refused_later(text: &[u8], dialect: &Dialect) -> bool {
@@ -162,7 +168,7 @@ fn corners_of_the_language_are_the_interpreters() {
         let wanted =
             canonical(&main, work.path()).unwrap_or_else(|| panic!("not run by the interpreter: {text}"));
         assert!(wanted.iter().any(|call| call.starts_with("STRAIGHT")), "{text}");
-        assert_eq!(canonical(&plain, work.path()), Some(wanted), "{text}");
+        assert_eq!(canonical_of_plain(&plain, work.path()), Some(wanted), "{text}");
     }
 }
 
@@ -219,7 +225,7 @@ fn called_samples_move_as_the_interpreter_moves() {
                     .count()
                     > 2,
             );
-            let found = canonical(&plain, work.path()).unwrap_or_default();
+            let found = canonical_of_plain(&plain, work.path()).unwrap_or_default();
             if found != wanted {
                 let at = wanted.iter().zip(&found).position(|(a, b)| a != b);
                 let at = at.unwrap_or(wanted.len().min(found.len()));
@@ -265,7 +271,7 @@ fn expanded_samples_move_as_the_interpreter_moves() {
                     continue;
                 };
                 compared += 1;
-                let found = canonical(&plain, work.path());
+                let found = canonical_of_plain(&plain, work.path());
                 if found.as_ref() != Some(&wanted) {
                     let found = found.unwrap_or_default();
                     let at = wanted.iter().zip(&found).position(|(a, b)| a != b);
