@@ -1,6 +1,6 @@
 //! The fuzz targets without libFuzzer: every seed; and where a time is given, mutations of seeds by chance.
 //!
-//! `VPOST_FUZZ_SECONDS=120` gives a time, `VPOST_FUZZ_SEED=2` other mutations,
+//! `VPOST_FUZZ_SECONDS=120` gives a time, `VPOST_FUZZ_SEED=2` other mutations, `VPOST_FUZZ_RUNS=1000` an end,
 //! `VPOST_FUZZ_TARGETS=parse,tables` some targets. What is found is printed
 //! with its bytes. The long runs, which learn from coverage: `tests/fuzz/run`.
 
@@ -133,6 +133,7 @@ fn setting(name: &str, otherwise: u64) -> u64 {
 #[test]
 fn seeds_and_their_mutations_keep_every_promise() {
     let time = Duration::from_secs(setting("VPOST_FUZZ_SECONDS", 0)) / TARGETS.len() as u32;
+    let most = setting("VPOST_FUZZ_RUNS", u64::MAX);
     let mut found = Vec::new();
     let chosen = std::env::var("VPOST_FUZZ_TARGETS").ok();
     for (name, target) in TARGETS {
@@ -144,7 +145,7 @@ fn seeds_and_their_mutations_keep_every_promise() {
         let mut outcomes: BTreeMap<String, u64> = BTreeMap::new();
         let start = Instant::now();
         let mut runs = 0_u64;
-        while runs < (seeds.len() as u64).max(300) || start.elapsed() < time {
+        while runs < (seeds.len() as u64).max(300) || (runs < most && start.elapsed() < time) {
             let bytes = match (seeds.get(usize::try_from(runs).unwrap_or(usize::MAX)), name) {
                 // Each byte is a choice of the generator: any do.
                 (_, "generated") => {
