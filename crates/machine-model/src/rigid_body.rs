@@ -1,7 +1,8 @@
 //! The reference model: rigid bodies along the chain. Equations (5) to (9) of `docs/equations.md`.
 
 use std::cmp::Ordering;
-use std::sync::OnceLock;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use nalgebra::Matrix3;
 
@@ -69,7 +70,12 @@ pub struct RigidBody {
     depends_on_direction: bool,
     /// Per axis and class of length, for all directions: made when first asked for.
     worst_bounds: OnceLock<WorstBounds>,
+    /// By tool vector, the last ones asked for: every program of a job asks for the same again, with its first tool.
+    everywhere: Arc<Mutex<VecDeque<(Vector, Everywhere)>>>,
 }
+
+/// Of so many tools the bounds are kept.
+const TOOLS_KEPT: usize = 16;
 
 /// Of the axes X, Y, Z: bounds by class of length, `None` where the axis has no errors.
 type WorstBounds = [Option<Box<[SixBounds; CLASSES]>>; 3];
@@ -101,8 +107,15 @@ impl RigidBody {
             description.chain.table().iter().any(|axis| !description.rotary[axis.direction()].is_perfect());
         let depends_on_direction =
             description.linear.iter().any(|axis| axis.errors_negative.is_some() || axis.backlash_mm != 0.0);
-        let worst_bounds = OnceLock::new();
-        Ok(Self { description, links, volume, table_has_errors, depends_on_direction, worst_bounds })
+        Ok(Self {
+            description,
+            links,
+            volume,
+            table_has_errors,
+            depends_on_direction,
+            worst_bounds: OnceLock::new(),
+            everywhere: Arc::default(),
+        })
     }
 
     /// What it was made from.
@@ -393,7 +406,20 @@ impl PathModel for RigidBody {
     fn everywhere(&self, state: &Command) -> Option<Everywhere> {
         // A table's errors turn with it, a head's lever with the head: their bounds are taken stretch by stretch.
         let plain = !self.table_has_errors && self.description.chain.head().is_empty();
-        plain.then(|| chord_bound::everywhere(self, state))
+        plain.then(|| {
+            // Then the tool is all of the state that they depend on. What is kept is what would be worked out,
+            // whoever asks first: a panic elsewhere leaves it as good as it was.
+            let kept = || self.everywhere.lock().unwrap_or_else(PoisonError::into_inner);
+            let tool = self.nominal_tool(state);
+            if let Some((_, known)) = kept().iter().find(|(known, _)| *known == tool) {
+                return *known;
+            }
+            let everywhere = chord_bound::everywhere(self, state);
+            let mut kept = kept();
+            kept.truncate(TOOLS_KEPT - 1);
+            kept.push_front((tool, everywhere));
+            everywhere
+        })
     }
 
     fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {

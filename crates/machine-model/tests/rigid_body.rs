@@ -11,6 +11,26 @@ use machines::{Random, command, machine, perfect};
 use proptest::prelude::*;
 use units::math;
 
+/// What holds everywhere is kept for the tools of a job; whoever asks, in whatever order, gets the same.
+#[test]
+fn bounds_are_the_same_whoever_asked_before() {
+    let mut described = machine(5, "[w C X Y b Z t]", true, 1.0);
+    described.rotary[2] = RotaryAxis::perfect(Vector::zeros());
+    let model = RigidBody::new(described).unwrap();
+    let ask = |model: &RigidBody, tool: i32, angle: f64, direction: i8| {
+        let mut state = command([0.0; 3], [0.0, f64::from(tool) * 0.5, -20.0 - f64::from(tool)]);
+        state.rotary_rad.z = angle;
+        state.direction = [direction; 3];
+        model.everywhere(&state).unwrap()
+    };
+    for tool in (0..40).chain((0..40).rev()).chain([7, 7, 8, 7]) {
+        let found = ask(&model, tool, f64::from(tool % 3), (tool % 3 - 1) as i8);
+        let alone = RigidBody::new(model.description().clone()).unwrap();
+        assert_eq!(found, ask(&alone, tool, 0.0, 0), "tool {tool}");
+        assert_ne!(found, ask(&alone, tool + 1, 0.0, 0), "tool {tool}");
+    }
+}
+
 #[test]
 fn a_perfect_machine_returns_the_target_bit_for_bit() {
     let model = RigidBody::new(perfect("[w X Y b Z t]")).unwrap();

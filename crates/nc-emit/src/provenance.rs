@@ -1,5 +1,6 @@
 //! The one comment that says a program was corrected.
 
+use std::borrow::Borrow;
 use std::ops::Range;
 
 use nc_syntax::dialect::{Paren, Semicolon};
@@ -67,10 +68,11 @@ pub fn find_provenance(text: &[u8]) -> Option<Range<u64>> {
 /// After the first `%`, a leader before it, the program's name and its `O` or `:` word, where these
 /// open the program; before everything else.
 #[must_use]
-pub fn provenance_position<'b, 't: 'b>(blocks: impl IntoIterator<Item = &'b Block<'t>>) -> u64 {
+pub fn provenance_position<'t>(blocks: impl IntoIterator<Item = impl Borrow<Block<'t>>>) -> u64 {
     let mut position = 0;
     let mut percent_seen = false;
     for block in blocks {
+        let block: &Block<'_> = block.borrow();
         let mut opens = false;
         // A block that moves may be rewritten, whatever it opens with.
         let moves = |item: &nc_syntax::Item| matches!(item.kind, ItemKind::Word { letter, .. } if b"XYZABCUVWIJKR".contains(&letter));

@@ -111,48 +111,71 @@ pub fn correct<E: From<Vec<Diagnostic>>>(
     if let (Some(diagnostic), false) = (corrected_before(text), job.force) {
         return Err(vec![diagnostic].into());
     }
-    let mut corrected = correct_without_mark(text, job, progress)?;
-    if corrected.text != text {
-        let comment = nc_emit::provenance_comment(job.dialect, job.provenance);
-        let position = comment_position(Reader::new(text, job.dialect));
-        nc_emit::insert_provenance(&mut corrected.text, position, &comment);
-    }
-    Ok(corrected)
+    let corrected = pass(text, job, |_| false, progress)?;
+    Ok(marked(corrected.expect("a pass that stops nowhere ends at the end"), text, job))
 }
 
-/// The same; the output does not say that it was corrected.
-fn correct_without_mark<E: From<Vec<Diagnostic>>>(
+/// Corrects what [`nc_syntax::looks_like_program`], bears no mark of a correction, and has no block that
+/// [computes](nc_expand::computes); `None` where one does.
+///
+/// # Errors
+/// As [`correct`].
+pub(crate) fn correct_plain<E: From<Vec<Diagnostic>>>(
     text: &[u8],
     job: &Job<'_>,
+    progress: impl FnMut(u64) -> Result<(), E>,
+) -> Result<Option<Corrected>, E> {
+    let corrected = pass(text, job, |block| nc_expand::computes(block, job.dialect), progress)?;
+    Ok(corrected.map(|corrected| marked(corrected, text, job)))
+}
+
+/// One pass over all blocks; the output does not say yet that it was corrected. `None` where `stop` holds for a
+/// block that is more than coordinates.
+fn pass<E: From<Vec<Diagnostic>>>(
+    text: &[u8],
+    job: &Job<'_>,
+    stop: impl Fn(&Block<'_>) -> bool,
     mut progress: impl FnMut(u64) -> Result<(), E>,
-) -> Result<Corrected, E> {
+) -> Result<Option<Corrected>, E> {
     let mut numbers = BlockNumbers::new();
-    if job.dialect.output.number_inserted_blocks {
+    if job.dialect.output.number_inserted_blocks && memchr::memchr2(b'N', b'n', text).is_some() {
         each_block(text, job.dialect, |block| numbers.see(block));
     }
     let mut pass = Pass::new(job, State::new(job, &numbers), text.len());
     let mut reader = Reader::new(text, job.dialect);
     let mut block = Block::default();
     while reader.next(&mut block) {
-        pass.block(&block)?;
+        if !pass.plain(&block)? {
+            if stop(&block) {
+                return Ok(None);
+            }
+            pass.other(&block)?;
+        }
         if pass.tally.figures.blocks_in.is_multiple_of(256) {
             progress(block.offset)?;
         }
     }
     let Pass { out, tally: Tally { mut figures, notices }, .. } = pass;
     figures.warnings = notices.warnings().into_iter().map(|(warning, _)| warning).collect();
-    Ok(Corrected { text: out, figures })
+    Ok(Some(Corrected { text: out, figures }))
+}
+
+/// Puts the mark of the correction into what is not the input.
+fn marked(mut corrected: Corrected, text: &[u8], job: &Job<'_>) -> Corrected {
+    if corrected.text != text {
+        let comment = nc_emit::provenance_comment(job.dialect, job.provenance);
+        let position = comment_position(Reader::new(text, job.dialect));
+        nc_emit::insert_provenance(&mut corrected.text, position, &comment);
+    }
+    corrected
 }
 
 /// Where the mark of the correction goes. The opening blocks stand unchanged at the start of the output: they move
 /// nothing.
 fn comment_position(mut reader: Reader<'_>) -> u64 {
-    let mut opening: Vec<Block<'_>> = Vec::new();
     let mut block = Block::default();
-    while opening.len() < OPENING_BLOCKS && reader.next(&mut block) {
-        opening.push(block.clone());
-    }
-    nc_emit::provenance_position(&opening)
+    let opening = std::iter::from_fn(|| reader.next(&mut block).then(|| block.clone()));
+    nc_emit::provenance_position(opening.take(OPENING_BLOCKS))
 }
 
 /// The refusal of a program that bears the mark of an earlier correction.

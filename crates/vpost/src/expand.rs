@@ -156,6 +156,19 @@ pub(crate) fn correct(
     if let (Some(diagnostic), false) = (correct::corrected_before(text), force) {
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
+    match correct_plain(text, name, settings, force, &mut progress)? {
+        Some(done) => Ok(done),
+        None => correct_expanded(text, name, settings, force, progress),
+    }
+}
+
+fn correct_expanded(
+    text: &[u8],
+    name: &str,
+    settings: &Settings,
+    force: bool,
+    mut progress: impl FnMut(f64) -> Result<(), Failure>,
+) -> Result<Done, Failure> {
     let lookups = RefCell::new(Vec::new());
     let expanded = expanded_with(text, name, settings, &|file| {
         let found = settings.flow.read(file);
@@ -199,6 +212,31 @@ pub(crate) fn correct(
     Ok(Done { corrected, warnings, lookups: lookups.into_inner() })
 }
 
+/// The short way of a program that has no flow, as most have none: one pass instead of two. `None` where it has flow,
+/// and where it is refused: the long way says why.
+fn correct_plain(
+    text: &[u8],
+    name: &str,
+    settings: &Settings,
+    force: bool,
+    mut progress: impl FnMut(f64) -> Result<(), Failure>,
+) -> Result<Option<Done>, Failure> {
+    let provenance = settings.provenance();
+    let job = settings.job(force, &provenance)?;
+    let total = text.len().max(1) as f64;
+    let result =
+        correct::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));
+    let corrected = match result {
+        Ok(Some(corrected)) => corrected,
+        Ok(None) | Err(PipelineEnd::Refused(_)) => return Ok(None),
+        Err(PipelineEnd::Failed(failure)) => return Err(failure),
+    };
+    let diagnostics = corrected.figures.warnings.clone();
+    let report = |diagnostics| Report { source: Some(Source::whole(name, text)), diagnostics };
+    let warnings = (!diagnostics.is_empty()).then(|| report(diagnostics)).into_iter().collect();
+    Ok(Some(Done { corrected, warnings, lookups: Vec::new() }))
+}
+
 /// Why a pipeline ended early.
 enum PipelineEnd {
     Refused(Vec<Diagnostic>),
@@ -208,5 +246,47 @@ enum PipelineEnd {
 impl From<Vec<Diagnostic>> for PipelineEnd {
     fn from(diagnostics: Vec<Diagnostic>) -> Self {
         Self::Refused(diagnostics)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::arguments::{Arguments, Color};
+    use crate::message::Messages;
+
+    #[test]
+    fn the_short_way_is_the_long_way() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let profile = root.join("machine-profiles/stan_s500.toml");
+        let (mut short, mut long, mut warned) = (0, 0, 0);
+        for dialect in ["linuxcnc", "fanuc"] {
+            let line = ["vpost", "-m", profile.to_str().unwrap(), "-d", dialect, "-"];
+            let shared = Arguments::try_parse_from(line).unwrap().shared;
+            let settings = Settings::load(&shared, &Messages::new(Color::Never, true)).unwrap();
+            let samples = root.join("samples").read_dir().unwrap().map(|entry| entry.unwrap().path());
+            let mut programs: Vec<(String, Vec<u8>)> = samples
+                .filter(|path| path.is_file() && path.to_string_lossy().contains(dialect))
+                .map(|path| (path.display().to_string(), std::fs::read(path).unwrap()))
+                .collect();
+            let warned_of = "G21 G90 G17 G54\nG43 H1\nG0 X10. Y10. Z30.\nG1 Z15. F600\nG41 D1 X20.\nY30.\nG40 X40.\nM30\n";
+            programs.push(("warned of".to_owned(), warned_of.into()));
+            for (name, text) in programs {
+                let whole = correct_expanded(&text, &name, &settings, true, |_| Ok(()));
+                let Some(done) = correct_plain(&text, &name, &settings, true, |_| Ok(())).unwrap() else {
+                    long += 1;
+                    continue;
+                };
+                let whole = whole.unwrap_or_else(|_| panic!("{name} is refused one way only"));
+                assert!(done.corrected == whole.corrected, "{name}");
+                assert_eq!(format!("{:?}", done.warnings), format!("{:?}", whole.warnings), "{name}");
+                assert_eq!(done.lookups, whole.lookups);
+                short += 1;
+                warned += done.warnings.len();
+            }
+        }
+        assert!(short > 5 && long > 0 && warned > 0, "{short} {long} {warned}");
     }
 }

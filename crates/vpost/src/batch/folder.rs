@@ -45,7 +45,9 @@ impl OutputFolder {
     /// Opens the folder, making it where it is not there; sweeps what a killed run left, if nobody else is at work.
     pub(crate) fn open(root: &Path, company: Company) -> Result<Self, Failure> {
         let own = root.join(".vpost");
-        let temporaries = own.join("tmp");
+        // Made whole here, it is not made whole for each file.
+        let temporaries = std::path::absolute(own.join("tmp"))
+            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
@@ -120,15 +122,19 @@ impl OutputFolder {
             return Err(io::Error::from(io::ErrorKind::InvalidInput));
         };
         let place = self.place(output);
-        if let Some(folder) = place.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
         // On Linux all outputs are brought to the disk together, at the end: see `sync`.
         if !cfg!(target_os = "linux") {
             temporary.as_file().sync_all()?;
         }
-        temporary.persist(place).map_err(|error| error.error)?;
-        Ok(())
+        let put = temporary.persist(&place).or_else(|missed| match place.parent() {
+            // The first output of a folder makes it.
+            Some(folder) if missed.error.kind() == io::ErrorKind::NotFound => {
+                std::fs::create_dir_all(folder)?;
+                missed.file.persist(&place).map_err(|error| error.error)
+            }
+            _ => Err(missed.error),
+        });
+        put.map(drop)
     }
 
     /// Brings everything written so far to the disk: what is reported as done survives a power cut.

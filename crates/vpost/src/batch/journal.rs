@@ -1,6 +1,6 @@
 //! The journal: what became of each program, so that the next run need not do it again.
 //!
-//! A line is appended when a program's output stands under its final name. The journal saves work and proves
+//! A line is appended soon after a program's output stands under its final name. The journal saves work and proves
 //! completeness; it is never believed without the hash of the output it speaks of. So nothing is lost with it: a line
 //! that is torn, missing or of a file that has changed since means that the program is corrected again.
 
@@ -41,9 +41,9 @@ impl Journal {
         Ok(Self { folder: folder.to_owned(), name: name.to_owned(), live, file })
     }
 
-    /// Adds a line.
-    pub(crate) fn add(&mut self, record: &Record) -> io::Result<()> {
-        self.file.write_all(&record::lines([record]))
+    /// Adds lines.
+    pub(crate) fn add<'r>(&mut self, records: impl IntoIterator<Item = &'r Record>) -> io::Result<()> {
+        self.file.write_all(&record::lines(records))
     }
 
     /// Puts all records of this journal's name into one file; for [`WHOLE`], those of all names.

@@ -26,6 +26,10 @@ const CHANGED: Code = Code(1007);
 /// A defect of vpost.
 const DEFECT: Code = Code(1008);
 
+/// Results of programs of so many bytes together are told at once: telling each costs as much as correcting a small
+/// one. A run that is killed corrects these again.
+const TOLD_TOGETHER_BYTES: u64 = 1 << 18;
+
 /// No more refusals are printed with their lines.
 const MOST_PRINTED: usize = 20;
 
@@ -84,32 +88,46 @@ impl Batch<'_> {
             for _ in 0..workers {
                 let (sender, next) = (sender.clone(), &next);
                 scope.spawn(move |_| {
+                    let (mut done, mut bytes) = (Vec::new(), 0);
                     while self.interrupt.check().is_ok()
                         && let Some((index, item)) = {
                             let index = next.fetch_add(1, Ordering::Relaxed);
                             items.get(index).map(|item| (index, item))
                         }
                     {
-                        // Whoever listens no more has a reason that is told there.
+                        // What is done does not wait for a large one.
+                        bytes += item.bytes;
+                        if bytes > TOLD_TOGETHER_BYTES {
+                            // Whoever listens no more has a reason that is told there.
+                            if sender.send(std::mem::take(&mut done)).is_err() {
+                                break;
+                            }
+                            bytes = item.bytes;
+                        }
                         // The last programs are shared by the threads that would have none.
                         let threads = (threads / (items.len() - index)).max(1);
-                        if sender.send((index, self.guarded(item, threads))).is_err() {
-                            break;
+                        match self.guarded(item, threads) {
+                            Ok(outcome) => done.push((index, outcome)),
+                            // Interrupted, which ends all.
+                            Err(_) => break,
                         }
                     }
+                    let _ = sender.send(done);
                 });
             }
             drop(sender);
             let mut told = Told { results: Results::default(), waiting: BTreeMap::new(), printed: 0 };
-            for (index, outcome) in receiver {
-                let Ok(mut outcome) = outcome else { continue };
-                progress.done(&items[index], outcome.resumed);
-                if !outcome.resumed
-                    && let Err(error) = journal.add(&outcome.record)
-                {
-                    fail(&mut outcome, Failure::file("the journal", "write", &error));
+            for mut done in receiver {
+                let new = || done.iter().map(|(_, outcome)| outcome).filter(|outcome| !outcome.resumed);
+                if let Err(error) = journal.add(new().map(|outcome| &outcome.record)) {
+                    for (_, outcome) in done.iter_mut().filter(|(_, outcome)| !outcome.resumed) {
+                        fail(outcome, Failure::file("the journal", "write", &error));
+                    }
                 }
-                told.waiting.insert(index, outcome);
+                for (index, outcome) in done {
+                    progress.done(&items[index], outcome.resumed);
+                    told.waiting.insert(index, outcome);
+                }
                 told.in_order(progress, messages);
             }
             self.interrupt.check()?;

@@ -114,14 +114,16 @@ pub(crate) fn program(
 ) -> Result<Program, Failure> {
     let name = input.name();
     let unread = |error: &io::Error| Failure::file(&name, "read", error);
-    let (path, mut rest): (Option<PathBuf>, Box<dyn Read + Send>) = match input {
+    let (path, bytes, mut rest): (Option<PathBuf>, u64, Box<dyn Read + Send>) = match input {
         Input::File(path) => {
             let file = File::open(&path).map_err(|error| unread(&error))?;
-            (Some(path), Box::new(file))
+            let bytes = file.metadata().map_or(0, |data| data.len());
+            (Some(path), bytes, Box::new(file))
         }
-        Input::Stream(_, stream) => (None, stream),
+        Input::Stream(_, stream) => (None, 0, stream),
     };
-    let mut head = Vec::new();
+    // A small file is read at once, and room is left to see that it ends there.
+    let mut head = Vec::with_capacity(bytes.min(SMALL_BYTES) as usize + 1);
     rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
     file::check_lines(&head, &name)?;
     if (head.len() as u64) < SMALL_BYTES {

@@ -454,9 +454,9 @@ mod tests {
             let mut text = "%\nO1\nG21 G90 G54 G43 H1\nG0 X0. Y0. Z30.\nG1 Z10. F500.\n".to_owned();
             parts.iter().for_each(|part| text.push_str(PARTS[*part]));
             text.push_str("M30\n%\n");
-            let whole: Result<Corrected, Vec<Diagnostic>> =
-                crate::correct::correct_without_mark(text.as_bytes(), &job, |_| Ok(()));
-            let whole = whole.unwrap();
+            let whole: Result<Option<Corrected>, Vec<Diagnostic>> =
+                crate::correct::pass(text.as_bytes(), &job, |_| false, |_| Ok(()));
+            let whole = whole.unwrap().unwrap();
             let (out, figures) = in_chunks(text.as_bytes(), &job, chunk_bytes, threads);
             prop_assert_eq!(String::from_utf8_lossy(&out), String::from_utf8_lossy(&whole.text));
             prop_assert_eq!(&figures, &whole.figures);
