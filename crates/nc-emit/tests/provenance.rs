@@ -62,7 +62,7 @@ fn the_comment_goes_after_what_must_stay_first() {
         ("G0 X1\nO1\n", "(C)\nG0 X1\nO1\n"),
         ("", "(C)\n"),
     ] {
-        let position = provenance_position(&read(&dialect, text));
+        let position = provenance_position(read(&dialect, text));
         let mut out = text.as_bytes().to_vec();
         insert_provenance(&mut out, position, b"(C)");
         assert_eq!(String::from_utf8(out).unwrap(), expected, "`{text}`");
