@@ -81,7 +81,7 @@ impl<'a> Assembly<'a> {
     pub(crate) fn square(&self, parts: &[Part]) -> (f64, usize) {
         let space = &self.model.space;
         let columns = space.columns(&self.model.library, parts);
-        let (square, rank) = explained(space.products(self.model.fit.level), &columns, space.reference());
+        let (square, rank) = explained(&space.products(self.model.fit.level), &columns, space.reference());
         ((space.total(self.model.fit.level) - square).max(0.0), rank)
     }
 

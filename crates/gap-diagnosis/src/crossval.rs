@@ -49,7 +49,8 @@ impl Folds {
         let whitened: Vec<DMatrix<f64>> = parts
             .iter()
             .map(|scalars| {
-                let part = Source { scalars, ..*source };
+                // Few equations each: nothing to look up.
+                let part = Source { scalars, places: None, ..*source };
                 Gram::new(terms.to_vec(), &part).whitened(rho).0
             })
             .collect();

@@ -3,11 +3,13 @@
 use machine_model::effects::{EffectKind, Shape};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::columns::{Kept, Places};
 use crate::fit::Solution;
-use crate::gram::{Gram, Kept, Source};
+use crate::gram::{Gram, Source};
 use crate::library::{Library, Variant, narrowest_mm};
 use crate::noise::outliers;
 use crate::observation::{Measurements, Scalar};
+use crate::pool::Pool;
 use crate::propose::{self, Pitches};
 use crate::refine::Stage;
 use crate::search::{Move, next_move};
@@ -31,9 +33,7 @@ pub(crate) struct Explained {
     pub scalars: Vec<Scalar>,
     /// Library with all proposed shapes.
     pub library: Library,
-    /// Products of all its columns.
-    pub gram: Gram,
-    /// The same, whitened.
+    /// Products of all its columns, raw and whitened.
     pub space: Space,
     /// The model.
     pub parts: Vec<Part>,
@@ -67,36 +67,28 @@ pub(crate) struct Refused {
 /// Runs the search, drops lone outliers, and searches again until they stay the same.
 #[must_use]
 pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
+    let places = Places::new(&data.rows);
+    let source = Source { places: Some(&places), ..source(data, scalars) };
+    let mut pool = Pool::new(&source);
     let mut dropped: Vec<usize> = Vec::new();
-    let mut result = explain_once(data, scalars.to_vec(), without, None);
-    let lone = |model: &Explained| {
-        let source = source(data, scalars);
-        let residuals = conditional_residuals(&model.model_gram(), &model.solution, &source);
+    let mut result = explain_once(data, &mut pool, &dropped, without, None);
+    let lone = |solution: &Solution| {
+        let residuals = conditional_residuals(solution, &source);
         outliers(&data.rows, scalars, &residuals)
     };
     for pass in 0..PASSES {
         let local = result.parts.iter().any(|p| is_local(result.library.candidates[p.candidate].kind));
-        let found = if pass == 0 && local {
-            // Two blunders in one place look like damage there: judge them by a model without damage.
-            let mut no_damage = without.to_vec();
-            no_damage.extend((0..3).map(EffectKind::Local));
-            lone(&explain_once(data, scalars.to_vec(), &no_damage, None))
-        } else {
-            lone(&result)
-        };
+        let found =
+            if pass == 0 && local { lone(&without_damage(&result, &source)) } else { lone(&result.solution) };
         if found == dropped || found.len() * 5 > data.rows.len() {
             break;
         }
         dropped = found;
-        let kept = scalars.iter().filter(|s| dropped.binary_search(&s.row).is_err()).copied().collect();
-        // The first answer was given with the outliers in it and is forgotten; later ones differ by a row or two.
-        let start = (pass > 0).then_some(result);
-        result = explain_once(data, kept, without, start);
+        result = explain_once(data, &mut pool, &dropped, without, Some(result));
         result.outliers.clone_from(&dropped);
     }
     if !dropped.is_empty() {
-        let source = source(data, scalars);
-        let all = conditional_residuals(&result.model_gram(), &result.solution, &source);
+        let all = conditional_residuals(&result.solution, &source);
         let left_out = scalars.iter().zip(all).filter(|(s, _)| dropped.binary_search(&s.row).is_ok());
         result.dropped_residuals_um = left_out.map(|(_, r)| r).collect();
     }
@@ -110,29 +102,23 @@ const fn is_local(kind: EffectKind) -> bool {
 /// Where the products come from.
 #[must_use]
 pub(crate) fn source<'a>(data: &'a Measurements, scalars: &'a [Scalar]) -> Source<'a> {
-    Source { rows: &data.rows, scalars, runs: data.runs.len(), geometry: &data.geometry }
+    Source { rows: &data.rows, scalars, runs: data.runs.len(), geometry: &data.geometry, places: None }
 }
 
-fn conditional_residuals(sub: &Gram, solution: &Solution, source: &Source<'_>) -> Vec<f64> {
-    crate::fit::residuals(&sub.terms, &solution.coefficients, source)
+/// The model without damage at a place.
+fn without_damage(model: &Explained, source: &Source<'_>) -> Solution {
+    let mut parts = model.parts.clone();
+    parts.retain(|p| !is_local(model.library.candidates[p.candidate].kind));
+    let sub = model.space.gram.select(&model_columns(&model.library, &parts));
+    sub.solve(model.solution.rho, source)
+}
+
+fn conditional_residuals(solution: &Solution, source: &Source<'_>) -> Vec<f64> {
+    crate::fit::residuals(&solution.terms, &solution.coefficients, source)
         .iter()
         .zip(source.scalars)
         .map(|(r, s)| r - s.along.dot(&solution.run_offsets_um[source.rows[s.row].run]))
         .collect()
-}
-
-impl Explained {
-    /// Columns of the library that the model uses: the set-up first.
-    #[must_use]
-    pub(crate) fn model_columns(&self) -> Vec<usize> {
-        model_columns(&self.library, &self.parts)
-    }
-
-    /// Products of those columns.
-    #[must_use]
-    pub(crate) fn model_gram(&self) -> Gram {
-        self.gram.select(&self.model_columns())
-    }
 }
 
 /// Set-up columns and those of some parts, as positions in the library.
@@ -142,23 +128,29 @@ pub(crate) fn model_columns(library: &Library, parts: &[Part]) -> Vec<usize> {
     (0..library.nuisances).chain(own.copied()).collect()
 }
 
+/// One search, without the rows in `dropped`.
 fn explain_once(
     data: &Measurements,
-    scalars: Vec<Scalar>,
+    pool: &mut Pool<'_>,
+    dropped: &[usize],
     without: &[EffectKind],
     start: Option<Explained>,
 ) -> Explained {
-    let source = source(data, &scalars);
-    let mut state = State::new(data, &source, without, start);
+    let all = *pool.source();
+    let (lost, scalars): (Vec<Scalar>, Vec<Scalar>) =
+        all.scalars.iter().partition(|s| dropped.binary_search(&s.row).is_ok());
+    let source = Source { scalars: &scalars, ..all };
+    // Too few to look anything up.
+    let lost = Source { scalars: &lost, places: None, ..all };
+    let mut state = State::new(data, &source, pool, lost, without, start);
     state.search();
-    let State { library, gram, space, parts, fit, refused, .. } = state;
-    let sub = gram.select(&model_columns(&library, &parts));
+    let State { library, space, parts, fit, refused, .. } = state;
+    let sub = space.gram.select(&model_columns(&library, &parts));
     let rho = sub.best_rho(space.rho(fit.level));
     let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
     let solution = sub.solve(rho, &source);
     Explained {
         library,
-        gram,
         space,
         parts,
         fit,
@@ -172,37 +164,42 @@ fn explain_once(
 }
 
 /// A search under way.
-pub(crate) struct State<'a> {
+pub(crate) struct State<'a, 'b> {
     pub(crate) data: &'a Measurements,
     pub(crate) source: &'a Source<'a>,
     without: &'a [EffectKind],
     pub(crate) library: Library,
-    kept: Kept,
+    pool: &'a mut Pool<'b>,
+    /// The equations left out, and their products.
+    lost: (Source<'a>, Gram),
+    /// Where the columns of the library are in the pool.
+    positions: Vec<usize>,
     pitches: [Pitches; 3],
-    pub(crate) gram: Gram,
     pub(crate) space: Space,
     pub(crate) parts: Vec<Part>,
     pub(crate) fit: Fit,
     refused: Option<Refused>,
 }
 
-impl<'a> State<'a> {
+impl<'a, 'b> State<'a, 'b> {
     /// Begins with the model of `start`, or with nothing.
     fn new(
         data: &'a Measurements,
         source: &'a Source<'a>,
+        pool: &'a mut Pool<'b>,
+        lost: Source<'a>,
         without: &'a [EffectKind],
         start: Option<Explained>,
     ) -> Self {
         let (library, parts) =
             start.map_or_else(|| (Library::new(data, without), Vec::new()), |s| (s.library, s.parts));
-        let mut kept = Kept::default();
-        let mut gram = Gram::new(Vec::new(), source);
-        gram.extend(library.terms.clone(), source, Some(&mut kept));
-        let space = Space::new(&gram, library.nuisances);
+        let gone = Gram::new(library.terms.clone(), &lost);
+        let positions = pool.positions(&library.terms);
+        let space = Space::new(pool.select(&positions).without(&gone), library.nuisances);
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
-        Self { data, source, without, library, kept, pitches, gram, space, parts, fit, refused: None }
+        let (lost, refused) = ((lost, gone), None);
+        Self { data, source, without, library, pool, lost, positions, pitches, space, parts, fit, refused }
     }
 
     fn search(&mut self) {
@@ -245,7 +242,7 @@ impl<'a> State<'a> {
     /// Forms of other effects whose free numbers imitate the causes: a knock at the time the load came on is a
     /// rival of the load, whatever times a grid happens to hold.
     fn imitate(&mut self) {
-        let sub = self.gram.select(&model_columns(&self.library, &self.parts));
+        let sub = self.space.gram.select(&model_columns(&self.library, &self.parts));
         let solution = sub.solve(self.space.rho(self.fit.level), self.source);
         let mut first = self.library.nuisances;
         for part in self.parts.clone() {
@@ -286,11 +283,13 @@ impl<'a> State<'a> {
 
     /// New columns with their products, then everything whitened again.
     fn grow(&mut self) {
-        let known = self.gram.terms.len();
+        let known = self.space.gram.terms.len();
         let new: Vec<Term> = self.library.terms[known..].to_vec();
         if !new.is_empty() {
-            self.gram.extend(new, self.source, Some(&mut self.kept));
-            self.space.grow(&self.gram);
+            self.positions.extend(self.pool.positions(&new));
+            let (source, gone) = &mut self.lost;
+            gone.extend(new, source, &mut Kept::default());
+            self.space.grow(self.pool.select(&self.positions).without(gone));
             self.fit = self.space.fit(&self.library, &self.parts);
         }
     }
@@ -298,7 +297,7 @@ impl<'a> State<'a> {
     /// Shapes worth asking about, given what is explained already.
     fn propose(&mut self) {
         let rho = self.space.rho(self.fit.level);
-        let sub = self.gram.select(&model_columns(&self.library, &self.parts));
+        let sub = self.space.gram.select(&model_columns(&self.library, &self.parts));
         let solution = sub.solve(rho, self.source);
         for axis in 0..3 {
             let kind = EffectKind::Pitch(axis);

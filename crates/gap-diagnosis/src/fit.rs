@@ -3,6 +3,7 @@
 use machine_model::Vector;
 use nalgebra::{DMatrix, Matrix3};
 
+use crate::columns::Column;
 use crate::gram::{Gram, Source};
 use crate::linear::Factor;
 use crate::term::Term;
@@ -154,15 +155,15 @@ impl Gram {
 /// Gap minus columns, µm, without run offsets.
 #[must_use]
 pub(crate) fn residuals(terms: &[Term], coefficients: &[f64], source: &Source<'_>) -> Vec<f64> {
-    let used: Vec<(&Term, f64)> =
-        terms.iter().zip(coefficients).filter(|(_, v)| **v != 0.0).map(|(t, v)| (t, *v)).collect();
-    source
-        .scalars
+    let used: Vec<(Column<'_>, f64)> = terms
         .iter()
-        .map(|s| {
-            let row = &source.rows[s.row];
-            let fitted: f64 = used.iter().map(|(t, v)| v * t.value(s, row, source.geometry)).sum();
-            s.gap_um - fitted
-        })
-        .collect()
+        .zip(coefficients)
+        .filter(|(_, v)| **v != 0.0)
+        .map(|(term, v)| (Column::new(term, source), *v))
+        .collect();
+    let left = source.scalars.iter().enumerate().map(|(equation, s)| {
+        let fitted: f64 = used.iter().map(|(column, v)| v * column.value(equation)).sum();
+        s.gap_um - fitted
+    });
+    left.collect()
 }

@@ -99,7 +99,7 @@ impl Assembly<'_> {
                 }
                 let mut parts = model.parts.clone();
                 parts[ranked.place] = rival.part;
-                let sub = model.gram.select(&model_columns(&model.library, &parts));
+                let sub = model.space.gram.select(&model_columns(&model.library, &parts));
                 let values = sub.coefficients(model.solution.rho);
                 let first = self.ordered.iter().take(count).map(|r| r.place);
                 let instead = first.flat_map(|place| {

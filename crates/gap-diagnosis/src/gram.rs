@@ -9,15 +9,13 @@ use machine_model::Vector;
 use machine_model::effects::EffectGeometry;
 use nalgebra::{DMatrix, Matrix3};
 
+use crate::columns::{Column, Kept, Places};
 use crate::observation::{Row, Scalar};
 use crate::term::Term;
-
-/// Values of columns kept between extensions, at most this many numbers (256 MiB); what does not fit is evaluated
-/// again when it is needed.
-const KEPT: usize = 32 << 20;
+use crate::tile::{CHUNK, Tiles};
 
 /// Raw inner products; the last column is the gap itself.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Gram {
     /// The columns, without the gap.
     pub terms: Vec<Term>,
@@ -42,39 +40,16 @@ pub(crate) struct Source<'a> {
     pub runs: usize,
     /// The machine.
     pub geometry: &'a EffectGeometry,
+    /// The rows by place, where so many columns are asked about that sorting them pays.
+    pub places: Option<&'a Places>,
 }
 
 impl Source<'_> {
     /// Values of a column at some equations, times the roots of their weights.
     #[must_use]
     pub(crate) fn weighted(&self, term: &Term, equations: &[usize]) -> Vec<f64> {
-        let value = |i: &usize| {
-            let scalar = &self.scalars[*i];
-            scalar.weight.sqrt() * term.value(scalar, &self.rows[scalar.row], self.geometry)
-        };
-        equations.iter().map(value).collect()
-    }
-}
-
-/// Values of columns, class by class, for the next extension.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Kept {
-    classes: [Vec<Option<Vec<f64>>>; 4],
-    numbers: usize,
-}
-
-impl Kept {
-    fn keep(&mut self, class: usize, term: usize, values: Vec<f64>) {
-        if self.numbers + values.len() <= KEPT {
-            self.numbers += values.len();
-            let list = &mut self.classes[class];
-            list.resize(list.len().max(term + 1), None);
-            list[term] = Some(values);
-        }
-    }
-
-    fn get(&self, class: usize, term: usize) -> Option<&[f64]> {
-        self.classes[class].get(term)?.as_deref()
+        let column = Column::new(term, self);
+        equations.iter().map(|i| self.scalars[*i].weight.sqrt() * column.value(*i)).collect()
     }
 }
 
@@ -97,12 +72,12 @@ impl Gram {
                 gram.run_products[run][(c, 0)] += scalar.weight * scalar.along[c] * scalar.gap_um;
             }
         }
-        gram.extend(terms, source, None);
+        gram.extend(terms, source, &mut Kept::default());
         gram
     }
 
     /// Adds columns; `kept` holds values of the columns there are and takes those of the new ones.
-    pub(crate) fn extend(&mut self, new: Vec<Term>, source: &Source<'_>, mut kept: Option<&mut Kept>) {
+    pub(crate) fn extend<'a>(&mut self, new: Vec<Term>, source: &Source<'a>, kept: &mut Kept<'a>) {
         let first_new = self.terms.len();
         self.terms.extend(new);
         let size = self.terms.len() + 1;
@@ -124,51 +99,91 @@ impl Gram {
         for class in 0..4 {
             let equations: Vec<usize> =
                 (0..source.scalars.len()).filter(|i| source.scalars[*i].class == class).collect();
-            if equations.is_empty() {
+            // Columns that can be anything but zero in this class, the gap last.
+            let seen = |i: &usize| class == 3 || self.terms[*i].touches(class);
+            let shown: Vec<usize> = (0..size - 1).filter(seen).collect();
+            let first = shown.partition_point(|i| *i < first_new);
+            if equations.is_empty() || first == shown.len() {
                 continue;
             }
-            // Columns that can be anything but zero in this class.
-            let seen = |i: &usize| class == 3 || self.terms[*i].touches(class);
-            let fresh: Vec<(usize, Vec<f64>)> = (first_new..size - 1)
-                .filter(seen)
-                .map(|i| (i, source.weighted(&self.terms[i], &equations)))
-                .collect();
-            let mut add = |i: usize, j: usize, value: f64| {
+            let mut tiles = Tiles::new(shown.len() + 1, first);
+            for (nth, chunk) in equations.chunks(CHUNK).enumerate() {
+                let roots: Vec<f64> = chunk.iter().map(|i| source.scalars[*i].weight.sqrt()).collect();
+                let run = |i: &usize| source.rows[source.scalars[*i].row].run;
+                for (k, i) in shown.iter().enumerate() {
+                    let values = tiles.column(k, chunk.len());
+                    match kept.values(class, *i, nth * CHUNK, chunk.len()).filter(|_| k < first) {
+                        Some(known) => values.copy_from_slice(known),
+                        None => {
+                            let column = &kept.columns(&self.terms, source)[*i];
+                            column.fill(chunk, &roots, values);
+                            kept.keep(class, *i, values);
+                        }
+                    }
+                }
+                let gap = tiles.column(shown.len(), chunk.len());
+                for ((value, i), root) in gap.iter_mut().zip(chunk).zip(&roots) {
+                    *value = root * source.scalars[*i].gap_um;
+                }
+                tiles.multiply(chunk.len());
+                for (k, i) in shown.iter().enumerate().skip(first) {
+                    let mut start = 0;
+                    for rows in chunk.chunk_by(|a, b| run(a) == run(b)) {
+                        let part = start..start + rows.len();
+                        start = part.end;
+                        let seen = tiles.column(k, chunk.len())[part.clone()].iter().zip(&roots[part]);
+                        let block = &mut self.run_products[run(&rows[0])];
+                        if class < 3 {
+                            block[(class, *i)] += seen.map(|(value, root)| root * value).sum::<f64>();
+                        } else {
+                            for ((value, root), equation) in seen.zip(rows) {
+                                let along = source.scalars[*equation].along;
+                                (0..3).for_each(|c| block[(c, *i)] += along[c] * root * value);
+                            }
+                        }
+                    }
+                }
+            }
+            let position = |k: usize| shown.get(k).copied().unwrap_or(size - 1);
+            for (a, b, value) in tiles.products() {
+                let (i, j) = (position(a), position(b));
                 products[(i, j)] += value;
                 if i != j {
                     products[(j, i)] += value;
                 }
-            };
-            let gap: Vec<f64> = equations
-                .iter()
-                .map(|i| source.scalars[*i].weight.sqrt() * source.scalars[*i].gap_um)
-                .collect();
-            fresh.iter().for_each(|(j, b)| add(*j, size - 1, dot(&gap, b)));
-            for i in (0..first_new).filter(seen).filter(|_| !fresh.is_empty()) {
-                let known = kept.as_deref().and_then(|k| k.get(class, i));
-                let again = known.is_none().then(|| source.weighted(&self.terms[i], &equations));
-                if let Some(a) = known.or(again.as_deref()) {
-                    fresh.iter().for_each(|(j, b)| add(i, *j, dot(a, b)));
-                }
-            }
-            for (place, (i, a)) in fresh.iter().enumerate() {
-                fresh[place..].iter().for_each(|(j, b)| add(*i, *j, dot(a, b)));
-            }
-            for (i, values) in fresh {
-                for (equation, value) in equations.iter().zip(&values) {
-                    let scalar = &source.scalars[*equation];
-                    let block = &mut self.run_products[source.rows[scalar.row].run];
-                    let value = scalar.weight.sqrt() * value;
-                    for c in 0..3 {
-                        block[(c, i)] += scalar.along[c] * value;
-                    }
-                }
-                if let Some(kept) = kept.as_deref_mut() {
-                    kept.keep(class, i, values);
-                }
             }
         }
         self.products = products;
+    }
+
+    /// The same without some of the equations.
+    #[must_use]
+    pub(crate) fn without(mut self, lost: &Self) -> Self {
+        if lost.equations == 0 {
+            return self;
+        }
+        // What is left of a column that lost all it showed is rounding.
+        const NOTHING: f64 = 1e-9;
+        let whole = self.squares();
+        self.products -= &lost.products;
+        self.equations -= lost.equations;
+        for (information, gone) in self.run_information.iter_mut().zip(&lost.run_information) {
+            let before = *information;
+            *information = (before - gone)
+                .zip_map(&before, |left, all| if left.abs() <= NOTHING * all.abs() { 0.0 } else { left });
+        }
+        for (block, gone) in self.run_products.iter_mut().zip(&lost.run_products) {
+            *block -= gone;
+        }
+        for (i, whole) in whole.iter().enumerate().take(self.terms.len()) {
+            if self.products[(i, i)] > NOTHING * whole {
+                continue;
+            }
+            self.products.row_mut(i).fill(0.0);
+            self.products.column_mut(i).fill(0.0);
+            self.run_products.iter_mut().for_each(|block| block.column_mut(i).fill(0.0));
+        }
+        self
     }
 
     /// The Cholesky factors of `I/ρ + UᵀDU` of every run, and the logarithm of the determinant of V/σ².

@@ -6,6 +6,7 @@
 
 mod align;
 mod assembly;
+mod columns;
 mod confounding;
 mod crossval;
 mod diagnose;
@@ -22,6 +23,7 @@ mod next;
 mod noise;
 mod observation;
 mod parameters;
+mod pool;
 mod propose;
 mod refine;
 mod remedy;
@@ -34,6 +36,7 @@ mod structure;
 mod term;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod trial;
 mod unseen;
 mod verdict;

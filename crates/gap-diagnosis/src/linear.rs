@@ -5,6 +5,24 @@ use nalgebra::{DMatrix, DVector};
 /// A column counts as explained by the others where less than this share of its square is left.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-6;
 
+/// Inner products of columns by their positions, the gap last.
+pub(crate) trait Products {
+    /// One of them.
+    fn product(&self, i: usize, j: usize) -> f64;
+    /// Number of columns, the gap among them.
+    fn count(&self) -> usize;
+}
+
+impl Products for DMatrix<f64> {
+    fn product(&self, i: usize, j: usize) -> f64 {
+        self[(i, j)]
+    }
+
+    fn count(&self) -> usize {
+        self.nrows()
+    }
+}
+
 /// Pivoted Cholesky factor of the products of some columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Factor {
@@ -23,10 +41,10 @@ impl Factor {
     /// Factors `products[columns, columns]`; `reference` is the square of each column before anything was
     /// taken out of it.
     #[must_use]
-    pub(crate) fn new(products: &DMatrix<f64>, columns: &[usize], reference: &[f64]) -> Self {
+    pub(crate) fn new(products: &impl Products, columns: &[usize], reference: &[f64]) -> Self {
         let count = columns.len();
         let mut kept: Vec<usize> = Vec::with_capacity(count);
-        let mut rest: Vec<f64> = columns.iter().map(|c| products[(*c, *c)]).collect();
+        let mut rest: Vec<f64> = columns.iter().map(|c| products.product(*c, *c)).collect();
         // rows[k] holds row k of Lᵀ over all columns given.
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
         for _ in 0..count {
@@ -42,7 +60,7 @@ impl Factor {
             let row: Vec<f64> = (0..count)
                 .map(|j| {
                     let sum: f64 = rows.iter().map(|r| r[pivot] * r[j]).sum();
-                    (products[(columns[pivot], columns[j])] - sum) / root
+                    (products.product(columns[pivot], columns[j]) - sum) / root
                 })
                 .collect();
             for (to, v) in rest.iter_mut().zip(&row) {
@@ -120,9 +138,9 @@ impl Factor {
 
 /// How much the columns take off the square of the last column (the gap), and their rank.
 #[must_use]
-pub(crate) fn explained(products: &DMatrix<f64>, columns: &[usize], reference: &[f64]) -> (f64, usize) {
+pub(crate) fn explained(products: &impl Products, columns: &[usize], reference: &[f64]) -> (f64, usize) {
     let factor = Factor::new(products, columns, reference);
-    let last = products.nrows() - 1;
-    let b: Vec<f64> = factor.kept.iter().map(|k| products[(columns[*k], last)]).collect();
+    let last = products.count() - 1;
+    let b: Vec<f64> = factor.kept.iter().map(|k| products.product(columns[*k], last)).collect();
     (factor.forward(&b).iter().map(|v| v * v).sum(), factor.rank())
 }

@@ -15,6 +15,9 @@ const SEGMENTS: usize = 4;
 /// Classes of a quantity with few values (feeds, tools, loads).
 const MOST_CLASSES: usize = 8;
 
+/// The family of components: neighbouring equations are different ones, so that shifted labels would be the same ones.
+const COMPONENT: &str = "component";
+
 /// One way to sort the equations into cells.
 struct Family {
     by: String,
@@ -57,12 +60,17 @@ pub(crate) fn places(
             let own = (sum - noise_variance * count).max(0.0);
             if beyond > 0.0 { (own / beyond).min(1.0) } else { sum / total }
         };
-        // Shifting the labels along the file keeps how rows hang together, and the largest of all cells
-        // corrects for their number.
+        // Either relabelling keeps how rows hang together, and the largest of all cells corrects for their number.
+        let by_run = (family.by == COMPONENT).then(|| components_by_run(data, scalars, &squares));
         let largest: Vec<f64> = (0..RELABELLINGS)
             .map(|_| {
-                let shift = random.random_range(1..scalars.len().max(2));
-                score(&sums(&family, &squares, shift)).into_iter().fold(f64::NEG_INFINITY, f64::max)
+                let sums = match &by_run {
+                    // The components of a whole run change names.
+                    Some(runs) => renamed(runs, &counts, &mut random),
+                    // The labels are shifted along the file.
+                    None => sums(&family, &squares, random.random_range(1..scalars.len().max(2))),
+                };
+                score(&sums).into_iter().fold(f64::NEG_INFINITY, f64::max)
             })
             .collect();
         let mut found: Vec<Cell> = family
@@ -71,7 +79,8 @@ pub(crate) fn places(
             .enumerate()
             .filter(|(i, _)| counts[*i] > 0.0)
             .map(|(i, name)| {
-                let beyond = largest.iter().filter(|l| **l >= own[i]).count();
+                // Labels shifted by a whole period are the same labels, whatever the last digit of their sum.
+                let beyond = largest.iter().filter(|l| **l >= own[i] - 1e-9 * own[i].abs()).count();
                 let p = (beyond + 1) as f64 / (RELABELLINGS + 1) as f64;
                 Cell { by: family.by.clone(), cell: name.clone(), share: share(observed[i], counts[i]), p }
             })
@@ -82,6 +91,30 @@ pub(crate) fn places(
         cells.extend(found);
     }
     cells
+}
+
+/// Squares of every run by component.
+fn components_by_run(data: &Measurements, scalars: &[Scalar], squares: &[f64]) -> Vec<[f64; 4]> {
+    let mut runs = vec![[0.0; 4]; data.runs.len()];
+    for (scalar, square) in scalars.iter().zip(squares) {
+        runs[data.rows[scalar.row].run][scalar.class] += square;
+    }
+    runs
+}
+
+/// Sums over all runs, the components that were measured renamed in each.
+fn renamed(runs: &[[f64; 4]], counts: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
+    let measured: Vec<usize> = (0..3).filter(|c| counts[*c] > 0.0).collect();
+    let mut sums = vec![0.0; counts.len()];
+    for run in runs {
+        let mut names = measured.clone();
+        for left in (1..names.len()).rev() {
+            names.swap(left, random.random_range(0..=left));
+        }
+        measured.iter().zip(names).for_each(|(from, to)| sums[to] += run[*from]);
+        sums[3] += run[3];
+    }
+    sums
 }
 
 fn sums(family: &Family, values: &[f64], shift: usize) -> Vec<f64> {
@@ -99,7 +132,7 @@ fn families(data: &Measurements, scalars: &[Scalar]) -> Vec<Family> {
     if scalars.iter().any(|s| s.class < 3) {
         let names = ["dx", "dy", "dz", "along the bar"].map(str::to_owned).to_vec();
         all.push(Family {
-            by: "component".to_owned(),
+            by: COMPONENT.to_owned(),
             names,
             label: scalars.iter().map(|s| s.class).collect(),
         });

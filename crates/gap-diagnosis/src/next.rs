@@ -43,7 +43,7 @@ pub(crate) fn next_measurement(
     let values: Vec<f64> = own_coefficients(model, place);
     let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
     debug_assert!(nuisances <= explained_by, "the set-up comes first");
-    let (known, _) = model.gram.select(&columns).whitened(model.solution.rho);
+    let (known, _) = model.space.gram.select(&columns).whitened(model.solution.rho);
     let now = separation(&known, explained_by, &values, noise_um);
     let mut best: Option<(f64, String)> = None;
     for line in lines(data) {

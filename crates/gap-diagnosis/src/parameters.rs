@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::assembly::Assembly;
 use crate::diagnosis::{Detectable, Parameter, Setup};
+use crate::linear::Products;
 use crate::noise::tail_factor;
 use crate::term::Term;
 
@@ -92,7 +93,7 @@ impl Assembly<'_> {
                 let first = candidate.variants.first().and_then(|v| v.columns.first());
                 let square = first.map_or(0.0, |c| {
                     let c = c - self.model.library.nuisances;
-                    let left = space.products(level)[(c, c)];
+                    let left = space.products(level).product(c, c);
                     if left > crate::linear::RANK_TOLERANCE * space.reference()[c] { left } else { 0.0 }
                 });
                 let smallest = (square > 0.0).then(|| beyond * sigma / square.sqrt());

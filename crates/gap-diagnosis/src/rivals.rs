@@ -4,9 +4,9 @@ use machine_model::effects::EffectKind;
 use nalgebra::DMatrix;
 
 use crate::engine::Explained;
-use crate::linear::{Factor, explained};
+use crate::linear::{Factor, Products, explained};
 use crate::search::without;
-use crate::space::Part;
+use crate::space::{Part, Sweep};
 
 /// Two effects look alike where the correlation of what they do to this design, set-up and other causes
 /// taken out, reaches this.
@@ -69,44 +69,32 @@ pub(crate) fn rivals(model: &Explained, place: usize) -> Vec<Rival> {
 }
 
 /// Products with the columns of `rest` eliminated, at the model's run-offset ratio.
-fn left_over(model: &Explained, rest: &[Part]) -> DMatrix<f64> {
+fn left_over<'a>(model: &'a Explained, rest: &[Part]) -> Sweep<'a> {
     let products = model.space.products(model.fit.level);
     let columns = model.space.columns(&model.library, rest);
-    if columns.is_empty() {
-        return products.clone();
-    }
-    let factor = Factor::new(products, &columns, model.space.reference());
-    let size = products.nrows();
-    let sweep = DMatrix::from_fn(factor.rank(), size, |k, j| products[(columns[factor.kept[k]], j)]);
-    let mut solved = DMatrix::zeros(factor.rank(), size);
-    for j in 0..size {
-        let column: Vec<f64> = sweep.column(j).iter().copied().collect();
-        for (k, v) in factor.forward(&column).into_iter().enumerate() {
-            solved[(k, j)] = v;
-        }
-    }
-    products - solved.transpose() * solved
+    Sweep::new(products, &columns, model.space.reference(), &vec![true; products.count()])
 }
 
 /// Inner products of the fitted displacement of a part with every column, and its square last.
-fn contribution(model: &Explained, left: &DMatrix<f64>, part: Part) -> Vec<f64> {
+fn contribution(model: &Explained, left: &Sweep<'_>, part: Part) -> Vec<f64> {
     let columns = model.space.columns(&model.library, &[part]);
-    let last = left.nrows() - 1;
+    let last = left.count() - 1;
     let factor = Factor::new(left, &columns, model.space.reference());
-    let b: Vec<f64> = columns.iter().map(|c| left[(*c, last)]).collect();
+    let b: Vec<f64> = columns.iter().map(|c| left.product(*c, last)).collect();
     let x = factor.solve(&b, columns.len());
-    let mut products: Vec<f64> =
-        (0..last).map(|j| columns.iter().enumerate().map(|(i, c)| x[i] * left[(*c, j)]).sum()).collect();
+    let mut products: Vec<f64> = (0..last)
+        .map(|j| columns.iter().enumerate().map(|(i, c)| x[i] * left.product(*c, j)).sum())
+        .collect();
     products.push(columns.iter().enumerate().map(|(i, c)| x[i] * products[*c]).sum());
     products
 }
 
-fn alike(model: &Explained, left: &DMatrix<f64>, contribution: &[f64], rival: Part) -> f64 {
+fn alike(model: &Explained, left: &Sweep<'_>, contribution: &[f64], rival: Part) -> f64 {
     let columns = model.space.columns(&model.library, &[rival]);
     let count = columns.len();
     let last = contribution.len() - 1;
     let at = |i: usize, j: usize| match (columns.get(i), columns.get(j)) {
-        (Some(a), Some(b)) => left[(*a, *b)],
+        (Some(a), Some(b)) => left.product(*a, *b),
         (Some(a), None) | (None, Some(a)) => contribution[*a],
         (None, None) => contribution[last],
     };

@@ -1,11 +1,13 @@
 //! The space of all columns, set-up and run offsets taken out, in which models are judged.
 
+use std::cell::Cell;
+
 use nalgebra::{DMatrix, Matrix3};
 use units::math;
 
 use crate::gram::{Gram, dot, forward};
 use crate::library::Library;
-use crate::linear::{Factor, RANK_TOLERANCE};
+use crate::linear::{Factor, Products, RANK_TOLERANCE};
 
 /// Ratios of run-offset variance to row variance among which the likelihood chooses.
 pub(crate) const RHO_GRID: [f64; 9] = [0.0, 0.003, 0.01, 0.04, 0.15, 0.6, 2.5, 10.0, 100.0];
@@ -27,14 +29,15 @@ pub(crate) struct Part {
 #[derive(Clone, Debug)]
 struct Level {
     rho: f64,
-    /// Set-up eliminated; the gap last.
-    products: DMatrix<f64>,
     log_determinant: f64,
     /// Independent set-up columns in the order of their elimination, with their vectors as far as they were known
     /// then.
     pivots: Vec<(usize, Explained)>,
     /// One per column, the gap last.
     explained: Vec<Explained>,
+    /// Products that were asked for, not a number where none was: a search asks for few. A triangle, the gap first, so
+    /// that new columns come at its end.
+    known: Vec<Cell<f64>>,
 }
 
 /// The vector `b` of a column.
@@ -62,8 +65,8 @@ impl Explained {
 
 impl Level {
     fn new(rho: f64) -> Self {
-        let products = DMatrix::zeros(1, 1);
-        Self { rho, products, log_determinant: 0.0, pivots: Vec::new(), explained: Vec::new() }
+        let (pivots, explained, known) = (Vec::new(), Vec::new(), Vec::new());
+        Self { rho, log_determinant: 0.0, pivots, explained, known }
     }
 
     /// Takes the columns of `gram` that are not known yet; the first call also eliminates the set-up.
@@ -90,21 +93,7 @@ impl Level {
         self.explained.extend(fresh);
         self.explained.extend(gap);
         let kept = size - nuisances;
-        let old = first_new.saturating_sub(nuisances);
-        let before = std::mem::replace(&mut self.products, DMatrix::zeros(kept, kept));
-        let known = |i: usize| (i < old).then_some(i).or((old > 0 && i + 1 == kept).then_some(old));
-        for j in 0..kept {
-            for i in 0..=j {
-                let value = if let (Some(a), Some(b)) = (known(i), known(j)) {
-                    before[(a, b)]
-                } else {
-                    let (a, b) = (nuisances + i, nuisances + j);
-                    gram.products[(a, b)] - self.explained[a].product(&self.explained[b])
-                };
-                self.products[(i, j)] = value;
-                self.products[(j, i)] = value;
-            }
-        }
+        self.known.resize(kept * (kept + 1) / 2, Cell::new(f64::NAN));
     }
 
     /// Eliminates the set-up columns that are independent (rank-revealing Cholesky). A column of which next to
@@ -144,6 +133,8 @@ fn by_runs(gram: &Gram, factors: Option<&Vec<Matrix3<f64>>>, column: usize) -> [
 /// Everything the search needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Space {
+    /// Products before anything is taken out, set-up columns first.
+    pub gram: Gram,
     levels: Vec<Level>,
     /// Square of each column before the set-up was taken out.
     reference: Vec<f64>,
@@ -168,8 +159,9 @@ pub(crate) struct Fit {
 impl Space {
     /// Whitens and eliminates the set-up for every ratio.
     #[must_use]
-    pub(crate) fn new(gram: &Gram, nuisances: usize) -> Self {
+    pub(crate) fn new(gram: Gram, nuisances: usize) -> Self {
         let mut space = Self {
+            gram: Gram::default(),
             levels: RHO_GRID.map(Level::new).to_vec(),
             reference: Vec::new(),
             nuisances,
@@ -179,13 +171,14 @@ impl Space {
         space
     }
 
-    /// Takes the columns that were added to `gram`.
-    pub(crate) fn grow(&mut self, gram: &Gram) {
+    /// Takes the columns that were added to the products of before.
+    pub(crate) fn grow(&mut self, gram: Gram) {
         let size = gram.terms.len() + 1;
         self.reference = (self.nuisances..size).map(|i| gram.products[(i, i)]).collect();
-        self.levels.iter_mut().for_each(|level| level.grow(gram, self.nuisances));
+        self.levels.iter_mut().for_each(|level| level.grow(&gram, self.nuisances));
         let rank = self.levels.iter().map(|l| l.pivots.len()).max().unwrap_or(0);
         self.degrees = (gram.equations as f64 - rank as f64).max(1.0);
+        self.gram = gram;
     }
 
     /// The ratio of a level.
@@ -196,8 +189,8 @@ impl Space {
 
     /// Products at a level, set-up eliminated; positions are library columns minus the set-up's.
     #[must_use]
-    pub(crate) fn products(&self, level: usize) -> &DMatrix<f64> {
-        &self.levels[level].products
+    pub(crate) fn products(&self, level: usize) -> Whitened<'_> {
+        Whitened { space: self, level: &self.levels[level] }
     }
 
     /// Square of each column before anything was taken out, same positions.
@@ -219,8 +212,8 @@ impl Space {
     /// Square of the gap after the set-up, at a level.
     #[must_use]
     pub(crate) fn total(&self, level: usize) -> f64 {
-        let products = &self.levels[level].products;
-        products[(products.nrows() - 1, products.nrows() - 1)].max(0.0)
+        let last = self.reference.len() - 1;
+        self.products(level).product(last, last).max(0.0)
     }
 
     /// What looking at this many forms of this many effects costs, and what its columns cost.
@@ -236,8 +229,9 @@ impl Space {
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
         let mut best: Option<Fit> = None;
         let columns = self.columns(library, parts);
-        for (index, level) in self.levels.iter().enumerate() {
-            let (explained, rank) = crate::linear::explained(&level.products, &columns, &self.reference);
+        for index in 0..self.levels.len() {
+            let (explained, rank) =
+                crate::linear::explained(&self.products(index), &columns, &self.reference);
             let fit = self.judged(index, (self.total(index) - explained).max(0.0), rank, 0.0);
             if best.is_none_or(|b| fit.score < b.score) {
                 best = Some(fit);
@@ -290,11 +284,12 @@ impl Space {
             let one_sided = library.candidates[part.candidate].kind.is_one_sided();
             let price = base_price + self.price(library, part);
             let mut judge = |index: usize| {
-                let level = self.levels.get(index)?;
-                let sweep = sweeps[index]
-                    .get_or_insert_with(|| Sweep::new(&level.products, &columns, &self.reference, &needed));
+                self.levels.get(index)?;
+                let sweep = sweeps[index].get_or_insert_with(|| {
+                    Sweep::new(self.products(index), &columns, &self.reference, &needed)
+                });
                 let (gain, own_rank) = sweep.gain(&own, &self.reference, one_sided);
-                let residual = (sweep.left(last, last) - gain).max(0.0);
+                let residual = (sweep.product(last, last) - gain).max(0.0);
                 (own_rank > 0).then(|| self.judged(index, residual, sweep.factor.rank() + own_rank, price))
             };
             // The likelihood has one summit over the ratio: uphill from where the base has its own.
@@ -314,46 +309,67 @@ impl Space {
     }
 }
 
+/// Products at a level, each computed when it is asked for the first time.
+#[derive(Clone, Copy)]
+pub(crate) struct Whitened<'a> {
+    space: &'a Space,
+    level: &'a Level,
+}
+
+impl Products for Whitened<'_> {
+    fn product(&self, i: usize, j: usize) -> f64 {
+        // The gap comes first in the triangle.
+        let last = self.space.reference.len() - 1;
+        let place = |k: usize| if k == last { 0 } else { k + 1 };
+        let (low, high) = (place(i).min(place(j)), place(i).max(place(j)));
+        let known = &self.level.known[high * (high + 1) / 2 + low];
+        if known.get().is_nan() {
+            let (a, b) = (self.space.nuisances + i, self.space.nuisances + j);
+            let taken_out = self.level.explained[a].product(&self.level.explained[b]);
+            known.set(self.space.gram.products[(a, b)] - taken_out);
+        }
+        known.get()
+    }
+
+    fn count(&self) -> usize {
+        self.space.reference.len()
+    }
+}
+
 /// Products with the columns of a base eliminated, entry by entry as they are asked for.
-struct Sweep<'a> {
-    products: &'a DMatrix<f64>,
+pub(crate) struct Sweep<'a> {
+    products: Whitened<'a>,
     factor: Factor,
     /// `L⁻¹` times the base's products with every column needed, one behind the other.
     over: Vec<f64>,
 }
 
 impl<'a> Sweep<'a> {
-    fn new(products: &'a DMatrix<f64>, base: &[usize], reference: &[f64], needed: &[bool]) -> Self {
-        let factor = Factor::new(products, base, reference);
+    /// Eliminates `base`; only products of the columns that are `needed` may be asked for.
+    #[must_use]
+    pub(crate) fn new(products: Whitened<'a>, base: &[usize], reference: &[f64], needed: &[bool]) -> Self {
+        let factor = Factor::new(&products, base, reference);
         let rank = factor.rank();
         let kept: Vec<usize> = factor.kept.iter().map(|k| base[*k]).collect();
         let mut over = vec![0.0; rank * needed.len()];
         if rank > 0 {
             for (j, b) in over.chunks_exact_mut(rank).enumerate().filter(|(j, _)| needed[*j]) {
-                let column = products.column(j);
-                b.iter_mut().zip(&kept).for_each(|(to, k)| *to = column[*k]);
+                b.iter_mut().zip(&kept).for_each(|(to, k)| *to = products.product(*k, j));
                 factor.forward_in_place(b);
             }
         }
         Self { products, factor, over }
     }
 
-    /// Product of two columns after the base.
-    fn left(&self, i: usize, j: usize) -> f64 {
-        let rank = self.factor.rank();
-        let own = |k: usize| &self.over[k * rank..(k + 1) * rank];
-        self.products[(i, j)] - own(i).iter().zip(own(j)).map(|(a, b)| a * b).sum::<f64>()
-    }
-
     /// What `own` columns take off the square of the last column (the gap), and their rank.
     fn gain(&self, own: &[usize], reference: &[f64], one_sided: bool) -> (f64, usize) {
-        let last = self.products.nrows() - 1;
+        let last = self.count() - 1;
         if let [single] = own {
-            let square = self.left(*single, *single);
+            let square = self.product(*single, *single);
             if square <= RANK_TOLERANCE * reference[*single] || square <= 0.0 {
                 return (0.0, 0);
             }
-            let cross = self.left(*single, last);
+            let cross = self.product(*single, last);
             if one_sided && cross < 0.0 {
                 return (0.0, 0);
             }
@@ -361,9 +377,21 @@ impl<'a> Sweep<'a> {
         }
         let count = own.len();
         let at = |k: usize| if k < count { own[k] } else { last };
-        let small = DMatrix::from_fn(count + 1, count + 1, |i, j| self.left(at(i), at(j)));
+        let small = DMatrix::from_fn(count + 1, count + 1, |i, j| self.product(at(i), at(j)));
         let reference: Vec<f64> = own.iter().map(|c| reference[*c]).collect();
         let all: Vec<usize> = (0..count).collect();
         crate::linear::explained(&small, &all, &reference)
+    }
+}
+
+impl Products for Sweep<'_> {
+    fn product(&self, i: usize, j: usize) -> f64 {
+        let rank = self.factor.rank();
+        let own = |k: usize| &self.over[k * rank..(k + 1) * rank];
+        self.products.product(i, j) - own(i).iter().zip(own(j)).map(|(a, b)| a * b).sum::<f64>()
+    }
+
+    fn count(&self) -> usize {
+        self.products.count()
     }
 }

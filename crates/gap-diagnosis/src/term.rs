@@ -61,6 +61,25 @@ impl Term {
         scalar.along.dot(&self.displacement_um(row, geometry))
     }
 
+    /// The axis on whose position and direction of approach alone the displacement depends; `None` where it depends on
+    /// more.
+    #[must_use]
+    pub(crate) fn axis(&self) -> Option<usize> {
+        let Self::Effect { kind, index, .. } = *self else { return None };
+        match kind {
+            EffectKind::Scale(axis)
+            | EffectKind::Backlash(axis)
+            | EffectKind::LostMotion { axis, .. }
+            | EffectKind::Squareness(_, axis)
+            | EffectKind::Positioning(axis)
+            | EffectKind::Straightness { axis, .. }
+            | EffectKind::Pitch(axis)
+            | EffectKind::Local(axis) => Some(axis),
+            EffectKind::Sag(axis) if index < 3 => Some(axis),
+            _ => None,
+        }
+    }
+
     /// False where the component is zero for every row, known without looking.
     #[must_use]
     pub(crate) fn touches(&self, component: usize) -> bool {

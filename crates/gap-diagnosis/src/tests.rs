@@ -7,8 +7,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::engine::{LEVEL, explain, f_tail, source};
-use crate::gram::Gram;
+use crate::gram::{Gram, Source};
 use crate::library::Library;
+use crate::linear::Products;
 use crate::noise::{NoiseSource, estimate, outliers};
 use crate::observation::{Measurements, Reading, Row, Scalar};
 use crate::space::{RHO_GRID, Space};
@@ -132,8 +133,7 @@ fn whitening_is_the_inverse_of_the_covariance() {
     // Two runs suffice, and a matrix of 60 is soon inverted.
     let scalars: Vec<Scalar> =
         data.scalars(None).into_iter().filter(|s| data.rows[s.row].run < 2 && s.row % 7 == 0).collect();
-    let data_source =
-        crate::gram::Source { rows: &data.rows, scalars: &scalars, runs: 2, geometry: &data.geometry };
+    let data_source = Source { runs: 2, ..source(&data, &scalars) };
     let terms = vec![
         Term::SetupShift(0),
         Term::SetupRotation(2),
@@ -172,20 +172,23 @@ fn columns_added_later_give_the_same_space_as_columns_there_from_the_start() {
     let source = source(&data, &scalars);
     let library = Library::new(&data, &[]);
     let (early, late) = library.terms.split_at(library.terms.len() - 40);
-    let mut kept = crate::gram::Kept::default();
+    let mut kept = crate::columns::Kept::default();
     let mut gram = Gram::new(Vec::new(), &source);
-    gram.extend(early.to_vec(), &source, Some(&mut kept));
-    let mut space = Space::new(&gram, library.nuisances);
-    gram.extend(late.to_vec(), &source, Some(&mut kept));
-    space.grow(&gram);
-    let whole = Space::new(&Gram::new(library.terms.clone(), &source), library.nuisances);
+    gram.extend(early.to_vec(), &source, &mut kept);
+    let mut space = Space::new(gram.clone(), library.nuisances);
+    gram.extend(late.to_vec(), &source, &mut kept);
+    space.grow(gram);
+    let whole = Space::new(Gram::new(library.terms.clone(), &source), library.nuisances);
     for level in 0..RHO_GRID.len() {
         let (a, b) = (space.products(level), whole.products(level));
-        assert_eq!(a.shape(), b.shape());
+        assert_eq!(a.count(), b.count());
         let scale = |i: usize, j: usize| (whole.reference()[i] * whole.reference()[j]).sqrt();
-        for i in 0..a.nrows() {
-            for j in 0..a.ncols() {
-                assert!((a[(i, j)] - b[(i, j)]).abs() <= 1e-9 * scale(i, j).max(1e-9), "{level} {i} {j}");
+        for i in 0..a.count() {
+            for j in 0..a.count() {
+                assert!(
+                    (a.product(i, j) - b.product(i, j)).abs() <= 1e-9 * scale(i, j).max(1e-9),
+                    "{level} {i} {j}"
+                );
             }
         }
     }

@@ -6,11 +6,12 @@
 
 use crate::crossval::{Folding, Folds};
 use crate::engine::{LEAST_SHARE, LEVEL, Refused, State, f_tail, model_columns};
+use crate::linear::Products;
 use crate::search::without;
 use crate::space::{Fit, Part};
 use crate::term::Term;
 
-impl State<'_> {
+impl State<'_, '_> {
     /// Why an effect that scores must not be named; `None` where it may.
     pub(crate) fn objection(&self, part: Part, fit: &Fit) -> Option<Refused> {
         let mut with = self.parts.clone();
@@ -45,7 +46,7 @@ impl State<'_> {
     fn residual(&self, parts: &[Part], level: usize) -> (f64, usize) {
         let columns = self.space.columns(&self.library, parts);
         let (explained, rank) =
-            crate::linear::explained(self.space.products(level), &columns, self.space.reference());
+            crate::linear::explained(&self.space.products(level), &columns, self.space.reference());
         ((self.space.total(level) - explained).max(0.0), rank)
     }
 
@@ -70,7 +71,7 @@ impl State<'_> {
         let information = |l: usize| -> f64 {
             columns
                 .iter()
-                .map(|c| self.space.products(l)[(*c, *c)] / self.space.reference()[*c].max(1e-300))
+                .map(|c| self.space.products(l).product(*c, *c) / self.space.reference()[*c].max(1e-300))
                 .sum()
         };
         let (here, free) = (information(level), information(last_level));
