@@ -109,6 +109,9 @@ pub(crate) fn file_diagnostic(name: &str, verb: &str, error: &std::io::Error) ->
         }
         _ => "nothing was changed; try again when the cause is gone",
     };
+    // `tempfile` adds the name of its file, which means nothing to the user.
+    let error = error.to_string();
+    let error = error.split(" at path ").next().unwrap_or_default();
     Diagnostic::error(FILE, format!("cannot {verb} {name}: {error}")).help(help)
 }
 

@@ -37,9 +37,27 @@ impl Surface {
 
 /// Writes at least `bytes` of straight feed motion, three coordinates in a block.
 pub(crate) fn dense(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(OPENING.as_bytes())?;
+    dense_blocks(bytes, out)?;
+    out.write_all(CLOSING.as_bytes())
+}
+
+/// Many of [`dense`] as operations of one program: only the marks and the end of the program stand once.
+pub(crate) fn dense_parts(parts: impl Iterator<Item = u64>, out: &mut impl Write) -> io::Result<()> {
+    let (marks, opening) = OPENING.split_at(OPENING.find('G').unwrap_or(0));
+    let (closing, end) = CLOSING.split_at(CLOSING.find("M30").unwrap_or(0));
+    out.write_all(marks.as_bytes())?;
+    for bytes in parts {
+        out.write_all(opening.as_bytes())?;
+        dense_blocks(bytes.saturating_sub((OPENING.len() + CLOSING.len()) as u64), out)?;
+        out.write_all(closing.as_bytes())?;
+    }
+    out.write_all(end.as_bytes())
+}
+
+fn dense_blocks(bytes: u64, out: &mut impl Write) -> io::Result<()> {
     let mut written = 0;
     let mut surface = Surface { turned: 0.0, position: [0.0, HALF_MM[1]] };
-    out.write_all(OPENING.as_bytes())?;
     let [x, y, z] = surface.next();
     writeln!(out, "G1 X{x:.3} Y{y:.3} Z{z:.3} F1500.")?;
     let mut block = Vec::with_capacity(64);
@@ -50,7 +68,7 @@ pub(crate) fn dense(bytes: u64, out: &mut impl Write) -> io::Result<()> {
         written += block.len() as u64;
         out.write_all(&block)?;
     }
-    out.write_all(CLOSING.as_bytes())
+    Ok(())
 }
 
 /// Writes at least `bytes` of a program as shops have them: surfaces, pockets of arcs, drilled holes, rapids,

@@ -59,7 +59,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     let folder = OutputFolder::open(manifest.output(), Company::Shards)?;
     let name = format!("{}.{}-of-{}", manifest.name, shard.number, shard.of);
     let earlier = journal::read(&folder.journal(), Some(&[journal::WHOLE, &name]))?;
-    let mut journal = Journal::begin(&folder.journal(), &name)?;
+    let mut journal = Journal::begin(&folder, &name)?;
     let progress = Progress::new(&items, shared.quiet);
     let batch = work::Batch {
         job: &job,
@@ -72,8 +72,9 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     let results = batch.run(&items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
-    journal.end(Records::new(), &results.records)?;
+    let kept = journal.end(Records::new(), &results.records);
     finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    kept?;
     match results.records.iter().map(|record| record.status).max() {
         Some(Status::Failed) => Err(Failure::Said(TRY_AGAIN)),
         Some(Status::Refused) => Err(Failure::Said(REFUSED)),
@@ -100,7 +101,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
     let results = Results { records: proofs.into_iter().flatten().collect(), resumed: 0 };
     // Where the file system cannot say that nobody else is at work, the journals stay apart.
     if let Some(open) = open.as_ref().filter(|open| open.is_locked()) {
-        Journal::begin(&open.journal(), journal::WHOLE)?.end(records, &results.records)?;
+        Journal::begin(open, journal::WHOLE)?.end(records, &results.records)?;
     }
     match (arguments.missing, arguments.shards) {
         (Some(form), Some(of)) => {

@@ -11,7 +11,7 @@
 //! end with their process, so being alone is known, not guessed from ages or process numbers.
 
 use std::fs::{File, TryLockError};
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
@@ -107,13 +107,16 @@ impl OutputFolder {
 
     /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put).
     pub(crate) fn temporary(&self) -> io::Result<Place> {
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(&self.temporaries).map(Place::Beside)
+        for_everybody(&mut tempfile::Builder::new()).tempfile_in(&self.temporaries).map(Place::Beside)
+    }
+
+    /// Writes a file of the journal: whole, or an earlier one stays as it was.
+    pub(crate) fn put_journal(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        // Not beside its place: who is killed here leaves it where it is swept.
+        let mut file = for_everybody(&mut tempfile::Builder::new()).tempfile_in(&self.temporaries)?;
+        file.as_file_mut().write_all(bytes)?;
+        file.as_file().sync_all()?;
+        file.persist(self.journal().join(name)).map(drop).map_err(|error| error.error)
     }
 
     /// Puts an output in its place: whole under its final name, or an earlier one stays as it was.
@@ -146,6 +149,23 @@ impl OutputFolder {
         rustix::fs::syncfs(File::open(&self.root)?)?;
         Ok(())
     }
+}
+
+/// Files with the usual permissions: temporary ones are their owner's alone.
+pub(crate) fn for_everybody<'b, 'p, 's>(
+    builder: &'b mut tempfile::Builder<'p, 's>,
+) -> &'b mut tempfile::Builder<'p, 's> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder
+}
+
+/// True for a folder that some batch wrote its outputs to.
+pub(crate) fn is_output(folder: &Path) -> bool {
+    folder.join(".vpost/journal").is_dir()
 }
 
 /// Length and hash of a file, however large.

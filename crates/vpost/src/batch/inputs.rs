@@ -1,12 +1,14 @@
 //! Which programs there are, and where each correction goes.
 
 use std::collections::BTreeMap;
+use std::fs::DirEntry;
 use std::path::{Component, Path, PathBuf};
 
 use diagnostic::{Code, Diagnostic};
 use glob::{MatchOptions, Pattern};
 
 use super::arguments::Programs;
+use super::folder;
 use crate::file;
 use crate::message::Failure;
 
@@ -42,14 +44,19 @@ pub(crate) struct Item {
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     pub items: Vec<Item>,
-    /// Files of other endings, where no `--pattern` chooses, and links to folders.
-    pub passed_over: Vec<PathBuf>,
+    /// What was passed over: files of other endings, where no `--pattern` chooses, and what is neither file nor folder.
+    pub others: Vec<PathBuf>,
+    /// Links to folders.
+    pub links: Vec<PathBuf>,
+    /// Folders that another batch wrote.
+    pub outputs: Vec<PathBuf>,
 }
 
 /// Finds the programs.
 ///
 /// Folders are searched with all folders in them. Passed over in silence: hidden files and folders (a name that
-/// starts with a point), what `--exclude` names, and the output folder itself. A file that is named is taken
+/// starts with a point), what `--exclude` names, and the output folder itself. Corrected copies are no programs: an
+/// output folder of another run is passed over, too, unless it is the one that is named. A file that is named is taken
 /// whatever its name.
 pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure> {
     let search = Search {
@@ -63,14 +70,16 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
             Failure::usage(crate::message::file_diagnostic(&file::name(input), "read", &error))
         })?;
         if data.is_dir() {
-            search.folder(input, Path::new(""), &mut found)?;
+            let entries =
+                entries_of(input).map_err(|error| Failure::file(&file::name(input), "read", &error))?;
+            search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
             found.items.push(item(input.clone(), name, data.len())?);
         }
     }
     if found.items.is_empty() {
-        let others = found.passed_over.len();
+        let others = found.others.len();
         return Err(Failure::usage(
             Diagnostic::error(NONE_FOUND, format!("no program was found; {others} other files were")).help(
                 format!(
@@ -82,7 +91,9 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     }
     found.items.sort_by(|a, b| a.output.cmp(&b.output).then_with(|| a.input.cmp(&b.input)));
     found.items.dedup();
-    found.passed_over.sort();
+    for passed_over in [&mut found.others, &mut found.links, &mut found.outputs] {
+        passed_over.sort();
+    }
     check_places(&found.items, output)?;
     Ok(found)
 }
@@ -95,12 +106,7 @@ struct Search {
 
 impl Search {
     /// `below`: the folder's path from the one that was named.
-    fn folder(&self, folder: &Path, below: &Path, found: &mut Found) -> Result<(), Failure> {
-        let fail = |error: std::io::Error| Failure::file(&file::name(folder), "read", &error);
-        let mut entries = std::fs::read_dir(folder)
-            .and_then(|entries| entries.collect::<Result<Vec<_>, _>>())
-            .map_err(fail)?;
-        entries.sort_by_key(std::fs::DirEntry::file_name);
+    fn folder(&self, entries: Vec<DirEntry>, below: &Path, found: &mut Found) -> Result<(), Failure> {
         for entry in entries {
             let name = entry.file_name();
             let path = entry.path();
@@ -108,10 +114,17 @@ impl Search {
             if name.as_encoded_bytes().starts_with(b".") || matches(&self.exclude, &below) {
                 continue;
             }
-            let kind = entry.file_type().map_err(fail)?;
+            let kind =
+                entry.file_type().map_err(|error| Failure::file(&file::name(&path), "read", &error))?;
             if kind.is_dir() {
-                if self.output.is_none() || path.canonicalize().ok() != self.output {
-                    self.folder(&path, &below, found)?;
+                if self.output.is_some() && path.canonicalize().ok() == self.output {
+                    continue;
+                }
+                match entries_of(&path) {
+                    Ok(_) if folder::is_output(&path) => found.outputs.push(path),
+                    Ok(entries) => self.folder(entries, &below, found)?,
+                    // As a program that is missing: reading it says why, and the others are corrected.
+                    Err(_) => found.items.push(item(path, &below, 0)?),
                 }
                 continue;
             }
@@ -124,7 +137,8 @@ impl Search {
                 // A link that leads nowhere is a program that is missing: reading it says so.
                 Err(_) if self.is_program(&below) => found.items.push(item(path, &below, 0)?),
                 Ok(data) if data.is_file() && !self.patterns.is_empty() => {}
-                _ => found.passed_over.push(path),
+                Ok(data) if data.is_dir() => found.links.push(path),
+                _ => found.others.push(path),
             }
         }
         Ok(())
@@ -137,6 +151,13 @@ impl Search {
         let ending = below.extension().unwrap_or_default();
         ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
     }
+}
+
+/// What is in a folder, by name.
+fn entries_of(folder: &Path) -> std::io::Result<Vec<DirEntry>> {
+    let mut entries = std::fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
+    entries.sort_by_key(DirEntry::file_name);
+    Ok(entries)
 }
 
 /// Capital letters or not: controls and shares do not agree on them.

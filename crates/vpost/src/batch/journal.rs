@@ -9,6 +9,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::folder::{OutputFolder, for_everybody};
 use super::record::{self, Record};
 use crate::file;
 use crate::message::Failure;
@@ -21,29 +22,34 @@ pub(crate) type Records = BTreeMap<String, Vec<Record>>;
 
 /// A run's own journal, written as it goes.
 #[derive(Debug)]
-pub(crate) struct Journal {
-    folder: PathBuf,
+pub(crate) struct Journal<'f> {
+    folder: &'f OutputFolder,
     name: String,
     live: PathBuf,
     file: File,
+    /// A line could not be written whole: behind it nothing could be read.
+    torn: bool,
 }
 
-impl Journal {
+impl<'f> Journal<'f> {
     /// Begins a journal. No two runs write one file: the same shard may be at work twice, where an engine lost sight of
     /// one of them.
-    pub(crate) fn begin(folder: &Path, name: &str) -> Result<Self, Failure> {
-        let (file, live) = tempfile::Builder::new()
-            .prefix(&format!("{name}."))
-            .suffix(".live")
-            .tempfile_in(folder)
+    pub(crate) fn begin(folder: &'f OutputFolder, name: &str) -> Result<Self, Failure> {
+        let own = folder.journal();
+        let prefix = format!("{name}.");
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix).suffix(".live");
+        let (file, live) = for_everybody(&mut builder)
+            .tempfile_in(&own)
             .and_then(|file| file.keep().map_err(|error| error.error))
-            .map_err(|error| Failure::file(&file::name(folder), "write to", &error))?;
-        Ok(Self { folder: folder.to_owned(), name: name.to_owned(), live, file })
+            .map_err(|error| Failure::file(&file::name(&own), "write to", &error))?;
+        Ok(Self { folder, name: name.to_owned(), live, file, torn: false })
     }
 
-    /// Adds lines.
-    pub(crate) fn add<'r>(&mut self, records: impl IntoIterator<Item = &'r Record>) -> io::Result<()> {
-        self.file.write_all(&record::lines(records))
+    /// Adds lines. Where that fails, the outputs are there all the same, and [`end`](Self::end) writes the lines or says
+    /// that it cannot.
+    pub(crate) fn add<'r>(&mut self, records: impl IntoIterator<Item = &'r Record>) {
+        self.torn = self.torn || self.file.write_all(&record::lines(records)).is_err();
     }
 
     /// Puts all records of this journal's name into one file; for [`WHOLE`], those of all names.
@@ -51,13 +57,17 @@ impl Journal {
     /// `earlier`: what [`read`] gave for them and is to be kept.
     pub(crate) fn end(self, earlier: Records, records: &[Record]) -> Result<(), Failure> {
         drop(self.file);
-        let stale = files(&self.folder, (self.name != WHOLE).then_some(self.name.as_str()))?;
-        let place = self.folder.join(format!("{}.jsonl", self.name));
+        let own = self.folder.journal();
+        let stale = files(&own, (self.name != WHOLE).then_some(self.name.as_str()))?;
+        let name = format!("{}.jsonl", self.name);
+        let place = own.join(&name);
         let mut all = earlier;
         for record in records {
             all.insert(record.output.clone(), vec![record.clone()]);
         }
-        file::write(&place, &record::lines(all.values().flatten()))?;
+        self.folder
+            .put_journal(&name, &record::lines(all.values().flatten()))
+            .map_err(|error| Failure::file(&file::name(&place), "write", &error))?;
         for path in stale.iter().chain([&self.live]).filter(|path| **path != place) {
             // What cannot be removed is read again and says nothing new.
             let _ = std::fs::remove_file(path);

@@ -148,9 +148,17 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
             Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
         .collect();
-    let mut lines = Vec::new();
+    let (mut lines, mut unread) = (Vec::new(), Vec::new());
     for program in hashed {
-        line(&mut lines, &program?)?;
+        match program {
+            Ok(program) => line(&mut lines, &program)?,
+            Err(Failure::File(report)) => unread.push(report),
+            Err(failure) => return Err(failure),
+        }
+    }
+    // All of them, for a plan is made once.
+    if !unread.is_empty() {
+        return Err(Failure::Refused(unread));
     }
     let header = Header {
         schema: SCHEMA.to_owned(),

@@ -54,7 +54,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
             .note("the output folder's file system knows no locks: nothing that a killed run left is swept");
     }
     let earlier = journal::read(&folder.journal(), None)?;
-    let mut journal = Journal::begin(&folder.journal(), journal::WHOLE)?;
+    let mut journal = Journal::begin(&folder, journal::WHOLE)?;
     let progress = Progress::new(&found.items, shared.quiet);
     let batch = work::Batch {
         job: &job,
@@ -67,8 +67,9 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let results = batch.run(&found.items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
-    journal.end(earlier, &results.records)?;
+    let kept = journal.end(earlier, &results.records);
     finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    kept?;
     if results.records.iter().all(|record| record.status.is_done()) {
         Ok(())
     } else {
@@ -78,12 +79,18 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
 fn passed_over(found: &inputs::Found, messages: &Messages) {
-    if let Some(first) = found.passed_over.first() {
-        messages.note(&format!(
-            "{} file(s) are no programs by their names and were passed over, {} the first (see `--pattern`)",
-            found.passed_over.len(),
-            first.display()
-        ));
+    for (paths, what, way) in [
+        (&found.others, "file(s) are no programs by their names and were passed over", "see `--pattern`"),
+        (&found.links, "link(s) to folders were not followed", "name such a folder itself"),
+        (
+            &found.outputs,
+            "folder(s) of another `vpost batch`'s outputs were passed over",
+            "correct programs as posted",
+        ),
+    ] {
+        if let Some(first) = paths.first() {
+            messages.note(&format!("{} {what}, {} the first ({way})", paths.len(), first.display()));
+        }
     }
 }
 
@@ -94,17 +101,16 @@ fn interrupted(failure: Failure, messages: &Messages) -> Failure {
     Failure::Said(128 + signal)
 }
 
-/// Results to disk and to the user.
+/// Results to disk and to the user, who gets the table whatever cannot be written.
 fn finish(results: &Results, folder: Option<&OutputFolder>, lines: Option<&Path>) -> Result<(), Failure> {
-    if let Some(folder) = folder {
-        folder.sync().map_err(|error| Failure::file("the output folder", "write to", &error))?;
-    }
-    match lines {
-        Some(path) if path.as_os_str() == "-" => file::print(&record::lines(&results.records)),
-        Some(path) => {
-            file::write(path, &record::lines(&results.records))?;
-            file::print(table::table(results).as_bytes())
-        }
-        None => file::print(table::table(results).as_bytes()),
-    }
+    let synced = folder.map_or(Ok(()), OutputFolder::sync);
+    let synced = synced.map_err(|error| Failure::file("the output folder", "write to", &error));
+    let (written, printed) = match lines {
+        Some(path) if path.as_os_str() == "-" => (Ok(()), file::print(&record::lines(&results.records))),
+        path => (
+            path.map_or(Ok(()), |path| file::write(path, &record::lines(&results.records))),
+            file::print(table::table(results).as_bytes()),
+        ),
+    };
+    synced.and(written).and(printed)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::record::{Record, Status};
+use super::record::{Fault, Record, Status};
 use super::work::Results;
 
 /// The results in a few lines: how many, how far off, and what was refused for which reason.
@@ -63,24 +63,24 @@ pub(crate) fn table(results: &Results) -> String {
 }
 
 /// Message numbers with how many programs have them and the first of those.
-fn reasons<'r>(
-    title: &str,
-    records: &'r [Record],
-    faults: impl Fn(&'r Record) -> &'r Vec<super::record::Fault>,
-) -> String {
-    let mut by_code: BTreeMap<&str, (usize, &str, &str)> = BTreeMap::new();
+fn reasons<'r>(title: &str, records: &'r [Record], faults: impl Fn(&'r Record) -> &'r Vec<Fault>) -> String {
+    let mut by_code: BTreeMap<(&str, &str), (usize, &str, &str)> = BTreeMap::new();
     for record in records {
-        let mut codes: Vec<&super::record::Fault> = faults(record).iter().collect();
-        codes.dedup_by_key(|fault| fault.code.clone());
+        let mut codes: Vec<&Fault> = faults(record).iter().collect();
+        codes.dedup_by_key(|fault| &fault.code);
         for fault in codes {
-            by_code.entry(&fault.code).or_insert((0, &fault.message, &record.output)).0 += 1;
+            // Files fail for more than one reason: what the system said stands behind the name.
+            let reason = (record.status == Status::Failed).then(|| fault.message.rsplit_once(": ")).flatten();
+            let reason = reason.map_or("", |(_, reason)| reason);
+            let message = if reason.is_empty() { &fault.message } else { reason };
+            by_code.entry((&fault.code, reason)).or_insert((0, message, &record.output)).0 += 1;
         }
     }
     if by_code.is_empty() {
         return String::new();
     }
     let mut text = format!("{title}:\n");
-    for (code, (count, message, first)) in by_code {
+    for ((code, _), (count, message, first)) in by_code {
         let more = if count > 1 { ", …" } else { "" };
         text.push_str(&format!("{count:8}  {code}  {message}: {first}{more}\n"));
     }

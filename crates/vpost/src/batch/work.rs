@@ -73,7 +73,7 @@ impl Batch<'_> {
     pub(crate) fn run(
         &self,
         items: &[Item],
-        journal: &mut Journal,
+        journal: &mut Journal<'_>,
         progress: &Progress,
         messages: &Messages,
     ) -> Result<Results, Failure> {
@@ -117,13 +117,9 @@ impl Batch<'_> {
             }
             drop(sender);
             let mut told = Told { results: Results::default(), waiting: BTreeMap::new(), printed: 0 };
-            for mut done in receiver {
-                let new = || done.iter().map(|(_, outcome)| outcome).filter(|outcome| !outcome.resumed);
-                if let Err(error) = journal.add(new().map(|outcome| &outcome.record)) {
-                    for (_, outcome) in done.iter_mut().filter(|(_, outcome)| !outcome.resumed) {
-                        fail(outcome, Failure::file("the journal", "write", &error));
-                    }
-                }
+            for done in receiver {
+                let new = done.iter().map(|(_, outcome)| outcome).filter(|outcome| !outcome.resumed);
+                journal.add(new.map(|outcome| &outcome.record));
                 for (index, outcome) in done {
                     progress.done(&items[index], outcome.resumed);
                     told.waiting.insert(index, outcome);
