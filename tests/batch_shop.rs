@@ -77,7 +77,7 @@ fn a_shops_folder_is_corrected_but_for_what_cannot_be() {
         assert!(table.contains(line), "{line}: {table}");
     }
     assert!(said.contains("1 link(s) to folders were not followed") && said.contains("a/loop"), "{said}");
-    assert!(!said.contains("no programs by their names"), "{said}");
+    assert!(!said.contains("no programs by name or kind"), "{said}");
 
     // Nothing of it is done twice, and another output folder does not take the first one's files for programs.
     let (_, table, _) = run(batch(&input, &output));
@@ -167,6 +167,27 @@ fn a_journal_that_cannot_be_written_loses_nothing() {
     assert!(tree(&output) == outputs && temporaries(&output).is_empty());
     let (_, table, _) = run(batch(&input, &output));
     assert!(table.contains("10 of them were done by an earlier run"), "{table}");
+}
+
+/// Nothing fits but the smallest: said once, counted in the table, and completed once there is room.
+#[test]
+fn a_full_disk_is_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("release"), folder.path().join("out"));
+    std::fs::create_dir_all(&input).unwrap();
+    for k in 0..30 {
+        std::fs::write(input.join(format!("part{k:02}.nc")), program(k, if k == 7 { 5 } else { 100 }))
+            .unwrap();
+    }
+    let (status, table, said) = run(limited(&batch(&input, &output), 1));
+    assert_eq!(status, Some(1), "{said}");
+    assert!(table.contains("corrected          1") && table.contains("failed            29"), "{table}");
+    assert!(table.contains("29  VP0001  File too large (os error 27): part00.nc, …"), "{table}");
+    assert_eq!(said.matches("cannot write the output: File too large").count(), 1, "{said}");
+    assert_eq!(tree(&output).len(), 1);
+    assert!(temporaries(&output).is_empty());
+    assert_eq!(run(batch(&input, &output)).0, Some(0));
+    assert_eq!(tree(&output).len(), 30);
 }
 
 /// A shard's journal is its proof: without it the task asks for another attempt, and merge for the shard.

@@ -80,7 +80,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
 /// What a folder held besides programs: a program of an unusual name must not be missed.
 fn passed_over(found: &inputs::Found, messages: &Messages) {
     for (paths, what, way) in [
-        (&found.others, "file(s) are no programs by their names and were passed over", "see `--pattern`"),
+        (&found.others, "file(s) are no programs by name or kind and were passed over", "see `--pattern`"),
         (&found.links, "link(s) to folders were not followed", "name such a folder itself"),
         (
             &found.outputs,

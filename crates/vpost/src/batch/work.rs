@@ -1,6 +1,6 @@
 //! The work: programs to outputs on all cores, told in order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -26,9 +26,9 @@ const CHANGED: Code = Code(1007);
 /// A defect of vpost.
 const DEFECT: Code = Code(1008);
 
-/// Results of programs of so many bytes together are told at once: telling each costs as much as correcting a small
-/// one. A run that is killed corrects these again.
-const TOLD_TOGETHER_BYTES: u64 = 1 << 18;
+/// Results of so many bytes read and written are told at once: telling each costs as much as a tenth of correcting a
+/// small program. A run that is killed corrects these again.
+const TOLD_TOGETHER_BYTES: u64 = 1 << 19;
 
 /// No more refusals are printed with their lines.
 const MOST_PRINTED: usize = 20;
@@ -88,7 +88,7 @@ impl Batch<'_> {
             for _ in 0..workers {
                 let (sender, next) = (sender.clone(), &next);
                 scope.spawn(move |_| {
-                    let (mut done, mut bytes) = (Vec::new(), 0);
+                    let (mut done, mut bytes) = (Vec::new(), 0_u64);
                     while self.interrupt.check().is_ok()
                         && let Some((index, item)) = {
                             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -96,18 +96,21 @@ impl Batch<'_> {
                         }
                     {
                         // What is done does not wait for a large one.
-                        bytes += item.bytes;
-                        if bytes > TOLD_TOGETHER_BYTES {
+                        if bytes + 2 * item.bytes > TOLD_TOGETHER_BYTES {
                             // Whoever listens no more has a reason that is told there.
                             if sender.send(std::mem::take(&mut done)).is_err() {
                                 break;
                             }
-                            bytes = item.bytes;
+                            bytes = 0;
                         }
                         // The last programs are shared by the threads that would have none.
                         let threads = (threads / (items.len() - index)).max(1);
                         match self.guarded(item, threads) {
-                            Ok(outcome) => done.push((index, outcome)),
+                            Ok(outcome) => {
+                                // A few lines with loops may have become megabytes.
+                                bytes += item.bytes + outcome.record.bytes_out.unwrap_or(0);
+                                done.push((index, outcome));
+                            }
                             // Interrupted, which ends all.
                             Err(_) => break,
                         }
@@ -116,7 +119,7 @@ impl Batch<'_> {
                 });
             }
             drop(sender);
-            let mut told = Told { results: Results::default(), waiting: BTreeMap::new(), printed: 0 };
+            let mut told = Told::default();
             for done in receiver {
                 let new = done.iter().map(|(_, outcome)| outcome).filter(|outcome| !outcome.resumed);
                 journal.add(new.map(|outcome| &outcome.record));
@@ -300,21 +303,28 @@ fn fail(outcome: &mut Outcome, failure: Failure) {
 }
 
 /// Puts results in order.
+#[derive(Default)]
 struct Told {
     results: Results,
     waiting: BTreeMap<usize, Outcome>,
     printed: usize,
+    /// Messages about no line of a program: said once, for a full disk says the same of each.
+    said: BTreeSet<String>,
 }
 
 impl Told {
     /// Tells all outcomes whose forerunners were told.
     fn in_order(&mut self, progress: &Progress, messages: &Messages) {
         while let Some(outcome) = self.waiting.remove(&self.results.records.len()) {
-            if !outcome.record.status.is_done() {
-                self.printed += 1;
-                if self.printed <= MOST_PRINTED {
-                    progress.aside(|| outcome.told.iter().for_each(|report| messages.report(report)));
-                }
+            if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
+                let Self { said, printed, .. } = self;
+                let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
+                    (None, [only]) => said.insert(only.message.clone()),
+                    _ => true,
+                };
+                let told: Vec<&Report> = outcome.told.iter().filter(new).collect();
+                *printed += usize::from(!told.is_empty());
+                progress.aside(|| told.into_iter().for_each(|report| messages.report(report)));
             }
             self.results.resumed += usize::from(outcome.resumed);
             self.results.records.push(outcome.record);
