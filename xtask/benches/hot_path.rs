@@ -7,7 +7,7 @@ use correction::{Block as Info, Corrector, Letters, Options, Outside};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use machine_model::{Command, EngineId, Vector};
 use nc_program::{Interpreter, Setup};
-use nc_syntax::{Block, Reader};
+use nc_syntax::{Block, PlainLine, Reader};
 use toolpath::{Feed, FeedRate, Frame, Motion, Position, Shape};
 use units::decimal::{Spelling, write};
 
@@ -58,11 +58,18 @@ fn hot_path(c: &mut Criterion) {
         b.iter(|| {
             let mut interpreter = Interpreter::new(dialect, &setup);
             let mut reader = Reader::new(program.as_bytes(), dialect);
-            let mut block = Block::default();
-            while reader.next(&mut block) {
-                if interpreter.plain_feed(&block).is_none() {
-                    black_box(interpreter.step(&block).expect("a program"));
+            let (mut block, mut line) = (Block::default(), PlainLine::default());
+            loop {
+                while let Some((feeds, start)) = interpreter.plain_feeds()
+                    && reader.plain_line(&mut line)
+                {
+                    let end = feeds.end_of(&line, start).expect("coordinates");
+                    interpreter.go_to(black_box(end.end_mm));
                 }
+                if !reader.next(&mut block) {
+                    break;
+                }
+                black_box(interpreter.step(&block).expect("a program"));
             }
         });
     });

@@ -22,9 +22,12 @@ pub(crate) struct Options {
     /// Where the programs and outputs go; they take 2.5 GB.
     #[arg(long)]
     folder: Option<PathBuf>,
-    /// Size of the large program, MB; the small one has 134.
+    /// Size of the large program, MB.
     #[arg(long, default_value_t = 1000)]
     large: u64,
+    /// Size of the small ones, MB.
+    #[arg(long, default_value_t = 134)]
+    small: u64,
     /// Repetitions, of which the best counts.
     #[arg(long, default_value_t = 3)]
     repeat: usize,
@@ -35,8 +38,6 @@ pub(crate) struct Options {
     #[arg(long)]
     budget: bool,
 }
-
-const SMALL_MB: u64 = 134;
 
 /// Measures, and returns a page.
 pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
@@ -53,9 +54,9 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let own = tempfile::tempdir()?;
     let folder = options.folder.as_deref().unwrap_or(own.path());
     std::fs::create_dir_all(folder)?;
-    let small = made(folder, "dense-small.nc", SMALL_MB, programs::dense)?;
+    let small = made(folder, "dense-small.nc", options.small, programs::dense)?;
     let large = made(folder, "dense-large.nc", options.large, programs::dense)?;
-    let mixed = made(folder, "mixed-small.nc", SMALL_MB, programs::mixed)?;
+    let mixed = made(folder, "mixed-small.nc", options.small, programs::mixed)?;
     let output = folder.join("out.nc");
     let correct = |input: &Path, threads: Option<usize>| {
         let mut command = Command::new(&vpost);

@@ -1,8 +1,9 @@
 //! Following an arc with arcs, or with lines where no arc serves.
 
+use std::array::from_fn;
 use std::f64::consts::TAU;
 
-use machine_model::Vector;
+use machine_model::{LANES, Vector};
 use toolpath::{Plane, Similarity};
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
@@ -19,6 +20,12 @@ const SAME_PLACE_MM: f64 = 1e-9;
 
 /// Ends nearer than this after more than half a turn are not left to the control to tell apart.
 const NEARLY_MEETING_MM: f64 = 0.1;
+
+/// Where the corrected path is asked for: a centre is fitted to it there, and what misses it there is not tried.
+const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// More than all rounding in comparing with the limit, mm: the model's answers are within 1e-10.
+const ROUNDING_MM: f64 = 1e-8;
 
 /// A centre to try: the words and what the control makes of them.
 struct Candidate {
@@ -98,10 +105,20 @@ impl<'m> Corrector<'m> {
             // Through frame and back a place can change its last bit; it is the same place.
             (to[u], to[v]) = (from[u], from[v]);
         }
+        if !may_be_one_arc(part, from, to) {
+            self.standing = before;
+            return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
+        }
         let mut nearest = f64::INFINITY;
-        for candidate in self.candidates(follow, part, from, to)? {
+        let (corrected, solved) = self.corrected_places(follow, part)?;
+        let limit_mm = self.limit_mm(follow.block);
+        let sieve = if solved { Sieve::new(part, &corrected, follow, limit_mm) } else { None };
+        for candidate in self.candidates(follow, part, from, to, &corrected) {
+            if sieve.as_ref().is_some_and(|sieve| sieve.refutes(&candidate.curve)) {
+                continue;
+            }
             let pair = Pair { wanted: part, commanded: &candidate.curve, in_step: follow.in_step };
-            match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
+            match pair.verdict(&follow.machine, limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
@@ -123,22 +140,12 @@ impl<'m> Corrector<'m> {
         part: &Curve,
         from: Vector,
         to: Vector,
-    ) -> Result<Vec<Candidate>, CorrectionError> {
-        let Curve::Arc { axes, centre, sweep, radius, .. } = *part else { return Ok(Vec::new()) };
+        corrected: &[Vector; 3],
+    ) -> Vec<Candidate> {
+        let Curve::Arc { axes, centre, sweep, radius, .. } = *part else { return Vec::new() };
         let [u, v, _] = axes;
         let block = follow.block;
         let clockwise = sweep < 0.0;
-        let full = from[u] == to[u] && from[v] == to[v];
-        if full && sweep.abs() < 1.0 {
-            return Ok(Vec::new());
-        }
-        // All but a full turn: where the ends all but meet, the last digit decides between the whole circle
-        // and nothing, and controls have their own idea of what still counts as meeting.
-        let gap = Vector::new(to[u] - from[u], to[v] - from[v], 0.0).norm();
-        let moved = (part.at(0.0) - from - (part.at(1.0) - to)).norm() > SAME_PLACE_MM;
-        if !full && moved && sweep.abs() > TAU / 2.0 && gap < NEARLY_MEETING_MM {
-            return Ok(Vec::new());
-        }
         let letters = [u, v].map(|axis| b"IJK"[axis]);
         let has_centre = letters.map(|letter| block.letters.contains(letter));
         let by_radius = if has_centre.contains(&true) {
@@ -181,7 +188,7 @@ impl<'m> Corrector<'m> {
             };
             push(Centre::Offsets(kept), own);
         }
-        let fitted = self.fit_centre(follow, part, from, to)?;
+        let fitted = fit_centre(part, from, to, corrected);
         if by_radius {
             let own = (radius[0], follow.alone && block.letters.contains(b'R'), scale);
             self.radius_candidates(block, axes, from, to, sweep, fitted, own, &mut push);
@@ -192,7 +199,7 @@ impl<'m> Corrector<'m> {
         // The programmed words first, then by how well the two radii agree: a control that is strict
         // about them alarms, one that is not makes a small step at the end of the arc.
         found.sort_by(|a, b| b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart)));
-        Ok(found)
+        found
     }
 
     /// Rounded centres around the fitted one, as words of the plane.
@@ -280,58 +287,115 @@ impl<'m> Corrector<'m> {
         }
     }
 
-    /// The centre of the circle through both ends that is nearest to the corrected path between them.
-    ///
-    /// With `|q - C|² = |A - C|²` linear in C: least squares over three places in between, along the
-    /// bisector of the ends, or in both directions where the ends nearly coincide.
-    fn fit_centre(
+    /// Commands that bring the tool to the programmed path at [`PLACES`]; true where the model solved all of them.
+    fn corrected_places(
         &self,
         follow: &Follow<'_, '_>,
         part: &Curve,
-        from: Vector,
-        to: Vector,
-    ) -> Result<[f64; 2], CorrectionError> {
-        let Curve::Arc { axes: [u, v, _], sweep, centre, .. } = *part else { return Ok([0.0; 2]) };
-        let mut places = [[0.0; 2]; 3];
-        for (k, place) in places.iter_mut().enumerate() {
-            let q = self.solve(&follow.machine, part.at(0.25 * (k + 1) as f64))?;
-            *place = [q[u] - from[u], q[v] - from[v]];
+    ) -> Result<([Vector; 3], bool), CorrectionError> {
+        let wanted = PLACES.map(|s| part.at(s));
+        let machine = &follow.machine;
+        let mut together = [None; LANES];
+        if let Some(everywhere) = &machine.everywhere {
+            let targets = from_fn(|k| wanted[k.min(2)].into());
+            let directions = [machine.state.direction; LANES];
+            together = machine.model.commands_for(&targets, &directions, &machine.state, everywhere);
         }
-        let end = [to[u] - from[u], to[v] - from[v]];
-        // Relative to the start: 2 C·q = |q|².
-        if sweep.abs() < 0.9 * TAU {
-            let length2 = end[0] * end[0] + end[1] * end[1];
-            let normal = [-end[1], end[0]];
-            let (mut above, mut below) = (0.0, 0.0);
-            for q in &places {
-                // C = end/2 + λ·normal.
-                let weight = 2.0 * (q[0] * normal[0] + q[1] * normal[1]);
-                let rest = q[0] * q[0] + q[1] * q[1] - (q[0] * end[0] + q[1] * end[1]);
-                above += weight * rest;
-                below += weight * weight;
-            }
-            if below <= 0.0 || length2 <= 0.0 {
-                return Ok(centre);
-            }
-            let lambda = above / below;
-            return Ok([
-                from[u] + 0.5 * end[0] + lambda * normal[0],
-                from[v] + 0.5 * end[1] + lambda * normal[1],
-            ]);
+        let mut found = wanted;
+        for (found, command) in found.iter_mut().zip(together) {
+            *found = match command {
+                Some(command) => command,
+                None => self.solve(machine, *found)?,
+            };
         }
-        let (mut a, mut b, mut d, mut p, mut r) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for q in places.iter().chain([&end]) {
-            let square = 0.5 * (q[0] * q[0] + q[1] * q[1]);
-            a += q[0] * q[0];
-            b += q[0] * q[1];
-            d += q[1] * q[1];
-            p += q[0] * square;
-            r += q[1] * square;
-        }
-        let determinant = a * d - b * b;
-        if determinant <= 0.0 {
-            return Ok(centre);
-        }
-        Ok([from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant])
+        Ok((found, together.iter().all(Option::is_some)))
     }
+}
+
+/// False for ends that no control may be left to make an arc of.
+fn may_be_one_arc(part: &Curve, from: Vector, to: Vector) -> bool {
+    let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else { return false };
+    let full = from[u] == to[u] && from[v] == to[v];
+    if full && sweep.abs() < 1.0 {
+        return false;
+    }
+    // All but a full turn: where the ends all but meet, the last digit decides between the whole circle
+    // and nothing, and controls have their own idea of what still counts as meeting.
+    let gap = Vector::new(to[u] - from[u], to[v] - from[v], 0.0).norm();
+    let moved = (part.at(0.0) - from - (part.at(1.0) - to)).norm() > SAME_PLACE_MM;
+    full || !moved || sweep.abs() <= TAU / 2.0 || gap >= NEARLY_MEETING_MM
+}
+
+/// What shows at [`PLACES`] that an arc is too far from the path, without the model being asked.
+///
+/// With `q` the corrected command of a place `r` of the path, `q + e(q) = r`, a command `c` is off by
+/// `c - r + e(c) = (c - q) + (e(c) - e(q))`, and the second difference is at most `gradient·|c - q|`. What is refuted here
+/// is what the proof would have refuted.
+struct Sieve {
+    /// Corrected command and the path's direction.
+    places: [(Vector, Vector); 3],
+    gradient: f64,
+    limit_mm: f64,
+}
+
+impl Sieve {
+    /// `None` where the model says nothing of its gradient, and where the distance of what is refuted will be told.
+    fn new(part: &Curve, corrected: &[Vector; 3], follow: &Follow<'_, '_>, limit_mm: f64) -> Option<Self> {
+        let everywhere = follow.machine.everywhere.as_ref().filter(|_| follow.may_split)?;
+        let tangent = |s: f64| if follow.in_step { Vector::zeros() } else { part.tangent(s) };
+        let places = from_fn(|k| (corrected[k], tangent(PLACES[k])));
+        Some(Self { places, gradient: everywhere.gradient, limit_mm })
+    }
+
+    fn refutes(&self, curve: &Curve) -> bool {
+        // The middle shows most.
+        [1, 0, 2].into_iter().any(|k| {
+            let (corrected, tangent) = self.places[k];
+            let off = curve.at(PLACES[k]) - corrected;
+            let square = (off - tangent * off.dot(&tangent)).norm();
+            square - self.gradient * off.norm() > self.limit_mm + ROUNDING_MM
+        })
+    }
+}
+
+/// The centre of the circle through both ends that is nearest to the corrected path between them.
+///
+/// With `|q - C|² = |A - C|²` linear in C: least squares over three places in between, along the
+/// bisector of the ends, or in both directions where the ends nearly coincide.
+fn fit_centre(part: &Curve, from: Vector, to: Vector, corrected: &[Vector; 3]) -> [f64; 2] {
+    let Curve::Arc { axes: [u, v, _], sweep, centre, .. } = *part else { return [0.0; 2] };
+    let places = corrected.map(|q| [q[u] - from[u], q[v] - from[v]]);
+    let end = [to[u] - from[u], to[v] - from[v]];
+    // Relative to the start: 2 C·q = |q|².
+    if sweep.abs() < 0.9 * TAU {
+        let length2 = end[0] * end[0] + end[1] * end[1];
+        let normal = [-end[1], end[0]];
+        let (mut above, mut below) = (0.0, 0.0);
+        for q in &places {
+            // C = end/2 + λ·normal.
+            let weight = 2.0 * (q[0] * normal[0] + q[1] * normal[1]);
+            let rest = q[0] * q[0] + q[1] * q[1] - (q[0] * end[0] + q[1] * end[1]);
+            above += weight * rest;
+            below += weight * weight;
+        }
+        if below <= 0.0 || length2 <= 0.0 {
+            return centre;
+        }
+        let lambda = above / below;
+        return [from[u] + 0.5 * end[0] + lambda * normal[0], from[v] + 0.5 * end[1] + lambda * normal[1]];
+    }
+    let (mut a, mut b, mut d, mut p, mut r) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for q in places.iter().chain([&end]) {
+        let square = 0.5 * (q[0] * q[0] + q[1] * q[1]);
+        a += q[0] * q[0];
+        b += q[0] * q[1];
+        d += q[1] * q[1];
+        p += q[0] * square;
+        r += q[1] * square;
+    }
+    let determinant = a * d - b * b;
+    if determinant <= 0.0 {
+        return centre;
+    }
+    [from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant]
 }

@@ -403,7 +403,11 @@ impl<'m> Corrector<'m> {
     }
 
     fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
-        if let Some(line) = self.short_line(feed, block) {
+        if matches!(feed.shape, Shape::Line)
+            && feed.start.rotary_deg == feed.end.rotary_deg
+            && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
+            && let Some(line) = self.short_line(&lines, block, feed.start.linear_mm, feed.end.linear_mm, None)
+        {
             return Ok(one(Piece { kind: PieceKind::Line, axes: line.axes, share: 1.0 }, line.correction));
         }
         let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
@@ -433,13 +437,13 @@ impl<'m> Corrector<'m> {
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
         }
-        self.note_before(&whole, block, feed, &mut corrected.correction);
+        corrected.correction.before_mm = self.before_mm(&whole, block, feed.end.rotary_deg);
         Ok(corrected)
     }
 
-    /// Bound of the deviation that the program would have had uncorrected.
-    pub(crate) fn note_before(&self, whole: &Curve, block: &Block, feed: &Feed, correction: &mut Correction) {
-        let machine = self.machine(block, feed.end.rotary_deg);
+    /// Bound of the deviation that the program would have had uncorrected, mm.
+    pub(crate) fn before_mm(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> f64 {
+        let machine = self.machine(block, rotary_deg);
         let extent = whole.extent(0.0, 1.0);
         let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
         let between = self.model.chord_bound_mm(&machine_model::Move {
@@ -449,7 +453,7 @@ impl<'m> Corrector<'m> {
             passes: 4,
             state: machine.state,
         });
-        correction.before_mm = if between.is_finite() { ends + between } else { ends };
+        if between.is_finite() { ends + between } else { ends }
     }
 
     /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every

@@ -97,35 +97,52 @@ impl Curve {
             // The end itself, not what is left of it after a subtraction and an addition.
             Self::Line(_, b) if s >= 1.0 => *b,
             Self::Line(a, b) => a + (b - a) * s,
-            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
-                let (sin, cos) = sin_cos(angle + sweep * s);
-                let r = radius[0] + (radius[1] - radius[0]) * s;
-                let mut p = Vector::zeros();
-                p[*u] = centre[0] + r * cos;
-                p[*v] = centre[1] + r * sin;
-                p[*n] = normal[0] + (normal[1] - normal[0]) * s;
-                p
-            }
+            Self::Arc { angle, sweep, .. } => self.at_turned(s, sin_cos(angle + sweep * s)),
         }
     }
 
     /// Unit tangent at s; zero where the curve does not move.
     pub fn tangent(&self, s: f64) -> Vector {
-        let t = match self {
-            Self::Line(a, b) => b - a,
-            Self::Arc { axes: [u, v, n], angle, sweep, radius, normal, .. } => {
-                let (sin, cos) = sin_cos(angle + sweep * s);
-                let r = radius[0] + (radius[1] - radius[0]) * s;
-                let dr = radius[1] - radius[0];
-                let mut t = Vector::zeros();
-                t[*u] = dr * cos - r * sweep * sin;
-                t[*v] = dr * sin + r * sweep * cos;
-                t[*n] = normal[1] - normal[0];
-                t
+        match self {
+            Self::Line(a, b) => unit(b - a),
+            Self::Arc { angle, sweep, .. } => self.tangent_turned(s, sin_cos(angle + sweep * s)),
+        }
+    }
+
+    /// [`Curve::at`] and [`Curve::tangent`] of one place.
+    pub(crate) fn at_and_tangent(&self, s: f64) -> (Vector, Vector) {
+        match self {
+            Self::Line(..) => (self.at(s), self.tangent(s)),
+            Self::Arc { angle, sweep, .. } => {
+                let turned = sin_cos(angle + sweep * s);
+                (self.at_turned(s, turned), self.tangent_turned(s, turned))
             }
-        };
-        let length = t.norm();
-        if length > 0.0 { t / length } else { Vector::zeros() }
+        }
+    }
+
+    /// The place at s of an arc, whose angle there has this sine and cosine.
+    #[inline]
+    fn at_turned(&self, s: f64, (sin, cos): (f64, f64)) -> Vector {
+        let Self::Arc { axes: [u, v, n], centre, radius, normal, .. } = self else { return self.at(s) };
+        let r = radius[0] + (radius[1] - radius[0]) * s;
+        let mut p = Vector::zeros();
+        p[*u] = centre[0] + r * cos;
+        p[*v] = centre[1] + r * sin;
+        p[*n] = normal[0] + (normal[1] - normal[0]) * s;
+        p
+    }
+
+    /// The same of the unit tangent.
+    #[inline]
+    fn tangent_turned(&self, s: f64, (sin, cos): (f64, f64)) -> Vector {
+        let Self::Arc { axes: [u, v, n], sweep, radius, normal, .. } = self else { return self.tangent(s) };
+        let r = radius[0] + (radius[1] - radius[0]) * s;
+        let dr = radius[1] - radius[0];
+        let mut t = Vector::zeros();
+        t[*u] = dr * cos - r * sweep * sin;
+        t[*v] = dr * sin + r * sweep * cos;
+        t[*n] = normal[1] - normal[0];
+        unit(t)
     }
 
     /// The part from s0 to s1, as a curve of its own.
@@ -194,8 +211,9 @@ impl Curve {
                 let dr = (radius[1] - radius[0]).abs() * h;
                 let turn = sweep.abs() * h;
                 let (from, to) = (angle + sweep * s0, angle + sweep * s1);
-                let (first, second) =
-                    (cosine_range(from, to), cosine_range(from - TAU / 4.0, to - TAU / 4.0));
+                let ((sin_from, cos_from), (sin_to, cos_to)) = (sin_cos(from), sin_cos(to));
+                let first = range_between(from, to, cos_from, cos_to);
+                let second = range_between(from - TAU / 4.0, to - TAU / 4.0, sin_from, sin_to);
                 let spread = (radius[1] - radius[0]).abs();
                 let in_plane = |c: f64, (low, high): (f64, f64)| Range {
                     low: c + r * low - spread,
@@ -282,18 +300,26 @@ impl Curve {
     }
 }
 
+/// A vector of length 1; zero where there is none.
+fn unit(v: Vector) -> Vector {
+    let length = v.norm();
+    if length > 0.0 { v / length } else { Vector::zeros() }
+}
+
 /// Distance of an angle from the nearest whole turn.
 fn wrapped(angle: f64) -> f64 {
     let rest = angle % TAU;
     rest.min(TAU - rest).abs()
 }
 
-/// Smallest and largest cosine between two angles.
-fn cosine_range(from: f64, to: f64) -> (f64, f64) {
+/// Smallest and largest cosine between two angles, whose cosines these are.
+fn range_between(from: f64, to: f64, cos_from: f64, cos_to: f64) -> (f64, f64) {
     let (low, high) = (from.min(to), from.max(to));
-    let (a, b) = (units::math::cos(low), units::math::cos(high));
     let holds = |phase: f64| ((high - phase) / TAU).floor() >= ((low - phase) / TAU).ceil();
-    (if holds(TAU / 2.0) { -1.0 } else { a.min(b) }, if holds(0.0) { 1.0 } else { a.max(b) })
+    (
+        if holds(TAU / 2.0) { -1.0 } else { cos_from.min(cos_to) },
+        if holds(0.0) { 1.0 } else { cos_from.max(cos_to) },
+    )
 }
 
 /// What bounds need to know of a part of a curve.

@@ -78,19 +78,15 @@ impl Place {
 }
 
 impl Pair<'_> {
-    /// Real tip minus programmed tip at the same s, mm.
-    pub(crate) fn difference(&self, machine: &Machine<'_>, s: f64) -> Vector {
-        let commanded = self.commanded.at(s);
-        commanded - self.wanted.at(s) + machine.error(commanded)
-    }
-
     /// The deviation at s.
     ///
     /// Moving along the path is no deviation from it: only the part of the difference square to the
     /// tangent counts, plus what the path curves away over the part along it, t²/2ρ.
     fn place(&self, machine: &Machine<'_>, s: f64) -> Place {
-        let difference = self.difference(machine, s);
-        let tangent = if self.in_step { Vector::zeros() } else { self.wanted.tangent(s) };
+        let (wanted, tangent) = self.wanted.at_and_tangent(s);
+        let commanded = self.commanded.at(s);
+        let difference = commanded - wanted + machine.error(commanded);
+        let tangent = if self.in_step { Vector::zeros() } else { tangent };
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
         // An end has to be reached, not only its neighbourhood: there all of the difference counts.

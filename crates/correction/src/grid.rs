@@ -2,6 +2,7 @@
 
 use machine_model::Vector;
 use toolpath::Frame;
+use units::decimal::round;
 
 /// Which letters a block holds, one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,12 +76,21 @@ const AXES: [u8; 3] = *b"XYZ";
 const POWERS_OF_TEN: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
 
 impl Block {
+    /// A length in program units.
+    #[inline]
+    fn in_units(&self, mm: f64) -> f64 {
+        // A division takes as long as all the rest.
+        if self.unit_mm == 1.0 { mm } else { mm / self.unit_mm }
+    }
+
     /// Steps in one program unit of an axis.
+    #[inline]
     fn per_unit(&self, axis: usize) -> f64 {
         POWERS_OF_TEN[usize::from(self.decimals[axis].min(9))]
     }
 
     /// The output step of an axis, mm.
+    #[inline]
     pub fn step_mm(&self, axis: usize) -> f64 {
         self.unit_mm / self.per_unit(axis)
     }
@@ -105,6 +115,7 @@ impl Block {
     ///
     /// A word is left alone, or left out, where that is as near as rounding would bring it: within half
     /// a step.
+    #[inline]
     pub fn choose(
         &self,
         axis: usize,
@@ -112,7 +123,25 @@ impl Block {
         programmed_mm: Option<f64>,
         standing_mm: Option<f64>,
     ) -> (AxisWord, f64) {
-        let half = 0.5 * self.step_mm(axis) * (1.0 + 1e-9);
+        self.choose_within(axis, self.half_step_mm(axis), wanted_mm, programmed_mm, standing_mm)
+    }
+
+    /// As near as rounding brings an axis, mm.
+    #[inline]
+    pub(crate) fn half_step_mm(&self, axis: usize) -> f64 {
+        0.5 * self.step_mm(axis) * (1.0 + 1e-9)
+    }
+
+    /// [`Block::choose`] with [`Block::half_step_mm`] at hand.
+    #[inline]
+    pub(crate) fn choose_within(
+        &self,
+        axis: usize,
+        half: f64,
+        wanted_mm: f64,
+        programmed_mm: Option<f64>,
+        standing_mm: Option<f64>,
+    ) -> (AxisWord, f64) {
         if let Some(programmed) = programmed_mm
             && (wanted_mm - programmed).abs() <= half
         {
@@ -129,10 +158,11 @@ impl Block {
     }
 
     /// The word that brings an axis nearest to `wanted_mm`.
+    #[inline]
     pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (AxisWord, f64) {
         let origin = if self.incremental { standing_mm.unwrap_or(0.0) } else { 0.0 };
-        let counts = ((wanted_mm - origin) / self.unit_mm * self.per_unit(axis)).round();
-        (AxisWord::Write(counts as i64), origin + self.from_counts(axis, counts as i64))
+        let counts = round(self.in_units(wanted_mm - origin) * self.per_unit(axis));
+        (AxisWord::Write(counts), origin + self.from_counts(axis, counts))
     }
 
     /// Adds words for the axes that must not be left out beside others; `reached`: where the words bring the axes.
@@ -146,16 +176,18 @@ impl Block {
     }
 
     /// Program millimetres of a count of steps.
+    #[inline]
     pub fn from_counts(&self, axis: usize, counts: i64) -> f64 {
         counts as f64 / self.per_unit(axis) * self.unit_mm
     }
 
     /// Nearest count of steps for a length in mm.
     pub fn to_counts(&self, axis: usize, mm: f64) -> i64 {
-        (mm / self.unit_mm * self.per_unit(axis)).round() as i64
+        round(self.in_units(mm) * self.per_unit(axis))
     }
 
     /// True where the block has a word for the axis.
+    #[inline]
     pub fn has_axis(&self, axis: usize) -> bool {
         self.letters.contains(AXES[axis])
     }
@@ -166,6 +198,7 @@ impl Block {
     }
 
     /// Axis command of program coordinates.
+    #[inline]
     pub fn machine(&self, program_mm: [f64; 3]) -> Vector {
         self.frame.to_machine(program_mm).into()
     }

@@ -24,7 +24,7 @@ pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Ste
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};
-pub use short_line::ShortLine;
+pub use short_line::{Foreseen, ShortLine, ShortLines};
 
 /// One block of output, in whole output steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,10 +5,10 @@
 //! worked out for this stretch. Where they do not suffice, or a figure of the summary could depend on the exact
 //! bound, the long way is taken.
 
+use std::array::from_fn;
 use std::cmp::Ordering;
 
-use machine_model::{Command, Vector};
-use toolpath::{Feed, Shape};
+use machine_model::{Command, LANES, Vector};
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
@@ -35,13 +35,101 @@ impl ShortLine {
     }
 }
 
+/// What is the same for short lines that follow one another.
+#[derive(Clone, Copy, Debug)]
+pub struct ShortLines {
+    /// Tool and rotary axes; place and directions are not used.
+    state: Command,
+    rotary_deg: [f64; 3],
+    offset_mm: [f64; 3],
+    limit_mm: f64,
+    /// An axis this near to a corrected place stands there.
+    near_mm: [f64; 3],
+    half_step_mm: [f64; 3],
+    /// The error depends on the direction of motion.
+    depends: bool,
+}
+
+/// The model's answer for a line before its turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Foreseen {
+    /// The directions that it holds for.
+    direction: [i8; 3],
+    /// `None` where the model has to be asked again.
+    command_mm: Option<Vector>,
+}
+
+/// The directions after a motion.
+#[inline]
+fn turned(mut direction: [i8; 3], start_mm: &[f64; 3], end_mm: &[f64; 3]) -> [i8; 3] {
+    for i in 0..3 {
+        if end_mm[i] > start_mm[i] {
+            direction[i] = 1;
+        } else if end_mm[i] < start_mm[i] {
+            direction[i] = -1;
+        }
+    }
+    direction
+}
+
 impl Corrector<'_> {
+    /// What short lines need that are like `block` but for their letters; `None` where there are none.
+    #[inline]
+    pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
+        self.heed(block, rotary_deg);
+        let ordinary = !block.incremental && block.frame.is_shift() && block.whole == [false; 3];
+        if !ordinary || !matches!(self.everywhere, Some((_, _, Some(_)))) {
+            return None;
+        }
+        Some(ShortLines {
+            state: self.state(block, rotary_deg),
+            rotary_deg,
+            offset_mm: block.frame.offset_mm(),
+            limit_mm: self.limit_mm(block),
+            near_mm: from_fn(|i| 0.505 * block.step_mm(i)),
+            half_step_mm: from_fn(|i| block.half_step_mm(i)),
+            depends: self.model.depends_on_direction(),
+        })
+    }
+
+    /// Asks the model for several lines at once: from `start_mm` to the first of `ends_mm` and on from there.
+    ///
+    /// What it says is used by [`Corrector::short_line`] where the directions are those foreseen.
+    #[must_use]
+    pub fn foresee(
+        &self,
+        lines: &ShortLines,
+        mut start_mm: [f64; 3],
+        ends_mm: &[[f64; 3]; LANES],
+    ) -> [Foreseen; LANES] {
+        let mut direction = self.direction;
+        let mut directions = [direction; LANES];
+        for (found, end_mm) in directions.iter_mut().zip(ends_mm) {
+            direction = turned(direction, &start_mm, end_mm);
+            start_mm = *end_mm;
+            *found = direction;
+        }
+        let commands = match &self.everywhere {
+            Some((_, _, Some(everywhere))) => {
+                self.model.commands_for(ends_mm, &directions, &lines.state, everywhere)
+            }
+            _ => [None; LANES],
+        };
+        from_fn(|k| Foreseen { direction: directions[k], command_mm: commands[k] })
+    }
+
     /// Corrects a line the short way; `None`, with nothing changed, where [`Corrector::correct`] must be asked. Where
     /// there is an answer, it would have been that of [`Corrector::correct`].
     #[inline]
-    pub fn short_line(&mut self, feed: &Feed, block: &Block) -> Option<ShortLine> {
-        self.heed(block, feed.end.rotary_deg);
-        let line = self.proven_short(feed, block)?;
+    pub fn short_line(
+        &mut self,
+        lines: &ShortLines,
+        block: &Block,
+        start_mm: [f64; 3],
+        end_mm: [f64; 3],
+        foreseen: Option<&Foreseen>,
+    ) -> Option<ShortLine> {
+        let line = self.proven_short(lines, block, start_mm, end_mm, foreseen)?;
         self.expanding = false;
         self.remembered = None;
         self.tell(&line.correction);
@@ -49,30 +137,23 @@ impl Corrector<'_> {
     }
 
     #[inline]
-    fn proven_short(&mut self, feed: &Feed, block: &Block) -> Option<ShortLine> {
+    fn proven_short(
+        &mut self,
+        lines: &ShortLines,
+        block: &Block,
+        start_mm: [f64; 3],
+        end_mm: [f64; 3],
+        foreseen: Option<&Foreseen>,
+    ) -> Option<ShortLine> {
         let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
         let (last, answer) = self.last?;
-        let (start, end): (Vector, Vector) = (feed.start.linear_mm.into(), feed.end.linear_mm.into());
         let [Some(x), Some(y), Some(z)] = self.standing else { return None };
-        let ordinary = matches!(feed.shape, Shape::Line)
-            && !block.incremental
-            && block.frame.is_shift()
-            && block.whole == [false; 3]
-            && feed.start.rotary_deg == feed.end.rotary_deg
-            && last.linear_mm == start;
-        if !ordinary {
+        let (start, end): (Vector, Vector) = (start_mm.into(), end_mm.into());
+        let ShortLines { state, offset_mm: offset, limit_mm, near_mm, half_step_mm, depends, .. } = *lines;
+        if last.linear_mm != start {
             return None;
         }
-        let mut direction = self.direction;
-        for i in 0..3 {
-            if end[i] > start[i] {
-                direction[i] = 1;
-            } else if end[i] < start[i] {
-                direction[i] = -1;
-            }
-        }
-        let state = Command { direction, ..self.state(block, feed.end.rotary_deg) };
-        let depends = self.model.depends_on_direction();
+        let direction = turned(self.direction, &start_mm, &end_mm);
         if last.tool_mm != state.tool_mm
             || last.rotary_rad != state.rotary_rad
             || (depends && (last.direction != direction || direction.contains(&0)))
@@ -81,32 +162,34 @@ impl Corrector<'_> {
         }
         // The axes stand at the corrected start, as the last line left them.
         let from = Vector::new(x, y, z);
-        let stands = |i: usize| (from[i] - answer[i]).abs() <= 0.505 * block.step_mm(i);
+        let stands = |i: usize| (from[i] - answer[i]).abs() <= near_mm[i];
         if !(stands(0) && stands(1) && stands(2)) {
             return None;
         }
-        let target = Command { linear_mm: end, ..state };
-        let wanted = self.model.command_for(&target, everywhere).ok()?;
+        let target = Command { linear_mm: end, direction, ..state };
+        let wanted = match foreseen {
+            Some(Foreseen { direction: same, command_mm: Some(command) }) if *same == direction => *command,
+            _ => self.model.command_for(&target, everywhere).ok()?,
+        };
 
-        let offset = block.frame.offset_mm();
         let mut axes = [AxisWord::Omit; 3];
         let mut reached = [0.0; 3];
         for i in 0..3 {
             let programmed = block.has_axis(i).then_some(end[i] - offset[i]);
+            let standing = Some(from[i] - offset[i]);
             (axes[i], reached[i]) =
-                block.choose(i, wanted[i] - offset[i], programmed, Some(from[i] - offset[i]));
+                block.choose_within(i, half_step_mm[i], wanted[i] - offset[i], programmed, standing);
         }
         let to = block.machine(reached);
 
         // At an end the tool is off by the rounding of its command, and what that changes in the error.
-        let rounded = (to - wanted).norm().max((from - answer).norm());
+        let rounded = (to - wanted).norm_squared().max((from - answer).norm_squared()).sqrt();
         let at_ends = rounded * (1.0 + everywhere.gradient) + SLACK_MM;
         let way = to - from;
         let after_mm = at_ends + everywhere.chord_bound_mm(way.amax());
-        let limit_mm = self.limit_mm(block);
         // The error at a place is its correction, but for what the error changes over the correction.
-        let corrected_mm = (wanted - end).norm();
-        let largest = corrected_mm.max((self.held(answer, from, depends) - start).norm());
+        let held = self.held(answer, from, depends);
+        let largest = (wanted - end).norm_squared().max((held - start).norm_squared()).sqrt();
         let before_mm = largest * (1.0 + everywhere.gradient)
             + SLACK_MM
             + everywhere.chord_bound_of_four_passes_mm((end - start).amax());
@@ -121,8 +204,9 @@ impl Corrector<'_> {
         if after_mm > self.told_mm[1] {
             let (nominal, commanded) = (Curve::Line(start, end), Curve::Line(from, to));
             let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false };
+            let state = Command { direction, ..state };
             let Verdict::Within(bound) =
-                pair.verdict(&Machine { state, ..self.machine(block, feed.end.rotary_deg) }, limit_mm)
+                pair.verdict(&Machine { state, ..self.machine(block, lines.rotary_deg) }, limit_mm)
             else {
                 return None;
             };
@@ -136,7 +220,7 @@ impl Corrector<'_> {
             return None;
         }
         if before_mm > self.told_mm[0] {
-            self.note_before(&Curve::Line(start, end), block, feed, &mut correction);
+            correction.before_mm = self.before_mm(&Curve::Line(start, end), block, lines.rotary_deg);
         }
         self.last = Some((target, wanted));
         Some(ShortLine { axes, correction })

@@ -2,8 +2,8 @@
 
 use correction::{Block, Corrector, Letters, Options, Outside};
 use machine_model::{
-    AxisTables, Chain, Command, Description, Engine, EngineId, Everywhere, Interpolation, LinearAxis, Move,
-    PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
+    AxisTables, Chain, Command, Description, Engine, EngineId, Everywhere, Interpolation, LANES, LinearAxis,
+    Move, PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
 };
 use proptest::prelude::*;
 use toolpath::{Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
@@ -119,7 +119,13 @@ proptest! {
                 rate: FeedRate::PerMinute,
                 may_split: true,
             };
-            taken += usize::from(short.clone().short_line(&feed, &block).is_some());
+            let [mut asked, mut foresees] = [short.clone(), short.clone()];
+            let lines = asked.short_lines(&block, [0.0; 3]).unwrap();
+            let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
+            let line = asked.short_line(&lines, &block, start, end, None);
+            let foreseen = foresees.foresee(&lines, start, &[end; LANES]);
+            prop_assert_eq!(foresees.short_line(&lines, &block, start, end, Some(&foreseen[0])), line);
+            taken += usize::from(line.is_some());
             let (a, b) = (short.correct(&Motion::Feed(feed), &block).unwrap(), long.correct(&Motion::Feed(feed), &block).unwrap());
             prop_assert_eq!(&a.pieces, &b.pieces);
             prop_assert!((a.correction.largest_mm - b.correction.largest_mm).abs() < 1e-9);

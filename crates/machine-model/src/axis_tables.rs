@@ -177,7 +177,7 @@ impl AxisTables {
 
     /// All six at `q`; outside the range the values of the nearer end.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, q: f64) -> Six {
         let q = q.clamp(self.grid.low(), self.grid.high());
         let cell = self.grid.cell(q);
@@ -191,7 +191,7 @@ impl AxisTables {
 
     /// All six and their slopes at `q`, which lies in the range; at a kink the slope of the upper side.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn with_slopes(&self, q: f64) -> (Six, Six) {
         let q = q.clamp(self.grid.low(), self.grid.high());
         let cell = self.grid.cell(q);
@@ -240,22 +240,42 @@ impl AxisTables {
     #[inline]
     pub fn bounds(&self, range: Range) -> SixBounds {
         if self.curved.is_empty() && self.grid.low() <= range.low && range.high <= self.grid.high() {
-            let cell = self.grid.cell(range.low);
-            let (node, next) = (self.grid.nodes()[cell], self.grid.nodes()[cell + 1]);
-            if range.high <= next {
-                // The common case: a short piece inside one cell of straight lines.
-                let (low, high) = (range.low - node, range.high - node);
-                let [c0, c1] = &self.straight[cell];
-                return SixBounds {
-                    value: std::array::from_fn(|i| {
-                        (c0[i] + low * c1[i]).abs().max((c0[i] + high * c1[i]).abs())
-                    }),
-                    slope: std::array::from_fn(|i| c1[i].abs()),
-                    ..SixBounds::default()
-                };
-            }
+            return self.bounds_of_lines(range);
         }
         self.bounds_across_cells(range)
+    }
+
+    /// [`Self::bounds_across_cells`] where all functions are straight lines and the range is theirs: the common case.
+    #[inline]
+    fn bounds_of_lines(&self, range: Range) -> SixBounds {
+        let Range { low, high } = range;
+        let nodes = self.grid.nodes();
+        let (first, mut last) = (self.grid.cell(low), self.grid.cell(high));
+        if last > first && nodes[last] >= high {
+            last -= 1; // the interval ends on the node: what follows is not inside
+        }
+        let mut all = SixBounds::default();
+        for cell in first..=last {
+            let [c0, c1] = &self.straight[cell];
+            let from = if cell == first { low - nodes[cell] } else { 0.0 };
+            let to = high.min(nodes[cell + 1]) - nodes[cell];
+            for i in 0..6 {
+                let value = (c0[i] + from * c1[i]).abs().max((c0[i] + to * c1[i]).abs());
+                all.value[i] = all.value[i].max(value);
+                all.slope[i] = all.slope[i].max(c1[i].abs());
+            }
+            if cell > first {
+                let at = (nodes[cell] - low) / (high - low);
+                let weight = (4.0 * at * (1.0 - at)).max(0.0);
+                let [_, before] = &self.straight[cell - 1];
+                for i in 0..6 {
+                    let jump = table::real_jump(c1[i] - before[i], c1[i], before[i]);
+                    all.kinks[i] += jump;
+                    all.kinks_on_line[i] += jump * weight;
+                }
+            }
+        }
+        all
     }
 
     fn bounds_across_cells(&self, range: Range) -> SixBounds {
@@ -331,8 +351,12 @@ mod tests {
     fn the_short_way_to_bounds_agrees_with_the_long_one() {
         let a = table(&[0.0, 10.0, 20.0], &[0.3, 1.0, -1.0], Interpolation::Linear);
         let six = AxisTables::new(&[None, a, None, None, None, None]).unwrap();
-        let range = Range { low: 11.0, high: 20.0 };
-        assert_eq!(six.bounds(range), six.bounds_across_cells(range));
+        for (low, high) in
+            [(11.0, 20.0), (10.0, 20.0), (0.0, 10.0), (3.0, 17.5), (0.0, 20.0), (10.0, 10.0), (4.0, 4.0)]
+        {
+            let range = Range { low, high };
+            assert_eq!(six.bounds(range), six.bounds_across_cells(range), "{low} to {high}");
+        }
     }
 
     #[test]

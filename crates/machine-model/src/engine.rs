@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::Everywhere;
+use crate::{Everywhere, LANES};
 
 /// A vector in the machine frame, mm.
 pub type Vector = Vector3<f64>;
@@ -32,6 +32,7 @@ pub struct Range {
 impl Range {
     /// True where `v` lies inside or on an end. False for NaN.
     #[must_use]
+    #[inline]
     pub fn contains(&self, v: f64) -> bool {
         self.low <= v && v <= self.high
     }
@@ -44,6 +45,7 @@ pub struct Volume(pub [Range; 3]);
 impl Volume {
     /// True where all axes lie inside.
     #[must_use]
+    #[inline]
     pub fn contains(&self, linear_mm: &Vector) -> bool {
         (0..3).all(|i| self.0[i].contains(linear_mm[i]))
     }
@@ -199,6 +201,18 @@ pub trait PathModel: Engine {
     /// Those of [`Engine::solve`].
     fn command_for(&self, target: &Command, _everywhere: &Everywhere) -> Result<Vector, SolveError> {
         self.solve(target).map(|solution| solution.linear_mm)
+    }
+
+    /// [`PathModel::command_for`] for several targets that differ in place and direction only; `None` for one that has
+    /// to be asked for alone.
+    fn commands_for(
+        &self,
+        _targets_mm: &[[f64; 3]; LANES],
+        _directions: &[[i8; 3]; LANES],
+        _state: &Command,
+        _everywhere: &Everywhere,
+    ) -> [Option<Vector>; LANES] {
+        [None; LANES]
     }
 
     /// True where the error depends on the direction of motion.

@@ -1,25 +1,32 @@
 //! The reference model: rigid bodies along the chain. Equations (5) to (9) of `docs/equations.md`.
 
+use std::array::from_fn;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use nalgebra::Matrix3;
 
-use crate::axis_tables::{AxisTables, Six, SixBounds};
+use crate::axis_tables::{AxisTables, SixBounds};
 use crate::everywhere::CLASSES;
-use crate::rotation::{around, small, turned_by};
+use crate::lanes::{LANES, Lanes, Real, Triple};
+use crate::rotation::{around, small, turned};
 use crate::solve::{TOLERANCE_MM, solve};
 use crate::{
     Axis, Command, Description, Engine, EngineId, Everywhere, Move, PathModel, Range, RotaryAxis, Solution,
     SolveError, Vector, Volume, chord_bound,
 };
 
+/// Steps of the fixed point behind Newton's, for targets that come by millions.
+const ROUNDS: u32 = 4;
+
 /// One linear axis, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub(crate) struct Link {
     /// 0 X, 1 Y, 2 Z.
     pub(crate) axis: usize,
+    /// Ideal direction of the axis.
+    pub(crate) way: Vector,
     /// Real minus ideal direction of the axis, per mm.
     pub(crate) tilt: Vector,
     /// Tables for motion in the negative, unknown and positive direction; empty where the axis has none.
@@ -64,6 +71,8 @@ pub struct RigidBody {
     description: Description,
     /// Workpiece to tool.
     pub(crate) links: [Link; 3],
+    /// Of X, Y, Z: its place in `links`.
+    place_of: [usize; 3],
     volume: Volume,
     /// A rotary axis at the workpiece has errors.
     table_has_errors: bool,
@@ -95,7 +104,15 @@ impl RigidBody {
             for later in &order[place + 1..] {
                 lever[later.direction()] += data.measured_at_mm[later.direction()];
             }
-            Link { axis, tilt: tilts[axis], by_direction: by_direction(data, axis), measured_lever_mm: lever }
+            let mut way = Vector::zeros();
+            way[axis] = 1.0;
+            Link {
+                axis,
+                way,
+                tilt: tilts[axis],
+                by_direction: by_direction(data, axis),
+                measured_lever_mm: lever,
+            }
         });
         let volume = Volume(std::array::from_fn(|axis| description.linear[axis].calibrated_mm()));
         if let Some(axis) =
@@ -107,9 +124,11 @@ impl RigidBody {
             description.chain.table().iter().any(|axis| !description.rotary[axis.direction()].is_perfect());
         let depends_on_direction =
             description.linear.iter().any(|axis| axis.errors_negative.is_some() || axis.backlash_mm != 0.0);
+        let place_of = from_fn(|axis| links.iter().position(|link: &Link| link.axis == axis).unwrap_or(axis));
         Ok(Self {
             description,
             links,
+            place_of,
             volume,
             table_has_errors,
             depends_on_direction,
@@ -198,75 +217,154 @@ impl RigidBody {
             nominal = self.head(command, false);
             error = self.head(command, true) - nominal;
         }
+        self.chain_error(&[q.x, q.y, q.z], &command.direction, Triple::all(&nominal), Triple::all(&error))
+            .into()
+    }
+
+    /// Error of the linear axes, on top of that of what they carry: the recursion of equation (8).
+    #[inline(always)]
+    fn chain_error<T: Real>(
+        &self,
+        q: &[T; 3],
+        directions: &T::Directions,
+        mut nominal: Triple<T>,
+        mut error: Triple<T>,
+    ) -> Triple<T> {
         for link in self.links.iter().rev() {
             let at = q[link.axis];
-            if let Some(tables) = link.tables(command.direction[link.axis]) {
-                let [x, y, z, a, b, c]: Six = tables.at(at);
-                let beyond = nominal + error - link.measured_lever_mm;
-                error += Vector::new(x, y, z) + turned_by(&Vector::new(a, b, c), &beyond);
+            if let Some([x, y, z, a, b, c]) = T::six(link, at, directions) {
+                let beyond = nominal + error - Triple::all(&link.measured_lever_mm);
+                error = error + (Triple([x, y, z]) + turned(Triple([a, b, c]), beyond));
             }
-            error += link.tilt * at;
-            nominal[link.axis] += at;
+            error = error + Triple::all(&link.tilt).scaled(at);
+            nominal = nominal + Triple::all(&link.way).scaled(at);
         }
         error
     }
 
-    /// [`Self::linear_error`] of a machine without head, and its gradient to first order: a column for each axis.
-    #[inline]
-    fn error_and_gradient(&self, q: &Vector, command: &Command) -> (Vector, [Vector; 3]) {
-        let mut nominal = command.tool_mm;
-        let mut error = Vector::zeros();
-        let mut gradient = [Vector::zeros(); 3];
-        for (place, link) in self.links.iter().enumerate().rev() {
+    /// [`Self::chain_error`] of a machine without head, and its gradient to first order: a column for each axis.
+    #[inline(always)]
+    fn chain_error_and_gradient<T: Real>(
+        &self,
+        q: &[T; 3],
+        directions: &T::Directions,
+        tool_mm: &Vector,
+    ) -> (Triple<T>, [Triple<T>; 3]) {
+        let zero = Triple([T::all(0.0); 3]);
+        let mut nominal = Triple::all(tool_mm);
+        let mut error = zero;
+        // By place in the chain.
+        let mut gradient = [zero; 3];
+        for place in [2, 1, 0] {
+            let link = &self.links[place];
             let at = q[link.axis];
-            if let Some(tables) = link.tables(command.direction[link.axis]) {
-                let ([x, y, z, a, b, c], [dx, dy, dz, da, db, dc]) = tables.with_slopes(at);
-                let beyond = nominal + error - link.measured_lever_mm;
-                let turn = Vector::new(a, b, c);
-                error += Vector::new(x, y, z) + turned_by(&turn, &beyond);
-                gradient[link.axis] += Vector::new(dx, dy, dz) + Vector::new(da, db, dc).cross(&beyond);
+            if let Some(([x, y, z, a, b, c], [dx, dy, dz, da, db, dc])) =
+                T::six_with_slopes(link, at, directions)
+            {
+                let beyond = nominal + error - Triple::all(&link.measured_lever_mm);
+                let turn = Triple([a, b, c]);
+                error = error + (Triple([x, y, z]) + turned(turn, beyond));
+                gradient[place] =
+                    gradient[place] + (Triple([dx, dy, dz]) + Triple([da, db, dc]).cross(beyond));
                 // The axes that this one carries move on turned ways.
-                for carried in &self.links[place + 1..] {
-                    let mut way = Vector::zeros();
-                    way[carried.axis] = 1.0;
-                    gradient[carried.axis] += turn.cross(&way);
+                for (carried, gradient) in self.links.iter().zip(&mut gradient).skip(place + 1) {
+                    *gradient = *gradient + turn.cross(Triple::all(&carried.way));
                 }
             }
-            error += link.tilt * at;
-            gradient[link.axis] += link.tilt;
-            nominal[link.axis] += at;
+            error = error + Triple::all(&link.tilt).scaled(at);
+            gradient[place] = gradient[place] + Triple::all(&link.tilt);
+            nominal = nominal + Triple::all(&link.way).scaled(at);
         }
-        (error, gradient)
+        (error, self.place_of.map(|place| gradient[place]))
     }
 
-    /// `q + e(q) = target` by one step of Newton's method and steps of the fixed point.
+    /// `q + e(q) = wanted` by one step of Newton's method: `q` and what is left, evaluated; without head and table
+    /// errors.
+    #[inline(always)]
+    fn newton_step<T: Real>(&self, wanted: &[T; 3], directions: &T::Directions, tool_mm: &Vector) -> [T; 3] {
+        let (error, [x, y, z]) = self.chain_error_and_gradient(wanted, directions, tool_mm);
+        let times = |v: Triple<T>| x.scaled(v.0[0]) + y.scaled(v.0[1]) + z.scaled(v.0[2]);
+        // (1 + G)⁻¹ e = e - G e + G² e - …
+        (Triple(*wanted) - (error - times(error - times(error)))).0
+    }
+
+    /// `q + e(q) - wanted`.
+    #[inline(always)]
+    fn residual<T: Real>(
+        &self,
+        q: &[T; 3],
+        wanted: &[T; 3],
+        directions: &T::Directions,
+        tool_mm: &Vector,
+    ) -> Triple<T> {
+        let zero = Triple([T::all(0.0); 3]);
+        (Triple(*q) - Triple(*wanted)) + self.chain_error(q, directions, Triple::all(tool_mm), zero)
+    }
+
+    /// `q + e(q) = target` by one step of Newton's method and steps of the fixed point, on a machine whose head and table
+    /// make no errors.
     ///
     /// A step by the residual `r` leaves at most `gradient·|r|`, which need not be evaluated. `None` where that does
     /// not settle at once, or leaves the volume.
     #[inline]
     fn newton(&self, target: &Command, everywhere: &Everywhere) -> Option<Vector> {
-        const ROUNDS: u32 = 4;
-        let wanted = &target.linear_mm;
-        if !self.volume.contains(wanted)
+        let wanted = target.linear_mm.into();
+        if !self.volume.contains(&target.linear_mm)
             || (self.description.chain.has_rotary() && self.rotary_inside(target).is_err())
         {
             return None;
         }
-        let (error, [x, y, z]) = self.error_and_gradient(wanted, target);
-        let times = |v: &Vector| x * v.x + y * v.y + z * v.z;
-        // (1 + G)⁻¹ e = e - G e + G² e - …
-        let mut q = wanted - (error - times(&(error - times(&error))));
+        let mut q = self.newton_step(&wanted, &target.direction, &target.tool_mm);
         for _ in 0..ROUNDS {
-            if !self.volume.contains(&q) {
+            if !self.volume.contains(&q.into()) {
                 return None;
             }
-            let residual = (q - wanted) + self.linear_error(&q, target);
-            q -= residual;
-            if everywhere.gradient * residual.norm() <= TOLERANCE_MM {
+            let residual = self.residual(&q, &wanted, &target.direction, &target.tool_mm);
+            q = (Triple(q) - residual).0;
+            if everywhere.gradient * residual.norm_squared().sqrt() <= TOLERANCE_MM {
+                let q = q.into();
                 return self.volume.contains(&q).then_some(q);
             }
         }
         None
+    }
+
+    /// [`Self::newton`] for several targets.
+    #[inline(always)]
+    fn newton_for_lanes(
+        &self,
+        wanted_mm: &[[f64; 3]; LANES],
+        directions: &[[i8; 3]; LANES],
+        state: &Command,
+        everywhere: &Everywhere,
+    ) -> [Option<Vector>; LANES] {
+        if self.description.chain.has_rotary() && self.rotary_inside(state).is_err() {
+            return [None; LANES];
+        }
+        let wanted: [Lanes; 3] = from_fn(|axis| Lanes(from_fn(|lane| wanted_mm[lane][axis])));
+        let mut q = self.newton_step(&wanted, directions, &state.tool_mm);
+        let place = |q: &[Lanes; 3], lane: usize| Vector::new(q[0].0[lane], q[1].0[lane], q[2].0[lane]);
+        let mut found = [None; LANES];
+        let mut open: [bool; LANES] = from_fn(|lane| self.volume.contains(&wanted_mm[lane].into()));
+        for _ in 0..ROUNDS {
+            let residual = self.residual(&q, &wanted, directions, &state.tool_mm);
+            let size = residual.norm_squared().0;
+            let better = (Triple(q) - residual).0;
+            for lane in 0..LANES {
+                if !self.volume.contains(&place(&q, lane)) {
+                    open[lane] = false;
+                }
+                if open[lane] && everywhere.gradient * size[lane].sqrt() <= TOLERANCE_MM {
+                    found[lane] = Some(place(&better, lane)).filter(|q| self.volume.contains(q));
+                    open[lane] = false;
+                }
+            }
+            if open == [false; LANES] {
+                break;
+            }
+            q = better;
+        }
+        found
     }
 
     /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
@@ -318,6 +416,25 @@ fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (M
         centre += rotary.shift_mm;
     }
     (turn, centre - turn * rotary.centre_mm)
+}
+
+/// [`RigidBody::newton_for_lanes`], compiled once for every processor and once for those that do four numbers in an
+/// instruction: the same operations, none of them fused, and so the same bits.
+struct ForLanes<'a> {
+    model: &'a RigidBody,
+    targets_mm: &'a [[f64; 3]; LANES],
+    directions: &'a [[i8; 3]; LANES],
+    state: &'a Command,
+    everywhere: &'a Everywhere,
+}
+
+impl pulp::NullaryFnOnce for ForLanes<'_> {
+    type Output = [Option<Vector>; LANES];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        self.model.newton_for_lanes(self.targets_mm, self.directions, self.state, self.everywhere)
+    }
 }
 
 /// Tables per direction: one set for all, or negative, mean, positive.
@@ -427,6 +544,16 @@ impl PathModel for RigidBody {
             Some(command) => Ok(command),
             None => self.solve(target).map(|solution| solution.linear_mm),
         }
+    }
+
+    fn commands_for(
+        &self,
+        targets_mm: &[[f64; 3]; LANES],
+        directions: &[[i8; 3]; LANES],
+        state: &Command,
+        everywhere: &Everywhere,
+    ) -> [Option<Vector>; LANES] {
+        pulp::Arch::new().dispatch(ForLanes { model: self, targets_mm, directions, state, everywhere })
     }
 
     fn depends_on_direction(&self) -> bool {

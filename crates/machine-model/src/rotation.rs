@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 use units::math;
 
 use crate::Vector;
+use crate::lanes::{Real, Triple};
 
 /// Largest angle for which the series of [`turned_by`] is meant, rad. Larger geometric errors are a mistake in units.
 pub const LARGEST_SMALL_ANGLE_RAD: f64 = 0.1;
@@ -18,11 +19,18 @@ pub const LARGEST_SMALL_ANGLE_RAD: f64 = 0.1;
 #[must_use]
 #[inline]
 pub fn turned_by(rotation_rad: &Vector, x: &Vector) -> Vector {
+    turned(Triple::<f64>::all(rotation_rad), Triple::all(x)).into()
+}
+
+/// [`turned_by`], also of several points.
+#[inline(always)]
+pub(crate) fn turned<T: Real>(rotation_rad: Triple<T>, x: Triple<T>) -> Triple<T> {
+    let (one, c) = (T::all(1.0), T::all);
     let t = rotation_rad.norm_squared();
-    let a = 1.0 - t * (1.0 / 6.0) * (1.0 - t * (1.0 / 20.0) * (1.0 - t * (1.0 / 42.0)));
-    let b = 0.5 * (1.0 - t * (1.0 / 12.0) * (1.0 - t * (1.0 / 30.0) * (1.0 - t * (1.0 / 56.0))));
+    let a = one - t * c(1.0 / 6.0) * (one - t * c(1.0 / 20.0) * (one - t * c(1.0 / 42.0)));
+    let b = c(0.5) * (one - t * c(1.0 / 12.0) * (one - t * c(1.0 / 30.0) * (one - t * c(1.0 / 56.0))));
     let first = rotation_rad.cross(x);
-    first * a + rotation_rad.cross(&first) * b
+    first.scaled(a) + rotation_rad.cross(first).scaled(b)
 }
 
 /// `exp([ε]×)` as a matrix, from the same series.

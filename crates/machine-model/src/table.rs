@@ -283,7 +283,7 @@ pub(crate) fn bounds_over(grid: &Grid, range: Range, cubic: impl Fn(usize) -> Cu
     };
     for k in first + 1..=last {
         let jump = slope_of(&cubic(k), 0.0) - slope_of(&cubic(k - 1), nodes[k] - nodes[k - 1]);
-        kink(&mut all, nodes[k], real_jump(jump, &cubic(k), &cubic(k - 1)));
+        kink(&mut all, nodes[k], real_jump(jump, cubic(k)[1], cubic(k - 1)[1]));
         join(&mut all, &bounds_of(&cubic(k), 0.0, end(k)));
     }
     if range.low < grid.low() || range.high > grid.high() {
@@ -301,10 +301,10 @@ pub(crate) fn bounds_over(grid: &Grid, range: Range, cubic: impl Fn(usize) -> Cu
 }
 
 /// A jump as it is meant: neighbouring cubics with equal slopes differ by rounding only, far below any
-/// effect; counting that would cost time and say nothing. Kept where either side is straight.
+/// effect; counting that would cost time and say nothing. `above` and `below` are the slopes that their cells begin with.
 #[inline]
-fn real_jump(jump: f64, above: &Cubic, below: &Cubic) -> f64 {
-    let scale = above[1].abs().max(below[1].abs());
+pub(crate) fn real_jump(jump: f64, above: f64, below: f64) -> f64 {
+    let scale = above.abs().max(below.abs());
     if jump.abs() <= 1e-12 * scale { 0.0 } else { jump.abs() }
 }
 

@@ -5,7 +5,8 @@
 mod machines;
 
 use machine_model::{
-    Command, Engine, Move, PathModel, Range, RigidBody, RotaryAxis, SolveError, Vector, first_order_error_mm,
+    Command, Engine, LANES, Move, PathModel, Range, RigidBody, RotaryAxis, SolveError, Vector,
+    first_order_error_mm,
 };
 use machines::{Random, command, machine, perfect};
 use proptest::prelude::*;
@@ -288,7 +289,7 @@ proptest! {
 /// What is looked up for short moves holds for each of them, and the proven inverse is the evaluated one.
 #[test]
 fn bounds_of_the_whole_volume_hold_for_every_move() {
-    let mut random = Random::new(11);
+    let (mut random, mut together_too) = (Random::new(11), 0);
     for seed in 0..60 {
         let chain = if seed % 2 == 0 { "[w X Y b Z t]" } else { "[w b Z Y X t]" };
         let model = RigidBody::new(machine(seed, chain, seed % 3 == 0, 1.0)).unwrap();
@@ -335,8 +336,20 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
             let quick = model.command_for(&target, &everywhere).unwrap();
             assert!((quick + at(quick) - end).norm() <= machine_model::TOLERANCE_MM + 1e-13);
             assert!((quick - model.solve(&target).unwrap().linear_mm).norm() <= 3e-10);
+            // Together with others, and in whichever place, a target has the answer that it has alone.
+            let ends: [[f64; 3]; LANES] = std::array::from_fn(|k| (start + by * (k as f64 / 3.0)).into());
+            let together = model.commands_for(&ends, &[state.direction; LANES], &state, &everywhere);
+            for (end, found) in ends.into_iter().zip(together) {
+                let alone = model.command_for(&Command { linear_mm: end.into(), ..state }, &everywhere);
+                if let Some(found) = found {
+                    assert_eq!(found, alone.unwrap(), "{seed}");
+                    together_too += 1;
+                }
+            }
         }
     }
+    // What does not settle in a few steps is solved by the long way, alone.
+    assert!(together_too > 60 * 60 * LANES * 95 / 100, "{together_too}");
 }
 
 /// How much larger the bound is than what dense sampling finds, over many random short stretches.

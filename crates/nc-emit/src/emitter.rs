@@ -2,7 +2,7 @@
 
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{GCode, Semicolon};
-use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
+use nc_syntax::{Block, Dialect, ItemKind, PlainLine, Span, Value};
 
 use crate::edit::{Piece, WordEdit};
 use crate::habits::{Habits, Increments, Modes, is_motion, line_end};
@@ -149,51 +149,64 @@ impl<'d> Emitter<'d> {
         Ok(())
     }
 
-    /// Writes a block in which nothing but numbers of its X, Y and Z words change: [`Emitter::rewrite`] for those who come
-    /// by millions.
+    /// Copies a plain line: [`Emitter::pass`] for those who come by millions.
+    ///
+    /// Of G codes it may hold only the motion code in force in the output.
+    #[inline]
+    pub fn pass_line(&mut self, line: &PlainLine<'_>, out: &mut Vec<u8>) {
+        self.habits.learn_line(line);
+        out.extend_from_slice(line.bytes);
+    }
+
+    /// Writes a plain line in which nothing but numbers of its X, Y and Z words change: [`Emitter::rewrite`] for those
+    /// who come by millions.
     ///
     /// * `counts` – what X, Y, Z become, in steps of `10^-decimals`; `None` for words that stay
     ///
-    /// The block must hold words of plain numbers only, no letter twice, those of `counts` among them; of G
-    /// codes only the motion code in force in the output, which is also that of the block's motion.
+    /// The line must have the words of `counts`; of G codes only the motion code in force in the output, which is
+    /// also that of the line's motion.
     ///
     /// # Errors
     /// VP0601 as in `rewrite`; `out` is then as it was.
-    pub fn rewrite_coordinates(
+    #[inline]
+    pub fn rewrite_line(
         &mut self,
-        block: &Block<'_>,
+        line: &PlainLine<'_>,
         counts: [Option<i64>; 3],
         decimals: [u8; 3],
         out: &mut Vec<u8>,
     ) -> Result<(), Diagnostic> {
-        self.habits.learn(block);
+        self.habits.learn_line(line);
         let style = Style {
             habits: &self.habits,
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
         };
-        let (content, end) = self.split_end(block);
         let from = out.len();
+        let content = line.content();
         let mut done = 0;
-        for item in &block.items {
-            let ItemKind::Word { letter: letter @ b'X'..=b'Z', value: Value::Number(replaced) } = item.kind
-            else {
-                continue;
-            };
+        for word in line.words() {
+            let letter @ b'X'..=b'Z' = word.letter else { continue };
             let axis = usize::from(letter - b'X');
             let Some(counts) = counts[axis] else { continue };
+            let (replaced, place) = (word.number(), word.number_span());
             if !style.same_value(letter, replaced, counts, decimals[axis]) {
-                let number = number_span(block, item.span);
-                out.extend_from_slice(&content[done..number.start as usize]);
+                // A byte or two: cheaper one by one than by a call.
+                content[done..place.start as usize].iter().for_each(|byte| out.push(*byte));
                 style.write_number(letter, Some(replaced), counts, decimals[axis], out);
-                done = number.end as usize;
+                done = place.end as usize;
             }
         }
-        out.extend_from_slice(&content[done..]);
-        if let Err(too_long) = self.check_length(block, &out[from..], content.len()) {
-            out.truncate(from);
-            return Err(too_long);
+        if done < content.len() {
+            out.extend_from_slice(&content[done..]);
         }
-        out.extend_from_slice(end);
+        let limit = self.dialect.output.max_block_bytes as usize;
+        if limit != 0 && out.len() - from > limit.max(content.len()) {
+            let block = Block { bytes: line.bytes, offset: line.offset, line: line.line, items: Vec::new() };
+            let too_long = self.check_length(&block, &out[from..], content.len());
+            out.truncate(from);
+            return too_long;
+        }
+        line.end().iter().for_each(|byte| out.push(*byte));
         Ok(())
     }
 

@@ -1,16 +1,20 @@
 //! What the file's own text looks like.
 
 use nc_syntax::dialect::{Action, CodeEntry, GCode, Numbers, PointFree};
-use nc_syntax::{Block, Dialect, ItemKind, Number, Sign, Span, Value};
+use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, PlainWord, Sign, Span, Value};
 use units::decimal::Spelling;
 
-/// Letters whose number is a length or an angle: without a point it may count least increments.
+/// True for letters whose number is a length or an angle: without a point it may count least increments.
 ///
 /// F, S, T, M, N, G, O, P, L, D, H follow rules of their own; a number without a point is a unit there.
-const LENGTH_LETTERS: &[u8] = b"XYZABCUVWIJKRQ";
+const fn is_length(letter: u8) -> bool {
+    matches!(letter, b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z')
+}
 
-/// Letters whose spelling says how the file writes coordinates.
-const COORDINATE_LETTERS: &[u8] = b"XYZABCUVWIJKR";
+/// True for letters whose spelling says how the file writes coordinates.
+const fn is_coordinate(letter: u8) -> bool {
+    is_length(letter) && letter != b'Q'
+}
 
 /// How the words seen so far are written: what an inserted word should look like.
 ///
@@ -25,6 +29,8 @@ pub(crate) struct Habits {
     point: Option<bool>,
     /// Most decimals of a coordinate so far: fewer in a later one mean that zeros are dropped.
     most_decimals: u8,
+    /// What [`Habits::knows`] asks of all this.
+    settled: bool,
     /// What stands between two words.
     pub(crate) separator: &'static [u8],
     /// `G01` rather than `G1`.
@@ -43,6 +49,7 @@ impl Habits {
             zeros_known: false,
             point: None,
             most_decimals: 0,
+            settled: false,
             separator: b" ",
             two_digit_g: false,
             lower_case: false,
@@ -65,7 +72,7 @@ impl Habits {
             if let Value::Number(number) = value {
                 if letter == b'G' {
                     self.learn_g(number, text);
-                } else if COORDINATE_LETTERS.contains(&letter) {
+                } else if is_coordinate(letter) {
                     self.learn_coordinate(number);
                 }
             }
@@ -83,6 +90,44 @@ impl Habits {
         if !end.is_empty() {
             self.line_end = end;
         }
+    }
+
+    /// [`Habits::learn`] from a plain line.
+    #[inline]
+    pub(crate) fn learn_line(&mut self, line: &PlainLine<'_>) {
+        let mut before: Option<&PlainWord> = None;
+        for word in line.words() {
+            match word.letter {
+                b'X' | b'Y' | b'Z' if self.knows(word) => {}
+                b'X' | b'Y' | b'Z' => self.learn_coordinate(word.number()),
+                b'G' => self.learn_g(word.number(), line.text(word.span())),
+                _ => {}
+            }
+            if let Some(before) = before {
+                let (end, start) = (before.span().end as usize, word.span().start as usize);
+                let known = separator(&line.bytes[end..start]);
+                if before.letter != b'N' || known.is_empty() {
+                    self.separator = known;
+                }
+            }
+            before = Some(word);
+        }
+        if let Some(last) = before {
+            self.lower_case = line.bytes[last.span().start as usize].is_ascii_lowercase();
+        }
+        self.line_end = line_end(line.end());
+    }
+
+    /// True where [`Habits::learn_coordinate`] would change nothing, as it is with most words of most files: all
+    /// decimals there and the spelling as it was.
+    #[inline]
+    fn knows(&self, word: &PlainWord) -> bool {
+        let number = word.number();
+        let usual = number.has_point
+            && number.leading_digit
+            && number.sign != Sign::Plus
+            && number.decimal.decimals == self.most_decimals;
+        usual && self.settled && (self.spelling.trailing_zeros || number.decimal.mantissa % 10 != 0)
     }
 
     /// These habits, with the block's own separator and case where it has any.
@@ -106,6 +151,7 @@ impl Habits {
         }
     }
 
+    #[inline(never)]
     fn learn_coordinate(&mut self, number: Number) {
         let decimals = number.decimal.decimals;
         self.zeros_known |= (decimals == 0 && (number.has_point || number.decimal.mantissa != 0))
@@ -118,9 +164,15 @@ impl Habits {
             // A zero without a point is the same number in every dialect and tells nothing.
             self.point = Some(false);
         }
+        self.settled = self.zeros_known
+            && self.point == Some(true)
+            && self.most_decimals > 0
+            && self.spelling.leading_zero
+            && !self.spelling.plus;
     }
 
     /// `habit` with what one number shows, `decimals` being how many it would have with its zeros.
+    #[inline]
     fn overlay(habit: Spelling, number: Number, decimals: u8) -> Spelling {
         let Number { decimal, sign, has_point, leading_digit } = number;
         let mut spelling = habit;
@@ -155,6 +207,7 @@ impl Habits {
     /// The word replaced, if there is one, goes before the file's habit. Where a length without a point
     /// counts least increments, the text is a whole number of them only if the word (or the habit) has no
     /// point and the step is not finer; else it has a point: its meaning never flips.
+    #[inline]
     pub(crate) fn spell(
         &self,
         letter: u8,
@@ -171,7 +224,7 @@ impl Habits {
         if let Some(number) = replaced {
             spelling = Self::overlay(spelling, number, decimals);
         }
-        if !LENGTH_LETTERS.contains(&letter) {
+        if !is_length(letter) {
             // F and its like: a point where the replaced word had one, and for a fraction.
             let point = replaced.is_some_and(|number| number.has_point);
             spelling.trailing_point = point;
@@ -231,6 +284,7 @@ pub(crate) struct Written {
 
 impl Written {
     /// Appends the number's text.
+    #[inline]
     pub(crate) fn write(self, out: &mut Vec<u8>) {
         units::decimal::write(out, self.counts, self.decimals, self.spelling);
     }
@@ -261,6 +315,7 @@ impl Increments {
     }
 
     /// What a number means after `letter`, as steps of the unit in force.
+    #[inline]
     pub(crate) fn value(self, letter: u8, number: Number) -> Step {
         let counts = number.decimal.mantissa;
         match self.of(letter) {
@@ -269,8 +324,9 @@ impl Increments {
         }
     }
 
+    #[inline]
     fn of(self, letter: u8) -> Option<u8> {
-        if !LENGTH_LETTERS.contains(&letter) {
+        if !is_length(letter) {
             return None;
         }
         if matches!(letter, b'A' | b'B' | b'C') { self.angle } else { self.length }

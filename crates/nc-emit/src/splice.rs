@@ -32,6 +32,7 @@ impl Style<'_> {
         out.push(if self.habits.lower_case { letter.to_ascii_lowercase() } else { letter });
     }
 
+    #[inline]
     pub(crate) fn write_number(
         &self,
         letter: u8,
@@ -44,6 +45,7 @@ impl Style<'_> {
     }
 
     /// The word already says `counts × 10^-decimals`: its text may stay.
+    #[inline]
     pub(crate) fn same_value(&self, letter: u8, number: Number, counts: i64, decimals: u8) -> bool {
         let written = self.increments.value(letter, number);
         if written.decimals == decimals {

@@ -52,5 +52,5 @@ mod words;
 
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::Modal;
-pub use plain::PlainFeed;
+pub use plain::{PlainEnd, PlainFeeds};
 pub use setup::Setup;

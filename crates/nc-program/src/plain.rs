@@ -1,11 +1,11 @@
-//! The block that programs consist of by millions: coordinates of a straight feed motion and nothing else.
+//! The line that programs consist of by millions: coordinates of a straight feed motion and nothing else.
 //!
-//! In a state in which such a block can mean only one thing ([`state`]) no state needs to be copied, no code looked
+//! In a state in which such a line can mean only one thing ([`PlainFeeds`]) no state needs to be copied, no code looked
 //! up: the words are the end of the motion. Whatever else a block holds, or is in force, is left to
 //! [`Interpreter::step`], which does the same by the long way.
 
-use nc_syntax::dialect::GCode;
-use nc_syntax::{Block, ItemKind, Number, Value};
+use nc_syntax::PlainLine;
+use nc_syntax::dialect::{GCode, Numbers};
 use toolpath::{Feed, FeedRate, Position, Shape};
 
 use crate::interpreter::{Context, Interpreter, context};
@@ -13,7 +13,7 @@ use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Pr
 use crate::motion::Moved;
 use crate::settings::Environment;
 
-/// What is known of plain blocks in the state in force.
+/// What is known of plain lines in the state in force.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Plain {
     /// Not asked since the last block that was not plain.
@@ -21,19 +21,31 @@ pub(crate) enum Plain {
     Unasked,
     /// There are none.
     No,
-    /// They are feed motions of this code, in this context.
-    Yes(Box<(GCode, FeedRate, Context)>),
+    /// They are feed motions.
+    Yes(Box<PlainFeeds>),
 }
 
-/// A plain block, executed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlainFeed<'i> {
-    /// Its motion.
-    pub feed: Feed,
-    /// Which of X, Y, Z it names.
+/// What plain lines mean in the state in force: feed motions, one a line.
+#[derive(Clone, Debug)]
+pub struct PlainFeeds {
+    /// The state in which they are done.
+    pub context: Context,
+    /// Where the rotary axes stand, degrees.
+    pub rotary_deg: [f64; 3],
+    code: GCode,
+    rate: FeedRate,
+    numbers: Numbers,
+    inch: bool,
+    offset_mm: [f64; 3],
+}
+
+/// The end of a plain line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlainEnd {
+    /// X, Y, Z in axis commands, mm.
+    pub end_mm: [f64; 3],
+    /// Which of them the line names.
     pub names: [bool; 3],
-    /// The state in which it is done: that of the last plain block, unless another kind of block came between.
-    pub context: &'i Context,
 }
 
 impl Plain {
@@ -53,61 +65,71 @@ impl Plain {
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
             && modal.frame.is_some_and(|frame| frame.is_shift())
-            && known(&modal.axes.linear)
-            && known(&modal.axes.rotary);
+            && known(&modal.axes.linear);
+        let [Axis::At(a), Axis::At(b), Axis::At(c)] = modal.axes.rotary else { return Self::No };
         if !plain {
             return Self::No;
         }
         let moved = Moved { repeats: 1, ..Moved::default() };
-        Self::Yes(Box::new((code, rate, context(env, modal, modal, &moved, false))))
+        let context = context(env, modal, modal, &moved, false);
+        Self::Yes(Box::new(PlainFeeds {
+            rotary_deg: [a, b, c],
+            code,
+            rate,
+            numbers: env.dialect.numbers.clone(),
+            inch: context.unit_mm != 1.0,
+            offset_mm: context.frame.offset_mm(),
+            context,
+        }))
+    }
+}
+
+impl PlainFeeds {
+    /// Where a plain line leads from `start_mm`; `None` for one that is no feed motion.
+    ///
+    /// What it says is what [`Interpreter::step`] would say.
+    #[must_use]
+    #[inline]
+    pub fn end_of(&self, line: &PlainLine<'_>, start_mm: [f64; 3]) -> Option<PlainEnd> {
+        let mut end = PlainEnd { end_mm: start_mm, names: [false; 3] };
+        for word in line.words() {
+            match word.letter {
+                b'X' | b'Y' | b'Z' => {
+                    let axis = usize::from(word.letter - b'X');
+                    let length = self.numbers.length(word.number(), self.inch).to_f64();
+                    end.end_mm[axis] = length * self.context.unit_mm + self.offset_mm[axis];
+                    end.names[axis] = true;
+                }
+                b'G' if word.number().tenths() != Some(self.code.0) => return None,
+                _ => {}
+            }
+        }
+        (end.names != [false; 3]).then_some(end)
+    }
+
+    /// The motion of a plain line.
+    #[must_use]
+    pub fn feed(&self, start_mm: [f64; 3], end_mm: [f64; 3]) -> Feed {
+        let at = |linear_mm| Position { linear_mm, rotary_deg: self.rotary_deg };
+        Feed { start: at(start_mm), end: at(end_mm), shape: Shape::Line, rate: self.rate, may_split: true }
     }
 }
 
 impl Interpreter<'_> {
-    /// Executes a block that is plain; `None`, with nothing done, for any other.
-    ///
-    /// What it says is what [`Interpreter::step`] would say: one feed motion.
+    /// What plain lines mean now, and where X, Y, Z stand, mm; `None` where none is to be taken for plain.
     #[inline]
-    pub fn plain_feed(&mut self, block: &Block<'_>) -> Option<PlainFeed<'_>> {
+    pub fn plain_feeds(&mut self) -> Option<(&PlainFeeds, [f64; 3])> {
         if let Plain::Unasked = self.plain {
             self.plain = Plain::of(&self.env, &self.modal);
         }
-        let Plain::Yes(state) = &self.plain else { return None };
-        let (code, rate, context) = &**state;
-        let mut words: [Option<Number>; 3] = [None; 3];
-        let mut seen = 0_u32;
-        for item in &block.items {
-            let ItemKind::Word { letter, value: Value::Number(number) } = item.kind else { return None };
-            let bit = 1 << (letter & 31);
-            if seen & bit != 0 {
-                return None;
-            }
-            seen |= bit;
-            match letter {
-                b'X' | b'Y' | b'Z' => words[usize::from(letter - b'X')] = Some(number),
-                b'N' | b'F' => {}
-                b'G' if number.tenths() == Some(code.0) => {}
-                _ => return None,
-            }
-        }
-        let numbers = &self.env.dialect.numbers;
-        let inch = context.unit_mm != 1.0;
-        let offset_mm = context.frame.offset_mm();
+        let Plain::Yes(feeds) = &self.plain else { return None };
         let [Axis::At(x), Axis::At(y), Axis::At(z)] = self.modal.axes.linear else { return None };
-        let [Axis::At(a), Axis::At(b), Axis::At(c)] = self.modal.axes.rotary else { return None };
-        let start = Position { linear_mm: [x, y, z], rotary_deg: [a, b, c] };
-        let mut end = start;
-        for i in 0..3 {
-            if let Some(number) = words[i] {
-                end.linear_mm[i] = numbers.length(number, inch).to_f64() * context.unit_mm + offset_mm[i];
-            }
-        }
-        let names = words.map(|word| word.is_some());
-        if names == [false; 3] {
-            return None;
-        }
-        self.modal.axes.linear = end.linear_mm.map(Axis::At);
-        let feed = Feed { start, end, shape: Shape::Line, rate: *rate, may_split: true };
-        Some(PlainFeed { feed, names, context })
+        Some((feeds, [x, y, z]))
+    }
+
+    /// Executes a plain line that leads to `end_mm` ([`PlainFeeds::end_of`]).
+    #[inline]
+    pub fn go_to(&mut self, end_mm: [f64; 3]) {
+        self.modal.axes.linear = end_mm.map(Axis::At);
     }
 }

@@ -15,9 +15,9 @@ pub(crate) struct Lexer<'d> {
     skip: Option<u8>,
     colon_number: bool,
     equals_words: bool,
-    spaces_inside: bool,
+    pub(crate) spaces_inside: bool,
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
-    letters: u32,
+    pub(crate) letters: u32,
     commands: &'d [Command],
 }
 

@@ -15,6 +15,7 @@ mod envelope;
 mod invalid;
 mod lexer;
 mod number;
+mod plain;
 mod reader;
 mod value;
 
@@ -22,4 +23,5 @@ pub use block::{Block, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Number, Sign, S
 pub use content::looks_like_program;
 pub use dialect::Dialect;
 pub use envelope::{Envelope, EnvelopeFinder};
+pub use plain::{PlainLine, PlainWord};
 pub use reader::{Place, Reader};

@@ -116,7 +116,7 @@ pub(crate) fn common_number(bytes: &[u8], at: usize, spaces_inside: bool) -> Opt
     }
     let starts_word = |byte: &u8| byte.is_ascii_alphabetic() && !byte.eq_ignore_ascii_case(&b'E');
     let plain_end = match bytes.get(next) {
-        None => true,
+        None | Some(b'\n' | b'\r') => true,
         Some(b' ' | b'\t') => !spaces_inside || bytes.get(next + 1).is_none_or(u8::is_ascii_alphabetic),
         Some(byte) => starts_word(byte),
     };

@@ -114,6 +114,7 @@ impl Frame {
 
     /// Axis command of a program point.
     #[must_use]
+    #[inline]
     pub fn to_machine(&self, program_mm: [f64; 3]) -> [f64; 3] {
         let turned = if self.is_shift() { program_mm } else { product(&self.matrix, program_mm) };
         [0, 1, 2].map(|i| turned[i] + self.offset_mm[i])
@@ -121,6 +122,7 @@ impl Frame {
 
     /// Program point of an axis command.
     #[must_use]
+    #[inline]
     pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
         let shifted = [0, 1, 2].map(|i| machine_mm[i] - self.offset_mm[i]);
         if self.is_shift() { shifted } else { product(&self.inverse, shifted) }

@@ -54,43 +54,97 @@ pub fn counts(value: f64, per_unit: f64) -> Option<i64> {
     (scaled.abs() < 9.007_199_254_740_992e15).then_some(scaled as i64)
 }
 
+/// Nearest whole number, ties away from zero: `value.round() as i64`, without a call where the processor has no such
+/// instruction.
+#[must_use]
+#[inline]
+pub fn round(value: f64) -> i64 {
+    /// 2⁵²: from here on every number is whole.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if value.abs() < WHOLE {
+        let whole = value as i64;
+        let rest = value - whole as f64;
+        whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
+    } else {
+        value.round() as i64
+    }
+}
+
+/// All numbers of two digits, one after the other.
+const PAIRS: [u8; 200] = {
+    let mut pairs = [0; 200];
+    let mut at = 0;
+    while at < 100 {
+        pairs[2 * at] = b'0' + (at / 10) as u8;
+        pairs[2 * at + 1] = b'0' + (at % 10) as u8;
+        at += 1;
+    }
+    pairs
+};
+
+/// Room for a number's text.
+const ROOM: usize = 40;
+/// As much is copied at once, without a call; nearly every number is shorter.
+const AT_ONCE: usize = 16;
+
 /// Appends `counts × 10^-decimals` as text. Never writes an exponent or a negative zero.
 #[inline]
 pub fn write(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
     // From the last digit to the sign, then out at once.
-    let mut text = [b'0'; 40];
+    let mut text = [b'0'; ROOM + AT_ONCE];
     let decimals = usize::from(decimals.min(18));
     let mut left = counts.unsigned_abs();
-    let point = text.len() - decimals;
-    for place in text[point..].iter_mut().rev() {
-        (left, *place) = (left / 10, b'0' + (left % 10) as u8);
+    let point = ROOM - decimals;
+    let mut at = ROOM;
+    while at >= point + 2 {
+        let pair = 2 * (left % 100) as usize;
+        left /= 100;
+        at -= 2;
+        [text[at], text[at + 1]] = [PAIRS[pair], PAIRS[pair + 1]];
     }
-    let mut end = text.len();
+    if at > point {
+        at -= 1;
+        (left, text[at]) = (left / 10, b'0' + (left % 10) as u8);
+    }
+    let mut end = ROOM;
     if !spelling.trailing_zeros {
         while end > point && text[end - 1] == b'0' {
             end -= 1;
         }
     }
     let whole = end == point;
-    let mut at = point;
     if !whole || (spelling.trailing_point && (decimals > 0 || !spelling.trailing_zeros)) {
         at -= 1;
         text[at] = b'.';
     }
+    // The point takes the place of a digit: from here on `at` is where the next one goes.
     if left > 0 || spelling.leading_zero || whole {
-        loop {
+        while left >= 100 {
+            let pair = 2 * (left % 100) as usize;
+            left /= 100;
+            at -= 2;
+            [text[at], text[at + 1]] = [PAIRS[pair], PAIRS[pair + 1]];
+        }
+        let pair = 2 * left as usize;
+        at -= 1;
+        text[at] = PAIRS[pair + 1];
+        if left >= 10 {
             at -= 1;
-            (left, text[at]) = (left / 10, b'0' + (left % 10) as u8);
-            if left == 0 {
-                break;
-            }
+            text[at] = PAIRS[pair];
         }
     }
     if counts < 0 || spelling.plus {
         at -= 1;
         text[at] = if counts < 0 { b'-' } else { b'+' };
     }
-    out.extend_from_slice(&text[at..end]);
+    let length = end - at;
+    if length <= AT_ONCE {
+        let before = out.len();
+        out.extend_from_slice(&text[at..at + AT_ONCE]);
+        out.truncate(before + length);
+    } else {
+        out.extend_from_slice(&text[at..end]);
+    }
 }
 
 #[cfg(test)]
@@ -127,7 +181,21 @@ mod tests {
         assert_eq!(counts(1e14, 1000.0), None);
     }
 
+    #[test]
+    fn rounds_as_the_library_does_where_it_is_close() {
+        let near =
+            [0.0, 0.5, 1.0, 1.5, 2.5, 0.1, 1e6 + 0.5, 2f64.powi(51) + 0.5, 2f64.powi(52), 1e300, f64::NAN];
+        for value in near.into_iter().flat_map(|v| [v.next_down(), v, v.next_up()]).flat_map(|v| [v, -v]) {
+            assert_eq!(round(value), value.round() as i64, "{value}");
+        }
+    }
+
     proptest! {
+        #[test]
+        fn rounds_as_the_library_does(value in -1e7f64..1e7) {
+            prop_assert_eq!(round(value), value.round() as i64);
+        }
+
         #[test]
         fn written_numbers_read_back(counts in -1_000_000_000_000i64..1_000_000_000_000, decimals in 0u8..9,
                                      trailing_zeros: bool, trailing_point: bool, leading_zero: bool, plus: bool) {

@@ -6,6 +6,7 @@
 mod chunks;
 mod notices;
 mod pass;
+mod plain;
 mod program;
 mod sink;
 mod stream;
@@ -129,6 +130,18 @@ pub(crate) fn correct_plain<E: From<Vec<Diagnostic>>>(
     Ok(corrected.map(|corrected| marked(corrected, text, job)))
 }
 
+/// Why a pass ended before the program did.
+enum Ended<E> {
+    Stopped,
+    Failed(E),
+}
+
+impl<E: From<Vec<Diagnostic>>> From<Vec<Diagnostic>> for Ended<E> {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::Failed(diagnostics.into())
+    }
+}
+
 /// One pass over all blocks; the output does not say yet that it was corrected. `None` where `stop` holds for a
 /// block that is more than coordinates.
 fn pass<E: From<Vec<Diagnostic>>>(
@@ -143,17 +156,17 @@ fn pass<E: From<Vec<Diagnostic>>>(
     }
     let mut pass = Pass::new(job, State::new(job, &numbers), text.len());
     let mut reader = Reader::new(text, job.dialect);
-    let mut block = Block::default();
-    while reader.next(&mut block) {
-        if !pass.plain(&block)? {
-            if stop(&block) {
-                return Ok(None);
-            }
-            pass.other(&block)?;
-        }
+    let every_now_and_then = |pass: &mut Pass<'_>, offset: u64| {
         if pass.tally.figures.blocks_in.is_multiple_of(256) {
-            progress(block.offset)?;
+            progress(offset).map_err(Ended::Failed)?;
         }
+        Ok(false)
+    };
+    let stops = |block: &Block<'_>| if stop(block) { Err(Ended::Stopped) } else { Ok(()) };
+    match pass.run(&mut reader, every_now_and_then, stops) {
+        Ok(_) => {}
+        Err(Ended::Stopped) => return Ok(None),
+        Err(Ended::Failed(error)) => return Err(error),
     }
     let Pass { out, tally: Tally { mut figures, notices }, .. } = pass;
     figures.warnings = notices.warnings().into_iter().map(|(warning, _)| warning).collect();

@@ -1,10 +1,10 @@
 //! One block after the other: what flows through a program, and what is done with each block.
 
-use correction::{AxisWord, Correction, Corrector, Letters, PieceKind};
+use correction::{Correction, Corrector, Letters};
 use diagnostic::Diagnostic;
 use nc_emit::{BlockNumbers, Emitter};
-use nc_program::{Context, Interpreter, PlainFeed};
-use nc_syntax::Block;
+use nc_program::{Context, Interpreter};
+use nc_syntax::{Block, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion};
 use units::decimal::Decimal;
@@ -16,9 +16,9 @@ use crate::words::{Editing, MotionCodes, Original, letters};
 /// What flows from block to block: all that the blocks before have to do with those that follow.
 #[derive(Clone)]
 pub(crate) struct State<'a> {
-    interpreter: Interpreter<'a>,
-    corrector: Corrector<'a>,
-    emitter: Emitter<'a>,
+    pub(super) interpreter: Interpreter<'a>,
+    pub(super) corrector: Corrector<'a>,
+    pub(super) emitter: Emitter<'a>,
     /// The last P of a cycle.
     dwell: Option<Decimal>,
     /// [`nc_syntax::Place::expects_name`]
@@ -84,7 +84,8 @@ impl Tally {
 }
 
 /// The first of the largest counts.
-fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
+#[inline]
+pub(super) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
     if value > figure.0 {
         *figure = (value, line);
     }
@@ -92,13 +93,11 @@ fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
 
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
-    job: &'a Job<'a>,
+    pub(super) job: &'a Job<'a>,
     codes: MotionCodes,
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
-    /// What correction must know of plain blocks, as long as one follows the other; `letters` are the last one's.
-    plain: Option<Box<correction::Block>>,
 }
 
 impl<'a> Pass<'a> {
@@ -110,65 +109,42 @@ impl<'a> Pass<'a> {
             state,
             out: Vec::with_capacity(bytes + bytes / 8 + 64),
             tally: Tally::default(),
-            plain: None,
         }
     }
 }
 
 impl Pass<'_> {
-    /// Corrects one block.
-    pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
-        if self.plain(block)? { Ok(()) } else { self.other(block) }
-    }
-
-    /// Corrects a block of coordinates and nothing else the short way; false, with nothing done, for any other.
-    pub(crate) fn plain(&mut self, block: &Block<'_>) -> Result<bool, Vec<Diagnostic>> {
-        let State { interpreter, corrector, emitter, .. } = &mut self.state;
-        let Some(PlainFeed { feed, names, context }) = interpreter.plain_feed(block) else {
-            self.plain = None;
-            return Ok(false);
-        };
-        let info = self.plain.get_or_insert_with(|| Box::new(info(self.job, context, Letters::default())));
-        info.letters = Letters::axes(names);
-        // The block relies on the code before it, which must be in force in the output too.
-        let in_force = emitter.motion() == context.motion_code;
-        let line = if in_force { corrector.short_line(&feed, info) } else { None };
-        let Some(line) = line else {
-            let context = *context;
-            self.tally.figures.blocks_in += 1;
-            self.moved(block, &context, letters(block), &[Motion::Feed(feed)])?;
-            return Ok(true);
-        };
-        if line.is_untouched() {
-            emitter.pass(block, &mut self.out);
-        } else {
-            let inserts = line.axes.iter().zip(names).any(|(word, named)| !named && *word != AxisWord::Omit);
-            let written = if inserts {
-                let context = *context;
-                let piece = correction::Piece { kind: PieceKind::Line, axes: line.axes, share: 1.0 };
-                let editing = self.editing(&context, letters(block), &Motion::Feed(feed));
-                let edited = editing.edit(&piece, true, true);
-                self.state.emitter.rewrite(block, &[edited], &mut self.out)
-            } else {
-                let counts = line.axes.map(|word| match word {
-                    AxisWord::Write(counts) => Some(counts),
-                    AxisWord::Keep | AxisWord::Omit => None,
-                });
-                emitter.rewrite_coordinates(block, counts, info.decimals, &mut self.out)
-            };
-            written.map_err(|diagnostic| vec![diagnostic])?;
+    /// Corrects blocks to the end of what a reader reads, or until `ends` says so in front of one; true where it did.
+    ///
+    /// * `ends` – is asked with the offset of each block
+    /// * `read` – is shown each block that is no plain line before it is corrected
+    pub(crate) fn run<E: From<Vec<Diagnostic>>>(
+        &mut self,
+        reader: &mut Reader<'_>,
+        mut ends: impl FnMut(&mut Self, u64) -> Result<bool, E>,
+        mut read: impl FnMut(&Block<'_>) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        let mut block = Block::default();
+        loop {
+            if self.plain_lines(reader, &mut ends)? {
+                return Ok(true);
+            }
+            let name = reader.expects_name();
+            if !reader.next(&mut block) {
+                self.state.expects_name = reader.expects_name();
+                return Ok(false);
+            }
+            self.state.expects_name = name;
+            if ends(self, block.offset)? {
+                return Ok(true);
+            }
+            read(&block)?;
+            self.block(&block)?;
         }
-        let figures = &mut self.tally.figures;
-        figures.blocks_in += 1;
-        figures.blocks_out += 1;
-        raise(&mut figures.largest, (line.correction.largest_mm, block.line));
-        raise(&mut figures.before, (line.correction.before_mm, block.line));
-        raise(&mut figures.after, (line.correction.after_mm, block.line));
-        Ok(true)
     }
 
-    /// Corrects a block that is not plain.
-    pub(crate) fn other(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
+    /// Corrects a block, whatever it is.
+    pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
         let step = self.state.interpreter.step(block)?;
         let context = &step.context;
@@ -184,7 +160,7 @@ impl Pass<'_> {
     }
 
     /// Corrects the motions of a block and writes it.
-    fn moved(
+    pub(super) fn moved(
         &mut self,
         block: &Block<'_>,
         context: &Context,
@@ -359,7 +335,12 @@ impl Pass<'_> {
         info(self.job, context, letters)
     }
 
-    fn editing<'e>(&'e self, context: &'e Context, letters: Letters, motion: &Motion) -> Editing<'e> {
+    pub(super) fn editing<'e>(
+        &'e self,
+        context: &'e Context,
+        letters: Letters,
+        motion: &Motion,
+    ) -> Editing<'e> {
         Editing {
             codes: &self.codes,
             context,
@@ -408,7 +389,7 @@ impl Pass<'_> {
 }
 
 /// What correction must know of a block.
-fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
+pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
     let output = &job.dialect.output;
     let inch = context.unit_mm != 1.0;
     correction::Block {

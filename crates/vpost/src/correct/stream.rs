@@ -61,6 +61,12 @@ enum Stop {
     Flows,
 }
 
+impl From<Vec<Diagnostic>> for Stop {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self::Refused(diagnostics)
+    }
+}
+
 /// A chunk that was done from some state.
 struct Done<'a> {
     chunk: Chunk,
@@ -216,11 +222,8 @@ where
             expects_name: false,
         };
         let mut reader = Reader::part(lead, self.plan.job.dialect, self.plan.envelope, place);
-        let mut block = Block::default();
-        while reader.next(&mut block) {
-            // A block that makes no sense from here makes no better guess.
-            let _ = pass.block(&block);
-        }
+        // A block that makes no sense from here makes no better guess.
+        while pass.run::<Vec<Diagnostic>>(&mut reader, |_, _| Ok(false), |_| Ok(())).is_err() {}
         pass.state.tell_as(&told);
         pass.state
     }
@@ -233,13 +236,13 @@ where
         let mut open = Stretch { offset: chunk.offset, out: 0, state: first, tally: Tally::default() };
         let mut near = NEAR_BYTES.iter();
         let mut bound = if guessed { near.next().map_or(u64::MAX, |b| *b as u64) } else { u64::MAX };
-        let end = each(self.plan, &chunk, &mut pass, |pass, block| {
-            let at = block.offset - chunk.offset;
+        let end = each(self.plan, &chunk, &mut pass, |pass, offset| {
+            let at = offset - chunk.offset;
             if at >= bound {
                 // What was told in a stretch that may not count tells nothing to the next one.
                 pass.state.tell_as(&open.state);
                 let next = Stretch {
-                    offset: block.offset,
+                    offset,
                     out: pass.out.len(),
                     state: pass.state.clone(),
                     tally: Tally::default(),
@@ -310,9 +313,9 @@ where
         if !stretches[0].state.continues_as(&state) {
             let mut pass = Pass::new(self.plan.job, state, LEAD_BYTES);
             let mut next = 1;
-            let ended = each(self.plan, &chunk, &mut pass, |pass, block| {
+            let ended = each(self.plan, &chunk, &mut pass, |pass, offset| {
                 let Some(stretch) = stretches.get(next) else { return false };
-                if stretch.offset != block.offset {
+                if stretch.offset != offset {
                     return false;
                 }
                 next += 1;
@@ -336,35 +339,20 @@ where
     }
 }
 
-/// Corrects the blocks of a chunk until `met` says so before one of them; true where it did.
+/// Corrects the blocks of a chunk until `met` says so before one of them (it is told its offset); true where it did.
 fn each<'a>(
     plan: &Plan<'a>,
     chunk: &Chunk,
     pass: &mut Pass<'a>,
-    mut met: impl FnMut(&mut Pass<'a>, &Block<'_>) -> bool,
+    mut met: impl FnMut(&mut Pass<'a>, u64) -> bool,
 ) -> Result<bool, Stop> {
     let place = chunk.place(pass.state.expects_name);
     let mut reader = Reader::part(&chunk.text, plan.job.dialect, plan.envelope, place);
-    let mut block = Block::default();
-    loop {
-        let name = reader.expects_name();
-        if !reader.next(&mut block) {
-            pass.state.expects_name = reader.expects_name();
-            return Ok(false);
-        }
-        pass.state.expects_name = name;
-        if met(pass, &block) {
-            return Ok(true);
-        }
-        // What is plain does not compute.
-        if pass.plain(&block).map_err(Stop::Refused)? {
-            continue;
-        }
-        if nc_expand::computes(&block, plan.job.dialect) {
-            return Err(Stop::Flows);
-        }
-        pass.other(&block).map_err(Stop::Refused)?;
-    }
+    // What is plain does not compute.
+    let flows = |block: &Block<'_>| {
+        if nc_expand::computes(block, plan.job.dialect) { Err(Stop::Flows) } else { Ok(()) }
+    };
+    pass.run(&mut reader, |pass, offset| Ok(met(pass, offset)), flows)
 }
 
 /// The last lines of a chunk.
@@ -465,7 +453,7 @@ mod tests {
             let mut numbers = BlockNumbers::new();
             crate::correct::each_block(text.as_bytes(), job.dialect, |block| numbers.see(block));
             let mut pass = Pass::new(&job, State::new(&job, &numbers), text.len());
-            crate::correct::each_block(text.as_bytes(), job.dialect, |block| pass.other(block).unwrap());
+            crate::correct::each_block(text.as_bytes(), job.dialect, |block| pass.block(block).unwrap());
             prop_assert_eq!(String::from_utf8_lossy(&pass.out), String::from_utf8_lossy(&whole.text));
             prop_assert_eq!(pass.tally.figures.blocks_out, figures.blocks_out);
         }

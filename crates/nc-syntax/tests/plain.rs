@@ -1,0 +1,70 @@
+//! The plain line, read the quick way.
+
+mod common;
+
+use proptest::prelude::*;
+
+use common::{conventional, dialect};
+use nc_syntax::{Block, Dialect, ItemKind, PlainLine, Reader, Value};
+
+/// What is read as a plain line is what the reader shows as a block.
+fn agrees(text: &str, dialect: &Dialect) -> usize {
+    let mut quick = Reader::new(text.as_bytes(), dialect);
+    let mut slow = Reader::new(text.as_bytes(), dialect);
+    let (mut line, mut block, mut again, mut plain) =
+        (PlainLine::default(), Block::default(), Block::default(), 0);
+    while slow.next(&mut block) {
+        if quick.plain_line(&mut line) {
+            plain += 1;
+            assert_eq!(
+                (line.bytes, line.offset, line.line),
+                (block.bytes, block.offset, block.line),
+                "{text:?}"
+            );
+            let words: Vec<_> = line
+                .words()
+                .iter()
+                .map(|word| {
+                    (ItemKind::Word { letter: word.letter, value: Value::Number(word.number()) }, word.span())
+                })
+                .collect();
+            let items: Vec<_> = block.items.iter().map(|item| (item.kind, item.span)).collect();
+            assert_eq!(words, items, "{text:?}");
+            assert!(line.words().iter().all(|word| word.number_span().start == word.span().start + 1));
+            assert_eq!([line.content(), line.end()].concat(), line.bytes);
+            quick.block_of(&line, &mut again);
+            assert_eq!(again, block);
+            // Back and again.
+            quick.unread(&line);
+            assert!(quick.next(&mut again));
+        } else {
+            assert!(quick.next(&mut again));
+        }
+        assert_eq!(again, block, "{text:?}");
+        assert_eq!(quick.expects_name(), slow.expects_name());
+    }
+    plain
+}
+
+#[test]
+fn plain_lines_are_found_and_others_are_not() {
+    let count = |text: &str| agrees(text, &conventional());
+    assert_eq!(count("X1. Y-2.5 Z.3\nN10 G1 x+1 y2 F100\r\nY5\n"), 3);
+    assert_eq!(count("X1. X2.\n(A)\nX1 (B)\nM3\nX1 M3\nX[1]\nX=1\nG1 Y1 A5.\n/X1\nX1;\n\n  \nX1.2.3\n"), 0);
+    assert_eq!(count("X1"), 0, "no line end: somebody else sees to it");
+    assert_eq!(
+        count("%\nX1\nX2\n%\nX3\n"),
+        1,
+        "behind a mark a name may stand, behind the last nothing is executed"
+    );
+}
+
+proptest! {
+    #[test]
+    fn plain_lines_are_what_the_reader_shows(
+        text in "((%|X-?[0-9]{0,3}[.]?[0-9]{0,3}|[YZxNFGM][+-]?[0-9.]{1,4}|[ \t(;/,E=]|O1|NAME){0,5}[ ]?(\n|\r\n|\r)){0,6}",
+        spaces: bool,
+    ) {
+agrees(&text, &if spaces { dialect() } else { conventional() });
+    }
+}
