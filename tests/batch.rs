@@ -309,6 +309,7 @@ fn usage_errors_write_nothing() {
         &["batch", "samples", "-O", "no_such_output"],
         &["batch", "samples", "-m", PROFILE],
         &["batch", "samples", "-O", "no_such_output", "-m", PROFILE, "--jobs", "0"],
+        &["batch", "samples", "-O", "no_such_output", "-m", PROFILE, "--results", "no_such_folder/r.jsonl"],
         &["batch", "samples", "-O", "no_such_output", "-m", PROFILE, "-e", "kmtpp-published"],
     ] {
         let ran = run(arguments);

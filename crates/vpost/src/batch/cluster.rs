@@ -17,7 +17,7 @@ use super::progress::Progress;
 use super::record::{Record, Status};
 use super::shard::{self, Shard};
 use super::work::{self, Results};
-use super::{finish, interrupted, passed_over};
+use super::{finish, has_place, interrupted, passed_over};
 use crate::arguments::Shared;
 use crate::file::{self, Interrupt};
 use crate::message::{Failure, Messages};
@@ -45,6 +45,7 @@ pub(crate) fn run(arguments: &Run, shared: &Shared, messages: &Messages) -> Resu
 }
 
 fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    has_place(arguments.work.results.as_deref())?;
     let shard = Shard::read(arguments.shard.as_deref(), |name| std::env::var(name).ok())?;
     let manifest = Manifest::read(&arguments.manifest)?;
     let job = manifest.job(shared, messages)?;
@@ -84,6 +85,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
 
 /// `vpost batch merge`
 pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failure> {
+    has_place(arguments.results.as_deref())?;
     let manifest = Manifest::read(&arguments.manifest)?;
     let root = manifest.output();
     let open = match OutputFolder::open(root, Company::Alone) {

@@ -45,6 +45,7 @@ pub(crate) fn run(arguments: &Batch, shared: &Shared, messages: &Messages) -> Re
 fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let root = arguments.programs.output.as_deref().unwrap_or(Path::new("."));
     let job = Job::load(shared, messages)?;
+    has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
     passed_over(&found, messages);
     let interrupt = Interrupt::listen();
@@ -99,6 +100,18 @@ fn interrupted(failure: Failure, messages: &Messages) -> Failure {
     let Failure::Interrupted(signal) = failure else { return failure };
     messages.note("interrupted: what is done is done; the same command goes on from there");
     Failure::Said(128 + signal)
+}
+
+/// The results' folder is there: hours later is late to say that it is not.
+fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
+    let folder = lines.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => Err(Failure::option(
+            format!("`--results`: there is no folder {}", folder.display()),
+            "make it first, or name a file in a folder that is there",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Results to disk and to the user, who gets the table whatever cannot be written.
