@@ -30,12 +30,25 @@ const ROUNDING_MM: f64 = 1e-8;
 /// A centre to try: the words and what the control makes of them.
 struct Candidate {
     words: Centre,
-    curve: Curve,
+    centre: [f64; 2],
     /// Difference of the radii at start and end, mm.
     radii_apart: f64,
 }
 
 impl Candidate {
+    /// What the control makes of it; `None` where that is another arc altogether: the short way for the long one.
+    fn arc(&self, follow: &Follow<'_, '_>, part: &Curve, from: Vector, to: Vector) -> Option<Curve> {
+        let Curve::Arc { axes, sweep, .. } = *part else { return None };
+        let mut curve = Curve::from_centre(from, to, axes, self.centre, sweep < 0.0);
+        let Curve::Arc { sweep: turned, .. } = &mut curve else { return None };
+        if follow.alone && follow.block.letters.contains(b'P') {
+            // The block's own P counts the whole turns before the last one; it never makes one of a
+            // last turn that came out as nothing.
+            *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
+        }
+        ((*turned - sweep).abs() < 0.5 * sweep.abs().min(1.0)).then_some(curve)
+    }
+
     /// The block's own words serve.
     fn is_kept(&self) -> bool {
         match self.words {
@@ -114,10 +127,11 @@ impl<'m> Corrector<'m> {
         let limit_mm = self.limit_mm(follow.block);
         let sieve = if solved { Sieve::new(part, &corrected, follow, limit_mm) } else { None };
         for candidate in self.candidates(follow, part, from, to, &corrected) {
-            if sieve.as_ref().is_some_and(|sieve| sieve.refutes(&candidate.curve)) {
+            let Some(curve) = candidate.arc(follow, part, from, to) else { continue };
+            if sieve.as_ref().is_some_and(|sieve| sieve.refutes(&curve)) {
                 continue;
             }
-            let pair = Pair { wanted: part, commanded: &candidate.curve, in_step: follow.in_step };
+            let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
             match pair.verdict(&follow.machine, limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
@@ -145,7 +159,6 @@ impl<'m> Corrector<'m> {
         let Curve::Arc { axes, centre, sweep, radius, .. } = *part else { return Vec::new() };
         let [u, v, _] = axes;
         let block = follow.block;
-        let clockwise = sweep < 0.0;
         let letters = [u, v].map(|axis| b"IJK"[axis]);
         let has_centre = letters.map(|letter| block.letters.contains(letter));
         let by_radius = if has_centre.contains(&true) {
@@ -161,20 +174,13 @@ impl<'m> Corrector<'m> {
             .min((scale * block.arc_radius_tolerance_mm).max(2.0 * step));
         let mut found = Vec::new();
         let mut push = |words: Centre, at: [f64; 2]| {
-            let mut curve = Curve::from_centre(from, to, axes, at, clockwise);
-            if let Curve::Arc { sweep: turned, .. } = &mut curve
-                && follow.alone
-                && block.letters.contains(b'P')
-            {
-                // The block's own P counts the whole turns before the last one; it never makes one of a
-                // last turn that came out as nothing.
-                *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
-            }
-            let Curve::Arc { radius: [r0, r1], sweep: turned, .. } = curve else { return };
-            // A centre that makes the short way the long way is another arc altogether.
-            let radii_apart = (r1 - r0).abs();
-            if radii_apart <= allowed && (turned - sweep).abs() < 0.5 * sweep.abs().min(1.0) {
-                found.push(Candidate { words, curve, radii_apart });
+            let length = |p: &Vector| {
+                let (pu, pv) = (p[u] - at[0], p[v] - at[1]);
+                (pu * pu + pv * pv).sqrt()
+            };
+            let radii_apart = (length(&to) - length(&from)).abs();
+            if radii_apart <= allowed {
+                found.push(Candidate { words, centre: at, radii_apart });
             }
         };
         if follow.alone && !by_radius {

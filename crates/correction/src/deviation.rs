@@ -1,6 +1,7 @@
 //! How far the real tool leaves the programmed path: computed at places, bounded between them.
 
 use machine_model::{Command, Everywhere, Move, PathModel, Vector};
+use smallvec::SmallVec;
 
 use crate::curve::Curve;
 
@@ -98,8 +99,14 @@ impl Pair<'_> {
         Place { s, difference, square, distance }
     }
 
-    /// Upper bound of the distance between two places where it is known, mm.
-    fn bound(&self, machine: &Machine<'_>, a: &Place, b: &Place) -> f64 {
+    /// Upper bound of the distance between two places where it is known, mm; where that exceeds `limit_mm`, any number
+    /// that does.
+    fn bound(&self, machine: &Machine<'_>, a: &Place, b: &Place, limit_mm: f64) -> f64 {
+        // All of (P4) but the model's share: the model is not asked where that is too much already.
+        let least = self.between(a, b, 0.0);
+        if least > limit_mm {
+            return least;
+        }
         if let Some(everywhere) = &machine.everywhere
             && let Some((speed_mm, acceleration_mm)) = self.commanded.fastest(a.s, b.s)
             && self.commanded.lies_inside(&everywhere.volume)
@@ -150,17 +157,20 @@ impl Pair<'_> {
         // An arc passes a place at most twice only while it is below half a turn.
         let turning = self.commanded.turning_rad();
         let bound = |a: &Place, b: &Place| {
-            if turning * (b.s - a.s) > 3.0 { f64::INFINITY } else { self.bound(machine, a, b) }
+            if turning * (b.s - a.s) > 3.0 { f64::INFINITY } else { self.bound(machine, a, b, limit_mm) }
         };
         let whole = bound(&first, &last);
         if whole <= limit_mm {
             return Verdict::Within(whole);
         }
         // What does not hold mostly shows at a few places: cheaper than proving all that comes before them.
+        let mut looked_at: SmallVec<[Place; 5]> = SmallVec::new();
         for s in [0.5, 0.25, 0.75, 0.125, 0.875] {
-            if let Some(refuted) = beyond(&self.place(machine, s)) {
+            let place = self.place(machine, s);
+            if let Some(refuted) = beyond(&place) {
                 return refuted;
             }
+            looked_at.push(place);
         }
         let mut worst_proven: f64 = 0.0;
         // Depth first, left to right, on a stack of right halves: no recursion, no allocation.
@@ -178,7 +188,9 @@ impl Pair<'_> {
                 height -= 1;
                 continue;
             }
-            let middle = self.place(machine, 0.5 * (left.s + right.s));
+            let s = 0.5 * (left.s + right.s);
+            let known = looked_at.iter().find(|place| place.s == s);
+            let middle = known.copied().unwrap_or_else(|| self.place(machine, s));
             if let Some(refuted) = beyond(&middle) {
                 return refuted;
             }

@@ -180,7 +180,13 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
     let longest = Everywhere::longest_mm();
     let bow =
         |passes: u8| std::array::from_fn(|class| bounded(class, longest[class], passes).leaves_chord_mm());
-    Everywhere { gradient, volume, bow_mm: bow(1), bow_of_four_passes_mm: bow(4) }
+    Everywhere {
+        gradient,
+        volume,
+        bow_mm: bow(1),
+        bow_of_two_passes_mm: bow(2),
+        bow_of_four_passes_mm: bow(4),
+    }
 }
 
 /// Bounds along a stretch, `bounds` being those of an axis' tables.

@@ -18,6 +18,7 @@ pub struct Everywhere {
     /// Where all of this holds.
     pub volume: Volume,
     pub(crate) bow_mm: [f64; CLASSES],
+    pub(crate) bow_of_two_passes_mm: [f64; CLASSES],
     pub(crate) bow_of_four_passes_mm: [f64; CLASSES],
 }
 
@@ -38,13 +39,13 @@ impl Everywhere {
         Self::of_class(&self.bow_of_four_passes_mm, longest_mm)
     }
 
-    /// The same for any stretch inside the volume that passes a place at most four times: its axes have at most these
+    /// The same for any stretch inside the volume that passes a place at most twice: its axes have at most these
     /// first and second derivatives, mm, s running from 0 to 1. Bending adds no more than the error's gradient makes
     /// of it.
     #[must_use]
     #[inline]
     pub fn chord_bound_of_curve_mm(&self, speed_mm: f64, acceleration_mm: f64) -> f64 {
-        self.chord_bound_of_four_passes_mm(speed_mm) + self.gradient * acceleration_mm / 8.0
+        Self::of_class(&self.bow_of_two_passes_mm, speed_mm) + self.gradient * acceleration_mm / 8.0
     }
 
     /// Longest move of an axis by class, mm.

@@ -8,7 +8,7 @@ use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
 use crate::Vector;
-use crate::axis_tables::Six;
+use crate::axis_tables::{AxisTables, Six};
 use crate::rigid_body::Link;
 
 /// How many points are evaluated together.
@@ -91,10 +91,8 @@ impl Real for Lanes {
 
     #[inline(always)]
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]> {
-        let mut rows = [[0.0; 6]; LANES];
-        for (lane, row) in rows.iter_mut().enumerate() {
-            *row = link.tables(directions[lane][link.axis])?.at(q.0[lane]);
-        }
+        let tables = for_lanes(link, directions)?;
+        let rows: [Six; LANES] = from_fn(|lane| tables[lane].at(q.0[lane]));
         Some(from_fn(|function| Self(from_fn(|lane| rows[lane][function]))))
     }
 
@@ -104,15 +102,25 @@ impl Real for Lanes {
         q: Self,
         directions: &Self::Directions,
     ) -> Option<([Self; 6], [Self; 6])> {
-        let mut rows = [([0.0; 6], [0.0; 6]); LANES];
-        for (lane, row) in rows.iter_mut().enumerate() {
-            *row = link.tables(directions[lane][link.axis])?.with_slopes(q.0[lane]);
-        }
+        let tables = for_lanes(link, directions)?;
+        let rows: [(Six, Six); LANES] = from_fn(|lane| tables[lane].with_slopes(q.0[lane]));
         Some((
             from_fn(|function| Self(from_fn(|lane| rows[lane].0[function]))),
             from_fn(|function| Self(from_fn(|lane| rows[lane].1[function]))),
         ))
     }
+}
+
+/// The tables of an axis for each point.
+#[inline(always)]
+fn for_lanes<'l>(link: &'l Link, directions: &[[i8; 3]; LANES]) -> Option<[&'l AxisTables; LANES]> {
+    let mut tables = [link.tables(0)?; LANES];
+    if link.by_direction.len() > 1 {
+        for (tables, direction) in tables.iter_mut().zip(directions) {
+            *tables = link.tables(direction[link.axis])?;
+        }
+    }
+    Some(tables)
 }
 
 /// A vector, or one for each point.
