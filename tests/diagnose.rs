@@ -5,6 +5,9 @@ mod common;
 use std::path::Path;
 
 use common::{messages, root, run};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 
 const TABLES: &str = "samples/diagnosis/stan_s500_tables.toml";
@@ -120,7 +123,73 @@ fn the_small_cube_cannot_carry_a_correction() {
     assert!(text.contains("cannot carry a correction"), "{text}");
 }
 
+// ---- same rows, same answer ---------------------------------------------------------------------------
+
+/// Where rows have a time, the order of the lines says nothing: the answer is the same but for the lines it names.
+#[test]
+fn shuffled_rows_give_the_same_answer() {
+    let text = std::fs::read_to_string(root().join(GOOD)).expect("a sample");
+    let (header, rows) = text.split_once('\n').expect("a header");
+    let mut rows: Vec<&str> = rows.lines().collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("shuffled.csv");
+    rows.shuffle(&mut ChaCha8Rng::seed_from_u64(5));
+    std::fs::write(&path, format!("{header}\n{}\n", rows.join("\n"))).expect("writable");
+    let without_lines = |name: &str| {
+        let (mut d, said) = diagnose(name, GOOD_PROFILE, &[]);
+        let answer = d.as_object_mut().expect("an object");
+        assert!(answer.remove("outlier_lines").is_some());
+        (d, said)
+    };
+    assert_eq!(without_lines(GOOD), without_lines(path.to_str().expect("a plain path")));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let written = |threads: &str| -> Vec<Vec<u8>> {
+        let name =
+            |end: &str| folder.path().join(format!("{threads}.{end}")).to_str().expect("plain").to_owned();
+        let files = [name("json"), name("html"), name("toml")];
+        let ran = std::process::Command::new(env!("CARGO_BIN_EXE_vpost"))
+            .args(["diagnose", GOOD, "-m", GOOD_PROFILE, "--json", &files[0], "--html", &files[1]])
+            .args(["--write-profile", &files[2]])
+            .env("RAYON_NUM_THREADS", threads)
+            .current_dir(root())
+            .output()
+            .expect("it starts");
+        assert!(ran.status.success(), "{}", messages(&ran));
+        let read = |name: &String| std::fs::read(name).expect("it was written");
+        std::iter::once(ran.stdout).chain(files.iter().map(read)).collect()
+    };
+    let (one, two) = (written("1"), written("2"));
+    assert!(one.iter().all(|bytes| !bytes.is_empty()));
+    assert!(one == two, "the bytes differ");
+}
+
 // ---- the written profile ------------------------------------------------------------------------------
+
+/// A profile that knows half of the play keeps its entry and gets a second one: entries of one effect add up.
+#[test]
+fn a_second_entry_of_an_effect_adds_to_the_first() {
+    let (whole, _) = diagnose(GOOD, GOOD_PROFILE, &[]);
+    let half_width = |d: &Value| number(&d["causes"][0]["parameters"][0]["value"]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (half, found) = (folder.path().join("half.toml"), folder.path().join("found.toml"));
+    let known = 0.5 * half_width(&whole);
+    let text = std::fs::read_to_string(root().join(GOOD_PROFILE)).expect("a sample");
+    let entry = format!("\n[[effect]]\nid = \"backlash.X\"\nhalf_width_um = {known}\n");
+    std::fs::write(&half, text + &entry).expect("writable");
+    let name = |path: &Path| path.to_str().expect("a plain path").to_owned();
+    let (rest, _) = diagnose(GOOD, &name(&half), &["--write-profile", &name(&found)]);
+    assert_eq!(effects(&rest), ["backlash.X"]);
+    // The uncertainty of the estimate is some hundredths of a µm.
+    assert!((half_width(&rest) - known).abs() < 0.1, "{} and {known}", half_width(&rest));
+    let written = std::fs::read_to_string(&found).expect("it was written");
+    assert_eq!(written.matches("id = \"backlash.X\"").count(), 2, "{written}");
+    let (nothing, _) = diagnose(GOOD, &name(&found), &[]);
+    assert_eq!((nothing["verdict"].as_str(), effects(&nothing)), (Some("NO GAP"), Vec::new()));
+}
 
 /// What the written profile predicts beyond the old one is what the causes say.
 #[test]

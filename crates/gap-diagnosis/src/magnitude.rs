@@ -7,7 +7,7 @@
 use machine_model::Vector;
 use machine_model::effects::EffectKind;
 
-use crate::engine::{Explained, explain};
+use crate::engine::{Explained, explain, explain_roughly};
 use crate::fit::residuals;
 use crate::library::Library;
 use crate::observation::{Measurements, Reading, Scalar};
@@ -31,9 +31,14 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explain
     for start in starts(data, without) {
         let mut estimate = start;
         let mut found: Option<Explained> = None;
-        for _ in 0..ROUNDS {
+        for round in 1..=ROUNDS {
             let scalars = data.scalars(Some(&estimate));
-            let model = explain(data, &scalars, without);
+            // Where the direction is a guess, an outlier cannot be known.
+            let model = if round < ROUNDS {
+                explain_roughly(data, &scalars, without)
+            } else {
+                explain(data, &scalars, without)
+            };
             estimate = displacement(data, &model);
             found = Some(model);
         }

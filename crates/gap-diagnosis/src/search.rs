@@ -3,26 +3,38 @@
 use crate::library::Library;
 use crate::space::{Fit, Part, Space};
 
+/// Most effects tried for one place in the model.
+pub(crate) const MOST_TRIED: usize = 8;
+
 /// A change of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Move {
     /// The changed model and its judgement; no new effect in it.
     Change(Vec<Part>, Fit),
-    /// A new effect is proposed.
-    Add(Part, Fit),
+    /// New effects are proposed, each in its best form, the best first.
+    Add(Vec<(Part, Fit)>),
     /// Nothing is better.
     Stop,
 }
 
 /// The best next move: the known causes get their true shape first, then their rivals a hearing, then one
 /// may go, and only then a new one is blamed.
+///
+/// `may` says whether a rival, beside the other parts, passes the tests of a new cause: a cause that passed them must not
+/// give way to one that does not.
 #[must_use]
-pub(crate) fn next_move(space: &Space, library: &Library, parts: &[Part], score: f64) -> Move {
+pub(crate) fn next_move(
+    space: &Space,
+    library: &Library,
+    parts: &[Part],
+    score: f64,
+    may: impl Fn(&[Part], Part, &Fit) -> bool,
+) -> Move {
     const WORTH: f64 = 1e-6;
     for (place, part) in parts.iter().enumerate() {
         let rest = without(parts, place);
         let fit = space.fit(library, &rest);
-        if fit.score < score - WORTH {
+        if fit.score < score - space.allowance() {
             return Move::Change(rest, fit);
         }
         let refined = best(&space.scan(library, &rest, Some(part.candidate), false));
@@ -30,23 +42,35 @@ pub(crate) fn next_move(space: &Space, library: &Library, parts: &[Part], score:
             return Move::Change(replaced(parts, place, new), fit);
         }
     }
-    let mut swap: Option<(Vec<Part>, Fit)> = None;
+    let mut swaps: Vec<(usize, Part, Fit)> = Vec::new();
     for place in 0..parts.len() {
-        let rest = without(parts, place);
-        if let Some((new, fit)) = best(&space.scan(library, &rest, None, false)) {
-            let better = swap.as_ref().map_or(score - WORTH, |(_, f)| f.score);
-            if fit.score < better {
-                swap = Some((replaced(parts, place, new), fit));
-            }
+        let found = by_effect(space.scan(library, &without(parts, place), None, false), score - WORTH);
+        swaps.extend(found.into_iter().map(|(part, fit)| (place, part, fit)));
+    }
+    swaps.sort_by(|(.., a), (.., b)| a.score.total_cmp(&b.score));
+    let passing = swaps.into_iter().take(MOST_TRIED);
+    for (place, new, fit) in passing {
+        let own = parts[place].candidate == new.candidate;
+        if own || may(&without(parts, place), new, &fit) {
+            return Move::Change(replaced(parts, place, new), fit);
         }
     }
-    if let Some((changed, fit)) = swap {
-        return Move::Change(changed, fit);
+    let new = by_effect(space.scan(library, parts, None, false), score + space.allowance() - WORTH);
+    if new.is_empty() { Move::Stop } else { Move::Add(new) }
+}
+
+/// The best form of every effect that scores below a limit, the best effect first.
+fn by_effect(found: Vec<(Part, Fit)>, limit: f64) -> Vec<(Part, Fit)> {
+    let mut best: Vec<(Part, Fit)> = Vec::new();
+    for (part, fit) in found.into_iter().filter(|(_, fit)| fit.score < limit) {
+        match best.iter_mut().find(|(known, _)| known.candidate == part.candidate) {
+            Some(known) if fit.score < known.1.score => *known = (part, fit),
+            Some(_) => {}
+            None => best.push((part, fit)),
+        }
     }
-    match best(&space.scan(library, parts, None, false)) {
-        Some((part, fit)) if fit.score < score - WORTH => Move::Add(part, fit),
-        _ => Move::Stop,
-    }
+    best.sort_by(|(_, a), (_, b)| a.score.total_cmp(&b.score));
+    best
 }
 
 fn best(found: &[(Part, Fit)]) -> Option<(Part, Fit)> {

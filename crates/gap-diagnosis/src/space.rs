@@ -224,6 +224,13 @@ impl Space {
         columns * math::ln(self.degrees) + 2.0 * math::ln(asked)
     }
 
+    /// The price of one column. By so much the score may worsen for a new effect that passes its tests: the score ranks
+    /// effects and their forms, whether there is one at all is for the F test to say, whose level is known.
+    #[must_use]
+    pub(crate) fn allowance(&self) -> f64 {
+        math::ln(self.degrees)
+    }
+
     /// Judges a model.
     #[must_use]
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {

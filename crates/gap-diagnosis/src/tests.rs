@@ -274,12 +274,16 @@ fn every_question_costs_its_share_of_the_level() {
     assert!((f_tail(0.0, 1.0, 60.0) - 1.0).abs() < 1e-12);
 }
 
+/// The level is that of all questions together: of 40 draws of noise 1.2 get a name, and more than four at that rate
+/// once in two hundred times.
 #[test]
-fn noise_is_no_gap_for_any_draw() {
-    for seed in 10..20 {
-        let answer = diagnose(&measured(Plan { seed, ..GOOD }, nothing), None, &Options::default());
-        assert_eq!(answer.verdict, Verdict::NoGap, "{seed}: {}", answer.sentence);
-    }
+fn noise_gets_a_name_no_more_often_than_the_level_says() {
+    let named = |seed: &u64| {
+        let answer = diagnose(&measured(Plan { seed: *seed, ..GOOD }, nothing), None, &Options::default());
+        answer.verdict != Verdict::NoGap
+    };
+    let alarms: Vec<u64> = (10..50).filter(named).collect();
+    assert!(alarms.len() <= 4, "{alarms:?}");
 }
 
 #[test]

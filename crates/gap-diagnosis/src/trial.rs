@@ -11,13 +11,16 @@ use crate::search::without;
 use crate::space::{Fit, Part};
 use crate::term::Term;
 
+/// Why an effect is refused that may be there and is not proven.
+pub(crate) const UNPROVEN: &str = "the F test";
+
 impl State<'_, '_> {
-    /// Why an effect that scores must not be named; `None` where it may.
-    pub(crate) fn objection(&self, part: Part, fit: &Fit) -> Option<Refused> {
-        let mut with = self.parts.clone();
+    /// Why an effect that scores must not be named beside `rest`; `None` where it may.
+    pub(crate) fn objection(&self, rest: &[Part], part: Part, fit: &Fit) -> Option<Refused> {
+        let mut with = rest.to_vec();
         with.push(part);
         let kind = self.library.candidates[part.candidate].kind;
-        let (before, rank_before) = self.residual(&self.parts, fit.level);
+        let (before, rank_before) = self.residual(rest, fit.level);
         let gain = (before - fit.residual).max(0.0);
         let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
@@ -31,7 +34,7 @@ impl State<'_, '_> {
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
-            return refuse("the F test");
+            return refuse(UNPROVEN);
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         if gain / reducible < LEAST_SHARE {

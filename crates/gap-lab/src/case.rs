@@ -128,6 +128,9 @@ struct Attempt {
     sigma: f64,
 }
 
+/// No withheld effect displaces the tip by more, mm: what is larger is seen without instruments. (A knock between two
+/// runs whose offsets are free needs 100 mm to show at all.)
+const LARGEST_MM: f64 = 1.0;
 /// Attempts before the wish for a clean case is given up.
 const STRICT_ATTEMPTS: u64 = 40;
 
@@ -220,6 +223,10 @@ impl CaseSpec {
             }
             let snr = self.snr[k];
             let gain = snr * a.sigma * 1e-3 * rows.sqrt() / length;
+            let size_mm = |r: &Row| dot(&field(r), &field(r)).sqrt();
+            if gain * a.layout.rows.iter().map(size_mm).fold(0.0, f64::max) > LARGEST_MM {
+                return None;
+            }
             let coefficient =
                 withheld.effect.and_then(|e| coefficient(e, &a.machine, &a.layout, &view, &clean));
             let mut rivals: Vec<(String, f64)> = Vec::new();
@@ -352,6 +359,8 @@ fn coefficient(
         Effect::Load(_) => ("um_per_kg", 1e3),
         // mm of lag per mm/min is a time in minutes.
         Effect::ServoLag(_) => ("ms", 6e4),
+        // The column of a unit lag on one axis and its opposite on the other: the difference is twice that.
+        Effect::ServoMismatch(..) => ("ms", 1.2e5),
         _ => return None,
     };
     let all = variants(effect, machine, layout);

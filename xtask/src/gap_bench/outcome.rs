@@ -9,7 +9,10 @@ use super::transport::Transport;
 pub(crate) struct Outcome {
     pub(crate) case: Case,
     pub(crate) answer: Result<Answer, String>,
+    /// On the clock.
     pub(crate) seconds: f64,
+    /// Of the processor.
+    pub(crate) cpu_seconds: f64,
     /// The lab's own account of the hold-out, where the written profile could be predicted with.
     pub(crate) transport: Option<Transport>,
 }
@@ -158,7 +161,13 @@ mod tests {
             })
             .collect();
         let text = format!(r#"{{ "verdict": "{verdict}", "causes": [{}] }}"#, causes.join(","));
-        Outcome { case, answer: Ok(serde_json::from_str(&text).unwrap()), seconds: 0.0, transport: None }
+        Outcome {
+            case,
+            answer: Ok(serde_json::from_str(&text).unwrap()),
+            seconds: 0.0,
+            cpu_seconds: 0.0,
+            transport: None,
+        }
     }
 
     #[test]

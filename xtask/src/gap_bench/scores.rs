@@ -2,6 +2,7 @@
 
 use gap_lab::{Kind, Plan};
 
+use super::answer::Cause;
 use super::outcome::Outcome;
 
 /// Hits among cases.
@@ -123,6 +124,20 @@ pub(crate) fn component_right(outcome: &Outcome) -> Option<bool> {
     let places = outcome.said()?.places.iter().filter(|p| p.by == "component");
     let first = places.max_by(|a, b| a.share.total_cmp(&b.share))?;
     Some(first.cell == ["dx", "dy", "dz"][largest])
+}
+
+/// Whether an effect that depends on the direction of approach was named first with its axis, and its number has the true
+/// sign: which side the tip hangs back to. `None` for effects that do not depend on it.
+pub(crate) fn direction_right(outcome: &Outcome) -> Option<bool> {
+    let effect = outcome.case.truth.effects.first()?;
+    let family = effect.id.split('.').next()?;
+    if !matches!(family, "backlash" | "lost-motion" | "servo-lag" | "servo-mismatch") {
+        return None;
+    }
+    let (unit, truth) = effect.coefficient?;
+    let first = outcome.said()?.causes.first().filter(|c| c.effect == effect.id);
+    let number = |c: &Cause| c.parameters.iter().find(|p| p.u95.is_some() && p.name.ends_with(unit))?.value;
+    Some(first.and_then(number).is_some_and(|found| found * truth > 0.0))
 }
 
 /// The value below which `share` of the list lies.

@@ -10,7 +10,7 @@ mod written;
 use std::path::PathBuf;
 
 use clap::Args;
-use gap_diagnosis::{Measurements, Options};
+use gap_diagnosis::{Measurements, Options, Row};
 use machine_model::effects::{EffectGeometry, EffectKind, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
@@ -208,8 +208,39 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
         }
     }
     measurements::readings_against_model(&table, &data)?;
+    in_order_of_time(&mut data);
     let text = file::decoded(&bytes);
     let comments = text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();
     let file = report::File { name, hash: blake3::hash(&bytes).to_string(), comments };
     Ok(Measured { data, file })
+}
+
+/// Neighbours are rows that were measured one after the other: where every row has its time, that is the order, whatever
+/// the order of the lines. Else a run was measured as its lines stand, and the runs as they first appear.
+fn in_order_of_time(data: &mut Measurements) {
+    if data.rows.iter().any(|row| row.conditions.time_s.is_none()) {
+        return;
+    }
+    let names = std::mem::take(&mut data.runs);
+    let key = |row: &Row| {
+        let command = &row.command;
+        let vectors = [command.linear_mm, command.rotary_rad, command.tool_mm];
+        let mut numbers = vec![row.conditions.time_s.unwrap_or_default()];
+        numbers.extend(vectors.iter().flat_map(|v| v.iter().copied()));
+        numbers.extend(command.direction.map(f64::from));
+        numbers
+    };
+    data.rows.sort_by(|a, b| {
+        let pairs = key(a).into_iter().zip(key(b));
+        let order = pairs.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne());
+        // What was measured at one time in one place has no order but that of the lines.
+        order.unwrap_or(std::cmp::Ordering::Equal).then_with(|| names[a.run].cmp(&names[b.run]))
+    });
+    let mut place: Vec<Option<usize>> = vec![None; names.len()];
+    for row in &mut data.rows {
+        row.run = *place[row.run].get_or_insert_with(|| {
+            data.runs.push(names[row.run].clone());
+            data.runs.len() - 1
+        });
+    }
 }

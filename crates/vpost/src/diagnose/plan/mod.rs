@@ -36,7 +36,7 @@ pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messa
     };
     file::print(text.as_bytes())?;
     let found = confounding(&design(&plan, &model.geometry));
-    messages.note(&summary(&plan, &found));
+    messages.note(&summary(&plan, &found, &model.geometry));
     Ok(())
 }
 
@@ -125,7 +125,7 @@ fn reason(a: EffectKind, b: EffectKind) -> &'static str {
     }
 }
 
-fn summary(plan: &[Line], found: &Confounding) -> String {
+fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> String {
     let rows: usize = plan.iter().map(|l| l.stops.len()).sum();
     let hours = times(plan).last().and_then(|t| t.last().copied()).unwrap_or(0.0) / 3600.0;
     let mut text = format!(
@@ -138,6 +138,19 @@ fn summary(plan: &[Line], found: &Confounding) -> String {
     }
     for kind in &found.hidden {
         let _ = write!(text, "\nexcept {kind}, which these lines do not show");
+    }
+    let rotary: Vec<&str> = ["A", "B", "C"]
+        .into_iter()
+        .zip(0..)
+        .filter(|(_, a)| geometry.has_rotary(*a))
+        .map(|(name, _)| name)
+        .collect();
+    if !rotary.is_empty() {
+        let _ = write!(
+            text,
+            "\nexcept everything of {}: these lines keep rotary axes still; measure a target on the table at several angles as well",
+            rotary.join(", ")
+        );
     }
     text.push_str("\nthermal and load effects are asked for once temp_c and load_kg are filled in with more than one value");
     text
