@@ -212,6 +212,28 @@ mod tests {
         (lines.next().unwrap(), lines.collect())
     }
 
+    /// A knock between two runs hides behind their offsets: what it would need to show beside them is no knock.
+    #[test]
+    fn knocks_are_no_crashes() {
+        let list = catalogue(1200, 7);
+        let knock = |s: &&CaseSpec| matches!(s.effects[..], [Effect::Step(_)]) && s.snr[0] > 2.0;
+        let poor = list.iter().filter(knock).filter(|s| s.kind == Kind::Single && s.plans != [Plan::Good]);
+        let mut seen = 0;
+        for spec in poor {
+            let case = spec.build();
+            let (header, rows) = read(&case.files[1].1);
+            for column in (0..header.len()).filter(|c| matches!(&header[*c][..], "dx_um" | "dy_um" | "dz_um"))
+            {
+                for value in rows.iter().filter_map(|row| row[column].parse::<f64>().ok()) {
+                    // 1 mm, and what the profile knows.
+                    assert!(value.abs() < 1300.0, "{}: {value}", case.id);
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 1000, "{seen}");
+    }
+
     #[test]
     fn the_same_seed_gives_the_same_bytes_and_another_seed_does_not() {
         let make = |seed| catalogue(12, seed).iter().map(|s| s.build().files).collect::<Vec<_>>();
