@@ -8,22 +8,22 @@ use serde_json::Value;
 
 /// Diagnoses one case; verdict, first name, and every name with its rivals.
 fn answer(case: &Case) -> (String, Option<String>, Vec<String>) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a temporary folder");
     for (name, text) in &case.files {
-        std::fs::write(folder.path().join(name), text).unwrap();
+        std::fs::write(folder.path().join(name), text).expect("writable");
     }
     let output = Command::new(env!("CARGO_BIN_EXE_vpost"))
         .args(["diagnose", "measurement.csv", "-m", "profile.toml", "--json", "answer.json"])
         .current_dir(folder.path())
         .output()
-        .unwrap();
+        .expect("it starts");
     assert!(output.status.success(), "{}: {}", case.id, String::from_utf8_lossy(&output.stderr));
-    let text = std::fs::read_to_string(folder.path().join("answer.json")).unwrap();
-    let json: Value = serde_json::from_str(&text).unwrap();
-    let causes = json["causes"].as_array().unwrap();
-    let word = |v: &Value| v.as_str().unwrap().to_owned();
+    let text = std::fs::read_to_string(folder.path().join("answer.json")).expect("it was written");
+    let json: Value = serde_json::from_str(&text).expect("JSON");
+    let causes = json["causes"].as_array().expect("a list");
+    let word = |v: &Value| v.as_str().expect("a word").to_owned();
     let rivals =
-        |c: &Value| c["cannot_be_told_from"].as_array().unwrap().iter().map(word).collect::<Vec<_>>();
+        |c: &Value| c["cannot_be_told_from"].as_array().expect("a list").iter().map(word).collect::<Vec<_>>();
     let names = causes.iter().flat_map(|c| std::iter::once(word(&c["effect"])).chain(rivals(c))).collect();
     (word(&json["verdict"]), causes.first().map(|c| word(&c["effect"])), names)
 }
