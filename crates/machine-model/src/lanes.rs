@@ -92,7 +92,11 @@ impl Real for Lanes {
     #[inline(always)]
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]> {
         let tables = for_lanes(link, directions)?;
-        let rows: [Six; LANES] = from_fn(|lane| tables[lane].at(q.0[lane]));
+        // A loop: what is called here would be compiled for every processor.
+        let mut rows: [Six; LANES] = [[0.0; 6]; LANES];
+        for lane in 0..LANES {
+            rows[lane] = tables[lane].at(q.0[lane]);
+        }
         Some(from_fn(|function| Self(from_fn(|lane| rows[lane][function]))))
     }
 
@@ -103,7 +107,10 @@ impl Real for Lanes {
         directions: &Self::Directions,
     ) -> Option<([Self; 6], [Self; 6])> {
         let tables = for_lanes(link, directions)?;
-        let rows: [(Six, Six); LANES] = from_fn(|lane| tables[lane].with_slopes(q.0[lane]));
+        let mut rows: [(Six, Six); LANES] = [Default::default(); LANES];
+        for lane in 0..LANES {
+            rows[lane] = tables[lane].with_slopes(q.0[lane]);
+        }
         Some((
             from_fn(|function| Self(from_fn(|lane| rows[lane].0[function]))),
             from_fn(|function| Self(from_fn(|lane| rows[lane].1[function]))),
