@@ -103,9 +103,14 @@ pub const MOST_MISMATCHES: usize = 20;
 /// Largest distance between samples, mm.
 const SAMPLE_MM: f64 = 0.5;
 
+/// As many limits of way may be gone back to find the motion that a piece was made for.
+const SHORT_LIMITS: f64 = 4.0;
+
 struct Feeding {
     curve: Curve,
     length_mm: f64,
+    /// How far it leads from where it starts at most: less than its length for a circle.
+    reach_mm: f64,
     state: Command,
     line: u64,
     /// A hole: its pecks and the way back may feed over the same line again.
@@ -149,7 +154,8 @@ fn feeding(program: &Program) -> Vec<Feeding> {
                 tool_mm: step.tool_mm.into(),
                 direction,
             };
-            found.push(Feeding { curve, length_mm: curve.length_mm(), state, line: step.line, hole });
+            let (length_mm, reach_mm) = (curve.length_mm(), reach_mm(&curve));
+            found.push(Feeding { curve, length_mm, reach_mm, state, line: step.line, hole });
         };
         match &step.motion {
             Motion::Feed(feed) => {
@@ -183,6 +189,19 @@ fn feeding(program: &Program) -> Vec<Feeding> {
         }
     }
     found
+}
+
+/// The largest distance from the start: sampled where it may matter, else the length, which bounds it.
+fn reach_mm(curve: &Curve) -> f64 {
+    const SHORT_MM: f64 = 0.2;
+    let length_mm = curve.length_mm();
+    if length_mm > SHORT_MM {
+        return length_mm;
+    }
+    let start = curve.at(0.0);
+    let mut reach_mm = 0.0f64;
+    for_samples(curve, |s| reach_mm = reach_mm.max((curve.at(s) - start).norm()));
+    reach_mm
 }
 
 /// Nearest s of a curve to a place, continuing from a known s; not limited to 0..=1.
@@ -231,7 +250,8 @@ pub fn compare(model: &dyn PathModel, wanted: &Program, commanded: &Program, lim
         result.before.note(before_mm, w.line);
         result.traces.push(Trace { line: w.line, curve: w.curve, before_mm, after_mm: 0.0 });
     }
-    let mut matcher = Matcher { model, wanted: &wanted, limit_mm, at: 0, s: 0.0, result };
+    let mut matcher =
+        Matcher { model, wanted: &wanted, limit_mm, at: 0, s: 0.0, hole_by_moves: false, result };
     for piece in &commanded {
         matcher.take(piece);
     }
@@ -255,6 +275,8 @@ struct Matcher<'a> {
     at: usize,
     /// How far it is done.
     s: f64,
+    /// The last hole was made by moves, among them perhaps the way back; a cycle makes its way back itself.
+    hole_by_moves: bool,
     result: Comparison,
 }
 
@@ -284,7 +306,7 @@ impl Matcher<'_> {
 
     /// Too short to need a motion of its own: the axes may not move a step.
     fn skippable(&self, w: &Feeding) -> bool {
-        w.length_mm <= self.limit_mm
+        w.reach_mm <= self.limit_mm
     }
 
     fn take(&mut self, piece: &Feeding) {
@@ -299,6 +321,7 @@ impl Matcher<'_> {
             let fit = self.fit(w, piece, s0);
             if fit.distance_mm <= self.limit_mm && (w.hole || fit.back_mm <= self.limit_mm) {
                 self.note(at, fit.distance_mm);
+                self.hole_by_moves = !piece.hole;
                 let done = (1.0 - fit.s) * w.length_mm <= self.limit_mm;
                 (self.at, self.s) = if done { (at + 1, 0.0) } else { (at, fit.s) };
                 return;
@@ -312,6 +335,9 @@ impl Matcher<'_> {
             }
             at += 1;
             s0 = 0.0;
+        }
+        if self.lingers(piece) {
+            return;
         }
         // A short move that ends where the last motion ended, or where the next one goes on, is an approach.
         let end = piece.curve.at(1.0);
@@ -331,6 +357,7 @@ impl Matcher<'_> {
         };
         let w = &self.wanted[at];
         self.note(at, fit.distance_mm);
+        self.hole_by_moves = !piece.hole;
         self.mismatch(Mismatch::TooFar {
             wanted_line: w.line,
             commanded_line: piece.line,
@@ -357,10 +384,32 @@ impl Matcher<'_> {
             && self.fit(next, piece, 0.0).distance_mm <= self.limit_mm
     }
 
+    /// A piece of motions not much longer than the limit: it lies on several of them, and was taken for a later one.
+    fn lingers(&mut self, piece: &Feeding) -> bool {
+        let mut length_mm = 0.0;
+        for at in (0..self.at).rev() {
+            let w = &self.wanted[at];
+            length_mm += w.length_mm;
+            if w.hole || length_mm > SHORT_LIMITS * self.limit_mm {
+                return false;
+            }
+            let fit = self.fit(w, piece, 0.5);
+            if fit.distance_mm <= self.limit_mm {
+                self.note(at, fit.distance_mm);
+                (self.at, self.s) = (at, fit.s.clamp(0.0, 1.0));
+                return true;
+            }
+        }
+        false
+    }
+
     /// A further feed in the hole just drilled: the way back of a boring cycle, a piece of it.
     fn again(&mut self, piece: &Feeding) -> bool {
-        let Some(hole) =
-            self.at.checked_sub(1).map(|before| &self.wanted[before]).filter(|w| w.hole && self.s == 0.0)
+        let Some(hole) = self
+            .at
+            .checked_sub(1)
+            .map(|before| &self.wanted[before])
+            .filter(|w| w.hole && self.s == 0.0 && self.hole_by_moves)
         else {
             return false;
         };
@@ -397,6 +446,7 @@ impl Matcher<'_> {
             } else {
                 w.length_mm
             };
+            let left = left.min(w.reach_mm);
             if left > self.limit_mm {
                 self.mismatch(Mismatch::Missing { wanted_line: w.line });
             }

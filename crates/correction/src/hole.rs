@@ -34,23 +34,38 @@ impl<'m> Corrector<'m> {
         at_bottom[normal] = hole.bottom_mm;
         let start = Vector::from(hole.start.linear_mm);
         self.turn_towards(&start, &at_r);
-        let down = if hole.bottom_mm < at_r[normal] { -1 } else { 1 };
+        let way = |from: f64, to: f64, otherwise: i8| {
+            if to < from {
+                -1
+            } else if to > from {
+                1
+            } else {
+                otherwise
+            }
+        };
+        let flat = hole.bottom_mm == at_r[normal];
         let before = (self.standing, self.remembered);
         let mut turns = 0;
-        let (machine, top, bottom, (piece, untouched, verdict)) = loop {
+        let (machine, down, top, bottom, (piece, untouched, verdict)) = loop {
             let mut machine = self.machine(block, hole.at_r.rotary_deg);
-            // The depth is fed one way, whatever way the axis went before.
+            // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
+            let down = way(at_r[normal], hole.bottom_mm, self.direction[normal]);
             machine.state.direction[normal] = down;
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
             let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
             turns += 1;
-            match self.against_in_plane(before.0, machine.state.direction, normal, block) {
+            let against = if flat {
+                self.against(before.0, machine.state.direction, block)
+            } else {
+                self.against_in_plane(before.0, machine.state.direction, normal, block)
+            };
+            match against {
                 Some(against) if turns < MOST_TURNS => {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
                 }
-                _ => break (machine, top, bottom, kept),
+                _ => break (machine, down, top, bottom, kept),
             }
         };
         let mut correction = Correction {
@@ -59,7 +74,8 @@ impl<'m> Corrector<'m> {
             ..Correction::default()
         };
         // Afterwards the axis has come back out of the hole.
-        self.direction[normal] = -down;
+        self.direction[normal] =
+            way(hole.bottom_mm, hole.end().linear_mm[normal], way(hole.bottom_mm, at_r[normal], down));
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
         if self.expanding && expandable {
             (self.standing, self.remembered) = before;
@@ -159,6 +175,17 @@ impl<'m> Corrector<'m> {
         let r_told = block.letters.contains(b'R').then_some(own_r);
         let (mut r, mut r_value) =
             absolute.choose(normal, r_wanted - r_origin, r_told, remembered(own_r, |m| m.r));
+        // Where the tool stands at R and the series began higher (G98 behind G99), LinuxCNC crosses at that height,
+        // but at R where it stands a micrometre above R: the correction must not decide that.
+        let outward = if hole.bottom_mm <= at_r[normal] { 1.0 } else { -1.0 };
+        let from_r = hole.cycle.return_to_initial
+            && (hole.began_mm - at_r[normal]) * outward > 0.0
+            && (hole.start.linear_mm[normal] - at_r[normal]) * outward <= 0.0;
+        if let Some(stands) = standing_program[normal].filter(|_| from_r)
+            && (stands - r_origin - r_value) * outward > 0.5 * block.step_mm(normal)
+        {
+            (r, r_value) = absolute.write(normal, stands - r_origin, None);
+        }
         let b_told = block.has_axis(normal);
         let choose_bottom = |r_value: f64| {
             let (origin, own_origin) =

@@ -28,13 +28,15 @@ pub struct Emitter<'d> {
     numbers: Option<&'d BlockNumbers>,
     habits: Habits,
     modes: Modes,
+    /// Blocks that may be skipped are under way: their switches, and the motion code in force before them.
+    aside: Option<(u16, Option<GCode>)>,
 }
 
 impl<'d> Emitter<'d> {
     /// At the start of a program, with the codes in force that the dialect says.
     #[must_use]
     pub fn new(dialect: &'d Dialect) -> Self {
-        Self { dialect, numbers: None, habits: Habits::new(), modes: Modes::initial(dialect) }
+        Self { dialect, numbers: None, habits: Habits::new(), modes: Modes::initial(dialect), aside: None }
     }
 
     /// Gives inserted blocks N numbers that `numbers` shows to be free, if the dialect wants them;
@@ -48,13 +50,30 @@ impl<'d> Emitter<'d> {
     /// True where every further block would be written alike.
     #[must_use]
     pub fn continues_as(&self, other: &Self) -> bool {
-        self.habits == other.habits && self.modes == other.modes
+        self.habits == other.habits && self.modes == other.modes && self.aside == other.aside
     }
 
     /// Motion code in force in the output.
     #[must_use]
     pub fn motion(&self) -> Option<GCode> {
         self.modes.motion()
+    }
+
+    /// Before any block that is not one of plain coordinates: behind blocks that may be skipped, a motion code that
+    /// they changed is in force or not.
+    pub fn meet(&mut self, block: &Block<'_>) {
+        let switches = block.switches();
+        if (switches == 0 && self.aside.is_none()) || !block.acts() {
+            return;
+        }
+        if let Some((_, motion)) = self.aside.take_if(|(open, _)| *open != switches)
+            && motion != self.modes.motion()
+        {
+            self.modes.forget_motion();
+        }
+        if switches != 0 && self.aside.is_none() {
+            self.aside = Some((switches, self.modes.motion()));
+        }
     }
 
     /// Copies a block that no edit touches.

@@ -361,6 +361,11 @@ impl Modes {
         self.cycle.or(self.straight)
     }
 
+    /// It is not known which one is.
+    pub(crate) fn forget_motion(&mut self) {
+        (self.cycle, self.straight) = (None, None);
+    }
+
     /// The motion code that the block's axis words meet if it has none of its own: a `G80` of another group
     /// than G0's ends the cycle before they move.
     pub(crate) fn motion_for(&self, dialect: &Dialect, block: &Block<'_>) -> Option<GCode> {

@@ -89,6 +89,16 @@ pub(crate) fn holes(
             .help("turn the rotary axis in a block of its own before the cycle"));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
+    if let ReturnLevel::Undecided { line } = state.return_level {
+        return Err(words
+            .refuse(
+                codes::BLOCK_DELETE,
+                "whether G98 or G99 is in force depends on the block delete switch",
+                words.span(AXIS_LETTERS.or(R)),
+                format!("line {line} and those behind it change it and may be skipped"),
+            )
+            .help("write G98 or G99 in this block"));
+    }
     let mut at = require_known(words, &state.axes, "the drilling cycle")?;
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
     // first hole finds the axis known, the start of the series did.

@@ -1,31 +1,34 @@
 //! Block delete: one text, two states.
 //!
-//! The switch on the panel decides whether a block with `/` is executed. What follows must be right in
-//! both cases: what differs afterwards is forgotten where forgetting is enough (a later block that needs
-//! it is refused, one that names all axes makes both states equal again), and refused where it is not.
+//! The switch on the panel decides whether blocks with `/` are executed. Blocks of one switch that follow each other
+//! are one section: executed all or skipped all. Nobody throws the switch between two of them, or the posted
+//! program would go wrong by more than a correction; and no posted section could be read otherwise, for its second
+//! block goes on from where the first one led. Behind the section both states must be right: what differs is forgotten
+//! where forgetting is enough (a later block that needs it is refused, one that names all axes makes both states
+//! equal again), and refused where it is not.
 
 use crate::codes;
 use crate::modal::{
-    Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ToolLength, Units, Why,
+    Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ReturnLevel,
+    ToolLength, Units, Why,
 };
-use crate::words::{Letters, Outcome, Words};
+use crate::words::{Outcome, Words};
 
-/// The state after a block that may be skipped.
+/// The state behind blocks that may be skipped.
 ///
-/// * `skipped` – the state before the block
-/// * `executed` – the state after it
-/// * `moved` – the block moves an axis: even where both states then agree on the programmed position,
-///   the corrected one of an axis the block did not name may differ, so all are forgotten
-pub(crate) fn merge(
-    words: &Words<'_, '_, '_>,
-    skipped: &Modal,
-    executed: &Modal,
-    moved: bool,
-) -> Outcome<Modal> {
-    let line = words.block.line;
+/// * `words` – the block that ends the section, for messages
+/// * `aside` – the state where they are skipped. Where one of them moves, all axes are forgotten: even where both
+///   states agree on the programmed position, the corrected one of an axis that no block named may differ
+/// * `executed` – the state where they are executed
+pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) -> Outcome<Modal> {
+    let Aside { line, skipped, .. } = aside;
+    let line = *line;
     let mut both = skipped.clone();
     if executed.motion != skipped.motion {
         both.motion = MotionMode::Undecided { line };
+    }
+    if executed.return_level != skipped.return_level {
+        both.return_level = ReturnLevel::Undecided { line };
     }
     if executed.tool_selected != skipped.tool_selected {
         both.tool_selected = None;
@@ -34,7 +37,7 @@ pub(crate) fn merge(
         both.tool_loaded = None;
     }
     let lost = Axis::Unknown(Lost { why: Why::BlockDelete, line });
-    if moved {
+    if aside.moved {
         both.axes.linear = [lost; 3];
     }
     for i in 0..3 {
@@ -48,18 +51,18 @@ pub(crate) fn merge(
     match difference(skipped, executed) {
         None => Ok(both),
         Some((with, without)) => {
-            let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"HXYZ")), |code| code.span);
+            let span = words.codes.first().map_or_else(|| words.span(words.letters), |code| code.span);
             let message = format!(
-                "after this block {with} or {without} is in force, depending on the block delete switch"
+                "after line {line} either {with} or {without} is in force, depending on the block delete switch"
             );
             Err(words
                 .refuse(
                     codes::BLOCK_DELETE,
                     message,
                     span,
-                    format!("{with} where executed, {without} where skipped"),
+                    format!("{with} where the blocks with `/` are executed, {without} where they are skipped"),
                 )
-                .help("write the code in a block without `/`, so that both ways lead to one state"))
+                .help("write the code in a block without `/`, or take it back in a block with `/`, so that both ways lead to one state"))
         }
     }
 }
@@ -109,7 +112,6 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
             .to_owned()
         })
     })
-    .or_else(|| pair(&with.return_level, &without.return_level, |v| format!("return to {v:?}")))
     .or_else(|| {
         pair(&with.tool_length, &without.tool_length, |v| match v {
             ToolLength::Off => "no tool length".to_owned(),

@@ -9,8 +9,8 @@ use toolpath::{Frame, Motion, Plane};
 use crate::codes;
 use crate::delete;
 use crate::modal::{
-    ArcCentres, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ReturnLevel,
-    Shifts, ToolLength, Transform, Units, Why, WorkOffset,
+    ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress,
+    ReturnLevel, Shifts, ToolLength, Transform, Units, Why, WorkOffset,
 };
 use crate::motion::{self, Moved};
 use crate::plain::Plain;
@@ -54,8 +54,9 @@ pub struct Context {
     pub arc_by_radius: bool,
     /// Cutter compensation is in force before or after the block.
     pub compensation: bool,
-    /// The block may be skipped.
-    pub skip: bool,
+    /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
+    /// holes only where it is executed.
+    pub may_not_set_levels: bool,
     /// K or L of a cycle; 1 otherwise.
     pub repeats: u32,
     /// Axes that a motion names together: a rotation, scaling or mirror was switched since they were last named.
@@ -107,6 +108,7 @@ impl<'d> Interpreter<'d> {
             tool_selected: None,
             tool_loaded: None,
             progress: Progress::Leader,
+            aside: None,
         };
         settings::initial(&env, &mut modal);
         Self { env, modal, plain: Plain::default() }
@@ -125,49 +127,74 @@ impl<'d> Interpreter<'d> {
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
         self.plain = Plain::Unasked;
-        let before = &self.modal;
-        let mut state = before.clone();
-        let mut moved = Moved { repeats: 1, ..Moved::default() };
-        match run(&self.env, before, &mut state, &mut moved, block) {
-            Ok(skip) => {
-                let step = Step {
-                    context: context(&self.env, before, &state, &moved, skip.is_some()),
-                    motions: moved.motions,
-                    states_position: moved.states_position,
-                    ends_program: state.progress == Progress::Ended,
-                };
-                match skip {
-                    None => {
-                        self.modal = state;
-                        Ok(step)
-                    }
-                    Some(merged) => {
-                        self.modal = *merged;
-                        Ok(Step { ends_program: self.modal.progress == Progress::Ended, ..step })
-                    }
-                }
+        match self.execute(block) {
+            Ok((step, modal)) => {
+                self.modal = modal;
+                Ok(step)
             }
             Err(diagnostic) => Err(vec![*diagnostic]),
         }
     }
+
+    /// What a block means, and the state behind it.
+    fn execute(&self, block: &Block<'_>) -> Outcome<(Step, Modal)> {
+        let env = &self.env;
+        let mut moved = Moved { repeats: 1, ..Moved::default() };
+        if self.modal.progress == Progress::Ended {
+            after_end(block)?;
+            return Ok((stepped(env, &self.modal, &self.modal, moved), self.modal.clone()));
+        }
+        let mut words = Words::new(block, env.dialect);
+        words.read()?;
+        let acts = block.acts();
+        let switches = block.switches();
+        // The first block that the switch has nothing to do with must be right in both states.
+        let both = match &self.modal.aside {
+            Some(aside) if acts && aside.switches != switches => {
+                Some(delete::merge(&words, aside, &self.modal)?)
+            }
+            _ => None,
+        };
+        let before = both.as_ref().unwrap_or(&self.modal);
+        let mut state = before.clone();
+        if acts && switches != 0 && state.aside.is_none() {
+            let aside = Aside { switches, line: block.line, skipped: before.clone(), moved: false };
+            state.aside = Some(Box::new(aside));
+        }
+        run(env, &words, before, &mut state, &mut moved)?;
+        let mut step = stepped(env, before, &state, moved);
+        if let Some(mut aside) = state.aside.take() {
+            aside.moved |= !step.motions.is_empty();
+            if state.progress == Progress::Ended {
+                state = delete::merge(&words, &aside, &state)?;
+                step.ends_program = false;
+            } else {
+                state.aside = Some(aside);
+            }
+        }
+        Ok((step, state))
+    }
+}
+
+/// What was executed, as it is told to others.
+fn stepped(env: &Environment<'_>, before: &Modal, state: &Modal, moved: Moved) -> Step {
+    Step {
+        context: context(env, before, state, &moved),
+        motions: moved.motions,
+        states_position: moved.states_position,
+        ends_program: state.progress == Progress::Ended,
+    }
 }
 
 /// Executes a block on `state` (which comes in equal to `before`) and collects what moves in `moved`.
-///
-/// Where the block may be skipped: also the state that serves both ways.
 #[inline]
-fn run(
-    env: &Environment<'_>,
+fn run<'d>(
+    env: &Environment<'d>,
+    words: &Words<'_, '_, 'd>,
     before: &Modal,
     state: &mut Modal,
     moved: &mut Moved,
-    block: &Block<'_>,
-) -> Outcome<Option<Box<Modal>>> {
-    if before.progress == Progress::Ended {
-        return after_end(block).map(|()| None);
-    }
-    let mut words = Words::new(block, env.dialect);
-    words.read()?;
+) -> Outcome<()> {
     if words.percent {
         // The first `%` opens a tape, unless the program already runs; the next one closes it.
         state.progress = match before.progress {
@@ -176,19 +203,15 @@ fn run(
         };
     }
     if words.is_idle() || state.progress == Progress::Ended {
-        return Ok(words.skip.then(|| Box::new(state.clone())));
+        return Ok(());
     }
     state.progress = Progress::Running;
-    let demand = settings::apply(env, &words, before, state)?;
-    motion::execute(env, &words, &demand, before, state, moved)?;
+    let demand = settings::apply(env, words, before, state)?;
+    motion::execute(env, words, &demand, before, state, moved)?;
     if !words.m_codes.is_empty() {
-        miscellaneous(env, &words, state, moved)?;
+        miscellaneous(env, words, state, moved)?;
     }
-    if words.skip {
-        return delete::merge(&words, before, state, !moved.motions.is_empty())
-            .map(|both| Some(Box::new(both)));
-    }
-    Ok(None)
+    Ok(())
 }
 
 /// Behind M2, M30 or the closing `%` nothing is executed here, but on the control somebody may start it:
@@ -242,13 +265,7 @@ fn miscellaneous(
     Ok(())
 }
 
-pub(crate) fn context(
-    env: &Environment<'_>,
-    before: &Modal,
-    state: &Modal,
-    moved: &Moved,
-    skip: bool,
-) -> Context {
+pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved) -> Context {
     let tool_mm = match state.tool_length {
         ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
         // Where G44 subtracts the vector, the tool points the other way.
@@ -265,7 +282,7 @@ pub(crate) fn context(
         motion_code: state.motion_code(),
         arc_by_radius: moved.arc_by_radius,
         compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
-        skip,
+        may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,
         whole: [0, 1, 2].map(|i| {
             let (was, is) = (before.transform.touches()[i], state.transform.touches()[i]);

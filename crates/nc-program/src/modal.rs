@@ -108,6 +108,11 @@ pub enum ReturnLevel {
     Initial,
     /// G99
     R,
+    /// One of the two, depending on the block delete switch.
+    Undecided {
+        /// Line of the first block that may be skipped.
+        line: u64,
+    },
 }
 
 /// The tool length in force.
@@ -275,6 +280,20 @@ pub enum Progress {
     Ended,
 }
 
+/// Blocks that may be skipped, one behind the other: the switch stands before the first of them as it stands behind
+/// the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aside {
+    /// Which switches, as [`nc_syntax::Block::switches`] says them.
+    pub switches: u16,
+    /// Line of the first.
+    pub line: u64,
+    /// The state where they are skipped: the one before the first.
+    pub skipped: Modal,
+    /// One of them moves an axis.
+    pub moved: bool,
+}
+
 /// All of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modal {
@@ -318,6 +337,8 @@ pub struct Modal {
     pub tool_loaded: Option<u32>,
     /// How far the program is.
     pub progress: Progress,
+    /// Blocks that may be skipped are under way; all else here is as where they are executed.
+    pub aside: Option<Box<Aside>>,
 }
 
 impl Modal {

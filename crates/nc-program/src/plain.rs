@@ -59,6 +59,7 @@ impl Plain {
         };
         let known = |axes: &[Axis; 3]| axes.iter().all(|axis| axis.known().is_some());
         let plain = modal.progress == Progress::Running
+            && modal.aside.is_none()
             && modal.cycle.is_none()
             && modal.distance == Distance::Absolute
             && modal.compensation == Compensation::Off
@@ -71,7 +72,7 @@ impl Plain {
             return Self::No;
         }
         let moved = Moved { repeats: 1, ..Moved::default() };
-        let context = context(env, modal, modal, &moved, false);
+        let context = context(env, modal, modal, &moved);
         Self::Yes(Box::new(PlainFeeds {
             rotary_deg: [a, b, c],
             code,

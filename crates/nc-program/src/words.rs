@@ -94,8 +94,6 @@ pub(crate) struct Words<'b, 'a, 'd> {
     pub(crate) codes: SmallVec<[Preparatory<'d>; 8]>,
     pub(crate) m_codes: SmallVec<[(u16, Span); 4]>,
     pub(crate) letters: Letters,
-    /// The block may be skipped.
-    pub(crate) skip: bool,
     /// `%`
     pub(crate) percent: bool,
     dialect: &'d Dialect,
@@ -112,7 +110,6 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             codes: SmallVec::new(),
             m_codes: SmallVec::new(),
             letters: Letters::NONE,
-            skip: false,
             percent: false,
             dialect,
             at: [0; 26],
@@ -154,7 +151,6 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                             .refuse(codes::BLOCK_DELETE, message, item.span, "only the rest may be skipped")
                             .help("write the words after `/` in a block of their own that starts with `/`"));
                     }
-                    words.skip = true;
                 }
                 ItemKind::Percent => words.percent = true,
                 ItemKind::CommaWord { letter, .. } => {

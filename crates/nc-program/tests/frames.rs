@@ -229,7 +229,7 @@ fn what_no_manual_tells_is_refused() {
     assert!(run("fanuc", &format!("{START}G68 X0 Y0 R30.\nG91 G28 Z0\nG90 G69\n")).refused.is_none());
     assert!(run("fanuc", "G17 G21 G40 G49 G50 G50.1 G54 G69 G80 G90\nG0 X1. Y1. Z1.\n").refused.is_none());
     assert_eq!(refusal("fanuc", &format!("{START}G81 X1. Y1. Z-1. R1. F9\nG52 X5.\n")).1, 3);
-    assert_eq!(refusal("fanuc", &format!("{START}/G52 X5.\n")), (222, 2));
+    assert_eq!(refusal("fanuc", &format!("{START}/G52 X5.\nM8\n")), (222, 3));
 }
 
 #[test]

@@ -140,10 +140,10 @@ fn blocks() {
       1: `R2.` this block is no arc
       help: write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs
     "#);
-    insta::assert_snapshot!(message("fanuc", "/G91\n"), @r#"
-    error[VP0222]: after this block G91 or G90 is in force, depending on the block delete switch
-      1: `G91` G91 where executed, G90 where skipped
-      help: write the code in a block without `/`, so that both ways lead to one state
+    insta::assert_snapshot!(message("fanuc", "/G91\nX5.\n"), @r#"
+    error[VP0222]: after line 1 either G91 or G90 is in force, depending on the block delete switch
+      2: `X5.` G91 where the blocks with `/` are executed, G90 where they are skipped
+      help: write the code in a block without `/`, or take it back in a block with `/`, so that both ways lead to one state
     "#);
     insta::assert_snapshot!(message("fanuc", "G0 X0 Y0 Z0\n/G1 X1.\nX0 Y0 Z0\n"), @r#"
     error[VP0222]: the motion code in force depends on the block delete switch

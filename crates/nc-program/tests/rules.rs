@@ -371,27 +371,37 @@ fn probing_is_a_motion_code_on_linuxcnc() {
 fn block_delete_that_changes_nothing_passes() {
     let run = run("fanuc", &after("/M8\n/2 (comment)\n/N10 T2 S100\n/G90 G54\nG1 X5.\n"));
     assert!(run.refused.is_none(), "{:?}", run.refused);
-    assert!(run.steps[1].context.skip && !run.steps[5].context.skip);
     assert_eq!(run.modal.tool_selected, None);
 }
 
 #[test]
 fn block_delete_that_sets_is_refused() {
-    for block in [
-        "/G91\n",
-        "/G20\n",
-        "/G18\n",
-        "/G93\n",
-        "/G55\n",
-        "/G43 H1\n",
-        "/G99\n",
-        "/G41 D1\n",
-        "/G81 Z-1. R1. K0\n",
-    ] {
-        assert_eq!(refusal("fanuc", &after(block)), (222, 2), "{block}");
+    for block in
+        ["/G91\n", "/G20\n", "/G18\n", "/G93\n", "/G55\n", "/G43 H1\n", "/G41 D1\n", "/G81 Z-1. R1. K0\n"]
+    {
+        assert_eq!(refusal("fanuc", &after(&format!("{block}(nothing yet)\nM8\n"))), (222, 4), "{block}");
     }
-    assert_eq!(refusal("linuxcnc", &after("/G90.1\n")), (222, 2));
+    assert_eq!(refusal("linuxcnc", &after("/G90.1\nM8\n")), (222, 3));
     assert_eq!(refusal("fanuc", &after("G1 X5. /Y5.\n")), (222, 2));
+    let holes = "/G99\n/G80\n/G0 X5.\nG0 X0 Y0 Z5.\nG81 X1. Y1. Z-1. R1.\n";
+    assert_eq!(refusal("fanuc", &after(holes)), (222, 6));
+    assert_eq!(refusal("fanuc", &after("G81 X1. Y1. Z-1. R1.\n/G80\nX2.\n")), (222, 4));
+}
+
+#[test]
+fn blocks_that_may_be_skipped_together_go_on_from_each_other() {
+    let section = "/G1 Z-1. F100.\n\n/X6.\n(in between)\n/G91 X1.\n/G90\n";
+    let run = run("fanuc", &after(&format!("{section}G0 X0 Y0 Z5.\nG1 X1.\n")));
+    assert!(run.refused.is_none(), "{:?}", run.refused);
+    assert_eq!(feed(&run.steps[3].motions[0]).end.linear_mm, [6.0, 0.0, -1.0]);
+    assert_eq!(feed(&run.steps[5].motions[0]).end.linear_mm, [7.0, 0.0, -1.0]);
+    // The next block is right whether they were executed or not: it may rely on no axis, and on no code.
+    assert_eq!(refusal("fanuc", &after(&format!("{section}X8.\n"))), (222, 8));
+    assert_eq!(refusal("fanuc", &after(&format!("{section}G1 X8.\n"))), (213, 8));
+    // Another switch is another section.
+    assert_eq!(refusal("fanuc", &after("/G1 X5.\n/2 Y5.\n")), (222, 3));
+    assert_eq!(refusal("fanuc", &after("/2 G1 X5.\n/3 G1 Y5.\n")), (213, 3));
+    assert_eq!(end("fanuc", &after("/G1 X5.\n/1 Y5.\n")), at(5.0, 5.0, 0.01));
 }
 
 #[test]
@@ -401,7 +411,7 @@ fn block_delete_that_moves_loses_the_position_until_all_axes_are_named() {
     assert_eq!(end("fanuc", &after("/G0 X5.\nG0 X6. Y1.\nZ5.\nG1 X5.\n")), at(5.0, 1.0, 5.0));
     // The motion code that may have been skipped must be written again.
     assert_eq!(refusal("fanuc", &after("/G1 X5.\nX6. Y1. Z5.\n")), (222, 3));
-    let run = run("fanuc", &after("/G1 X5.\n"));
+    let run = run("fanuc", &after("/G1 X5.\nM8\n"));
     assert_eq!(run.modal.motion, MotionMode::Undecided { line: 2 });
     feed(&run.steps[1].motions[0]);
 }

@@ -194,6 +194,30 @@ impl<'a> Block<'a> {
         self.offset + u64::from(span.start)..self.offset + u64::from(span.end)
     }
 
+    /// The block delete switches that skip this block, a bit each: `/` and `/1` are bit 1, `/3` is bit 3; 0 where the block
+    /// is always executed.
+    #[must_use]
+    pub fn switches(&self) -> u16 {
+        let marks = self.items.iter().filter(|item| item.kind == ItemKind::Skip);
+        marks.fold(0, |switches, mark| {
+            let digits = self.text(mark.span).iter().filter(|byte| byte.is_ascii_digit());
+            let number = digits.fold(0_u32, |number, digit| (10 * number + u32::from(digit - b'0')).min(15));
+            switches | 1 << number.max(1)
+        })
+    }
+
+    /// True where the block says something that a control executes: a word other than N and O, a command, flow.
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.items.iter().any(|item| match item.kind {
+            ItemKind::Word { letter, .. } => !matches!(letter, b'N' | b'O'),
+            ItemKind::CommaWord { .. } | ItemKind::BracketCommand | ItemKind::Flow | ItemKind::Invalid(_) => {
+                true
+            }
+            ItemKind::Comment | ItemKind::Skip | ItemKind::Percent | ItemKind::Name => false,
+        })
+    }
+
     /// The words in order; comma words are not among them.
     pub fn words(&self) -> impl Iterator<Item = Word> + '_ {
         self.items.iter().filter_map(|item| match item.kind {

@@ -12,6 +12,7 @@ use nc_syntax::{Block, ItemKind, Reader};
 use serde::Serialize;
 
 use crate::arguments::{Check, Shared};
+use crate::correct;
 use crate::expand;
 use crate::file;
 use crate::message::{Failure, Messages};
@@ -20,11 +21,33 @@ use crate::settings::Settings;
 /// A program as the check sees it.
 struct Program {
     steps: Vec<Step>,
-    /// Words that are not motion, in order, with their lines: M, S, T, H, D and G codes that set something.
-    events: Vec<(String, u64)>,
+    /// Words that are not motion, in order: M, S, T, H, D and G codes that set something.
+    events: Vec<Event>,
     inch: bool,
     /// What G51 makes of the output step.
     scale: f64,
+}
+
+/// A word that is not motion.
+struct Event {
+    text: String,
+    line: u64,
+    /// Counts the blocks.
+    block: u64,
+}
+
+/// What becomes of blocks under `/`.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Optional {
+    Executed,
+    Skipped,
+}
+
+/// Two programs, with blocks under `/` executed or skipped.
+struct Loop {
+    comparison: Comparison,
+    limit_mm: f64,
+    findings: Vec<String>,
 }
 
 /// The JSON of `vpost check --json`.
@@ -50,12 +73,9 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let model = settings.path_model()?;
     let read = |path: &Path| Ok((file::name(path), file::read_program(path)?));
     let (wanted_name, wanted) = read(&arguments.input)?;
-    let wanted = program(&wanted_name, &wanted, &settings)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
-    let commanded = program(&commanded_name, &commanded, &settings)?;
-    let limit_mm = limit_mm(&wanted, &settings);
-    let comparison = compare(model, &wanted.steps, &commanded.steps, limit_mm);
-    let findings = findings(&comparison, &wanted, &commanded);
+    let Loop { comparison, limit_mm, findings } =
+        closed((&wanted_name, &wanted), (&commanded_name, &commanded), &settings)?;
     let passed = findings.is_empty();
     let um = |mm: f64| (mm * 1e6).round() / 1e3;
     if arguments.json || arguments.html.is_some() {
@@ -124,11 +144,38 @@ pub(crate) fn findings_between(
     corrected: (&str, &[u8]),
     settings: &Settings,
 ) -> Result<Vec<String>, Failure> {
-    let wanted = program(posted.0, posted.1, settings)?;
-    let commanded = program(corrected.0, corrected.1, settings)?;
-    let comparison =
-        compare(settings.path_model()?, &wanted.steps, &commanded.steps, limit_mm(&wanted, settings));
-    Ok(findings(&comparison, &wanted, &commanded))
+    Ok(closed(posted, corrected, settings)?.findings)
+}
+
+/// Both programs through the model. Where blocks may be skipped, once with and once without them: what is said of the
+/// path is said of the way with them, what is wrong is said of both.
+fn closed(posted: (&str, &[u8]), corrected: (&str, &[u8]), settings: &Settings) -> Result<Loop, Failure> {
+    let mut executed = closed_with(posted, corrected, settings, Optional::Executed)?;
+    let mut may_skip = false;
+    correct::each_block(posted.1, &settings.dialect, |block| may_skip |= block.switches() != 0);
+    if may_skip {
+        let skipped = closed_with(posted, corrected, settings, Optional::Skipped)?;
+        for finding in skipped.findings {
+            if !executed.findings.contains(&finding) {
+                executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
+            }
+        }
+    }
+    Ok(executed)
+}
+
+fn closed_with(
+    posted: (&str, &[u8]),
+    corrected: (&str, &[u8]),
+    settings: &Settings,
+    optional: Optional,
+) -> Result<Loop, Failure> {
+    let wanted = program(posted.0, posted.1, settings, optional)?;
+    let commanded = program(corrected.0, corrected.1, settings, optional)?;
+    let limit_mm = limit_mm(&wanted, settings);
+    let comparison = compare(settings.path_model()?, &wanted.steps, &commanded.steps, limit_mm);
+    let findings = findings(&comparison, &wanted, &commanded);
+    Ok(Loop { comparison, limit_mm, findings })
 }
 
 /// The tolerance and what rounding adds to it.
@@ -148,7 +195,7 @@ fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
         .sqrt()
 }
 
-fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Failure> {
+fn program(name: &str, text: &[u8], settings: &Settings, optional: Optional) -> Result<Program, Failure> {
     nc_syntax::looks_like_program(text)
         .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
     let expanded = expand::expanded(text, name, settings)?;
@@ -158,8 +205,12 @@ fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Fail
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
     let mut reader = Reader::new(expanded.text(), &settings.dialect);
     let mut block = Block::default();
+    let mut number = 0;
     while reader.next(&mut block) {
         let step = interpreter.step(&block).map_err(refuse)?;
+        if optional == Optional::Skipped && block.switches() != 0 {
+            continue;
+        }
         let line = expanded.source_line(block.line).1;
         if !step.motions.is_empty() {
             program.scale = program.scale.max(step.context.frame.largest_scale());
@@ -168,7 +219,8 @@ fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Fail
         for motion in &step.motions {
             program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line });
         }
-        events(&block, line, settings, &mut program.events);
+        number += 1;
+        events(&block, (line, number), settings, &mut program.events);
         if step.ends_program {
             break;
         }
@@ -177,7 +229,7 @@ fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Fail
 }
 
 /// What a block says besides where to go.
-fn events(block: &Block<'_>, line: u64, settings: &Settings, events: &mut Vec<(String, u64)>) {
+fn events(block: &Block<'_>, (line, number): (u64, u64), settings: &Settings, events: &mut Vec<Event>) {
     for item in &block.items {
         let ItemKind::Word { letter, .. } = item.kind else { continue };
         let counts = match letter {
@@ -192,7 +244,7 @@ fn events(block: &Block<'_>, line: u64, settings: &Settings, events: &mut Vec<(S
         if counts {
             let text: String =
                 block.text(item.span).iter().map(|byte| byte.to_ascii_uppercase() as char).collect();
-            events.push((text, line));
+            events.push(Event { text, line, block: number });
         }
     }
 }
@@ -232,11 +284,10 @@ fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> V
     if comparison.mismatches.len() >= correction::MOST_MISMATCHES {
         findings.push("and more; these are two different programs".to_owned());
     }
-    let different = wanted.events.iter().zip(&commanded.events).find(|(a, b)| a.0 != b.0);
-    if let Some((a, b)) = different {
+    if let Some((a, b)) = different(&wanted.events, &commanded.events) {
         findings.push(format!(
             "the programs say different things besides motion: {} on line {} against {} on line {}",
-            a.0, a.1, b.0, b.1
+            a.text, a.line, b.text, b.line
         ));
     } else if wanted.events.len() != commanded.events.len() {
         findings.push(format!(
@@ -246,4 +297,23 @@ fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> V
         ));
     }
     findings
+}
+
+/// The first words that differ. The order within a posted block means nothing: of its pieces the last one has what is
+/// executed behind the motion.
+fn different<'e>(wanted: &'e [Event], commanded: &'e [Event]) -> Option<(&'e Event, &'e Event)> {
+    let mut rest = commanded;
+    for block in wanted.chunk_by(|a, b| a.block == b.block) {
+        let (here, behind) = rest.split_at(block.len().min(rest.len()));
+        let sorted = |events: &'e [Event]| {
+            let mut texts: Vec<&str> = events.iter().map(|event| event.text.as_str()).collect();
+            texts.sort_unstable();
+            texts
+        };
+        if here.len() == block.len() && sorted(block) != sorted(here) {
+            return block.iter().zip(here).find(|(a, b)| a.text != b.text);
+        }
+        rest = behind;
+    }
+    None
 }

@@ -147,6 +147,7 @@ impl Pass<'_> {
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
         let step = self.state.interpreter.step(block)?;
+        self.state.emitter.meet(block);
         let context = &step.context;
         if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
             && let Some(number) = block.word(b'P').and_then(|word| word.number())
@@ -194,7 +195,7 @@ impl Pass<'_> {
             corrections.clear();
             self.repeated(block, context, letters, motions, &mut pieces, &mut corrections)?;
         }
-        if context.skip
+        if context.may_not_set_levels
             && let Some(Motion::Hole(hole)) = motions.first()
             && holds_levels(&pieces, hole)
         {
