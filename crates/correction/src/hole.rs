@@ -46,7 +46,7 @@ impl<'m> Corrector<'m> {
         let flat = hole.bottom_mm == at_r[normal];
         let before = (self.standing, self.remembered);
         let mut turns = 0;
-        let (machine, down, top, bottom, (piece, untouched, verdict)) = loop {
+        let (machine, down, top, bottom, (piece, untouched, verdict), came_back) = loop {
             let mut machine = self.machine(block, hole.at_r.rotary_deg);
             // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
             let down = way(at_r[normal], hole.bottom_mm, self.direction[normal]);
@@ -55,8 +55,12 @@ impl<'m> Corrector<'m> {
             let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
             turns += 1;
+            let end = self.standing;
             let against = if flat {
-                self.against(before.0, machine.state.direction, block)
+                self.standing[normal] = Some(kept.3);
+                let against = self.against(before.0, machine.state.direction, block);
+                self.standing = end;
+                against
             } else {
                 self.against_in_plane(before.0, machine.state.direction, normal, block)
             };
@@ -65,7 +69,10 @@ impl<'m> Corrector<'m> {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
                 }
-                _ => break (machine, down, top, bottom, kept),
+                _ => {
+                    let way_back = end[normal].map_or(0, |end| way(kept.3, end, down));
+                    break (machine, down, top, bottom, (kept.0, kept.1, kept.2), way_back);
+                }
             }
         };
         let mut correction = Correction {
@@ -74,8 +81,7 @@ impl<'m> Corrector<'m> {
             ..Correction::default()
         };
         // Afterwards the axis has come back out of the hole.
-        self.direction[normal] =
-            way(hole.bottom_mm, hole.end().linear_mm[normal], way(hole.bottom_mm, at_r[normal], down));
+        self.direction[normal] = if flat { came_back } else { -down };
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
         if self.expanding && expandable {
             (self.standing, self.remembered) = before;
@@ -122,14 +128,15 @@ impl<'m> Corrector<'m> {
         Machine { state, ..*machine }
     }
 
-    /// The cycle block with its words moved, and how far its hole is then from the programmed one.
+    /// The cycle block with its words moved, whether they were, how far its hole is then from the programmed one, and where
+    /// R is, axis command in mm.
     fn keep_cycle(
         &mut self,
         hole: &Hole,
         block: &Block,
         machine: &Machine<'_>,
         (top, bottom): (Vector, Vector),
-    ) -> (Piece, bool, Verdict) {
+    ) -> (Piece, bool, Verdict, f64) {
         let [first, second, normal] = hole.plane.axes();
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
@@ -253,7 +260,7 @@ impl<'m> Corrector<'m> {
                 if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
-        (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict)
+        (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict, from[normal])
     }
 
     /// The cycle as the moves it is made of.
