@@ -180,6 +180,10 @@ fn sample(vpost: &Path, options: &Options, path: &Path) -> anyhow::Result<Sample
                     check,
                     referee: Verdict::Silent("G53, whose place it does not know".to_owned()),
                 },
+                check if ways.iter().any(|way| way == "--start-at") => Fate::Corrected {
+                    check,
+                    referee: Verdict::Silent("its interpreter starts at zero".to_owned()),
+                },
                 check => Fate::Corrected { check, referee: judged(referee)? },
             }
         }

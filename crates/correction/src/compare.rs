@@ -385,6 +385,8 @@ impl Matcher<'_> {
     }
 
     /// A piece of motions not much longer than the limit: it lies on several of them, and was taken for a later one.
+    ///
+    /// What is under way stays: the pieces that follow may be of the later one, or linger too.
     fn lingers(&mut self, piece: &Feeding) -> bool {
         let mut length_mm = 0.0;
         for at in (0..self.at).rev() {
@@ -396,7 +398,6 @@ impl Matcher<'_> {
             let fit = self.fit(w, piece, 0.5);
             if fit.distance_mm <= self.limit_mm {
                 self.note(at, fit.distance_mm);
-                (self.at, self.s) = (at, fit.s.clamp(0.0, 1.0));
                 return true;
             }
         }
