@@ -339,14 +339,18 @@ impl Matcher<'_> {
         if self.lingers(piece) {
             return;
         }
-        // A short move that ends where the last motion ended, or where the next one goes on, is an approach.
+        // A short move that ends on the last of the last motion, or where the next one goes on, is an approach.
         let end = piece.curve.at(1.0);
         let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
-        let there = |w: &Feeding, s: f64| (w.curve.at(s) - real).norm() <= self.limit_mm;
+        // Taken for done, a motion may have a limit of way left; the pieces of that way begin a limit away from it.
+        let ends_near = |w: &Feeding| {
+            let s = project(&w.curve, &real, 1.0);
+            (1.0 - s) * w.length_mm <= 2.0 * self.limit_mm && distance(&w.curve, &real, s) <= self.limit_mm
+        };
         let last = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]);
         let next = first.as_ref().map(|(at, _)| &self.wanted[*at]);
-        let approach =
-            last.is_some_and(|w| there(w, 1.0)) || next.is_some_and(|w| there(w, self.s.clamp(0.0, 1.0)));
+        let approach = last.is_some_and(ends_near)
+            || next.is_some_and(|w| (w.curve.at(self.s.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm);
         if piece.length_mm < 1.0 && approach {
             self.result.approaches += 1;
             return;

@@ -2,6 +2,7 @@
 
 mod page;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use correction::{Comparison, Mismatch, Step, compare};
@@ -12,19 +13,32 @@ use nc_syntax::{Block, ItemKind, Reader};
 use serde::Serialize;
 
 use crate::arguments::{Check, Shared};
-use crate::correct;
 use crate::expand;
 use crate::file;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
 
 /// A program as the check sees it.
+#[derive(Default)]
 struct Program {
     steps: Vec<Step>,
+    /// Of each step: its block may be skipped.
+    aside: Vec<bool>,
     /// Words that are not motion, in order: M, S, T, H, D and G codes that set something.
     events: Vec<Event>,
+    /// Steps and words up to an end of the program that may be skipped.
+    ends_aside: Option<(usize, usize)>,
+    /// Some blocks may be skipped.
+    may_skip: bool,
+    /// With blocks under `/` executed, and with them skipped.
+    output: [Output; 2],
+}
+
+/// What decides how coarse the output is.
+#[derive(Clone, Copy, Default)]
+struct Output {
     inch: bool,
-    /// What G51 makes of the output step.
+    /// What G51 makes of the output step; 0 where nothing moves.
     scale: f64,
 }
 
@@ -34,6 +48,8 @@ struct Event {
     line: u64,
     /// Counts the blocks.
     block: u64,
+    /// Its block may be skipped.
+    aside: bool,
 }
 
 /// What becomes of blocks under `/`.
@@ -96,11 +112,10 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         let mut text = serde_json::to_vec_pretty(&outcome).expect("plain values always serialise");
         text.push(b'\n');
         if let Some(path) = &arguments.html {
-            let posted = file::read_program(&arguments.input)?;
             let facts = page::Facts {
-                input: &file::name(&arguments.input),
-                output: &file::name(&arguments.output),
-                text: &file::decoded(&posted),
+                input: &wanted_name,
+                output: &commanded_name,
+                text: &file::decoded(&wanted),
                 machine: &settings.profile.name,
                 profile: &settings.profile_name,
                 profile_hash: &settings.profile_hash.to_string(),
@@ -150,12 +165,19 @@ pub(crate) fn findings_between(
 /// Both programs through the model. Where blocks may be skipped, once with and once without them: what is said of the
 /// path is said of the way with them, what is wrong is said of both.
 fn closed(posted: (&str, &[u8]), corrected: (&str, &[u8]), settings: &Settings) -> Result<Loop, Failure> {
-    let mut executed = closed_with(posted, corrected, settings, Optional::Executed)?;
-    let mut may_skip = false;
-    correct::each_block(posted.1, &settings.dialect, |block| may_skip |= block.switches() != 0);
-    if may_skip {
-        let skipped = closed_with(posted, corrected, settings, Optional::Skipped)?;
-        for finding in skipped.findings {
+    let wanted = program(posted.0, posted.1, settings)?;
+    let commanded = program(corrected.0, corrected.1, settings)?;
+    let model = settings.path_model()?;
+    let compared = |optional: Optional| {
+        let limit_mm =
+            settings.options.tolerance_mm + rounding_mm(settings, wanted.output[optional as usize]);
+        let comparison = compare(model, &wanted.steps(optional), &commanded.steps(optional), limit_mm);
+        let findings = findings(&comparison, &wanted.events(optional), &commanded.events(optional));
+        Loop { comparison, limit_mm, findings }
+    };
+    let mut executed = compared(Optional::Executed);
+    if wanted.may_skip || commanded.may_skip {
+        for finding in compared(Optional::Skipped).findings {
             if !executed.findings.contains(&finding) {
                 executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
             }
@@ -164,72 +186,81 @@ fn closed(posted: (&str, &[u8]), corrected: (&str, &[u8]), settings: &Settings) 
     Ok(executed)
 }
 
-fn closed_with(
-    posted: (&str, &[u8]),
-    corrected: (&str, &[u8]),
-    settings: &Settings,
-    optional: Optional,
-) -> Result<Loop, Failure> {
-    let wanted = program(posted.0, posted.1, settings, optional)?;
-    let commanded = program(corrected.0, corrected.1, settings, optional)?;
-    let limit_mm = limit_mm(&wanted, settings);
-    let comparison = compare(settings.path_model()?, &wanted.steps, &commanded.steps, limit_mm);
-    let findings = findings(&comparison, &wanted, &commanded);
-    Ok(Loop { comparison, limit_mm, findings })
-}
-
-/// The tolerance and what rounding adds to it.
-fn limit_mm(wanted: &Program, settings: &Settings) -> f64 {
-    settings.options.tolerance_mm + wanted.scale * rounding_mm(settings, wanted.inch)
-}
-
-/// Half an output step on each axis, as a distance.
-fn rounding_mm(settings: &Settings, inch: bool) -> f64 {
+/// What rounding adds to the tolerance: half an output step on each axis, as a distance.
+fn rounding_mm(settings: &Settings, Output { inch, scale }: Output) -> f64 {
     let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
     let unit = if inch { 25.4 } else { 1.0 };
-    decimals
-        .map(|d| 0.5 * unit / f64::from(10u32.pow(u32::from(d))))
-        .iter()
-        .map(|h| h * h)
-        .sum::<f64>()
-        .sqrt()
+    let half = decimals.map(|d| 0.5 * unit / f64::from(10u32.pow(u32::from(d))));
+    scale.max(1.0) * half.iter().map(|h| h * h).sum::<f64>().sqrt()
 }
 
-fn program(name: &str, text: &[u8], settings: &Settings, optional: Optional) -> Result<Program, Failure> {
+impl Program {
+    /// The motions, in order.
+    fn steps(&self, optional: Optional) -> Cow<'_, [Step]> {
+        match (optional, self.ends_aside) {
+            (Optional::Executed, None) => Cow::Borrowed(&self.steps),
+            (Optional::Executed, Some((steps, _))) => Cow::Borrowed(&self.steps[..steps]),
+            (Optional::Skipped, _) => {
+                let kept = self.steps.iter().zip(&self.aside).filter(|(_, aside)| !**aside);
+                Cow::Owned(kept.map(|(step, _)| *step).collect())
+            }
+        }
+    }
+
+    /// The words that are not motion, in order.
+    fn events(&self, optional: Optional) -> Vec<&Event> {
+        match (optional, self.ends_aside) {
+            (Optional::Executed, None) => self.events.iter().collect(),
+            (Optional::Executed, Some((_, events))) => self.events[..events].iter().collect(),
+            (Optional::Skipped, _) => self.events.iter().filter(|event| !event.aside).collect(),
+        }
+    }
+}
+
+fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Failure> {
     nc_syntax::looks_like_program(text)
         .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
     let expanded = expand::expanded(text, name, settings)?;
     let refuse =
         |diagnostics: Vec<Diagnostic>| Failure::Refused(expand::reports(&expanded, name, text, diagnostics));
-    let mut program = Program { steps: Vec::new(), events: Vec::new(), inch: false, scale: 1.0 };
+    let mut program = Program::default();
     let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
     let mut reader = Reader::new(expanded.text(), &settings.dialect);
     let mut block = Block::default();
     let mut number = 0;
     while reader.next(&mut block) {
         let step = interpreter.step(&block).map_err(refuse)?;
-        if optional == Optional::Skipped && block.switches() != 0 {
-            continue;
-        }
+        let aside = block.switches() != 0;
         let line = expanded.source_line(block.line).1;
+        program.may_skip |= aside;
         if !step.motions.is_empty() {
-            program.scale = program.scale.max(step.context.frame.largest_scale());
+            let executed = program.ends_aside.is_none();
+            for (output, counts) in program.output.iter_mut().zip([executed, !aside]) {
+                if counts {
+                    output.scale = output.scale.max(step.context.frame.largest_scale());
+                    output.inch |= step.context.unit_mm != 1.0;
+                }
+            }
         }
-        program.inch |= step.context.unit_mm != 1.0 && !step.motions.is_empty();
         for motion in &step.motions {
             program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line });
+            program.aside.push(aside);
         }
         number += 1;
-        events(&block, (line, number), settings, &mut program.events);
+        let at = Event { text: String::new(), line, block: number, aside };
+        events(&block, &at, settings, &mut program.events);
         if step.ends_program {
-            break;
+            if !aside {
+                break;
+            }
+            program.ends_aside.get_or_insert((program.steps.len(), program.events.len()));
         }
     }
     Ok(program)
 }
 
 /// What a block says besides where to go.
-fn events(block: &Block<'_>, (line, number): (u64, u64), settings: &Settings, events: &mut Vec<Event>) {
+fn events(block: &Block<'_>, at: &Event, settings: &Settings, events: &mut Vec<Event>) {
     for item in &block.items {
         let ItemKind::Word { letter, .. } = item.kind else { continue };
         let counts = match letter {
@@ -244,7 +275,7 @@ fn events(block: &Block<'_>, (line, number): (u64, u64), settings: &Settings, ev
         if counts {
             let text: String =
                 block.text(item.span).iter().map(|byte| byte.to_ascii_uppercase() as char).collect();
-            events.push(Event { text, line, block: number });
+            events.push(Event { text, ..*at });
         }
     }
 }
@@ -264,7 +295,7 @@ fn sets_something(entry: &CodeEntry) -> bool {
         )
 }
 
-fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> Vec<String> {
+fn findings(comparison: &Comparison, wanted: &[&Event], commanded: &[&Event]) -> Vec<String> {
     let mut findings: Vec<String> = comparison
         .mismatches
         .iter()
@@ -284,16 +315,16 @@ fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> V
     if comparison.mismatches.len() >= correction::MOST_MISMATCHES {
         findings.push("and more; these are two different programs".to_owned());
     }
-    if let Some((a, b)) = different(&wanted.events, &commanded.events) {
+    if let Some((a, b)) = different(wanted, commanded) {
         findings.push(format!(
             "the programs say different things besides motion: {} on line {} against {} on line {}",
             a.text, a.line, b.text, b.line
         ));
-    } else if wanted.events.len() != commanded.events.len() {
+    } else if wanted.len() != commanded.len() {
         findings.push(format!(
             "the programs say different things besides motion: {} words against {}",
-            wanted.events.len(),
-            commanded.events.len()
+            wanted.len(),
+            commanded.len()
         ));
     }
     findings
@@ -301,17 +332,17 @@ fn findings(comparison: &Comparison, wanted: &Program, commanded: &Program) -> V
 
 /// The first words that differ. The order within a posted block means nothing: of its pieces the last one has what is
 /// executed behind the motion.
-fn different<'e>(wanted: &'e [Event], commanded: &'e [Event]) -> Option<(&'e Event, &'e Event)> {
+fn different<'e>(wanted: &[&'e Event], commanded: &[&'e Event]) -> Option<(&'e Event, &'e Event)> {
     let mut rest = commanded;
     for block in wanted.chunk_by(|a, b| a.block == b.block) {
         let (here, behind) = rest.split_at(block.len().min(rest.len()));
-        let sorted = |events: &'e [Event]| {
+        let sorted = |events: &[&'e Event]| {
             let mut texts: Vec<&str> = events.iter().map(|event| event.text.as_str()).collect();
             texts.sort_unstable();
             texts
         };
         if here.len() == block.len() && sorted(block) != sorted(here) {
-            return block.iter().zip(here).find(|(a, b)| a.text != b.text);
+            return block.iter().copied().zip(here.iter().copied()).find(|(a, b)| a.text != b.text);
         }
         rest = behind;
     }
