@@ -2,7 +2,8 @@
 //! and the machine's real path is sampled against the programmed one.
 
 use correction::{
-    AxisWord, Block, Centre, Corrected, Corrector, Curve, Letters, Options, Outside, Piece, PieceKind,
+    AxisWord, Block, Centre, Corrected, CorrectionError, Corrector, Curve, Letters, Options, Outside, Piece,
+    PieceKind,
 };
 use machine_model::{
     AxisTables, Chain, Command, Description, Engine, EngineId, Interpolation, LinearAxis, Move, PathModel,
@@ -246,6 +247,17 @@ fn feed(
     shape: Shape,
     block: &Block,
 ) -> Ran {
+    tried(corrector, control, start, end, shape, block).expect("the motion can be corrected")
+}
+
+fn tried(
+    corrector: &mut Corrector<'_>,
+    control: &mut Control,
+    start: Vector,
+    end: Vector,
+    shape: Shape,
+    block: &Block,
+) -> Result<Ran, CorrectionError> {
     let motion = Motion::Feed(Feed {
         start: position(start),
         end: position(end),
@@ -253,7 +265,7 @@ fn feed(
         rate: FeedRate::PerMinute,
         may_split: true,
     });
-    let corrected = corrector.correct(&motion, block).expect("the motion can be corrected");
+    let corrected = corrector.correct(&motion, block)?;
     let (plane, centre) = match shape {
         Shape::Arc(arc) => {
             let [u, v, _] = arc.plane.axes();
@@ -277,7 +289,7 @@ fn feed(
     let pieces = if corrected.pieces.is_empty() { &untouched[..] } else { &corrected.pieces };
     let curves =
         pieces.iter().filter_map(|piece| control.run(piece, block, &own_end, centre, plane)).collect();
-    Ran { corrected, curves }
+    Ok(Ran { corrected, curves })
 }
 
 /// A machine of one kind or the other.
@@ -384,6 +396,26 @@ proptest! {
         let found = worst(model, &wanted, &ran.curves);
         prop_assert!(found <= ALLOWED_MM, "{found} after {:?}", ran.corrected.correction);
         prop_assert!(found <= ran.corrected.correction.after_mm + 1e-7, "proof {} found {found}", ran.corrected.correction.after_mm);
+    }
+
+    #[test]
+    fn no_piece_is_shorter_than_the_profile_allows(
+        model in wavy(), start in place(), end in place(), minimum_segment_mm in 2.0f64..60.0,
+    ) {
+        let model = &*model.0;
+        let mut corrector = Corrector::new(model, Options { minimum_segment_mm, ..OPTIONS });
+        let mut control = begin(&mut corrector, start);
+        match tried(&mut corrector, &mut control, start, end, Shape::Line, &block("XYZ", false)) {
+            // What the limit makes impossible is refused, never left beyond the tolerance.
+            Err(error) => prop_assert!(matches!(error, CorrectionError::NotWithinTolerance { .. }), "{error}"),
+            Ok(ran) => {
+                prop_assert!(worst(model, &Curve::Line(start, end), &ran.curves) <= ALLOWED_MM);
+                let shortest = ran.curves.iter().map(Curve::length_mm).fold(f64::INFINITY, f64::min);
+                // The real machine's commands are longer or shorter than the program's by its errors and rounding.
+                let least = 0.99 * minimum_segment_mm.min((end - start).norm()) - 2e-3;
+                prop_assert!(shortest >= least, "{shortest} of {}", ran.curves.len());
+            }
+        }
     }
 
     #[test]
