@@ -31,6 +31,17 @@ struct Visit {
     requests: Vec<String>,
 }
 
+impl Visit {
+    fn was_quiet(&self) {
+        assert!(
+            self.console.is_empty() && self.requests.is_empty(),
+            "{:?} {:?}",
+            self.console,
+            self.requests
+        );
+    }
+}
+
 const QUIET: [&str; 12] = [
     "--headless",
     "--no-sandbox",
@@ -117,6 +128,29 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).expect("the report was written")
 }
 
+/// The data that a page carries along.
+fn data_of(page: &str) -> serde_json::Value {
+    let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
+    serde_json::from_str(data.expect("a data block")).expect("JSON")
+}
+
+/// A page full of elements that try to act: none does. The page's own policy would hide a mistake, so it is tried
+/// without it, too.
+fn nothing_acted(browser: &str, report: &Report) {
+    let page = text(&report.page);
+    let policy = page.find("<meta http-equiv").expect("a policy");
+    let end = policy + page[policy..].find('>').expect("it ends") + 1;
+    let unprotected = report.folder.path().join("unprotected.html");
+    std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
+    for page in [&report.page, &unprotected] {
+        let visit = visit(browser, page);
+        let root = visit.dom.split('>').nth(1).unwrap_or_default();
+        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
+        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
+        visit.was_quiet();
+    }
+}
+
 #[test]
 fn the_checks_of_this_test_can_fail() {
     let Some(browser) = chromium() else {
@@ -141,8 +175,7 @@ fn reports_open_without_a_message_and_without_a_request() {
     };
     for report in [stan(), backlash()] {
         let visit = visit(browser, &report.page);
-        assert!(visit.console.is_empty(), "{:?}", visit.console);
-        assert!(visit.requests.is_empty(), "{:?}", visit.requests);
+        visit.was_quiet();
         let sections = visit.dom.matches("<section ").count();
         assert_eq!(sections, 12, "sections of {}", report.page.display());
         assert!(visit.dom.matches("<svg ").count() >= 9);
@@ -203,23 +236,7 @@ fn nothing_in_a_file_can_act() {
         println!("skipped: chromium is not installed");
         return;
     };
-    let first = visit(browser, &report.page);
-    // The page's own policy would hide a mistake: without it nothing may act either.
-    let policy = page.find("<meta http-equiv").expect("a policy");
-    let end = policy + page[policy..].find('>').expect("it ends") + 1;
-    let unprotected = report.folder.path().join("unprotected.html");
-    std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
-    for visit in [first, visit(browser, &unprotected)] {
-        let root = visit.dom.split('>').nth(1).unwrap_or_default();
-        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
-        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
-        assert!(
-            visit.console.is_empty() && visit.requests.is_empty(),
-            "{:?} {:?}",
-            visit.console,
-            visit.requests
-        );
-    }
+    nothing_acted(browser, &report);
 }
 
 #[test]
@@ -228,8 +245,7 @@ fn a_report_is_small_whole_and_the_same_each_time() {
     let (a, b) = (text(&first.page), text(&second.page));
     assert!(a == b, "two runs differ");
     assert!(a.len() < 2_000_000, "{} bytes", a.len());
-    let data = a.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
-    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    let data = data_of(&a);
     assert_eq!(data["schema"], "vpost.diagnosis/1");
     for address in ["http://", "https://", "url(", "@import", "src="] {
         let found = a.replace("http://www.w3.org/2000/svg", "");
@@ -302,8 +318,7 @@ fn a_map_opens_without_a_message_is_small_and_the_same_each_time() {
     let page = text(&report.page);
     assert!(page == text(&again.page), "two runs differ");
     assert!(page.len() < 3_000_000, "{} bytes for 10,164 nodes", page.len());
-    let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
-    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    let data = data_of(&page);
     assert_eq!(data["schema"], "vpost.map/1");
     assert_eq!(data["nodes"], 10_164);
     let counted: u64 =
@@ -314,12 +329,7 @@ fn a_map_opens_without_a_message_is_small_and_the_same_each_time() {
         return;
     };
     let visit = visit(browser, &report.page);
-    assert!(
-        visit.console.is_empty() && visit.requests.is_empty(),
-        "{:?} {:?}",
-        visit.console,
-        visit.requests
-    );
+    visit.was_quiet();
     assert_eq!(visit.dom.matches("<section ").count(), 11);
     assert_eq!(visit.dom.matches("<svg ").count(), 7);
     // Thinned in the drawing, not in the numbers: 11 of each axis, twice.
@@ -356,22 +366,7 @@ fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
         println!("skipped: chromium is not installed");
         return;
     };
-    let policy = html.find("<meta http-equiv").expect("a policy");
-    let end = policy + html[policy..].find('>').expect("it ends") + 1;
-    let unprotected = folder.path().join("unprotected.html");
-    std::fs::write(&unprotected, format!("{}{}", &html[..policy], &html[end..])).expect("writable");
-    for page in [&page, &unprotected] {
-        let visit = visit(browser, page);
-        let root = visit.dom.split('>').nth(1).unwrap_or_default();
-        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
-        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
-        assert!(
-            visit.console.is_empty() && visit.requests.is_empty(),
-            "{:?} {:?}",
-            visit.console,
-            visit.requests
-        );
-    }
+    nothing_acted(browser, &Report { folder, page });
 }
 
 #[test]
@@ -403,8 +398,7 @@ fn a_check_shows_the_path_and_the_worst_blocks() {
     let report = check(Path::new("samples/plate_linuxcnc.nc"), "linuxcnc");
     let page = text(&report.page);
     assert!(page.len() < 3_000_000, "{} bytes", page.len());
-    let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
-    let data: serde_json::Value = serde_json::from_str(data.expect("a data block")).expect("JSON");
+    let data = data_of(&page);
     assert_eq!(data["schema"], "vpost.check/1");
     // The worst line is the first of the list, with its block.
     let line = data["deviation_before_line"].as_u64().expect("a line");
@@ -417,12 +411,7 @@ fn a_check_shows_the_path_and_the_worst_blocks() {
         return;
     };
     let visit = visit(browser, &report.page);
-    assert!(
-        visit.console.is_empty() && visit.requests.is_empty(),
-        "{:?} {:?}",
-        visit.console,
-        visit.requests
-    );
+    visit.was_quiet();
     assert_eq!(visit.dom.matches("<svg ").count(), 2);
     pictures(browser, &report, "check");
 }
@@ -449,20 +438,5 @@ fn nothing_in_a_program_can_act_in_a_check() {
         println!("skipped: chromium is not installed");
         return;
     };
-    let policy = page.find("<meta http-equiv").expect("a policy");
-    let end = policy + page[policy..].find('>').expect("it ends") + 1;
-    let unprotected = report.folder.path().join("unprotected.html");
-    std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
-    for page in [&report.page, &unprotected] {
-        let visit = visit(browser, page);
-        let root = visit.dom.split('>').nth(1).unwrap_or_default();
-        assert!(root.contains("<html") && !root.contains("acted"), "{root}");
-        assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
-        assert!(
-            visit.console.is_empty() && visit.requests.is_empty(),
-            "{:?} {:?}",
-            visit.console,
-            visit.requests
-        );
-    }
+    nothing_acted(browser, &report);
 }
