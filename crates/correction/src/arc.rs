@@ -108,7 +108,8 @@ impl<'m> Corrector<'m> {
         let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
         let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
-        if let Some(against) = self.against(before, follow.machine.state.direction, follow.block) {
+        let direction = follow.machine.state.direction;
+        if let Some(against) = self.against(before, self.standing, direction, direction, follow.block) {
             self.standing = before;
             return Ok(Tried::Against(against));
         }

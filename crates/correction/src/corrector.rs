@@ -7,6 +7,7 @@ use toolpath::{Feed, Motion, Partial, Shape};
 use crate::curve::Curve;
 use crate::deviation::Machine;
 use crate::grid::{AxisWord, Block};
+use crate::play::heading;
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -219,12 +220,8 @@ impl<'m> Corrector<'m> {
 
     /// Notes which way the axes go.
     pub(crate) fn turn_towards(&mut self, from: &Vector, to: &Vector) {
-        for i in 0..3 {
-            if to[i] > from[i] {
-                self.direction[i] = 1;
-            } else if to[i] < from[i] {
-                self.direction[i] = -1;
-            }
+        for (i, direction) in self.direction.iter_mut().enumerate() {
+            *direction = heading(from[i], to[i], *direction);
         }
     }
 
@@ -290,6 +287,7 @@ impl<'m> Corrector<'m> {
         };
         let end_mm = Vector::from(nominal.linear_mm);
         let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
+        let came = self.direction;
         self.turn_towards(&from, &end_mm);
         let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
         let before = self.standing;
@@ -304,8 +302,8 @@ impl<'m> Corrector<'m> {
                 other => other?,
             };
             let axes = self.go(block, &own_end, &wanted, true);
-            // An axis that only the correction moves comes from where the correction sends it.
-            let Some(against) = self.against(before, self.direction, block) else {
+            // An axis comes from where the output sends it, and where it does not from where it came before.
+            let Some(against) = self.against(before, self.standing, came, self.direction, block) else {
                 break (machine, wanted, axes);
             };
             self.turn(against);

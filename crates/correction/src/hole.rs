@@ -8,6 +8,7 @@ use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow
 use crate::curve::Curve;
 use crate::deviation::{Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block, Letters};
+use crate::play::heading;
 use crate::{Piece, PieceKind};
 
 /// Bottom and R words as the control remembers them, program mm (increments under G91), and where the series
@@ -22,6 +23,24 @@ pub(crate) struct Remembered {
     as_programmed: bool,
 }
 
+/// A cycle that stays one block.
+struct Kept {
+    piece: Piece,
+    /// Its words are the program's.
+    untouched: bool,
+    /// How far its hole is from the programmed one.
+    verdict: Verdict,
+    /// Where R is, axis command.
+    r_mm: f64,
+}
+
+impl Kept {
+    fn with(self, correction: Correction) -> Corrected {
+        let pieces = if self.untouched { SmallVec::new() } else { SmallVec::from_slice(&[self.piece]) };
+        Corrected { pieces, correction }
+    }
+}
+
 impl<'m> Corrector<'m> {
     /// One hole: position, R level and depth move with the machine's error there.
     ///
@@ -33,68 +52,53 @@ impl<'m> Corrector<'m> {
         let mut at_bottom = at_r;
         at_bottom[normal] = hole.bottom_mm;
         let start = Vector::from(hole.start.linear_mm);
+        let came = self.direction;
         self.turn_towards(&start, &at_r);
-        let way = |from: f64, to: f64, otherwise: i8| {
-            if to < from {
-                -1
-            } else if to > from {
-                1
-            } else {
-                otherwise
-            }
-        };
         let flat = hole.bottom_mm == at_r[normal];
         let before = (self.standing, self.remembered);
         let mut turns = 0;
-        let (machine, down, top, bottom, (piece, untouched, verdict), came_back) = loop {
+        let (machine, [top, bottom], kept) = loop {
             let mut machine = self.machine(block, hole.at_r.rotary_deg);
             // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
-            let down = way(at_r[normal], hole.bottom_mm, self.direction[normal]);
-            machine.state.direction[normal] = down;
+            machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
             let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
+            let mut reached = self.standing;
+            reached[normal] = flat.then_some(kept.r_mm);
             turns += 1;
-            let end = self.standing;
-            let against = if flat {
-                self.standing[normal] = Some(kept.3);
-                let against = self.against(before.0, machine.state.direction, block);
-                self.standing = end;
-                against
-            } else {
-                self.against_in_plane(before.0, machine.state.direction, normal, block)
-            };
-            match against {
+            match self.against(before.0, reached, came, machine.state.direction, block) {
                 Some(against) if turns < MOST_TURNS => {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
                 }
-                _ => {
-                    let way_back = end[normal].map_or(0, |end| way(kept.3, end, down));
-                    break (machine, down, top, bottom, (kept.0, kept.1, kept.2), way_back);
-                }
+                _ => break (machine, [top, bottom], kept),
             }
         };
+        let down = machine.state.direction[normal];
         let mut correction = Correction {
             largest_mm: (top - at_r).norm().max((bottom - at_bottom).norm()),
             before_mm: machine.error(at_r).norm().max(machine.error(at_bottom).norm()),
             ..Correction::default()
         };
         // Afterwards the axis has come back out of the hole.
-        self.direction[normal] = if flat { came_back } else { -down };
+        self.direction[normal] = match self.standing[normal] {
+            Some(end) if flat => heading(kept.r_mm, end, down),
+            _ => -down,
+        };
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
         if self.expanding && expandable {
             (self.standing, self.remembered) = before;
         } else {
-            match verdict {
+            match kept.verdict {
                 Verdict::Within(bound) => {
                     correction.after_mm = bound;
-                    return Ok(kept(piece, untouched, correction));
+                    return Ok(kept.with(correction));
                 }
                 Verdict::Beyond { distance_mm, .. } if !expandable => {
                     correction.after_mm = distance_mm;
                     correction.leaning_mm = Some(distance_mm);
-                    return Ok(kept(piece, untouched, correction));
+                    return Ok(kept.with(correction));
                 }
                 Verdict::Beyond { .. } => {
                     (self.standing, self.remembered) = before;
@@ -107,19 +111,6 @@ impl<'m> Corrector<'m> {
         Ok(corrected)
     }
 
-    /// Axes of the plane that moved against their direction.
-    fn against_in_plane(
-        &self,
-        before: [Option<f64>; 3],
-        direction: [i8; 3],
-        normal: usize,
-        block: &Block,
-    ) -> Option<[i8; 3]> {
-        let mut against = self.against(before, direction, block)?;
-        against[normal] = 0;
-        (against != [0; 3]).then_some(against)
-    }
-
     /// The machine as it drills: in the plane the axes come from where they came from last.
     fn drilling(&self, machine: &Machine<'m>, normal: usize) -> Machine<'m> {
         let mut state = machine.state;
@@ -128,15 +119,14 @@ impl<'m> Corrector<'m> {
         Machine { state, ..*machine }
     }
 
-    /// The cycle block with its words moved, whether they were, how far its hole is then from the programmed one, and where
-    /// R is, axis command in mm.
+    /// The cycle block with its words moved.
     fn keep_cycle(
         &mut self,
         hole: &Hole,
         block: &Block,
         machine: &Machine<'_>,
         (top, bottom): (Vector, Vector),
-    ) -> (Piece, bool, Verdict, f64) {
+    ) -> Kept {
         let [first, second, normal] = hole.plane.axes();
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
@@ -260,7 +250,8 @@ impl<'m> Corrector<'m> {
                 if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
-        (Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 }, untouched, verdict, from[normal])
+        let piece = Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 };
+        Kept { piece, untouched, verdict, r_mm: from[normal] }
     }
 
     /// The cycle as the moves it is made of.
@@ -283,14 +274,16 @@ impl<'m> Corrector<'m> {
         let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
         let rapid =
             |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
-                let before = corrector.standing;
+                let (before, came) = (corrector.standing, corrector.direction);
                 let mut turns = 0;
                 let (machine, wanted, axes) = loop {
                     let machine = corrector.drilling(machine, normal);
                     let wanted = corrector.solve(&machine, to)?;
                     let axes = corrector.go(block, &to, &wanted, false);
+                    let mut reached = corrector.standing;
+                    reached[normal] = None;
                     turns += 1;
-                    match corrector.against_in_plane(before, machine.state.direction, normal, block) {
+                    match corrector.against(before, reached, came, machine.state.direction, block) {
                         Some(against) if turns < MOST_TURNS => {
                             corrector.turn(against);
                             corrector.standing = before;
@@ -370,9 +363,4 @@ impl<'m> Corrector<'m> {
         rapid(self, place(after_mm), corrected)?;
         Ok(())
     }
-}
-
-fn kept(piece: Piece, untouched: bool, correction: Correction) -> Corrected {
-    let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
-    Corrected { pieces, correction }
 }

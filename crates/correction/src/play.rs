@@ -15,6 +15,18 @@ use crate::grid::Block;
 /// Commands nearer than this are the same place: far below every output step.
 const SAME_MM: f64 = 1e-9;
 
+/// Which way an axis goes; one that does not move keeps its direction.
+#[inline]
+pub(crate) fn heading(from: f64, to: f64, otherwise: i8) -> i8 {
+    if to > from {
+        1
+    } else if to < from {
+        -1
+    } else {
+        otherwise
+    }
+}
+
 /// What became of a try to follow a curve with one block.
 pub(crate) enum Tried {
     /// Its block is written.
@@ -35,25 +47,30 @@ pub(crate) type Try<'m> =
     fn(&mut Corrector<'m>, &mut Follow<'_, 'm>, &Curve, [bool; 3]) -> Result<Tried, CorrectionError>;
 
 impl<'m> Corrector<'m> {
-    /// The axes that came from `before` to where they stand against `direction`, and which way; 0 for the others.
+    /// The axes that come from `before` to `reached` against `direction`, and which way; 0 for the others.
+    ///
+    /// An axis that does not move stays on the side to which it `came` earlier.
     ///
     /// In a turned frame every axis moves by the rounding of all: there the question has no answer, and nothing
     /// but rapids is corrected.
     pub(crate) fn against(
         &self,
         before: [Option<f64>; 3],
+        reached: [Option<f64>; 3],
+        came: [i8; 3],
         direction: [i8; 3],
         block: &Block,
     ) -> Option<[i8; 3]> {
         if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
-        let way = |i: usize| match (before[i], self.standing[i]) {
-            (Some(from), Some(to)) if (to - from).abs() > SAME_MM => {
-                let sign = if to > from { 1 } else { -1 };
-                if sign == direction[i] { 0 } else { sign }
-            }
-            _ => 0,
+        let way = |i: usize| {
+            let side = match (before[i], reached[i]) {
+                (Some(from), Some(to)) if (to - from).abs() > SAME_MM => heading(from, to, 0),
+                (Some(_), Some(_)) => came[i],
+                _ => 0,
+            };
+            if side == direction[i] { 0 } else { side }
         };
         let found = [way(0), way(1), way(2)];
         (found != [0; 3]).then_some(found)
@@ -65,7 +82,7 @@ impl<'m> Corrector<'m> {
             if let (Some(from), Some(to)) = (from, self.standing[i])
                 && (to - from).abs() > SAME_MM
             {
-                self.direction[i] = if to > from { 1 } else { -1 };
+                self.direction[i] = heading(from, to, 0);
             }
         }
     }
@@ -126,11 +143,7 @@ impl<'m> Corrector<'m> {
             Some(standing)
                 if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.axis_step_mm(i) =>
             {
-                if wanted[i] > standing {
-                    1
-                } else {
-                    -1
-                }
+                heading(standing, wanted[i], 0)
             }
             _ => 0,
         };

@@ -14,6 +14,7 @@ use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
 use crate::deviation::{Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block};
+use crate::play::heading;
 
 /// Room for the rounding of the few additions here, mm.
 const SLACK_MM: f64 = 1e-9;
@@ -63,11 +64,7 @@ pub struct Foreseen {
 #[inline]
 fn turned(mut direction: [i8; 3], start_mm: &[f64; 3], end_mm: &[f64; 3]) -> [i8; 3] {
     for i in 0..3 {
-        if end_mm[i] > start_mm[i] {
-            direction[i] = 1;
-        } else if end_mm[i] < start_mm[i] {
-            direction[i] = -1;
-        }
+        direction[i] = heading(start_mm[i], end_mm[i], direction[i]);
     }
     direction
 }
@@ -215,7 +212,7 @@ impl Corrector<'_> {
         let (stood, came) = (self.standing, self.direction);
         self.standing = [Some(to.x), Some(to.y), Some(to.z)];
         self.direction = direction;
-        if depends && self.against(stood, direction, block).is_some() {
+        if depends && self.against(stood, self.standing, direction, direction, block).is_some() {
             (self.standing, self.direction) = (stood, came);
             return None;
         }
