@@ -302,20 +302,19 @@ impl<'m> Corrector<'m> {
     ) -> Result<([Vector; 3], bool), CorrectionError> {
         let wanted = PLACES.map(|s| part.at(s));
         let machine = &follow.machine;
-        let mut together = [None; LANES];
-        if let Some(everywhere) = &machine.everywhere {
+        let together = machine.everywhere.as_ref().and_then(|everywhere| {
             let targets = from_fn(|k| wanted[k.min(2)].into());
             let directions = [machine.state.direction; LANES];
-            together = machine.model.commands_for(&targets, &directions, &machine.state, everywhere);
+            machine.model.commands_for(&targets, &directions, &machine.state, everywhere)
+        });
+        if let Some([x, y, z]) = together {
+            return Ok((from_fn(|k| Vector::new(x[k], y[k], z[k])), true));
         }
         let mut found = wanted;
-        for (found, command) in found.iter_mut().zip(together) {
-            *found = match command {
-                Some(command) => command,
-                None => self.solve(machine, *found)?,
-            };
+        for found in &mut found {
+            *found = self.solve(machine, *found)?;
         }
-        Ok((found, together.iter().all(Option::is_some)))
+        Ok((found, false))
     }
 }
 

@@ -161,8 +161,20 @@ impl Block {
     #[inline]
     pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (AxisWord, f64) {
         let origin = if self.incremental { standing_mm.unwrap_or(0.0) } else { 0.0 };
-        let counts = round(self.in_units(wanted_mm - origin) * self.per_unit(axis));
+        let counts = round(self.steps(axis, wanted_mm - origin));
         (AxisWord::Write(counts), origin + self.from_counts(axis, counts))
+    }
+
+    /// A length as a number of output steps.
+    #[inline]
+    pub(crate) fn steps(&self, axis: usize, mm: f64) -> f64 {
+        self.in_units(mm) * self.per_unit(axis)
+    }
+
+    /// Millimetres of a whole number of output steps.
+    #[inline]
+    pub(crate) fn steps_mm(&self, axis: usize, steps: f64) -> f64 {
+        steps / self.per_unit(axis) * self.unit_mm
     }
 
     /// Adds words for the axes that must not be left out beside others; `reached`: where the words bring the axes.
@@ -178,12 +190,12 @@ impl Block {
     /// Program millimetres of a count of steps.
     #[inline]
     pub fn from_counts(&self, axis: usize, counts: i64) -> f64 {
-        counts as f64 / self.per_unit(axis) * self.unit_mm
+        self.steps_mm(axis, counts as f64)
     }
 
     /// Nearest count of steps for a length in mm.
     pub fn to_counts(&self, axis: usize, mm: f64) -> i64 {
-        round(self.in_units(mm) * self.per_unit(axis))
+        round(self.steps(axis, mm))
     }
 
     /// True where the block has a word for the axis.

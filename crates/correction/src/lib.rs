@@ -19,12 +19,14 @@ mod hole;
 mod line;
 mod play;
 mod short_line;
+mod short_run;
 
 pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, Trace, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};
 pub use short_line::{Foreseen, ShortLine, ShortLines};
+pub use short_run::{Run, ShortRun};
 
 /// One block of output, in whole output steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,7 +17,7 @@ use crate::grid::{AxisWord, Block};
 use crate::play::heading;
 
 /// Room for the rounding of the few additions here, mm.
-const SLACK_MM: f64 = 1e-9;
+pub(crate) const SLACK_MM: f64 = 1e-9;
 
 /// A line that was corrected the short way: one block of output.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,24 +40,24 @@ impl ShortLine {
 #[derive(Clone, Copy, Debug)]
 pub struct ShortLines {
     /// Tool and rotary axes; place and directions are not used.
-    state: Command,
+    pub(crate) state: Command,
     rotary_deg: [f64; 3],
-    offset_mm: [f64; 3],
-    limit_mm: f64,
+    pub(crate) offset_mm: [f64; 3],
+    pub(crate) limit_mm: f64,
     /// An axis this near to a corrected place stands there.
-    near_mm: [f64; 3],
-    half_step_mm: [f64; 3],
+    pub(crate) near_mm: [f64; 3],
+    pub(crate) half_step_mm: [f64; 3],
     /// The error depends on the direction of motion.
-    depends: bool,
+    pub(crate) depends: bool,
 }
 
-/// The model's answer for a line before its turn.
+/// The model's answers for lines before their turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Foreseen {
-    /// The directions that it holds for.
-    direction: [i8; 3],
-    /// `None` where the model has to be asked again.
-    command_mm: Option<Vector>,
+    /// The directions that each holds for.
+    pub(crate) directions: [[i8; 3]; LANES],
+    /// X, Y and Z of each.
+    pub(crate) commands_mm: [[f64; LANES]; 3],
 }
 
 /// The directions after a motion.
@@ -91,14 +91,16 @@ impl Corrector<'_> {
 
     /// Asks the model for several lines at once: from `start_mm` to the first of `ends_mm` and on from there.
     ///
-    /// What it says is used by [`Corrector::short_line`] where the directions are those foreseen.
+    /// What it says is used by [`Corrector::short_run`], and by [`Corrector::short_line`] where the directions are those
+    /// foreseen. `None` where it has to be asked for each.
     #[must_use]
     pub fn foresee(
         &self,
         lines: &ShortLines,
         mut start_mm: [f64; 3],
         ends_mm: &[[f64; 3]; LANES],
-    ) -> [Foreseen; LANES] {
+    ) -> Option<Foreseen> {
+        let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
         let mut direction = self.direction;
         let mut directions = [direction; LANES];
         for (found, end_mm) in directions.iter_mut().zip(ends_mm) {
@@ -106,17 +108,14 @@ impl Corrector<'_> {
             start_mm = *end_mm;
             *found = direction;
         }
-        let commands = match &self.everywhere {
-            Some((_, _, Some(everywhere))) => {
-                self.model.commands_for(ends_mm, &directions, &lines.state, everywhere)
-            }
-            _ => [None; LANES],
-        };
-        from_fn(|k| Foreseen { direction: directions[k], command_mm: commands[k] })
+        let commands_mm = self.model.commands_for(ends_mm, &directions, &lines.state, everywhere)?;
+        Some(Foreseen { directions, commands_mm })
     }
 
     /// Corrects a line the short way; `None`, with nothing changed, where [`Corrector::correct`] must be asked. Where
     /// there is an answer, it would have been that of [`Corrector::correct`].
+    ///
+    /// * `foreseen` – by [`Corrector::foresee`], and which of its lines this is
     #[inline]
     pub fn short_line(
         &mut self,
@@ -124,7 +123,7 @@ impl Corrector<'_> {
         block: &Block,
         start_mm: [f64; 3],
         end_mm: [f64; 3],
-        foreseen: Option<&Foreseen>,
+        foreseen: Option<(&Foreseen, usize)>,
     ) -> Option<ShortLine> {
         let line = self.proven_short(lines, block, start_mm, end_mm, foreseen)?;
         self.expanding = false;
@@ -140,32 +139,25 @@ impl Corrector<'_> {
         block: &Block,
         start_mm: [f64; 3],
         end_mm: [f64; 3],
-        foreseen: Option<&Foreseen>,
+        foreseen: Option<(&Foreseen, usize)>,
     ) -> Option<ShortLine> {
         let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
-        let (last, answer) = self.last?;
-        let [Some(x), Some(y), Some(z)] = self.standing else { return None };
         let (start, end): (Vector, Vector) = (start_mm.into(), end_mm.into());
-        let ShortLines { state, offset_mm: offset, limit_mm, near_mm, half_step_mm, depends, .. } = *lines;
-        if last.linear_mm != start {
-            return None;
-        }
+        let ShortLines { state, offset_mm: offset, limit_mm, half_step_mm, depends, .. } = *lines;
+        let (from, answer) = self.stands_at(lines, &start)?;
         let direction = turned(self.direction, &start_mm, &end_mm);
-        if last.tool_mm != state.tool_mm
-            || last.rotary_rad != state.rotary_rad
-            || (depends && (last.direction != direction || direction.contains(&0)))
+        if depends
+            && (self.last.is_none_or(|(last, _)| last.direction != direction) || direction.contains(&0))
         {
-            return None;
-        }
-        // The axes stand at the corrected start, as the last line left them.
-        let from = Vector::new(x, y, z);
-        let stands = |i: usize| (from[i] - answer[i]).abs() <= near_mm[i];
-        if !(stands(0) && stands(1) && stands(2)) {
             return None;
         }
         let target = Command { linear_mm: end, direction, ..state };
         let wanted = match foreseen {
-            Some(Foreseen { direction: same, command_mm: Some(command) }) if *same == direction => *command,
+            Some((Foreseen { directions, commands_mm: [x, y, z] }, line))
+                if directions[line] == direction =>
+            {
+                Vector::new(x[line], y[line], z[line])
+            }
             _ => self.model.command_for(&target, everywhere).ok()?,
         };
 
@@ -221,6 +213,22 @@ impl Corrector<'_> {
         }
         self.last = Some((target, wanted));
         Some(ShortLine { axes, correction })
+    }
+
+    /// Where the axes stand and the corrected place, where that is `start` and the last line left them there.
+    #[inline]
+    pub(crate) fn stands_at(&self, lines: &ShortLines, start: &Vector) -> Option<(Vector, Vector)> {
+        let (last, answer) = self.last?;
+        let [Some(x), Some(y), Some(z)] = self.standing else { return None };
+        let from = Vector::new(x, y, z);
+        let near = |i: usize| (from[i] - answer[i]).abs() <= lines.near_mm[i];
+        let stands = last.linear_mm == *start
+            && last.tool_mm == lines.state.tool_mm
+            && last.rotary_rad == lines.state.rotary_rad
+            && near(0)
+            && near(1)
+            && near(2);
+        stands.then_some((from, answer))
     }
 
     /// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its

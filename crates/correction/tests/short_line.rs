@@ -1,6 +1,6 @@
 //! The short way to correct a short line says what the long way says, word for word and figure for figure.
 
-use correction::{Block, Corrector, Letters, Options, Outside};
+use correction::{AxisWord, Block, Corrector, Letters, Options, Outside, Run};
 use machine_model::{
     AxisTables, Chain, Command, Description, Engine, EngineId, Everywhere, Interpolation, LANES, LinearAxis,
     Move, PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
@@ -60,6 +60,23 @@ fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> Ri
     .expect("a machine")
 }
 
+fn block() -> Block {
+    Block {
+        frame: Frame::shift([60.0, 60.0, 60.0]),
+        unit_mm: 1.0,
+        decimals: [3; 3],
+        incremental: false,
+        arc_centres_absolute: false,
+        letters: Letters::axes([true; 3]),
+        whole: [false; 3],
+        tool_mm: [1.0, -2.0, -40.0],
+        centre_words: true,
+        arc_radius_tolerance_mm: 0.02,
+        peck_clearance_mm: 0.5,
+        chip_retreat_mm: 0.5,
+    }
+}
+
 /// One step of a program: how far along X, Y, Z in output steps, and which axes are named though they stand.
 type Way = ([i32; 3], u8);
 
@@ -80,20 +97,7 @@ proptest! {
         let bare = Bare(model.clone());
         let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
         let (mut short, mut long) = (Corrector::new(&model, options), Corrector::new(&bare, options));
-        let mut block = Block {
-            frame: Frame::shift([60.0, 60.0, 60.0]),
-            unit_mm: 1.0,
-            decimals: [3; 3],
-            incremental: false,
-            arc_centres_absolute: false,
-            letters: Letters::axes([true; 3]),
-            whole: [false; 3],
-            tool_mm: [1.0, -2.0, -40.0],
-            centre_words: true,
-            arc_radius_tolerance_mm: 0.02,
-            peck_clearance_mm: 0.5,
-            chip_retreat_mm: 0.5,
-        };
+        let mut block = block();
         let at = |steps: [i32; 3]| Position {
             linear_mm: steps.map(|step| f64::from(step) / 1000.0 + 60.0),
             rotary_deg: [0.0; 3],
@@ -124,7 +128,7 @@ proptest! {
             let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
             let line = asked.short_line(&lines, &block, start, end, None);
             let foreseen = foresees.foresee(&lines, start, &[end; LANES]);
-            prop_assert_eq!(foresees.short_line(&lines, &block, start, end, Some(&foreseen[0])), line);
+            prop_assert_eq!(foresees.short_line(&lines, &block, start, end, foreseen.as_ref().map(|foreseen| (foreseen, 0))), line);
             taken += usize::from(line.is_some());
             let (a, b) = (short.correct(&Motion::Feed(feed), &block).unwrap(), long.correct(&Motion::Feed(feed), &block).unwrap());
             prop_assert_eq!(&a.pieces, &b.pieces);
@@ -138,5 +142,85 @@ proptest! {
         }
         // Else this test would say nothing.
         prop_assert!(taken * 10 >= count * 9 || play > 0.0, "{} of {}", taken, count);
+    }
+
+    #[test]
+    fn a_run_says_what_its_lines_say(
+        values in proptest::collection::vec(-1.0f64..1.0, 90),
+        ways in proptest::collection::vec((prop::array::uniform3(-900i32..900), 0u8..8), 4..80),
+        monotone: bool,
+        all_named: bool,
+        told: bool,
+    ) {
+        let ways: Vec<Way> = ways;
+        let model =
+            machine(&values, 0.0, if monotone { Interpolation::Monotone } else { Interpolation::Linear });
+        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+        let mut together = Corrector::new(&model, options);
+        let mut block = block();
+        let at = |steps: [i32; 3]| steps.map(|step| f64::from(step) / 1000.0 + 60.0);
+        let position = |linear_mm| Position { linear_mm, rotary_deg: [0.0; 3] };
+        let start = Motion::Rapid { start: Partial::default(), end: position(at([0; 3])).into() };
+        together.correct(&start, &block).unwrap();
+        if told {
+            // More than any line will be told with.
+            together.set_told_mm([1.0; 2]);
+        }
+        let lines = together.short_lines(&block, [0.0; 3]).unwrap();
+        let mut steps = [0; 3];
+        let (mut runs, groups) = (0, ways.len() / LANES);
+        for group in ways.chunks_exact(LANES) {
+            let start_mm = at(steps);
+            let (mut ends_mm, mut names) = ([[0.0; 3]; LANES], [[true; 3]; LANES]);
+            for (lane, (way, named)) in group.iter().enumerate() {
+                for i in 0..3 {
+                    // An axis that no line names stands still.
+                    let moves = all_named || (named | 1) >> i & 1 == 1;
+                    steps[i] = (steps[i] + if moves { way[i] } else { 0 }).clamp(-50_000, 50_000);
+                    names[lane][i] = moves;
+                }
+                ends_mm[lane] = at(steps);
+            }
+            let mut single = together.clone();
+            let foreseen = together.foresee(&lines, start_mm, &ends_mm);
+            let run = Run { start_mm, ends_mm: &ends_mm, names };
+            let run = foreseen.and_then(|foreseen| together.short_run(&lines, &block, &run, &foreseen));
+            let (mut from, mut largest) = (start_mm, (0.0, 0));
+            for lane in 0..LANES {
+                block.letters = Letters::axes(names[lane]);
+                let (end, told) = (ends_mm[lane], single.told_mm());
+                let line = single.short_line(&lines, &block, from, end, None);
+                if let Some(run) = &run {
+                    let line = line.expect("the short way");
+                    let counts = line.axes.map(|word| match word {
+                        AxisWord::Write(counts) => Some(counts),
+                        AxisWord::Keep | AxisWord::Omit => None,
+                    });
+                    prop_assert_eq!(counts, run.counts[lane]);
+                    prop_assert_eq!(told, single.told_mm());
+                    if line.correction.largest_mm > largest.0 {
+                        largest = (line.correction.largest_mm, lane);
+                    }
+                } else if line.is_none() {
+                    let feed = Feed {
+                        start: position(from),
+                        end: position(end),
+                        shape: Shape::Line,
+                        rate: FeedRate::PerMinute,
+                        may_split: true,
+                    };
+                    single.correct(&Motion::Feed(feed), &block).unwrap();
+                }
+                from = end;
+            }
+            if let Some(run) = run {
+                prop_assert_eq!(largest, (run.largest_mm, run.largest));
+                prop_assert!(together.continues_as(&single));
+                runs += 1;
+            }
+            together = single;
+        }
+        // Else this test would say nothing.
+        prop_assert!(!all_named || !told || runs * 10 >= groups * 9, "{} of {}", runs, groups);
     }
 }

@@ -1,5 +1,6 @@
 //! The six error functions of one axis, looked up together.
 
+use crate::lanes::Real;
 use crate::table::{self, Cubic, Grid};
 use crate::{Bounds, Range, Table};
 
@@ -17,6 +18,58 @@ pub struct AxisTables {
     straight: Box<[[Six; 2]]>,
     /// Per cell the coefficients of t², t³; empty where all functions are piecewise linear.
     curved: Box<[[Six; 2]]>,
+}
+
+/// The six functions between two nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Cell<'t> {
+    /// The lower node.
+    pub(crate) low: f64,
+    /// The upper node.
+    pub(crate) high: f64,
+    straight: &'t [Six; 2],
+    curved: Option<&'t [Six; 2]>,
+}
+
+impl Cell<'_> {
+    /// All six at `t` from the lower node.
+    #[inline(always)]
+    pub(crate) fn at<T: Real>(&self, t: T) -> [T; 6] {
+        let mut six = [t; 6];
+        for (i, value) in six.iter_mut().enumerate() {
+            *value = self.value(i, t);
+        }
+        six
+    }
+
+    /// All six and their slopes at `t` from the lower node.
+    #[inline(always)]
+    pub(crate) fn with_slopes<T: Real>(&self, t: T) -> ([T; 6], [T; 6]) {
+        let (mut six, mut slopes) = ([t; 6], [t; 6]);
+        for i in 0..6 {
+            (six[i], slopes[i]) = (self.value(i, t), self.slope(i, t));
+        }
+        (six, slopes)
+    }
+
+    #[inline(always)]
+    fn value<T: Real>(&self, i: usize, t: T) -> T {
+        let [c0, c1] = self.straight;
+        let beyond = match self.curved {
+            None => t.all(c1[i]),
+            Some([c2, c3]) => t.all(c1[i]) + t * (t.all(c2[i]) + t * t.all(c3[i])),
+        };
+        t.all(c0[i]) + t * beyond
+    }
+
+    #[inline(always)]
+    fn slope<T: Real>(&self, i: usize, t: T) -> T {
+        let [_, c1] = self.straight;
+        match self.curved {
+            None => t.all(c1[i]),
+            Some([c2, c3]) => t.all(c1[i]) + t * (t.all(2.0 * c2[i]) + t * t.all(3.0 * c3[i])),
+        }
+    }
 }
 
 /// Bounds of the six functions over one interval.
@@ -175,35 +228,46 @@ impl AxisTables {
         [c0[function], c1[function], c2[function], c3[function]]
     }
 
+    /// A cell by its number.
+    #[inline(always)]
+    fn cell(&self, cell: usize) -> Cell<'_> {
+        Cell {
+            low: self.grid.nodes()[cell],
+            high: self.grid.nodes()[cell + 1],
+            straight: &self.straight[cell],
+            curved: self.curved.get(cell),
+        }
+    }
+
+    /// The cell that `q` lies in, where its [`Cell::low`] and [`Cell::high`] say so.
+    #[inline(always)]
+    pub(crate) fn likely_cell(&self, q: f64) -> Cell<'_> {
+        self.cell(self.grid.likely_cell(q))
+    }
+
+    /// The cell of `q`, or of the nearer end, and how far it lies from the lower node.
+    #[inline(always)]
+    fn cell_of(&self, q: f64) -> (Cell<'_>, f64) {
+        let q = q.clamp(self.grid.low(), self.grid.high());
+        let cell = self.cell(self.grid.cell(q));
+        let t = q - cell.low;
+        (cell, t)
+    }
+
     /// All six at `q`; outside the range the values of the nearer end.
     #[must_use]
     #[inline(always)]
     pub fn at(&self, q: f64) -> Six {
-        let q = q.clamp(self.grid.low(), self.grid.high());
-        let cell = self.grid.cell(q);
-        let t = q - self.grid.nodes()[cell];
-        let [c0, c1] = &self.straight[cell];
-        match self.curved.get(cell) {
-            None => std::array::from_fn(|i| c0[i] + t * c1[i]),
-            Some([c2, c3]) => std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
-        }
+        let (cell, t) = self.cell_of(q);
+        cell.at(t)
     }
 
     /// All six and their slopes at `q`, which lies in the range; at a kink the slope of the upper side.
     #[must_use]
     #[inline(always)]
     pub fn with_slopes(&self, q: f64) -> (Six, Six) {
-        let q = q.clamp(self.grid.low(), self.grid.high());
-        let cell = self.grid.cell(q);
-        let t = q - self.grid.nodes()[cell];
-        let [c0, c1] = &self.straight[cell];
-        match self.curved.get(cell) {
-            None => (std::array::from_fn(|i| c0[i] + t * c1[i]), *c1),
-            Some([c2, c3]) => (
-                std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]))),
-                std::array::from_fn(|i| c1[i] + t * (2.0 * c2[i] + t * (3.0 * c3[i]))),
-            ),
-        }
+        let (cell, t) = self.cell_of(q);
+        cell.with_slopes(t)
     }
 
     /// Bounds that hold on every interval of at most these lengths, mm, wherever it lies in the range.

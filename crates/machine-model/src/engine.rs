@@ -203,16 +203,16 @@ pub trait PathModel: Engine {
         self.solve(target).map(|solution| solution.linear_mm)
     }
 
-    /// [`PathModel::command_for`] for several targets that differ in place and direction only; `None` for one that has
-    /// to be asked for alone.
+    /// [`PathModel::command_for`] for several targets that differ in place and direction only: X, Y and Z of each; `None`
+    /// where they have to be asked for one by one.
     fn commands_for(
         &self,
         _targets_mm: &[[f64; 3]; LANES],
         _directions: &[[i8; 3]; LANES],
         _state: &Command,
         _everywhere: &Everywhere,
-    ) -> [Option<Vector>; LANES] {
-        [None; LANES]
+    ) -> Option<[[f64; LANES]; 3]> {
+        None
     }
 
     /// True where the error depends on the direction of motion.

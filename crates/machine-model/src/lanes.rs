@@ -1,30 +1,105 @@
 //! Several points evaluated together.
 //!
 //! A machine is a chain: the error of what lies beyond an axis has to be known before that axis' own. Most of the time of
-//! one point is spent waiting for that; points side by side wait together, and two share an instruction. Each goes
-//! through the very operations it would go through alone, so that its bits do not depend on its neighbours.
+//! one point is spent waiting for that; points side by side wait together, and share instructions where the processor
+//! does four numbers in one. Each goes through the very operations it would go through alone, none of them fused, so that
+//! its bits depend neither on its neighbours nor on the processor.
 
-use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
-use crate::Vector;
-use crate::axis_tables::{AxisTables, Six};
+use pulp::bytemuck::cast;
+use pulp::{Simd, f64x4};
+
+use crate::axis_tables::{AxisTables, Cell, Six};
 use crate::rigid_body::Link;
+use crate::{Range, Vector};
 
 /// How many points are evaluated together.
 pub const LANES: usize = 4;
 
+/// What is done for several points at once.
+pub(crate) trait Together {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with the instructions of `simd`.
+    fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Self::Output;
+}
+
+/// Does something for several points with the best instructions that the processor has for it.
+#[inline]
+pub(crate) fn together<T: Together>(work: T) -> T::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        struct WithFour<T>(T, pulp::x86::V3);
+        impl<T: Together> pulp::NullaryFnOnce for WithFour<T> {
+            type Output = T::Output;
+            #[inline(always)]
+            fn call(self) -> Self::Output {
+                self.0.with(self.1)
+            }
+        }
+        return simd.vectorize(WithFour(work, simd));
+    }
+    work.with(pulp::Scalar256b)
+}
+
 /// A number for each point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<S> {
+    simd: S,
+    numbers: f64x4,
+}
+
+impl<S: Simd<f64s = f64x4>> Lanes<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, numbers: [f64; LANES]) -> Self {
+        Self { simd, numbers: cast(numbers) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn each(self) -> [f64; LANES] {
+        cast(self.numbers)
+    }
+
+    /// True where `low <= q < high` for all.
+    #[inline(always)]
+    fn all_within(self, low: f64, high: f64) -> bool {
+        let simd = self.simd;
+        let above = simd.less_than_or_equal_f64s(simd.splat_f64s(low), self.numbers);
+        let below = simd.less_than_f64s(self.numbers, simd.splat_f64s(high));
+        all(simd, simd.and_m64s(above, below))
+    }
+
+    /// True where [`Range::contains`] is for each.
+    #[inline(always)]
+    pub(crate) fn all_in(self, range: &Range) -> bool {
+        let simd = self.simd;
+        let above = simd.less_than_or_equal_f64s(simd.splat_f64s(range.low), self.numbers);
+        let below = simd.less_than_or_equal_f64s(self.numbers, simd.splat_f64s(range.high));
+        all(simd, simd.and_m64s(above, below))
+    }
+
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> Self {
+        Self { numbers: self.simd.sqrt_f64s(self.numbers), ..self }
+    }
+}
+
+/// True where the mask is for all.
+#[inline(always)]
+fn all<S: Simd<f64s = f64x4>>(simd: S, mask: S::m64s) -> bool {
+    let [a, b, c, d]: [u64; LANES] = cast(simd.transmute_u64s_m64s(mask));
+    a & b & c & d == u64::MAX
+}
 
 /// One number, or one for each of several points.
 pub(crate) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// Directions of motion for each point.
     type Directions;
 
-    /// The same for all.
-    fn all(value: f64) -> Self;
+    /// The same number for each point that `self` has one for.
+    fn all(self, value: f64) -> Self;
 
     /// The six functions of an axis at `q`; `None` where it has no errors.
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]>;
@@ -38,7 +113,7 @@ impl Real for f64 {
     type Directions = [i8; 3];
 
     #[inline(always)]
-    fn all(value: f64) -> Self {
+    fn all(self, value: f64) -> Self {
         value
     }
     #[inline(always)]
@@ -51,53 +126,46 @@ impl Real for f64 {
     }
 }
 
-macro_rules! each {
-    ($trait:ident, $function:ident, $operator:tt) => {
-        impl $trait for Lanes {
+macro_rules! each_lane {
+    ($trait:ident, $function:ident, $lanes:ident) => {
+        impl<S: Simd<f64s = f64x4>> $trait for Lanes<S> {
             type Output = Self;
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                Self(from_fn(|lane| self.0[lane] $operator other.0[lane]))
-            }
-        }
-        impl<T: Real> $trait for Triple<T> {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                Self(from_fn(|i| self.0[i] $operator other.0[i]))
+                Self { numbers: self.simd.$lanes(self.numbers, other.numbers), ..self }
             }
         }
     };
 }
 
-each!(Add, add, +);
-each!(Sub, sub, -);
+each_lane!(Add, add, add_f64s);
+each_lane!(Sub, sub, sub_f64s);
+each_lane!(Mul, mul, mul_f64s);
 
-impl Mul for Lanes {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self(from_fn(|lane| self.0[lane] * other.0[lane]))
-    }
-}
+// No closures from here on where lanes meet: what they call would be compiled for every processor.
 
-impl Real for Lanes {
+impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
     type Directions = [[i8; 3]; LANES];
 
     #[inline(always)]
-    fn all(value: f64) -> Self {
-        Self([value; LANES])
+    fn all(self, value: f64) -> Self {
+        Self { numbers: self.simd.splat_f64s(value), ..self }
     }
 
     #[inline(always)]
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]> {
         let tables = for_lanes(link, directions)?;
-        // A loop: what is called here would be compiled for every processor.
-        let mut rows: [Six; LANES] = [[0.0; 6]; LANES];
-        for lane in 0..LANES {
-            rows[lane] = tables[lane].at(q.0[lane]);
+        if let Some((cell, t)) = common_cell(&tables, q) {
+            return Some(cell.at(t));
         }
-        Some(from_fn(|function| Self(from_fn(|lane| rows[lane][function]))))
+        let (mut rows, places) = ([[0.0; LANES]; 6], q.each());
+        for lane in 0..LANES {
+            let six = tables[lane].at(places[lane]);
+            for function in 0..6 {
+                rows[function][lane] = six[function];
+            }
+        }
+        Some(lanes(q.simd, &rows))
     }
 
     #[inline(always)]
@@ -107,15 +175,48 @@ impl Real for Lanes {
         directions: &Self::Directions,
     ) -> Option<([Self; 6], [Self; 6])> {
         let tables = for_lanes(link, directions)?;
-        let mut rows: [(Six, Six); LANES] = [Default::default(); LANES];
-        for lane in 0..LANES {
-            rows[lane] = tables[lane].with_slopes(q.0[lane]);
+        if let Some((cell, t)) = common_cell(&tables, q) {
+            return Some(cell.with_slopes(t));
         }
-        Some((
-            from_fn(|function| Self(from_fn(|lane| rows[lane].0[function]))),
-            from_fn(|function| Self(from_fn(|lane| rows[lane].1[function]))),
-        ))
+        let (mut rows, mut slopes, places) = ([[0.0; LANES]; 6], [[0.0; LANES]; 6], q.each());
+        for lane in 0..LANES {
+            let (six, own) = tables[lane].with_slopes(places[lane]);
+            for function in 0..6 {
+                (rows[function][lane], slopes[function][lane]) = (six[function], own[function]);
+            }
+        }
+        Some((lanes(q.simd, &rows), lanes(q.simd, &slopes)))
     }
+}
+
+#[inline(always)]
+fn lanes<S: Simd<f64s = f64x4>>(simd: S, rows: &[[f64; LANES]; 6]) -> [Lanes<S>; 6] {
+    let [x, y, z, a, b, c] = *rows;
+    [
+        Lanes::new(simd, x),
+        Lanes::new(simd, y),
+        Lanes::new(simd, z),
+        Lanes::new(simd, a),
+        Lanes::new(simd, b),
+        Lanes::new(simd, c),
+    ]
+}
+
+/// The cell that all points lie in, and how far from its lower node; `None` where they lie in several, or outside.
+///
+/// Points that follow each other mostly do: then what is read of the tables is the same for all.
+#[inline(always)]
+fn common_cell<'l, S: Simd<f64s = f64x4>>(
+    tables: &[&'l AxisTables; LANES],
+    q: Lanes<S>,
+) -> Option<(Cell<'l>, Lanes<S>)> {
+    let [first, ..] = q.each();
+    let cell = tables[0].likely_cell(first);
+    let mut common = q.all_within(cell.low, cell.high);
+    for own in tables {
+        common &= std::ptr::eq(*own, tables[0]);
+    }
+    if common { Some((cell, q - q.all(cell.low))) } else { None }
 }
 
 /// The tables of an axis for each point.
@@ -135,14 +236,15 @@ fn for_lanes<'l>(link: &'l Link, directions: &[[i8; 3]; LANES]) -> Option<[&'l A
 pub(crate) struct Triple<T>(pub(crate) [T; 3]);
 
 impl<T: Real> Triple<T> {
-    /// The same for all points.
+    /// The same for each point that `like` has a number for.
     #[inline(always)]
-    pub(crate) fn all(v: &Vector) -> Self {
-        Self([T::all(v.x), T::all(v.y), T::all(v.z)])
+    pub(crate) fn all(like: T, v: &Vector) -> Self {
+        Self([like.all(v.x), like.all(v.y), like.all(v.z)])
     }
     #[inline(always)]
     pub(crate) fn scaled(self, by: T) -> Self {
-        Self(self.0.map(|v| v * by))
+        let [x, y, z] = self.0;
+        Self([x * by, y * by, z * by])
     }
     #[inline(always)]
     pub(crate) fn norm_squared(self) -> T {
@@ -155,6 +257,22 @@ impl<T: Real> Triple<T> {
         Self([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
     }
 }
+
+macro_rules! each_of_three {
+    ($trait:ident, $function:ident, $operator:tt) => {
+        impl<T: Real> $trait for Triple<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+                Self([ax $operator bx, ay $operator by, az $operator bz])
+            }
+        }
+    };
+}
+
+each_of_three!(Add, add, +);
+each_of_three!(Sub, sub, -);
 
 impl From<Triple<f64>> for Vector {
     #[inline(always)]

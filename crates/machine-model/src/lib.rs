@@ -14,6 +14,7 @@ mod everywhere;
 pub mod finite_rotations;
 mod first_order;
 mod lanes;
+mod newton;
 mod rigid_body;
 pub mod rotation;
 mod solve;

@@ -9,16 +9,13 @@ use nalgebra::Matrix3;
 
 use crate::axis_tables::{AxisTables, SixBounds};
 use crate::everywhere::CLASSES;
-use crate::lanes::{LANES, Lanes, Real, Triple};
+use crate::lanes::{LANES, Real, Triple};
 use crate::rotation::{around, small, turned};
-use crate::solve::{TOLERANCE_MM, solve};
+use crate::solve::solve;
 use crate::{
     Axis, Command, Description, Engine, EngineId, Everywhere, Move, PathModel, Range, RotaryAxis, Solution,
     SolveError, Vector, Volume, chord_bound,
 };
-
-/// Steps of the fixed point behind Newton's, for targets that come by millions.
-const ROUNDS: u32 = 4;
 
 /// One linear axis, ready to be evaluated.
 #[derive(Clone, Debug)]
@@ -68,12 +65,12 @@ pub struct Prediction {
 /// The machine as a chain of rigid bodies.
 #[derive(Clone, Debug)]
 pub struct RigidBody {
-    description: Description,
+    pub(crate) description: Description,
     /// Workpiece to tool.
     pub(crate) links: [Link; 3],
     /// Of X, Y, Z: its place in `links`.
     place_of: [usize; 3],
-    volume: Volume,
+    pub(crate) volume: Volume,
     /// A rotary axis at the workpiece has errors.
     table_has_errors: bool,
     depends_on_direction: bool,
@@ -217,13 +214,13 @@ impl RigidBody {
             nominal = self.head(command, false);
             error = self.head(command, true) - nominal;
         }
-        self.chain_error(&[q.x, q.y, q.z], &command.direction, Triple::all(&nominal), Triple::all(&error))
-            .into()
+        let all = |v| Triple::all(0.0, v);
+        self.chain_error(&[q.x, q.y, q.z], &command.direction, all(&nominal), all(&error)).into()
     }
 
     /// Error of the linear axes, on top of that of what they carry: the recursion of equation (8).
     #[inline(always)]
-    fn chain_error<T: Real>(
+    pub(crate) fn chain_error<T: Real>(
         &self,
         q: &[T; 3],
         directions: &T::Directions,
@@ -233,25 +230,25 @@ impl RigidBody {
         for link in self.links.iter().rev() {
             let at = q[link.axis];
             if let Some([x, y, z, a, b, c]) = T::six(link, at, directions) {
-                let beyond = nominal + error - Triple::all(&link.measured_lever_mm);
+                let beyond = nominal + error - Triple::all(at, &link.measured_lever_mm);
                 error = error + (Triple([x, y, z]) + turned(Triple([a, b, c]), beyond));
             }
-            error = error + Triple::all(&link.tilt).scaled(at);
-            nominal = nominal + Triple::all(&link.way).scaled(at);
+            error = error + Triple::all(at, &link.tilt).scaled(at);
+            nominal = nominal + Triple::all(at, &link.way).scaled(at);
         }
         error
     }
 
     /// [`Self::chain_error`] of a machine without head, and its gradient to first order: a column for each axis.
     #[inline(always)]
-    fn chain_error_and_gradient<T: Real>(
+    pub(crate) fn chain_error_and_gradient<T: Real>(
         &self,
         q: &[T; 3],
         directions: &T::Directions,
         tool_mm: &Vector,
     ) -> (Triple<T>, [Triple<T>; 3]) {
-        let zero = Triple([T::all(0.0); 3]);
-        let mut nominal = Triple::all(tool_mm);
+        let zero = Triple([q[0].all(0.0); 3]);
+        let mut nominal = Triple::all(q[0], tool_mm);
         let mut error = zero;
         // By place in the chain.
         let mut gradient = [zero; 3];
@@ -261,110 +258,22 @@ impl RigidBody {
             if let Some(([x, y, z, a, b, c], [dx, dy, dz, da, db, dc])) =
                 T::six_with_slopes(link, at, directions)
             {
-                let beyond = nominal + error - Triple::all(&link.measured_lever_mm);
+                let beyond = nominal + error - Triple::all(at, &link.measured_lever_mm);
                 let turn = Triple([a, b, c]);
                 error = error + (Triple([x, y, z]) + turned(turn, beyond));
                 gradient[place] =
                     gradient[place] + (Triple([dx, dy, dz]) + Triple([da, db, dc]).cross(beyond));
                 // The axes that this one carries move on turned ways.
                 for (carried, gradient) in self.links.iter().zip(&mut gradient).skip(place + 1) {
-                    *gradient = *gradient + turn.cross(Triple::all(&carried.way));
+                    *gradient = *gradient + turn.cross(Triple::all(at, &carried.way));
                 }
             }
-            error = error + Triple::all(&link.tilt).scaled(at);
-            gradient[place] = gradient[place] + Triple::all(&link.tilt);
-            nominal = nominal + Triple::all(&link.way).scaled(at);
+            error = error + Triple::all(at, &link.tilt).scaled(at);
+            gradient[place] = gradient[place] + Triple::all(at, &link.tilt);
+            nominal = nominal + Triple::all(at, &link.way).scaled(at);
         }
-        (error, self.place_of.map(|place| gradient[place]))
-    }
-
-    /// `q + e(q) = wanted` by one step of Newton's method: `q` and what is left, evaluated; without head and table
-    /// errors.
-    #[inline(always)]
-    fn newton_step<T: Real>(&self, wanted: &[T; 3], directions: &T::Directions, tool_mm: &Vector) -> [T; 3] {
-        let (error, [x, y, z]) = self.chain_error_and_gradient(wanted, directions, tool_mm);
-        let times = |v: Triple<T>| x.scaled(v.0[0]) + y.scaled(v.0[1]) + z.scaled(v.0[2]);
-        // (1 + G)⁻¹ e = e - G e + G² e - …
-        (Triple(*wanted) - (error - times(error - times(error)))).0
-    }
-
-    /// `q + e(q) - wanted`.
-    #[inline(always)]
-    fn residual<T: Real>(
-        &self,
-        q: &[T; 3],
-        wanted: &[T; 3],
-        directions: &T::Directions,
-        tool_mm: &Vector,
-    ) -> Triple<T> {
-        let zero = Triple([T::all(0.0); 3]);
-        (Triple(*q) - Triple(*wanted)) + self.chain_error(q, directions, Triple::all(tool_mm), zero)
-    }
-
-    /// `q + e(q) = target` by one step of Newton's method and steps of the fixed point, on a machine whose head and table
-    /// make no errors.
-    ///
-    /// A step by the residual `r` leaves at most `gradient·|r|`, which need not be evaluated. `None` where that does
-    /// not settle at once, or leaves the volume.
-    #[inline]
-    fn newton(&self, target: &Command, everywhere: &Everywhere) -> Option<Vector> {
-        let wanted = target.linear_mm.into();
-        if !self.volume.contains(&target.linear_mm)
-            || (self.description.chain.has_rotary() && self.rotary_inside(target).is_err())
-        {
-            return None;
-        }
-        let mut q = self.newton_step(&wanted, &target.direction, &target.tool_mm);
-        for _ in 0..ROUNDS {
-            if !self.volume.contains(&q.into()) {
-                return None;
-            }
-            let residual = self.residual(&q, &wanted, &target.direction, &target.tool_mm);
-            q = (Triple(q) - residual).0;
-            if everywhere.gradient * residual.norm_squared().sqrt() <= TOLERANCE_MM {
-                let q = q.into();
-                return self.volume.contains(&q).then_some(q);
-            }
-        }
-        None
-    }
-
-    /// [`Self::newton`] for several targets.
-    #[inline(always)]
-    fn newton_for_lanes(
-        &self,
-        wanted_mm: &[[f64; 3]; LANES],
-        directions: &[[i8; 3]; LANES],
-        state: &Command,
-        everywhere: &Everywhere,
-    ) -> [Option<Vector>; LANES] {
-        if self.description.chain.has_rotary() && self.rotary_inside(state).is_err() {
-            return [None; LANES];
-        }
-        let wanted: [Lanes; 3] = from_fn(|axis| Lanes(from_fn(|lane| wanted_mm[lane][axis])));
-        let mut q = self.newton_step(&wanted, directions, &state.tool_mm);
-        let place = |q: &[Lanes; 3], lane: usize| Vector::new(q[0].0[lane], q[1].0[lane], q[2].0[lane]);
-        let mut found = [None; LANES];
-        let mut open: [bool; LANES] = from_fn(|lane| self.volume.contains(&wanted_mm[lane].into()));
-        for _ in 0..ROUNDS {
-            let residual = self.residual(&q, &wanted, directions, &state.tool_mm);
-            let size = residual.norm_squared().0;
-            let better = (Triple(q) - residual).0;
-            for lane in 0..LANES {
-                if !self.volume.contains(&place(&q, lane)) {
-                    open[lane] = false;
-                }
-                if open[lane] && everywhere.gradient * size[lane].sqrt() <= TOLERANCE_MM {
-                    found[lane] = Some(place(&better, lane)).filter(|q| self.volume.contains(q));
-                    open[lane] = false;
-                }
-            }
-            if open == [false; LANES] {
-                break;
-            }
-            q = better;
-        }
-        found
+        let [x, y, z] = self.place_of;
+        (error, [gradient[x], gradient[y], gradient[z]])
     }
 
     /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
@@ -416,25 +325,6 @@ fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (M
         centre += rotary.shift_mm;
     }
     (turn, centre - turn * rotary.centre_mm)
-}
-
-/// [`RigidBody::newton_for_lanes`], compiled once for every processor and once for those that do four numbers in an
-/// instruction: the same operations, none of them fused, and so the same bits.
-struct ForLanes<'a> {
-    model: &'a RigidBody,
-    targets_mm: &'a [[f64; 3]; LANES],
-    directions: &'a [[i8; 3]; LANES],
-    state: &'a Command,
-    everywhere: &'a Everywhere,
-}
-
-impl pulp::NullaryFnOnce for ForLanes<'_> {
-    type Output = [Option<Vector>; LANES];
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        self.model.newton_for_lanes(self.targets_mm, self.directions, self.state, self.everywhere)
-    }
 }
 
 /// Tables per direction: one set for all, or negative, mean, positive.
@@ -552,8 +442,11 @@ impl PathModel for RigidBody {
         directions: &[[i8; 3]; LANES],
         state: &Command,
         everywhere: &Everywhere,
-    ) -> [Option<Vector>; LANES] {
-        pulp::Arch::new().dispatch(ForLanes { model: self, targets_mm, directions, state, everywhere })
+    ) -> Option<[[f64; LANES]; 3]> {
+        if self.description.chain.has_rotary() && self.rotary_inside(state).is_err() {
+            return None;
+        }
+        self.newton_together(targets_mm, directions, state, everywhere)
     }
 
     fn depends_on_direction(&self) -> bool {

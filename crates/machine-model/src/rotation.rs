@@ -19,16 +19,17 @@ pub const LARGEST_SMALL_ANGLE_RAD: f64 = 0.1;
 #[must_use]
 #[inline]
 pub fn turned_by(rotation_rad: &Vector, x: &Vector) -> Vector {
-    turned(Triple::<f64>::all(rotation_rad), Triple::all(x)).into()
+    turned(Triple::all(0.0, rotation_rad), Triple::all(0.0, x)).into()
 }
 
 /// [`turned_by`], also of several points.
 #[inline(always)]
 pub(crate) fn turned<T: Real>(rotation_rad: Triple<T>, x: Triple<T>) -> Triple<T> {
-    let (one, c) = (T::all(1.0), T::all);
     let t = rotation_rad.norm_squared();
-    let a = one - t * c(1.0 / 6.0) * (one - t * c(1.0 / 20.0) * (one - t * c(1.0 / 42.0)));
-    let b = c(0.5) * (one - t * c(1.0 / 12.0) * (one - t * c(1.0 / 30.0) * (one - t * c(1.0 / 56.0))));
+    let (one, half) = (t.all(1.0), t.all(0.5));
+    let a = one - t * t.all(1.0 / 6.0) * (one - t * t.all(1.0 / 20.0) * (one - t * t.all(1.0 / 42.0)));
+    let b =
+        half * (one - t * t.all(1.0 / 12.0) * (one - t * t.all(1.0 / 30.0) * (one - t * t.all(1.0 / 56.0))));
     let first = rotation_rad.cross(x);
     first.scaled(a) + rotation_rad.cross(first).scaled(b)
 }

@@ -339,10 +339,10 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
             // Together with others, and in whichever place, a target has the answer that it has alone.
             let ends: [[f64; 3]; LANES] = std::array::from_fn(|k| (start + by * (k as f64 / 3.0)).into());
             let together = model.commands_for(&ends, &[state.direction; LANES], &state, &everywhere);
-            for (end, found) in ends.into_iter().zip(together) {
+            for (k, end) in ends.into_iter().enumerate() {
                 let alone = model.command_for(&Command { linear_mm: end.into(), ..state }, &everywhere);
-                if let Some(found) = found {
-                    assert_eq!(found, alone.unwrap(), "{seed}");
+                if let Some([x, y, z]) = together {
+                    assert_eq!(Vector::new(x[k], y[k], z[k]), alone.unwrap(), "{seed}");
                     together_too += 1;
                 }
             }

@@ -204,14 +204,14 @@ impl<'d> Emitter<'d> {
         let content = line.content();
         let mut done = 0;
         for word in line.words() {
-            let letter @ b'X'..=b'Z' = word.letter else { continue };
+            let letter @ b'X'..=b'Z' = word.letter() else { continue };
             let axis = usize::from(letter - b'X');
             let Some(counts) = counts[axis] else { continue };
             let (replaced, place) = (word.number(), word.number_span());
             if !style.same_value(letter, replaced, counts, decimals[axis]) {
                 // A byte or two: cheaper one by one than by a call.
                 content[done..place.start as usize].iter().for_each(|byte| out.push(*byte));
-                style.write_number(letter, Some(replaced), counts, decimals[axis], out);
+                style.write_in_place(word, counts, decimals[axis], out);
                 done = place.end as usize;
             }
         }

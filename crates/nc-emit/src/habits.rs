@@ -97,7 +97,7 @@ impl Habits {
     pub(crate) fn learn_line(&mut self, line: &PlainLine<'_>) {
         let mut before: Option<&PlainWord> = None;
         for word in line.words() {
-            match word.letter {
+            match word.letter() {
                 b'X' | b'Y' | b'Z' if self.knows(word) => {}
                 b'X' | b'Y' | b'Z' => self.learn_coordinate(word.number()),
                 b'G' => self.learn_g(word.number(), line.text(word.span())),
@@ -106,7 +106,7 @@ impl Habits {
             if let Some(before) = before {
                 let (end, start) = (before.span().end as usize, word.span().start as usize);
                 let known = separator(&line.bytes[end..start]);
-                if before.letter != b'N' || known.is_empty() {
+                if before.letter() != b'N' || known.is_empty() {
                     self.separator = known;
                 }
             }
@@ -199,6 +199,18 @@ impl Habits {
             spelling.trailing_point = false;
         }
         spelling
+    }
+
+    /// [`Habits::spell`] in place of a word X, Y or Z that tells nothing new, as it is with most words of most files;
+    /// `None` for others.
+    #[inline]
+    pub(crate) fn spell_known(&self, word: &PlainWord, value: Step, numbers: &Increments) -> Option<Written> {
+        let Step { counts, decimals } = value;
+        if !self.knows(word) || decimals == 0 || decimals > self.most_decimals {
+            return None;
+        }
+        let trailing_point = self.spelling.trailing_point || numbers.length.is_some();
+        Some(Written { counts, decimals, spelling: Spelling { trailing_point, ..self.spelling } })
     }
 
     /// How to write `counts × 10^-decimals` after `letter`: the counts and decimals to print, and the

@@ -2,7 +2,7 @@
 
 use diagnostic::Diagnostic;
 use nc_syntax::dialect::{Action, GCode};
-use nc_syntax::{Block, Dialect, ItemKind, Number, Span, Value};
+use nc_syntax::{Block, Dialect, ItemKind, Number, PlainWord, Span, Value};
 use smallvec::SmallVec;
 
 use crate::edit::{Piece, WordEdit};
@@ -42,6 +42,17 @@ impl Style<'_> {
         out: &mut Vec<u8>,
     ) {
         self.habits.spell(letter, replaced, Step { counts, decimals }, &self.increments).write(out);
+    }
+
+    /// [`Style::write_number`] in place of a word of a plain line.
+    #[inline]
+    pub(crate) fn write_in_place(&self, word: &PlainWord, counts: i64, decimals: u8, out: &mut Vec<u8>) {
+        let step = Step { counts, decimals };
+        let written = match self.habits.spell_known(word, step, &self.increments) {
+            Some(written) => written,
+            None => self.habits.spell(word.letter(), Some(word.number()), step, &self.increments),
+        };
+        written.write(out);
     }
 
     /// The word already says `counts × 10^-decimals`: its text may stay.

@@ -4,8 +4,8 @@
 //! up: the words are the end of the motion. Whatever else a block holds, or is in force, is left to
 //! [`Interpreter::step`], which does the same by the long way.
 
-use nc_syntax::PlainLine;
 use nc_syntax::dialect::{GCode, Numbers};
+use nc_syntax::{PlainLine, PlainWord};
 use toolpath::{Feed, FeedRate, Position, Shape};
 
 use crate::interpreter::{Context, Interpreter, context};
@@ -92,20 +92,25 @@ impl PlainFeeds {
     #[must_use]
     #[inline]
     pub fn end_of(&self, line: &PlainLine<'_>, start_mm: [f64; 3]) -> Option<PlainEnd> {
-        let mut end = PlainEnd { end_mm: start_mm, names: [false; 3] };
+        // Each axis by itself: what is stored by a number found out is waited for when all are read together.
+        let ([mut x, mut y, mut z], mut names) = (start_mm, [false; 3]);
         for word in line.words() {
-            match word.letter {
-                b'X' | b'Y' | b'Z' => {
-                    let axis = usize::from(word.letter - b'X');
-                    let length = self.numbers.length(word.number(), self.inch).to_f64();
-                    end.end_mm[axis] = length * self.context.unit_mm + self.offset_mm[axis];
-                    end.names[axis] = true;
-                }
+            match word.letter() {
+                b'X' => (x, names[0]) = (self.place(word, 0), true),
+                b'Y' => (y, names[1]) = (self.place(word, 1), true),
+                b'Z' => (z, names[2]) = (self.place(word, 2), true),
                 b'G' if word.number().tenths() != Some(self.code.0) => return None,
                 _ => {}
             }
         }
-        (end.names != [false; 3]).then_some(end)
+        (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names })
+    }
+
+    /// Where a word brings its axis, mm.
+    #[inline]
+    fn place(&self, word: &PlainWord, axis: usize) -> f64 {
+        let length = self.numbers.length(word.number(), self.inch).to_f64();
+        length * self.context.unit_mm + self.offset_mm[axis]
     }
 
     /// The motion of a plain line.

@@ -19,40 +19,75 @@ const LETTERS: &[u8] = b"FGNXYZ";
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlainWord {
     mantissa: i64,
-    decimals: u8,
-    sign: Sign,
-    /// A decimal point was written.
-    pub has_point: bool,
-    /// A digit stands before the point.
-    pub leading_digit: bool,
-    /// Upper-case letter: F, G, N, X, Y or Z.
-    pub letter: u8,
-    start: u8,
-    number: u8,
-    end: u8,
+    /// A byte each from the lowest: letter, decimals, how the number is spelt, where word and number start, where they
+    /// end. Written as one, since what is read together soon after has to be.
+    facts: u64,
 }
 
+/// Bits of the byte that says how a number is spelt.
+const HAS_POINT: u8 = 1;
+const LEADING_DIGIT: u8 = 2;
+const PLUS: u8 = 4;
+const MINUS: u8 = 8;
+
 impl PlainWord {
+    #[inline(always)]
+    fn new(letter: u8, number: Number, places: [usize; 3]) -> Self {
+        let Number { decimal: Decimal { mantissa, decimals }, sign, has_point, leading_digit } = number;
+        let sign = match sign {
+            Sign::None => 0,
+            Sign::Plus => PLUS,
+            Sign::Minus => MINUS,
+        };
+        let spelt =
+            sign | if has_point { HAS_POINT } else { 0 } | if leading_digit { LEADING_DIGIT } else { 0 };
+        let [start, number, end] = places.map(|place| place as u8);
+        let facts = u64::from_le_bytes([letter, decimals, spelt, start, number, end, 0, 0]);
+        Self { mantissa, facts }
+    }
+
+    #[inline(always)]
+    const fn fact(&self, byte: u32) -> u8 {
+        (self.facts >> (8 * byte)) as u8
+    }
+
+    /// Upper-case letter: F, G, N, X, Y or Z.
+    #[must_use]
+    #[inline]
+    pub const fn letter(&self) -> u8 {
+        self.fact(0)
+    }
+
     /// Its number.
     #[must_use]
     #[inline]
     pub fn number(&self) -> Number {
-        let Self { mantissa, decimals, sign, has_point, leading_digit, .. } = *self;
-        Number { decimal: Decimal { mantissa, decimals }, sign, has_point, leading_digit }
+        let spelt = self.fact(2);
+        let sign = match spelt & (PLUS | MINUS) {
+            PLUS => Sign::Plus,
+            MINUS => Sign::Minus,
+            _ => Sign::None,
+        };
+        Number {
+            decimal: Decimal { mantissa: self.mantissa, decimals: self.fact(1) },
+            sign,
+            has_point: spelt & HAS_POINT != 0,
+            leading_digit: spelt & LEADING_DIGIT != 0,
+        }
     }
 
     /// Where letter and number stand in the line.
     #[must_use]
     #[inline]
     pub fn span(&self) -> Span {
-        Span { start: self.start.into(), end: self.end.into() }
+        Span { start: self.fact(3).into(), end: self.fact(5).into() }
     }
 
     /// Where the number stands.
     #[must_use]
     #[inline]
     pub fn number_span(&self) -> Span {
-        Span { start: self.number.into(), end: self.end.into() }
+        Span { start: self.fact(4).into(), end: self.fact(5).into() }
     }
 }
 
@@ -111,17 +146,7 @@ const PLAIN: u32 = {
     bits
 };
 
-const NO_WORD: PlainWord = PlainWord {
-    mantissa: 0,
-    decimals: 0,
-    sign: Sign::None,
-    has_point: false,
-    leading_digit: false,
-    letter: 0,
-    start: 0,
-    number: 0,
-    end: 0,
-};
+const NO_WORD: PlainWord = PlainWord { mantissa: 0, facts: 0 };
 
 impl Default for PlainLine<'_> {
     fn default() -> Self {
@@ -154,20 +179,8 @@ impl Lexer<'_> {
                     }
                     seen |= bit;
                     let (number, end) = common_number(window, at + 1, self.spaces_inside)?;
-                    let Number { decimal: Decimal { mantissa, decimals }, sign, has_point, leading_digit } =
-                        number;
                     // No letter comes twice, so that there is room for each.
-                    *found.words.get_mut(count)? = PlainWord {
-                        mantissa,
-                        decimals,
-                        sign,
-                        has_point,
-                        leading_digit,
-                        letter,
-                        start: at as u8,
-                        number: at as u8 + 1,
-                        end: end as u8,
-                    };
+                    *found.words.get_mut(count)? = PlainWord::new(letter, number, [at, at + 1, end]);
                     count += 1;
                     at = end;
                 }

@@ -25,7 +25,10 @@ fn agrees(text: &str, dialect: &Dialect) -> usize {
                 .words()
                 .iter()
                 .map(|word| {
-                    (ItemKind::Word { letter: word.letter, value: Value::Number(word.number()) }, word.span())
+                    (
+                        ItemKind::Word { letter: word.letter(), value: Value::Number(word.number()) },
+                        word.span(),
+                    )
                 })
                 .collect();
             let items: Vec<_> = block.items.iter().map(|item| (item.kind, item.span)).collect();

@@ -49,6 +49,9 @@ pub const COMPENSATED: Code = Code(508);
 /// The mark of the correction stands behind one of so many blocks at most.
 const OPENING_BLOCKS: usize = 64;
 
+/// Progress is told about every so many bytes.
+const REPORTED_BYTES: u64 = 1 << 13;
+
 /// Everything that decides what becomes of a program.
 pub struct Job<'a> {
     /// The control's dialect.
@@ -157,9 +160,8 @@ fn pass<E: From<Vec<Diagnostic>>>(
     let mut pass = Pass::new(job, State::new(job, &numbers), text.len());
     let mut reader = Reader::new(text, job.dialect);
     let every_now_and_then = |pass: &mut Pass<'_>, offset: u64| {
-        if pass.tally.figures.blocks_in.is_multiple_of(256) {
-            progress(offset).map_err(Ended::Failed)?;
-        }
+        progress(offset).map_err(Ended::Failed)?;
+        pass.next_stop = offset + REPORTED_BYTES;
         Ok(false)
     };
     let stops = |block: &Block<'_>| if stop(block) { Err(Ended::Stopped) } else { Ok(()) };

@@ -163,11 +163,11 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         let ends_mm = std::array::from_fn(|k| group[k.min(group.len() - 1)].end.linear_mm);
         let start_mm = group[0].start.linear_mm;
         let short = corrector.short_lines(&block, [0.0; 3]);
-        let foreseen = short.as_ref().map(|short| corrector.foresee(short, start_mm, &ends_mm));
+        let foreseen = short.as_ref().and_then(|short| corrector.foresee(short, start_mm, &ends_mm));
         for (k, feed) in group.iter().enumerate() {
             let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
             let line = short.as_ref().and_then(|short| {
-                corrector.short_line(short, &block, start, end, foreseen.as_ref().map(|all| &all[k]))
+                corrector.short_line(short, &block, start, end, foreseen.as_ref().map(|all| (all, k)))
             });
             if line.is_none() {
                 _ = black_box(corrector.correct(&toolpath::Motion::Feed(*feed), &block));

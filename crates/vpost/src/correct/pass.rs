@@ -98,6 +98,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
+    /// In front of blocks before this offset nobody asks whether the pass ends: set by who does.
+    pub(crate) next_stop: u64,
 }
 
 impl<'a> Pass<'a> {
@@ -109,6 +111,7 @@ impl<'a> Pass<'a> {
             state,
             out: Vec::with_capacity(bytes + bytes / 8 + 64),
             tally: Tally::default(),
+            next_stop: 0,
         }
     }
 }
@@ -116,7 +119,7 @@ impl<'a> Pass<'a> {
 impl Pass<'_> {
     /// Corrects blocks to the end of what a reader reads, or until `ends` says so in front of one; true where it did.
     ///
-    /// * `ends` – is asked with the offset of each block
+    /// * `ends` – is asked with the offset of each block, from [`Pass::next_stop`] on
     /// * `read` – is shown each block that is no plain line before it is corrected
     pub(crate) fn run<E: From<Vec<Diagnostic>>>(
         &mut self,
@@ -135,7 +138,7 @@ impl Pass<'_> {
                 return Ok(false);
             }
             self.state.expects_name = name;
-            if ends(self, block.offset)? {
+            if block.offset >= self.next_stop && ends(self, block.offset)? {
                 return Ok(true);
             }
             read(&block)?;

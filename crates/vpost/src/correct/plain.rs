@@ -3,7 +3,7 @@
 //! What is written is what [`Pass::block`] would write. The model is asked for several ends together, since one alone
 //! would mostly wait for itself; all else is done line by line.
 
-use correction::{AxisWord, Foreseen, Letters, PieceKind, ShortLines};
+use correction::{AxisWord, Foreseen, Letters, PieceKind, Run, ShortLines, ShortRun};
 use diagnostic::Diagnostic;
 use machine_model::LANES;
 use nc_program::PlainEnd;
@@ -18,7 +18,8 @@ struct Ahead<'l, 't> {
     line: &'l PlainLine<'t>,
     start_mm: [f64; 3],
     end: PlainEnd,
-    foreseen: Option<&'l Foreseen>,
+    /// The model's answers, and which of them is for this line.
+    foreseen: Option<(&'l Foreseen, usize)>,
 }
 
 impl Pass<'_> {
@@ -57,9 +58,21 @@ impl Pass<'_> {
             self.state.expects_name = false;
             let corrector = &mut self.state.corrector;
             short = short.or_else(|| corrector.short_lines(&info, rotary_deg));
-            let foreseen = short.as_ref().map(|short| corrector.foresee(short, start_mm, &ends_mm));
+            let foreseen = short.as_ref().and_then(|short| corrector.foresee(short, start_mm, &ends_mm));
+            if count == LANES
+                && lines[LANES - 1].offset < self.next_stop
+                && self.state.emitter.motion() == motion_code
+                && let (Some(short), Some(foreseen)) = (&short, &foreseen)
+                && let run = (Run { start_mm, ends_mm: &ends_mm, names: found.map(|end| end.names) })
+                && let Some(run) = self.state.corrector.short_run(short, &info, &run, foreseen)
+            {
+                start_mm = last_mm;
+                self.state.interpreter.go_to(start_mm);
+                self.write_run(&lines, &run, info.decimals)?;
+                continue;
+            }
             for (k, line) in lines[..count].iter().enumerate() {
-                if ends(self, line.offset)? {
+                if line.offset >= self.next_stop && ends(self, line.offset)? {
                     return Ok(true);
                 }
                 info.letters = Letters::axes(found[k].names);
@@ -69,12 +82,37 @@ impl Pass<'_> {
                     line,
                     start_mm,
                     end: found[k],
-                    foreseen: foreseen.as_ref().map(|foreseen| &foreseen[k]),
+                    foreseen: foreseen.as_ref().map(|foreseen| (foreseen, k)),
                 };
                 self.plain_line(reader, &info, short, &ahead)?;
                 start_mm = found[k].end_mm;
             }
         }
+    }
+
+    /// Writes lines that were corrected together.
+    #[inline]
+    fn write_run(
+        &mut self,
+        lines: &[PlainLine<'_>; LANES],
+        run: &ShortRun,
+        decimals: [u8; 3],
+    ) -> Result<(), Vec<Diagnostic>> {
+        for (line, counts) in lines.iter().zip(run.counts) {
+            if counts == [None; 3] {
+                self.state.emitter.pass_line(line, &mut self.out);
+            } else {
+                self.state
+                    .emitter
+                    .rewrite_line(line, counts, decimals, &mut self.out)
+                    .map_err(|diagnostic| vec![diagnostic])?;
+            }
+        }
+        let figures = &mut self.tally.figures;
+        figures.blocks_in += LANES as u64;
+        figures.blocks_out += LANES as u64;
+        raise(&mut figures.largest, (run.largest_mm, lines[run.largest].line));
+        Ok(())
     }
 
     /// Corrects a plain line, the short way where that is proven.

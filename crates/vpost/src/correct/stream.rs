@@ -223,6 +223,7 @@ where
         };
         let mut reader = Reader::part(lead, self.plan.job.dialect, self.plan.envelope, place);
         // A block that makes no sense from here makes no better guess.
+        pass.next_stop = u64::MAX;
         while pass.run::<Vec<Diagnostic>>(&mut reader, |_, _| Ok(false), |_| Ok(())).is_err() {}
         pass.state.tell_as(&told);
         pass.state
@@ -235,23 +236,17 @@ where
         let mut pass = Pass::new(self.plan.job, state, chunk.text.len());
         let mut open = Stretch { offset: chunk.offset, out: 0, state: first, tally: Tally::default() };
         let mut near = NEAR_BYTES.iter();
-        let mut bound = if guessed { near.next().map_or(u64::MAX, |b| *b as u64) } else { u64::MAX };
+        let mut next_stop = |at: u64| near.next().map_or(at + FAR_BYTES as u64, |near| *near as u64);
+        pass.next_stop = if guessed { chunk.offset + next_stop(0) } else { u64::MAX };
         let end = each(self.plan, &chunk, &mut pass, |pass, offset| {
-            let at = offset - chunk.offset;
-            if at >= bound {
-                // What was told in a stretch that may not count tells nothing to the next one.
-                pass.state.tell_as(&open.state);
-                let next = Stretch {
-                    offset,
-                    out: pass.out.len(),
-                    state: pass.state.clone(),
-                    tally: Tally::default(),
-                };
-                let mut closed = std::mem::replace(&mut open, next);
-                closed.tally = std::mem::take(&mut pass.tally);
-                stretches.push(closed);
-                bound = near.next().map_or(at + FAR_BYTES as u64, |near| *near as u64);
-            }
+            // What was told in a stretch that may not count tells nothing to the next one.
+            pass.state.tell_as(&open.state);
+            let next =
+                Stretch { offset, out: pass.out.len(), state: pass.state.clone(), tally: Tally::default() };
+            let mut closed = std::mem::replace(&mut open, next);
+            closed.tally = std::mem::take(&mut pass.tally);
+            stretches.push(closed);
+            pass.next_stop = chunk.offset + next_stop(offset - chunk.offset);
             false
         });
         open.tally = std::mem::take(&mut pass.tally);
@@ -313,12 +308,12 @@ where
         if !stretches[0].state.continues_as(&state) {
             let mut pass = Pass::new(self.plan.job, state, LEAD_BYTES);
             let mut next = 1;
-            let ended = each(self.plan, &chunk, &mut pass, |pass, offset| {
-                let Some(stretch) = stretches.get(next) else { return false };
-                if stretch.offset != offset {
-                    return false;
-                }
+            let begins = |next: usize| stretches.get(next).map_or(u64::MAX, |stretch| stretch.offset);
+            pass.next_stop = begins(next);
+            let ended = each(self.plan, &chunk, &mut pass, |pass, _| {
+                let stretch = &stretches[next];
                 next += 1;
+                pass.next_stop = begins(next);
                 stretch.state.continues_as(&pass.state)
             });
             tally = pass.tally;
