@@ -9,7 +9,7 @@ use crate::diagnosis::{Cause, Shrinkage};
 use crate::engine::{model_columns, source};
 use crate::gram::{Gram, Source};
 use crate::noise::tail_factor;
-use crate::observation::{Measurements, Row, Scalar};
+use crate::observation::{Believed, Measurements, Row, Scalar};
 use crate::shrinkage::{Alternative, LEAST_WEIGHT, Strength, transported};
 use crate::space::Part;
 use crate::term::Term;
@@ -82,6 +82,36 @@ impl Assembly<'_> {
             spread: spread * self.variance() / equations / noise,
             noise: (1.0 - fitted / equations).max(0.05),
         }
+    }
+
+    /// The same for rows that hold only lengths, nothing aligned: what the squares of measured minus modelled length are
+    /// expected to be without and with the causes. A length has mean `μ` and mean square `|w|² + 3σ²` ([`Believed`]).
+    fn strength_on_lengths(&self, data: &Measurements, count: usize) -> Strength {
+        let noise = self.noise_variance().max(1e-12);
+        let mut terms: Vec<(Term, f64)> = self
+            .model
+            .solution
+            .terms
+            .iter()
+            .copied()
+            .zip(self.model.solution.coefficients.iter().copied())
+            .take(self.model.library.nuisances)
+            .collect();
+        terms.extend(self.taken_off(count));
+        let displaced = crate::align::displacements(data, &terms);
+        let believed = Believed { displaced_um: &displaced, noise_um: noise.sqrt() };
+        let (mut before, mut after) = (0.0, 0.0);
+        for (row, displaced) in data.rows.iter().zip(&displaced) {
+            let predicted = 1e3 * row.predicted_mm;
+            let whole = predicted + displaced;
+            let (square, expected) = (whole.norm_squared() + 3.0 * noise, believed.expected_um(&whole));
+            let left = |modelled: f64| square - 2.0 * modelled * expected + modelled * modelled;
+            before += left(predicted.norm());
+            after += left(whole.norm());
+        }
+        let rows = data.rows.len().max(1) as f64;
+        let strength = self.strength(data, &data.scalars(Some(&believed)), count);
+        Strength { square: (before - after) / rows / noise, noise: after / rows / noise, ..strength }
     }
 
     /// Every rival of the first causes in the place of its cause, on other commands.
@@ -222,10 +252,7 @@ impl Assembly<'_> {
             data.spread = 0.0;
         }
         let (mut target, rivals) = match holdout {
-            Some(h) if h.has_magnitudes() => {
-                let estimate = crate::align::displacements(h, &self.taken_off(count));
-                (self.strength(h, &h.scalars(Some(&estimate)), count), Vec::new())
-            }
+            Some(h) if h.has_magnitudes() => (self.strength_on_lengths(h, count), Vec::new()),
             Some(h) => {
                 let scalars = h.scalars(None);
                 (self.strength(h, &scalars, count), self.alternatives(h, &scalars, count))

@@ -47,5 +47,5 @@ pub use diagnosis::{
     Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter,
     Residual, Setup, Shrinkage, Step, Verdict,
 };
-pub use observation::{Measurements, Reading, Row};
+pub use observation::{Believed, Measurements, Reading, Row};
 pub use remedy::remedy;

@@ -49,12 +49,31 @@ pub struct Measurements {
     pub geometry: EffectGeometry,
 }
 
+/// What lengths of displacements are linearised about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Believed<'a> {
+    /// The displacement beyond the prediction that the length is believed to hold, µm, one per row.
+    pub displaced_um: &'a [Vector],
+    /// Standard deviation of one component, µm.
+    pub noise_um: f64,
+}
+
+impl Believed<'_> {
+    /// The length that a displacement `w` is expected to show: noise across it makes it longer,
+    /// `μ = √(|w|² + 2σ²)` (second moment of the Rice distribution less the variance along `w`; at `w = 0` an eighth
+    /// short of Maxwell's mean). The slope `w/μ` is smooth where `|w|` has a kink.
+    #[must_use]
+    pub fn expected_um(&self, displacement_um: &Vector) -> f64 {
+        (displacement_um.norm_squared() + 2.0 * self.noise_um * self.noise_um).sqrt()
+    }
+}
+
 /// One equation: the gap seen along a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scalar {
     /// Index of the row.
     pub row: usize,
-    /// Unit vector along which the displacement is seen.
+    /// Unit vector along which the displacement is seen; shorter for a length that is mostly noise.
     pub along: Vector,
     /// 0, 1, 2 for a component, 3 for any other direction.
     pub class: usize,
@@ -67,10 +86,9 @@ pub struct Scalar {
 impl Measurements {
     /// The scalar equations of all rows, vectors component by component, lengths along the bar.
     ///
-    /// Magnitudes are linearised about `estimate_um` (the displacement beyond the prediction that the
-    /// magnitude is believed to hold, µm), one per row; without it magnitude rows give nothing.
+    /// Magnitudes are linearised about what is `believed`; without it magnitude rows give nothing.
     #[must_use]
-    pub fn scalars(&self, estimate_um: Option<&[Vector]>) -> Vec<Scalar> {
+    pub fn scalars(&self, believed: Option<&Believed<'_>>) -> Vec<Scalar> {
         let typical = self.typical_uncertainty_um();
         let mut scalars = Vec::with_capacity(3 * self.rows.len());
         for (index, row) in self.rows.iter().enumerate() {
@@ -96,12 +114,13 @@ impl Measurements {
                     }
                 }
                 Reading::Magnitude(um) => {
-                    if let Some(estimate) = estimate_um.and_then(|all| all.get(index)) {
-                        let whole = 1e3 * row.predicted_mm + estimate;
-                        let norm = whole.norm();
-                        if norm > 0.0 {
-                            let along = whole / norm;
-                            push(along, 3, um - 1e3 * along.dot(&row.predicted_mm));
+                    let known = believed.and_then(|b| b.displaced_um.get(index).map(|d| (b, d)));
+                    if let Some((believed, displaced)) = known {
+                        let whole = 1e3 * row.predicted_mm + displaced;
+                        let expected = believed.expected_um(&whole);
+                        if expected > 0.0 {
+                            let along = whole / expected;
+                            push(along, 3, um - expected + along.dot(displaced));
                         }
                     }
                 }
@@ -118,6 +137,16 @@ impl Measurements {
             return 1.0;
         }
         (stated.iter().map(|u| u * u).sum::<f64>() / stated.len() as f64).sqrt()
+    }
+
+    /// About so many of the rows, spread evenly however the plan repeats itself: the golden ratio's multiples have no period.
+    #[must_use]
+    pub(crate) fn sample(&self, count: usize) -> Self {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let share = count as f64 / self.rows.len().max(1) as f64;
+        let taken = |index: usize| (GOLDEN * index as f64).fract() < share;
+        let rows = self.rows.iter().enumerate().filter(|(index, _)| taken(*index)).map(|(_, row)| *row);
+        Self { rows: rows.collect(), ..self.clone() }
     }
 
     /// True where any row holds only the length of its displacement.

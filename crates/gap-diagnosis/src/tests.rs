@@ -294,6 +294,52 @@ fn the_same_rows_give_the_same_answer() {
     assert_eq!(say(), say());
 }
 
+/// Only the lengths of what `measured` gives.
+fn lengths_only(mut data: Measurements) -> Measurements {
+    for row in &mut data.rows {
+        if let Reading::Displacement([Some(x), Some(y), Some(z)]) = row.reading {
+            row.reading = Reading::Magnitude(Vector::new(x, y, z).norm());
+        }
+    }
+    data
+}
+
+/// Turned everywhere by the same angle, a displacement has the same lengths: without a prediction `scale.Z` is
+/// `squareness.XZ` turned by 90°, and the answer must hold both. The prediction of a model settles it.
+#[test]
+fn lengths_alone_do_not_tell_directions_and_a_prediction_does() {
+    let plan = Plan { run_sigma_um: 0.0, ..GOOD };
+    let stretched = |row: &Row| Vector::new(0.0, 0.0, 0.1 * row.command.linear_mm.z);
+    let answer = diagnose(&lengths_only(measured(plan, stretched)), None, &Options::default());
+    let (first, rivals) = (&answer.causes[0].effect, &answer.causes[0].cannot_be_told_from);
+    let set: Vec<&str> = std::iter::once(first).chain(rivals).map(String::as_str).collect();
+    assert_eq!(answer.verdict, Verdict::Ambiguous, "{set:?}");
+    for name in ["scale.Z", "squareness.XZ", "squareness.YZ"] {
+        assert!(set.contains(&name), "{name} in {set:?}");
+    }
+    // The model knows of a sine along every axis.
+    let known_um = |row: &Row| row.command.linear_mm.map(|q| 20.0 * units::math::sin(q / 40.0));
+    let mut data = measured(plan, |row| stretched(row) + known_um(row));
+    data.rows.iter_mut().for_each(|row| row.predicted_mm = 1e-3 * known_um(row));
+    let answer = diagnose(&lengths_only(data), None, &Options::default());
+    assert_eq!(names(&answer), ["scale.Z"]);
+    assert!(answer.causes[0].cannot_be_told_from.is_empty(), "{:?}", answer.causes[0].cannot_be_told_from);
+}
+
+#[test]
+fn a_sample_has_rows_of_every_line_and_direction() {
+    let data = measured(GOOD, nothing);
+    let sample = data.sample(200);
+    assert!((195..=205).contains(&sample.rows.len()), "{}", sample.rows.len());
+    for run in 0..data.runs.len() {
+        for side in [-1, 1] {
+            let seen = |row: &&Row| row.run == run && row.command.direction.contains(&side);
+            // A twelfth of 200, half of it: 8.
+            assert!((6..=11).contains(&sample.rows.iter().filter(seen).count()), "run {run}, side {side}");
+        }
+    }
+}
+
 /// Predicted and achieved shrinkage on lines that were not fitted.
 #[test]
 fn the_forecast_holds_on_fresh_lines() {

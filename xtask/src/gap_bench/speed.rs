@@ -25,21 +25,28 @@ pub(crate) struct Speed {
     pub(crate) goal: (f64, f64),
 }
 
-/// Diagnoses a single effect and an effect outside the library (the search goes on longest there) with 3000 rows,
-/// and the single effect with 100 000.
+/// Diagnoses 3000 rows of every kind of observation and of an effect outside the library (the search goes on longest
+/// there), and a single effect with 100 000.
 pub(crate) fn measure(vpost: &Path, root: &Path) -> anyhow::Result<Vec<Speed>> {
     let list = catalogue(1200, 1);
     let pick = |kind: Kind, wanted: &dyn Fn(&CaseSpec) -> bool| {
         list.iter()
             .find(|s| {
-                s.kind == kind && s.plans == [Plan::Good] && s.snr.iter().all(|v| *v > 2.0) && wanted(s)
+                s.kind == kind
+                    && (s.plans == [Plan::Good] || kind == Kind::BallBar)
+                    && s.snr.iter().all(|v| *v > 2.0)
+                    && wanted(s)
             })
             .context("the catalogue has such a case")
     };
     let single = pick(Kind::Single, &|s| s.effects[0].id().starts_with("squareness"))?;
+    let bar = pick(Kind::BallBar, &|_| true)?;
+    let lengths = pick(Kind::Magnitude, &|_| true)?;
     let outside = pick(Kind::Outside, &|s| s.build().truth.effects[0].id.ends_with("field"))?;
     let jobs = [
         ("one effect, 3000 rows", single, 3000, (2.0, 1024.0)),
+        ("ball bar, 3000 rows", bar, 3000, (2.0, 1024.0)),
+        ("distances only, 3000 rows", lengths, 3000, (2.0, 1024.0)),
         ("effect outside the library, 3000 rows", outside, 3000, (2.0, 1024.0)),
         ("one effect, 100 000 rows", single, 100_000, (30.0, 1024.0)),
     ];
@@ -87,6 +94,8 @@ fn repeated(text: &str, wanted: usize) -> anyhow::Result<String> {
             ("dx_um" | "dy_um" | "dz_um", Ok(v)) if turn > 0 => {
                 format!("{:.3}", v + random.random_range(-1.7..1.7))
             }
+            ("d_um", Ok(v)) if turn > 0 => format!("{:.3}", (v + random.random_range(-1.7..1.7)).abs()),
+            ("length_mm", Ok(v)) if turn > 0 => format!("{:.6}", v + random.random_range(-1.7e-3..1.7e-3)),
             _ => (*cell).to_owned(),
         });
         write!(out, "\n{}", cells.collect::<Vec<_>>().join(",")).expect("writing to a string cannot fail");
@@ -99,12 +108,13 @@ fn repeated(text: &str, wanted: usize) -> anyhow::Result<String> {
 mod tests {
     #[test]
     fn a_plan_is_repeated_with_later_times_and_other_noise() {
-        let text = "run,x_mm,dx_um,time_s\na,1.0,2.0,10\nb,5.0,3.0,40\n";
+        let text = "run,x_mm,dx_um,time_s,d_um\na,1.0,2.0,10,2.0\nb,5.0,3.0,40,3.0\n";
         let long = super::repeated(text, 5).unwrap();
         let lines: Vec<&str> = long.lines().collect();
         assert_eq!(lines.len(), 6);
-        assert_eq!(lines[1], "at0,1.0,2.0,10.00");
-        assert!(lines[3].starts_with("at1,1.0,") && lines[3].ends_with(",110.00"), "{}", lines[3]);
+        assert_eq!(lines[1], "at0,1.0,2.0,10.00,2.0");
+        assert!(lines[3].starts_with("at1,1.0,") && lines[3].contains(",110.00,"), "{}", lines[3]);
         assert_ne!(lines[3].split(',').nth(2), Some("2.0"));
+        assert_ne!(lines[3].split(',').nth(4), Some("2.0"));
     }
 }
