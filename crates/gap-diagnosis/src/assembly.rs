@@ -1,8 +1,11 @@
 //! One solved model as an answer: shares, verdict, causes in order.
 
+use std::cell::OnceCell;
+
 use machine_model::effects::EffectKind;
 
 use crate::align::{aligned, rms, row_lengths};
+use crate::crossval::Folds;
 use crate::diagnose::Options;
 use crate::diagnosis::{Cause, Diagnosis, Gap, Leftover, Lookalike, Verdict};
 use crate::engine::{Explained, f_tail};
@@ -25,6 +28,8 @@ pub(crate) struct Assembly<'a> {
     pub(crate) noise: Option<Noise>,
     /// Parts in order of share, with their shares.
     pub(crate) ordered: Vec<Ranked>,
+    /// Products of left-out runs with the columns in that order, made when a forecast asks for them.
+    pub(crate) folds: OnceCell<Folds>,
 }
 
 pub(crate) struct Ranked {
@@ -59,7 +64,7 @@ impl Ranked {
 impl<'a> Assembly<'a> {
     pub(crate) fn new(data: &'a Measurements, model: &'a Explained) -> Self {
         let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um);
-        let mut assembly = Self { data, model, noise, ordered: Vec::new() };
+        let mut assembly = Self { data, model, noise, ordered: Vec::new(), folds: OnceCell::new() };
         assembly.ordered = assembly.rank();
         assembly
     }

@@ -3,6 +3,7 @@
 use machine_model::effects::{EffectKind, Shape};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::assembly::positions;
 use crate::columns::{Kept, Places};
 use crate::fit::Solution;
 use crate::gram::{Gram, Source};
@@ -70,7 +71,7 @@ pub(crate) struct Refused {
 pub(crate) fn explain_roughly(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
     let places = Places::new(&data.rows);
     let source = Source { places: Some(&places), ..source(data, scalars) };
-    explain_once(data, &mut Pool::new(&source), &[], without, None)
+    pass(data, &mut Pool::new(&source), &[], without, None, Task::Search)
 }
 
 /// Runs the search, drops lone outliers, and searches again until they stay the same.
@@ -80,22 +81,23 @@ pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[Effect
     let source = Source { places: Some(&places), ..source(data, scalars) };
     let mut pool = Pool::new(&source);
     let mut dropped: Vec<usize> = Vec::new();
-    let mut result = explain_once(data, &mut pool, &dropped, without, None);
+    let mut result = pass(data, &mut pool, &dropped, without, None, Task::Search);
     let lone = |solution: &Solution| {
         let residuals = conditional_residuals(solution, &source);
         outliers(&data.rows, scalars, &residuals)
     };
-    for pass in 0..PASSES {
+    for nth in 0..PASSES {
         let local = result.parts.iter().any(|p| is_local(result.library.candidates[p.candidate].kind));
         let found =
-            if pass == 0 && local { lone(&without_damage(&result, &source)) } else { lone(&result.solution) };
+            if nth == 0 && local { lone(&without_damage(&result, &source)) } else { lone(&result.solution) };
         if found == dropped || found.len() * 5 > data.rows.len() {
             break;
         }
         dropped = found;
-        result = explain_once(data, &mut pool, &dropped, without, Some(result));
-        result.outliers.clone_from(&dropped);
+        result = pass(data, &mut pool, &dropped, without, Some(result), Task::Search);
     }
+    result = pass(data, &mut pool, &dropped, without, Some(result), Task::Imitate);
+    result.outliers.clone_from(&dropped);
     if !dropped.is_empty() {
         let all = conditional_residuals(&result.solution, &source);
         let left_out = scalars.iter().zip(all).filter(|(s, _)| dropped.binary_search(&s.row).is_ok());
@@ -137,13 +139,23 @@ pub(crate) fn model_columns(library: &Library, parts: &[Part]) -> Vec<usize> {
     (0..library.nuisances).chain(own.copied()).collect()
 }
 
-/// One search, without the rows in `dropped`.
-fn explain_once(
+/// What a pass over the equations does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Task {
+    /// Looks for causes.
+    Search,
+    /// Looks for shapes of other effects that imitate the causes found.
+    Imitate,
+}
+
+/// One pass without the rows in `dropped`, beginning with the model of `start`.
+fn pass(
     data: &Measurements,
     pool: &mut Pool<'_>,
     dropped: &[usize],
     without: &[EffectKind],
     start: Option<Explained>,
+    task: Task,
 ) -> Explained {
     let all = *pool.source();
     let (lost, scalars): (Vec<Scalar>, Vec<Scalar>) =
@@ -152,7 +164,10 @@ fn explain_once(
     // Too few to look anything up.
     let lost = Source { scalars: &lost, places: None, ..all };
     let mut state = State::new(data, &source, pool, lost, without, start);
-    state.search();
+    match task {
+        Task::Search => state.search(),
+        Task::Imitate => state.imitate(),
+    }
     let State { library, space, parts, fit, refused, .. } = state;
     let sub = space.gram.select(&model_columns(&library, &parts));
     let rho = sub.best_rho(space.rho(fit.level));
@@ -200,18 +215,21 @@ impl<'a, 'b> State<'a, 'b> {
         without: &'a [EffectKind],
         start: Option<Explained>,
     ) -> Self {
-        let (library, parts) =
-            start.map_or_else(|| (Library::new(data, without), Vec::new()), |s| (s.library, s.parts));
+        let (library, parts, refused) = start.map_or_else(
+            || (Library::new(data, without), Vec::new(), None),
+            |s| (s.library, s.parts, s.refused),
+        );
         let gone = Gram::new(library.terms.clone(), &lost);
         let positions = pool.positions(&library.terms);
         let space = Space::new(pool.select(&positions).without(&gone), library.nuisances);
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
-        let (lost, refused) = ((lost, gone), None);
+        let lost = (lost, gone);
         Self { data, source, without, library, pool, lost, positions, pitches, space, parts, fit, refused }
     }
 
     fn search(&mut self) {
+        self.refused = None;
         // What an earlier search named must pass the tests on these rows, too.
         for part in std::mem::take(&mut self.parts) {
             let mut with = self.parts.clone();
@@ -250,7 +268,6 @@ impl<'a, 'b> State<'a, 'b> {
             }
         }
         self.prune();
-        self.imitate();
     }
 
     /// The first of some effects that passes its tests, or why the best did not.
@@ -275,13 +292,11 @@ impl<'a, 'b> State<'a, 'b> {
     fn imitate(&mut self) {
         let sub = self.space.gram.select(&model_columns(&self.library, &self.parts));
         let solution = sub.solve(self.space.rho(self.fit.level), self.source);
-        let mut first = self.library.nuisances;
-        for part in self.parts.clone() {
+        for (place, part) in self.parts.clone().into_iter().enumerate() {
             let own = self.library.candidates[part.candidate].kind;
-            let count = self.library.candidates[part.candidate].variants[part.variant].columns.len();
-            let terms = &solution.terms[first..first + count];
-            let values: Vec<f64> = solution.coefficients[first..first + count].iter().map(|v| -v).collect();
-            first += count;
+            let columns = positions(&self.library, &self.parts, place);
+            let values: Vec<f64> = solution.coefficients[columns.clone()].iter().map(|v| -v).collect();
+            let terms = &solution.terms[columns];
             // The gap is what `residuals` starts from.
             let displaced: Vec<f64> = crate::fit::residuals(terms, &values, self.source)
                 .iter()

@@ -179,13 +179,16 @@ impl Assembly<'_> {
             let m = square / degrees / noise;
             return (m, m * (2.0 / degrees).sqrt());
         }
-        let columns = model_columns(&model.library, &parts);
-        let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
-        let source = source(self.data, &model.scalars);
-        let nuisances = model.library.nuisances;
-        let folds = Folds::new(&terms, nuisances, model.solution.rho, &source, Folding::Runs);
-        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
-        let losses = folds.losses(&all);
+        let folds = self.folds.get_or_init(|| {
+            let parts: Vec<Part> = self.ordered.iter().map(|r| r.part).collect();
+            let columns = model_columns(&model.library, &parts);
+            let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
+            let source = source(self.data, &model.scalars);
+            Folds::new(&terms, model.library.nuisances, model.solution.rho, &source, Folding::Runs)
+        });
+        // The columns of the first causes come first.
+        let columns = model.space.columns(&model.library, &parts).len();
+        let losses = folds.losses(&(0..columns).collect::<Vec<usize>>());
         let share = model.space.degrees / model.scalars.len() as f64;
         let m = losses.iter().sum::<f64>() / model.space.degrees / noise;
         let each: Vec<f64> = losses

@@ -14,6 +14,9 @@ use crate::observation::{Row, Scalar};
 use crate::propose::{LOCAL_WIDEST, thinned};
 use crate::term::Term;
 
+/// Steps below this share of the first ones are too fine to matter.
+const FINE: f64 = 0.02;
+
 /// The evenly thinned equations of a file with the values of the columns in the model.
 pub(crate) struct Stage<'a> {
     source: Source<'a>,
@@ -209,6 +212,9 @@ impl<'a> Stage<'a> {
         let mut value = gain(&best);
         let mut steps: Vec<f64> = frees.iter().map(|f| f.step).collect();
         for _ in 0..10 {
+            if frees.iter().zip(&steps).all(|(free, step)| *step < FINE * free.step) {
+                break;
+            }
             for (free, step) in frees.iter().zip(&mut steps) {
                 let here = (free.get)(&best);
                 let tries = [here - *step, here + *step].map(|v| {
