@@ -109,7 +109,7 @@ impl<'m> Corrector<'m> {
         let own_end = follow.own_end(part, &from);
         let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
         let direction = follow.machine.state.direction;
-        if let Some(against) = self.against(before, self.standing, direction, direction, follow.block) {
+        if let Some(against) = self.against(before, self.standing, follow.came, direction, follow.block) {
             self.standing = before;
             return Ok(Tried::Against(against));
         }
@@ -138,6 +138,7 @@ impl<'m> Corrector<'m> {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
+                    follow.came = direction;
                     self.note_end(&follow.machine, nominal_end, wanted);
                     return Ok(Tried::Done);
                 }

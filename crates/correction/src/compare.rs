@@ -316,6 +316,9 @@ impl Matcher<'_> {
         let mut at = self.at;
         let mut s0 = self.s;
         let mut first: Option<(usize, Fit)> = None;
+        let end = piece.curve.at(1.0);
+        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        let mut ends_where_one_goes_on = false;
         while at < self.wanted.len() {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
@@ -327,6 +330,7 @@ impl Matcher<'_> {
                 return;
             }
             let skip = self.skippable(w) || (at == self.at && (1.0 - self.s) * w.length_mm <= self.limit_mm);
+            ends_where_one_goes_on |= (w.curve.at(s0.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm;
             if first.is_none() {
                 first = Some((at, fit));
             }
@@ -339,19 +343,14 @@ impl Matcher<'_> {
         if self.lingers(piece) {
             return;
         }
-        // A short move that ends on the last of the last motion, or where the next one goes on, is an approach.
-        let end = piece.curve.at(1.0);
-        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        // A short move that ends on the last of the last motion, or where one of the next goes on, is an approach.
         // Taken for done, a motion may have a limit of way left; the pieces of that way begin a limit away from it.
         let ends_near = |w: &Feeding| {
             let s = project(&w.curve, &real, 1.0);
             (1.0 - s) * w.length_mm <= 2.0 * self.limit_mm && distance(&w.curve, &real, s) <= self.limit_mm
         };
         let last = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]);
-        let next = first.as_ref().map(|(at, _)| &self.wanted[*at]);
-        let approach = last.is_some_and(ends_near)
-            || next.is_some_and(|w| (w.curve.at(self.s.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm);
-        if piece.length_mm < 1.0 && approach {
+        if piece.length_mm < 1.0 && (ends_where_one_goes_on || last.is_some_and(ends_near)) {
             self.result.approaches += 1;
             return;
         }

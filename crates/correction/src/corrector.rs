@@ -414,11 +414,13 @@ impl<'m> Corrector<'m> {
         let alone = parts.len() == 1;
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
+            let mut came = self.direction;
             self.turn_towards(&part.at(0.0), &part.at(1.0));
             let mut machine = self.machine(block, feed.end.rotary_deg);
-            self.approach(&mut machine, &part, block, &mut corrected)?;
+            self.approach(&mut machine, &part, block, &mut came, &mut corrected)?;
             let mut follow = Follow {
                 machine,
+                came,
                 block,
                 alone: alone && corrected.pieces.is_empty(),
                 may_split: feed.may_split,
@@ -488,18 +490,21 @@ impl<'m> Corrector<'m> {
 
     /// Brings the axes to the corrected start where they do not stand there: after a reversal of an
     /// axis with lost motion, after motion that is never corrected, after a change of tool length.
+    ///
+    /// `came`: the sides of their play on which the axes are, by the direction that leads there.
     pub(crate) fn approach(
         &mut self,
         machine: &mut Machine<'_>,
         part: &Curve,
         block: &Block,
+        came: &mut [i8; 3],
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let start = part.at(0.0);
         let mut wanted = self.solve(machine, start)?;
         if let Some(first) = self.first_moves(&wanted, machine.state.direction, block) {
-            self.turn(first);
-            machine.state.direction = self.direction;
+            self.direction = first;
+            machine.state.direction = first;
             wanted = self.solve(machine, start)?;
         }
         if let Some(turned) = self.approachable(&mut wanted, machine.state.direction, block) {
@@ -511,14 +516,21 @@ impl<'m> Corrector<'m> {
             let mut from_behind = self.solve(&behind, start)?;
             // The axes that need not turn do not creep back meanwhile.
             let _ = self.approachable(&mut from_behind, state.direction, block);
-            self.approach_to(from_behind, start, block, corrected);
+            self.approach_to(from_behind, start, block, came, corrected);
         }
-        self.approach_to(wanted, start, block, corrected);
+        self.approach_to(wanted, start, block, came, corrected);
         Ok(())
     }
 
     /// A line to a corrected start, where the axes do not stand there.
-    fn approach_to(&mut self, wanted: Vector, start: Vector, block: &Block, corrected: &mut Corrected) {
+    fn approach_to(
+        &mut self,
+        wanted: Vector,
+        start: Vector,
+        block: &Block,
+        came: &mut [i8; 3],
+        corrected: &mut Corrected,
+    ) {
         let standing = self.standing_program(block);
         let to = block.program(&wanted);
         // Standing within rounding of the corrected start is standing there; the last block chose so.
@@ -527,6 +539,11 @@ impl<'m> Corrector<'m> {
         if away {
             let before = self.standing;
             let axes = self.go(block, &start, &wanted, false);
+            for (i, side) in came.iter_mut().enumerate() {
+                if let (Some(from), Some(to)) = (before[i], self.standing[i]) {
+                    *side = heading(from, to, *side);
+                }
+            }
             if axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing {
                 corrected.pieces.push(Piece { kind: PieceKind::Line, axes, share: 0.0 });
                 corrected.correction.approach = true;
@@ -542,6 +559,8 @@ impl<'m> Corrector<'m> {
 /// What following a curve needs besides the corrector.
 pub(crate) struct Follow<'a, 'm> {
     pub(crate) machine: Machine<'m>,
+    /// The sides of their play on which the axes are, by the direction that leads there.
+    pub(crate) came: [i8; 3],
     pub(crate) block: &'a Block,
     /// The part is the whole motion, and nothing was put before it: the block's own words may stay.
     pub(crate) alone: bool,

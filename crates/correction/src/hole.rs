@@ -82,10 +82,11 @@ impl<'m> Corrector<'m> {
             ..Correction::default()
         };
         // Afterwards the axis has come back out of the hole.
-        self.direction[normal] = match self.standing[normal] {
+        let out = match self.standing[normal] {
             Some(end) if flat => heading(kept.r_mm, end, down),
             _ => -down,
         };
+        self.direction[normal] = out;
         let expandable = hole.cycle.kind != CycleKind::Synchronised;
         if self.expanding && expandable {
             (self.standing, self.remembered) = before;
@@ -108,6 +109,7 @@ impl<'m> Corrector<'m> {
         }
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
+        self.direction[normal] = out;
         Ok(corrected)
     }
 
@@ -303,8 +305,10 @@ impl<'m> Corrector<'m> {
                     corrected: &mut Corrected|
          -> Result<(), CorrectionError> {
             let part = Curve::Line(place(from), place(to));
+            let machine = corrector.drilling(machine, normal);
             let mut follow = Follow {
-                machine: corrector.drilling(machine, normal),
+                came: machine.state.direction,
+                machine,
                 block,
                 alone: false,
                 may_split: true,

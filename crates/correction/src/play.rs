@@ -4,7 +4,8 @@
 //! another axis feeds: along a bow, or where axes are out of square. With play the axis does not follow. So
 //! no block of output moves an axis against the direction its position was computed for: the axis either
 //! holds its place (where that is within tolerance), or the play is taken up first and the way is computed
-//! for the new direction. Only models whose error depends on the direction need any of this.
+//! for the new direction. An axis that the output does not move at all, whatever the program said, is computed for the side
+//! of its play on which it stands. Only models whose error depends on the direction need any of this.
 
 use machine_model::Vector;
 
@@ -27,12 +28,21 @@ pub(crate) fn heading(from: f64, to: f64, otherwise: i8) -> i8 {
     }
 }
 
+/// Axes that are on another side of their play than was computed for.
+#[derive(Clone, Copy)]
+pub(crate) struct Against {
+    /// The sides of all axes, by the direction of the motion that leads there.
+    sides: [i8; 3],
+    /// Those that are on another side.
+    turned: [bool; 3],
+}
+
 /// What became of a try to follow a curve with one block.
 pub(crate) enum Tried {
     /// Its block is written.
     Done,
-    /// These axes would have moved this way, against the direction they were computed for.
-    Against([i8; 3]),
+    /// Axes would have moved against the direction they were computed for, or not moved to its side.
+    Against(Against),
     /// Too far from the path, mm.
     Beyond {
         /// How far.
@@ -47,9 +57,9 @@ pub(crate) type Try<'m> =
     fn(&mut Corrector<'m>, &mut Follow<'_, 'm>, &Curve, [bool; 3]) -> Result<Tried, CorrectionError>;
 
 impl<'m> Corrector<'m> {
-    /// The axes that come from `before` to `reached` against `direction`, and which way; 0 for the others.
-    ///
-    /// An axis that does not move stays on the side to which it `came` earlier.
+    /// The sides of their play on which the axes are, brought from `before` to `reached`, where these are not all of
+    /// `direction`. An axis that does not move stays on the side to which it `came` earlier; one without a place is
+    /// not asked.
     ///
     /// In a turned frame every axis moves by the rounding of all: there the question has no answer, and nothing
     /// but rapids is corrected.
@@ -60,20 +70,17 @@ impl<'m> Corrector<'m> {
         came: [i8; 3],
         direction: [i8; 3],
         block: &Block,
-    ) -> Option<[i8; 3]> {
+    ) -> Option<Against> {
         if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
-        let way = |i: usize| {
-            let side = match (before[i], reached[i]) {
-                (Some(from), Some(to)) if (to - from).abs() > SAME_MM => heading(from, to, 0),
-                (Some(_), Some(_)) => came[i],
-                _ => 0,
-            };
-            if side == direction[i] { 0 } else { side }
-        };
-        let found = [way(0), way(1), way(2)];
-        (found != [0; 3]).then_some(found)
+        let mut against = Against { sides: self.direction, turned: [false; 3] };
+        for i in 0..3 {
+            let (Some(from), Some(to)) = (before[i], reached[i]) else { continue };
+            against.sides[i] = if (to - from).abs() > SAME_MM { heading(from, to, 0) } else { came[i] };
+            against.turned[i] = against.sides[i] != direction[i];
+        }
+        against.turned.contains(&true).then_some(against)
     }
 
     /// Turns the axes the way they went from `before`: in a turned frame each moves by the rounding of all.
@@ -88,12 +95,8 @@ impl<'m> Corrector<'m> {
     }
 
     /// Turns axes: what is computed from here on is for these directions.
-    pub(crate) fn turn(&mut self, towards: [i8; 3]) {
-        for (direction, new) in self.direction.iter_mut().zip(towards) {
-            if new != 0 {
-                *direction = new;
-            }
-        }
+    pub(crate) fn turn(&mut self, against: Against) {
+        self.direction = against.sides;
     }
 
     /// One block for a curve; where axes would creep against their direction they hold their place, or turn first.
@@ -107,20 +110,20 @@ impl<'m> Corrector<'m> {
             Tried::Against(against) => against,
             other => return Ok(other),
         };
-        if let Tried::Done = attempt(self, follow, part, against.map(|way| way != 0))? {
+        if let Tried::Done = attempt(self, follow, part, against.turned)? {
             return Ok(Tried::Done);
         }
         let before = self.clone();
-        let (machine, alone) = (follow.machine, follow.alone);
+        let (machine, alone, came) = (follow.machine, follow.alone, follow.came);
         let (written, correction) = (follow.corrected.pieces.len(), follow.corrected.correction);
         self.turn(against);
         follow.machine.state.direction = self.direction;
-        self.approach(&mut follow.machine, part, follow.block, follow.corrected)?;
+        self.approach(&mut follow.machine, part, follow.block, &mut follow.came, follow.corrected)?;
         follow.alone &= follow.corrected.pieces.len() == written;
         let (distance_mm, s) = match attempt(self, follow, part, [false; 3])? {
             Tried::Done => return Ok(Tried::Done),
             Tried::Beyond { distance_mm, s } => (distance_mm, s),
-            Tried::Against(again) => match attempt(self, follow, part, again.map(|way| way != 0))? {
+            Tried::Against(again) => match attempt(self, follow, part, again.turned)? {
                 Tried::Done => return Ok(Tried::Done),
                 Tried::Beyond { distance_mm, s } => (distance_mm, s),
                 Tried::Against(_) => (f64::INFINITY, 0.5),
@@ -128,27 +131,25 @@ impl<'m> Corrector<'m> {
         };
         // Turning did not help either: the caller splits, and each part decides anew.
         *self = before;
-        (follow.machine, follow.alone) = (machine, alone);
+        (follow.machine, follow.alone, follow.came) = (machine, alone, came);
         follow.corrected.pieces.truncate(written);
         follow.corrected.correction = correction;
         Ok(Tried::Beyond { distance_mm, s })
     }
 
-    /// Axes whose direction is not known and which an approach would move, and which way.
+    /// The directions with those of the axes that are not known and that an approach would move.
     pub(crate) fn first_moves(&self, wanted: &Vector, direction: [i8; 3], block: &Block) -> Option<[i8; 3]> {
         if !self.model.depends_on_direction() || !block.frame.is_axial() {
             return None;
         }
-        let way = |i: usize| match self.standing[i] {
-            Some(standing)
-                if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.axis_step_mm(i) =>
-            {
-                heading(standing, wanted[i], 0)
+        let mut found = direction;
+        for i in 0..3 {
+            let Some(standing) = self.standing[i] else { continue };
+            if direction[i] == 0 && (wanted[i] - standing).abs() > 0.5 * block.axis_step_mm(i) {
+                found[i] = heading(standing, wanted[i], 0);
             }
-            _ => 0,
-        };
-        let found = [way(0), way(1), way(2)];
-        (found != [0; 3]).then_some(found)
+        }
+        (found != direction).then_some(found)
     }
 
     /// Where the approach to a corrected start shall bring the axes, `wanted` being that start.
