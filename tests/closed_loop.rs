@@ -90,3 +90,58 @@ fn path_engines_follow_their_own_model() {
     assert_eq!(published.status.code(), Some(2));
     assert!(messages(&published).contains("vpost solve"), "{}", messages(&published));
 }
+
+/// Outputs with one mistake each, on a machine without errors, so that the program itself passes.
+#[test]
+fn a_wrong_program_is_found_out() {
+    let posted = "G21 G17 G90 G54\nG0 X50. Y0. Z5.\nG1 Z0. F200.\nX0.\nY0.001\nY20.\nG2 X20. Y0. I0. J-20.\nG0 Z5.\nX10. Y10.\nG1 Z0.\nG0 Z5.\nM30\n";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let plain = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let (wanted, commanded) = (plain("posted.nc"), plain("out.nc"));
+    std::fs::write(&wanted, posted).expect("writable");
+    let judged = |text: &str| {
+        std::fs::write(&commanded, text).expect("writable");
+        let ran = run(&[
+            "check",
+            &wanted,
+            &commanded,
+            "-m",
+            "machine-profiles/perfect.toml",
+            "-d",
+            "fanuc",
+            "--json",
+        ]);
+        let outcome: serde_json::Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+        assert_eq!(outcome["passed"], ran.status.success());
+        outcome["findings"].to_string()
+    };
+    assert_eq!(judged(posted), "[]");
+    for (right, wrong, finding) in [
+        // 3 um aside, an end short of its place, another radius, the other way round.
+        ("X0.\n", "X0.003\n", "line 6 of the corrected program is 3.000 um off the path of line 6"),
+        ("X0.\n", "X0.003\n", "ends 3.000 um short of the end of line 4"),
+        (
+            "\nX0.\n",
+            "\nX0.01\nX0. Y0.01\nY0.\n",
+            "line 5 of the corrected program is 10.000 um off the path of line 4",
+        ),
+        ("\nY20.\n", "\nY19.99\n", "line 7 of the corrected program is"),
+        ("I0. J-20.", "I0.015 J-20.", "of the corrected program is"),
+        ("G2 X20.", "G3 X20.", "line 7 of the corrected program is"),
+        // A rapid instead of a cut, though the feed behind it ends where the cut would have ended.
+        ("X0.\nY0.001\n", "G0 X0.\nG1 Y0.001\n", "the motion of line 4 is missing"),
+        ("G1 Z0.\nG0 Z5.\nM30", "G0 Z0.\nG0 Z5.\nM30", "the motion of line 10 is missing"),
+        // Cut twice; cut where nothing is programmed.
+        ("G1 Z0.\nG0 Z5.\nM30", "G1 Z0.\nG0 Z5.\nG1 Z0.\nG0 Z5.\nM30", "line 12 of the corrected program"),
+        ("X10. Y10.\n", "G1 X10. Y10.\n", "of the corrected program is"),
+        // Something else than motion.
+        ("M30", "M8\nM30", "besides motion"),
+        ("G54", "G55", "besides motion"),
+    ] {
+        let text = posted.replace(right, wrong);
+        assert_ne!(text, posted, "{right:?}");
+        let found = judged(&text);
+        println!("{wrong:?}: {found}");
+        assert!(found.contains(finding), "{wrong:?}: {found}");
+    }
+}

@@ -58,6 +58,13 @@ pub enum Mismatch {
         /// Its line.
         wanted_line: u64,
     },
+    /// A programmed feed motion that the corrected program begins and does not end.
+    Short {
+        /// Its line.
+        wanted_line: u64,
+        /// What is left of it, mm.
+        left_mm: f64,
+    },
     /// A corrected feed motion that belongs to no programmed one.
     Extra {
         /// Its line.
@@ -103,8 +110,11 @@ pub const MOST_MISMATCHES: usize = 20;
 /// Largest distance between samples, mm.
 const SAMPLE_MM: f64 = 0.5;
 
-/// As many limits of way may be gone back to find the motion that a piece was made for.
+/// As many limits of way may be gone back, or on, to find the motion or the place of it that a piece was made for.
 const SHORT_LIMITS: f64 = 4.0;
+
+/// A piece that is off by no more limits than these was made for that motion all the same.
+const NEARLY_LIMITS: f64 = 10.0;
 
 struct Feeding {
     curve: Curve,
@@ -288,17 +298,35 @@ struct Fit {
     s: f64,
     /// How far it runs backwards, mm.
     back_mm: f64,
+    /// How far on from where the motion was it begins, mm.
+    jump_mm: f64,
+}
+
+impl Fit {
+    /// Near the motion and on it all the way; into and out of a hole the axis goes as often as it likes.
+    fn holds(&self, w: &Feeding, limit_mm: f64) -> bool {
+        self.distance_mm <= limit_mm
+            && (w.hole || (self.back_mm <= limit_mm && self.jump_mm <= SHORT_LIMITS * limit_mm))
+    }
+
+    /// What is wrong with it, mm.
+    fn off_mm(&self) -> f64 {
+        self.distance_mm.max(self.back_mm).max(self.jump_mm)
+    }
 }
 
 impl Matcher<'_> {
     fn fit(&self, w: &Feeding, piece: &Feeding, s0: f64) -> Fit {
-        let mut fit = Fit { distance_mm: 0.0, s: s0, back_mm: 0.0 };
+        let mut fit = Fit { distance_mm: 0.0, s: s0, back_mm: 0.0, jump_mm: 0.0 };
         for_samples(&piece.curve, |s| {
             let at = piece.curve.at(s);
             let real = at + self.model.error_mm(&Command { linear_mm: at, ..piece.state });
             let on = project(&w.curve, &real, fit.s);
             fit.distance_mm = fit.distance_mm.max(distance(&w.curve, &real, on));
             fit.back_mm = fit.back_mm.max((fit.s - on) * w.length_mm);
+            if s == 0.0 {
+                fit.jump_mm = (on - s0) * w.length_mm;
+            }
             fit.s = on;
         });
         fit
@@ -322,7 +350,7 @@ impl Matcher<'_> {
         while at < self.wanted.len() {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
-            if fit.distance_mm <= self.limit_mm && (w.hole || fit.back_mm <= self.limit_mm) {
+            if fit.holds(w, self.limit_mm) {
                 self.note(at, fit.distance_mm);
                 self.hole_by_moves = !piece.hole;
                 let done = (1.0 - fit.s) * w.length_mm <= self.limit_mm;
@@ -354,20 +382,37 @@ impl Matcher<'_> {
             self.result.approaches += 1;
             return;
         }
-        let Some((at, fit)) = first else {
+        let Some((mut at, mut fit)) = first else {
             self.mismatch(Mismatch::Extra { commanded_line: piece.line });
             return;
         };
+        // What is under way may have ended short of its end: then the piece is of a later one.
+        let under_way = at;
+        for later in under_way + 1..self.wanted.len() {
+            let w = &self.wanted[later];
+            let of_later = self.fit(w, piece, 0.0);
+            if of_later.off_mm() < fit.off_mm().min(NEARLY_LIMITS * self.limit_mm) {
+                (at, fit) = (later, of_later);
+            }
+            if !self.skippable(w) {
+                break;
+            }
+        }
+        if at > under_way {
+            self.left_over(under_way, if under_way == self.at { self.s } else { 0.0 });
+        }
         let w = &self.wanted[at];
         self.note(at, fit.distance_mm);
         self.hole_by_moves = !piece.hole;
-        self.mismatch(Mismatch::TooFar {
-            wanted_line: w.line,
-            commanded_line: piece.line,
-            distance_mm: fit.distance_mm.max(fit.back_mm),
-        });
+        if !fit.holds(w, self.limit_mm) {
+            self.mismatch(Mismatch::TooFar {
+                wanted_line: w.line,
+                commanded_line: piece.line,
+                distance_mm: fit.off_mm(),
+            });
+        }
         // Go on as if it had been meant for this motion, so that one bad block is one mismatch.
-        (self.at, self.s) = if (1.0 - fit.s) * w.length_mm <= 10.0 * self.limit_mm {
+        (self.at, self.s) = if (1.0 - fit.s) * w.length_mm <= NEARLY_LIMITS * self.limit_mm {
             (at + 1, 0.0)
         } else {
             (at, fit.s.clamp(0.0, 1.0))
@@ -443,17 +488,23 @@ impl Matcher<'_> {
         }
     }
 
-    fn finish(mut self) -> Comparison {
-        for w in &self.wanted[self.at.min(self.wanted.len())..] {
-            let left = if std::ptr::eq(w, &self.wanted[self.at]) {
-                (1.0 - self.s) * w.length_mm
+    /// Says that a motion was not made, or not to its end.
+    fn left_over(&mut self, at: usize, s: f64) {
+        let w = &self.wanted[at];
+        let left_mm = ((1.0 - s) * w.length_mm).min(w.reach_mm);
+        if left_mm > self.limit_mm {
+            let wanted_line = w.line;
+            self.mismatch(if s > 0.0 {
+                Mismatch::Short { wanted_line, left_mm }
             } else {
-                w.length_mm
-            };
-            let left = left.min(w.reach_mm);
-            if left > self.limit_mm {
-                self.mismatch(Mismatch::Missing { wanted_line: w.line });
-            }
+                Mismatch::Missing { wanted_line }
+            });
+        }
+    }
+
+    fn finish(mut self) -> Comparison {
+        for at in self.at..self.wanted.len() {
+            self.left_over(at, if at == self.at { self.s } else { 0.0 });
         }
         self.result
     }

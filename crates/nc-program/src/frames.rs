@@ -243,6 +243,9 @@ fn preset(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &
     Ok(())
 }
 
+/// A shift below this is none, mm: where G92 says that the axes stand where they do, the last bits may differ.
+const NO_SHIFT_MM: f64 = 1e-9;
+
 /// G92.1: with words on Fanuc, where it also ends G52; without on LinuxCNC.
 fn cancel_preset(
     env: &Environment<'_>,
@@ -256,7 +259,8 @@ fn cancel_preset(
         state.shifts.kept_mm = Some([0.0; 3]);
         return Ok(());
     }
-    let shifted = state.shifts.preset_mm != [0.0; 3] || state.shifts.local_mm != [0.0; 3];
+    let shifts = [state.shifts.preset_mm, state.shifts.local_mm];
+    let shifted = shifts.iter().flatten().any(|shift| shift.abs() > NO_SHIFT_MM);
     if !words.has(LINEAR_LETTERS) && shifted {
         return Err(refuse(words, span, "without axes", "which axes lose their shift?")
             .help("write X0 Y0 Z0 beside it"));

@@ -307,6 +307,9 @@ fn findings(comparison: &Comparison, wanted: &[&Event], commanded: &[&Event]) ->
             Mismatch::Missing { wanted_line } => {
                 format!("the motion of line {wanted_line} is missing from the corrected program")
             }
+            Mismatch::Short { wanted_line, left_mm } => {
+                format!("the corrected program ends {:.3} um short of the end of line {wanted_line}", left_mm * 1e3)
+            }
             Mismatch::Extra { commanded_line } => {
                 format!("line {commanded_line} of the corrected program belongs to no programmed motion")
             }
