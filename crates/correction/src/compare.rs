@@ -358,7 +358,7 @@ impl Matcher<'_> {
                 return;
             }
             let skip = self.skippable(w) || (at == self.at && (1.0 - self.s) * w.length_mm <= self.limit_mm);
-            ends_where_one_goes_on |= (w.curve.at(s0.clamp(0.0, 1.0)) - real).norm() <= self.limit_mm;
+            ends_where_one_goes_on |= self.leads_to(w, s0.clamp(0.0, 1.0), &real);
             if first.is_none() {
                 first = Some((at, fit));
             }
@@ -387,12 +387,13 @@ impl Matcher<'_> {
             return;
         };
         // What is under way may have ended short of its end: then the piece is of a later one.
-        let under_way = at;
+        let (under_way, nearly) = (at, fit.off_mm() <= NEARLY_LIMITS * self.limit_mm);
         for later in under_way + 1..self.wanted.len() {
             let w = &self.wanted[later];
             let of_later = self.fit(w, piece, 0.0);
-            if of_later.off_mm() < fit.off_mm().min(NEARLY_LIMITS * self.limit_mm) {
+            if of_later.off_mm() <= NEARLY_LIMITS * self.limit_mm && !nearly {
                 (at, fit) = (later, of_later);
+                break;
             }
             if !self.skippable(w) {
                 break;
@@ -417,6 +418,13 @@ impl Matcher<'_> {
         } else {
             (at, fit.s.clamp(0.0, 1.0))
         };
+    }
+
+    /// The place is where a motion goes on, or on its way near there: the play along the way is not yet taken up.
+    fn leads_to(&self, w: &Feeding, s0: f64, real: &Vector) -> bool {
+        let near = |s: f64| (w.curve.at(s) - real).norm() <= self.limit_mm;
+        let s = project(&w.curve, real, s0);
+        near(s0) || (near(s) && (s - s0).abs() * w.length_mm <= SHORT_LIMITS * self.limit_mm)
     }
 
     /// The next hole, from its top, be it where the last one was.
