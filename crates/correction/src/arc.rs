@@ -103,7 +103,11 @@ impl<'m> Corrector<'m> {
         // A mirrored frame turns the other way in the program.
         let clockwise = (sweep < 0.0) != in_plane(part, follow.block).is_some_and(|map| map.mirrored);
         let nominal_end = part.at(1.0);
-        let wanted = self.solve(&follow.machine, nominal_end)?;
+        let solved = solved_together(follow, part);
+        let wanted = match solved {
+            Some([.., end]) => end,
+            None => self.solve(&follow.machine, nominal_end)?,
+        };
         let before = self.standing;
         let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
@@ -124,14 +128,16 @@ impl<'m> Corrector<'m> {
             return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
         }
         let mut nearest = f64::INFINITY;
-        let (corrected, solved) = self.corrected_places(follow, part)?;
         let limit_mm = self.limit_mm(follow.block);
-        let sieve = if solved { Sieve::new(part, &corrected, follow, limit_mm) } else { None };
+        let (corrected, sieve) = match solved {
+            Some([a, b, c, _]) => ([a, b, c], Sieve::new(part, &[a, b, c], follow, limit_mm)),
+            None => (self.solved_one_by_one(follow, part)?, None),
+        };
         for candidate in self.candidates(follow, part, from, to, &corrected) {
-            let Some(curve) = candidate.arc(follow, part, from, to) else { continue };
-            if sieve.as_ref().is_some_and(|sieve| sieve.refutes(&curve)) {
+            if sieve.as_ref().is_some_and(|sieve| sieve.refutes(&candidate, part, from, to)) {
                 continue;
             }
+            let Some(curve) = candidate.arc(follow, part, from, to) else { continue };
             let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
             match pair.verdict(&follow.machine, limit_mm) {
                 Verdict::Within(bound) => {
@@ -295,28 +301,26 @@ impl<'m> Corrector<'m> {
         }
     }
 
-    /// Commands that bring the tool to the programmed path at [`PLACES`]; true where the model solved all of them.
-    fn corrected_places(
+    /// Commands that bring the tool to the programmed path at [`PLACES`].
+    fn solved_one_by_one(
         &self,
         follow: &Follow<'_, '_>,
         part: &Curve,
-    ) -> Result<([Vector; 3], bool), CorrectionError> {
-        let wanted = PLACES.map(|s| part.at(s));
-        let machine = &follow.machine;
-        let together = machine.everywhere.as_ref().and_then(|everywhere| {
-            let targets = from_fn(|k| wanted[k.min(2)].into());
-            let directions = [machine.state.direction; LANES];
-            machine.model.commands_for(&targets, &directions, &machine.state, everywhere)
-        });
-        if let Some([x, y, z]) = together {
-            return Ok((from_fn(|k| Vector::new(x[k], y[k], z[k])), true));
-        }
-        let mut found = wanted;
-        for found in &mut found {
-            *found = self.solve(machine, *found)?;
-        }
-        Ok((found, false))
+    ) -> Result<[Vector; 3], CorrectionError> {
+        let [a, b, c] = PLACES.map(|s| self.solve(&follow.machine, part.at(s)));
+        Ok([a?, b?, c?])
     }
+}
+
+/// The same, and to its end, all at once; `None` where the model has to be asked for each.
+fn solved_together(follow: &Follow<'_, '_>, part: &Curve) -> Option<[Vector; LANES]> {
+    let machine = &follow.machine;
+    let everywhere = machine.everywhere.as_ref()?;
+    let [a, b, c] = PLACES;
+    let targets = [a, b, c, 1.0].map(|s| part.at(s).into());
+    let directions = [machine.state.direction; LANES];
+    let [x, y, z] = machine.model.commands_for(&targets, &directions, &machine.state, everywhere)?;
+    Some(from_fn(|k| Vector::new(x[k], y[k], z[k])))
 }
 
 /// False for ends that no control may be left to make an arc of.
@@ -354,14 +358,58 @@ impl Sieve {
         Some(Self { places, gradient: everywhere.gradient, limit_mm })
     }
 
-    fn refutes(&self, curve: &Curve) -> bool {
-        // The middle shows most.
-        [1, 0, 2].into_iter().any(|k| {
-            let (corrected, tangent) = self.places[k];
-            let off = curve.at(PLACES[k]) - corrected;
-            let square = (off - tangent * off.dot(&tangent)).norm();
-            square - self.gradient * off.norm() > self.limit_mm + ROUNDING_MM
-        })
+    /// Without an angle: unit vectors from the centre, halved twice. What [`Candidate::arc`] would not take for this arc need
+    /// not be told from it.
+    fn refutes(&self, candidate: &Candidate, part: &Curve, from: Vector, to: Vector) -> bool {
+        let Curve::Arc { axes: [u, v, n], sweep, .. } = *part else { return false };
+        if sweep.abs() > TAU + 1e-6 {
+            return false;
+        }
+        let [cu, cv] = candidate.centre;
+        let (start, end) = ([from[u] - cu, from[v] - cv], [to[u] - cu, to[v] - cv]);
+        let radii = [length(start), length(end)];
+        let (start, end) = (unit(start), unit(end));
+        let middle = half_way(start, end, sweep);
+        let is_off = |k: usize, way: [f64; 2]| {
+            let at = |ends: [f64; 2]| ends[0] + (ends[1] - ends[0]) * PLACES[k];
+            let mut command = Vector::zeros();
+            (command[u], command[v]) = (cu + at(radii) * way[0], cv + at(radii) * way[1]);
+            command[n] = at([from[n], to[n]]);
+            self.is_off(k, &command)
+        };
+        is_off(0, half_way(start, middle, 0.5 * sweep))
+            || is_off(2, half_way(middle, end, 0.5 * sweep))
+            || is_off(1, middle)
+    }
+
+    /// True where a command at one of [`PLACES`] is too far from the path.
+    fn is_off(&self, k: usize, command: &Vector) -> bool {
+        let (corrected, tangent) = self.places[k];
+        let off = command - corrected;
+        let square = (off - tangent * off.dot(&tangent)).norm();
+        square - self.gradient * off.norm() > self.limit_mm + ROUNDING_MM
+    }
+}
+
+fn length([u, v]: [f64; 2]) -> f64 {
+    (u * u + v * v).sqrt()
+}
+
+fn unit(of: [f64; 2]) -> [f64; 2] {
+    let length = length(of);
+    of.map(|component| component / length)
+}
+
+/// The unit vector half way of a turn from one to another, which is at most a whole one.
+fn half_way(from: [f64; 2], to: [f64; 2], turn_rad: f64) -> [f64; 2] {
+    // It lies along their sum, and square to their difference: the longer of both says it well.
+    let (sum, apart) = ([from[0] + to[0], from[1] + to[1]], [from[0] - to[0], from[1] - to[1]]);
+    if turn_rad.abs() < 0.25 * TAU {
+        unit(sum)
+    } else if turn_rad.abs() > 0.75 * TAU {
+        unit(sum).map(|component| -component)
+    } else {
+        unit([-apart[1] * turn_rad.signum(), apart[0] * turn_rad.signum()])
     }
 }
 
@@ -405,4 +453,21 @@ fn fit_centre(part: &Curve, from: Vector, to: Vector, corrected: &[Vector; 3]) -
         return centre;
     }
     [from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant]
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use units::math::sin_cos;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn half_way_is_half_the_angle(angle in -7.0f64..7.0, turn in prop_oneof![-TAU..TAU, Just(TAU), Just(-TAU), -1e-6f64..1e-6]) {
+            let way = |angle: f64| { let (sin, cos) = sin_cos(angle); [cos, sin] };
+            let (found, expected) = (half_way(way(angle), way(angle + turn), turn), way(angle + 0.5 * turn));
+            prop_assert!(length([found[0] - expected[0], found[1] - expected[1]]) < 1e-14);
+        }
+    }
 }

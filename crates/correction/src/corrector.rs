@@ -441,11 +441,19 @@ impl<'m> Corrector<'m> {
         Ok(corrected)
     }
 
-    /// Bound of the deviation that the program would have had uncorrected, mm.
+    /// Bound of the deviation that the program would have had uncorrected, mm; 0 where it cannot exceed that of an earlier
+    /// motion.
     pub(crate) fn before_mm(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> f64 {
         let machine = self.machine(block, rotary_deg);
         let extent = whole.extent(0.0, 1.0);
         let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
+        if let Some(everywhere) = &machine.everywhere
+            && let Some((speed_mm, acceleration_mm)) = whole.fastest(0.0, 1.0)
+            && whole.lies_inside(&everywhere.volume)
+            && ends + everywhere.chord_bound_of_circle_mm(speed_mm, acceleration_mm) <= self.told_mm[0]
+        {
+            return 0.0;
+        }
         let between = self.model.chord_bound_mm(&machine_model::Move {
             range_mm: extent.range,
             speed_mm: extent.speed,

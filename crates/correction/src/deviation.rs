@@ -173,6 +173,7 @@ impl Pair<'_> {
             looked_at.push(place);
         }
         let mut worst_proven: f64 = 0.0;
+        let mut of_the_whole = Some(whole);
         // Depth first, left to right, on a stack of right halves: no recursion, no allocation.
         let mut stack = [first; DEEPEST + 3];
         stack[0] = last;
@@ -181,7 +182,7 @@ impl Pair<'_> {
         let mut places = 0;
         while height > 0 {
             let right = stack[height - 1];
-            let bound = bound(&left, &right);
+            let bound = of_the_whole.take().unwrap_or_else(|| bound(&left, &right));
             if bound <= limit_mm {
                 worst_proven = worst_proven.max(bound);
                 left = right;

@@ -303,22 +303,31 @@ impl AxisTables {
     #[must_use]
     #[inline]
     pub fn bounds(&self, range: Range) -> SixBounds {
+        let mut all = SixBounds::default();
+        self.bounds_into(range, &mut all);
+        all
+    }
+
+    /// [`Self::bounds`] written to where they are wanted.
+    #[inline]
+    pub(crate) fn bounds_into(&self, range: Range, all: &mut SixBounds) {
         if self.curved.is_empty() && self.grid.low() <= range.low && range.high <= self.grid.high() {
-            return self.bounds_of_lines(range);
+            self.bounds_of_lines(range, all);
+        } else {
+            *all = self.bounds_across_cells(range);
         }
-        self.bounds_across_cells(range)
     }
 
     /// [`Self::bounds_across_cells`] where all functions are straight lines and the range is theirs: the common case.
     #[inline]
-    fn bounds_of_lines(&self, range: Range) -> SixBounds {
+    fn bounds_of_lines(&self, range: Range, all: &mut SixBounds) {
         let Range { low, high } = range;
         let nodes = self.grid.nodes();
         let (first, mut last) = (self.grid.cell(low), self.grid.cell(high));
         if last > first && nodes[last] >= high {
             last -= 1; // the interval ends on the node: what follows is not inside
         }
-        let mut all = SixBounds::default();
+        *all = SixBounds::default();
         for cell in first..=last {
             let [c0, c1] = &self.straight[cell];
             let from = if cell == first { low - nodes[cell] } else { 0.0 };
@@ -339,7 +348,6 @@ impl AxisTables {
                 }
             }
         }
-        all
     }
 
     fn bounds_across_cells(&self, range: Range) -> SixBounds {

@@ -4,50 +4,61 @@
 //! of the absolute value, of the first and second derivative along the stretch, and of the sum of jumps
 //! of the first derivative, component by component.
 
+use pulp::{Simd, f64x4};
+
 use crate::axis_tables::SixBounds;
 use crate::everywhere::Everywhere;
+use crate::lanes::{Components, Together, together};
 use crate::rigid_body::Link;
-use crate::{Command, Move, Range, RigidBody, Vector};
+use crate::{Command, Move, Range, RigidBody};
 
 /// How far beyond the volume the box of a stretch may reach by rounding, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
 /// Bounds of three components along the stretch parameter.
-#[derive(Clone, Copy, Debug, Default)]
-struct Growth {
+#[derive(Clone, Copy)]
+struct Growth<S> {
     /// Upper bounds of the absolute values.
-    value: [f64; 3],
+    value: Components<S>,
     /// Upper bounds of |first derivative|.
-    first: [f64; 3],
+    first: Components<S>,
     /// Bounds of the second derivative with sign: on an even run contributions of the axes may cancel.
-    low: [f64; 3],
-    high: [f64; 3],
+    low: Components<S>,
+    high: Components<S>,
     /// Sum of the jumps of the first derivative, each weighted with 4s(1-s) where its place s is known.
-    jumps: [f64; 3],
+    jumps: Components<S>,
 }
 
-impl Growth {
+impl<S: Simd<f64s = f64x4>> Growth<S> {
+    /// Of what has this value and does not change.
+    #[inline(always)]
+    fn constant(value: Components<S>) -> Self {
+        let zero = value.all(0.0);
+        Self { value, first: zero, low: zero, high: zero, jumps: zero }
+    }
     /// Upper bound of |second derivative|.
-    fn second(&self, i: usize) -> f64 {
-        self.high[i].max(-self.low[i])
+    #[inline(always)]
+    fn second(&self) -> Components<S> {
+        self.high.max(self.low.negative())
     }
     /// Upper bound of the distance from the chord, mm.
+    #[inline(always)]
     fn leaves_chord_mm(&self) -> f64 {
-        norm(&std::array::from_fn(|i| self.jumps[i] / 4.0 + self.second(i) / 8.0))
+        (self.jumps.scaled(0.25) + self.second().scaled(0.125)).norm()
     }
     /// A contribution to the second derivative of unknown sign.
-    fn either(&mut self, i: usize, by: f64) {
-        self.low[i] -= by;
-        self.high[i] += by;
+    #[inline(always)]
+    fn either(&mut self, by: Components<S>) {
+        self.low = self.low - by;
+        self.high = self.high + by;
     }
+    #[inline(always)]
     fn add(&mut self, by: &Self) {
-        for i in 0..3 {
-            self.value[i] += by.value[i];
-            self.first[i] += by.first[i];
-            self.low[i] += by.low[i];
-            self.high[i] += by.high[i];
-            self.jumps[i] += by.jumps[i];
-        }
+        self.value = self.value + by.value;
+        self.first = self.first + by.first;
+        self.low = self.low + by.low;
+        self.high = self.high + by.high;
+        self.jumps = self.jumps + by.jumps;
     }
 }
 
@@ -62,80 +73,94 @@ struct Run {
 }
 
 /// Three of the six functions along the stretch: the chain rule on table bounds, equation (10).
-#[inline]
-fn along(bounds: &SixBounds, from: usize, run: Run) -> Growth {
+#[inline(always)]
+fn along<S: Simd<f64s = f64x4>>(simd: S, bounds: &SixBounds, from: usize, run: Run) -> Growth<S> {
     let Run { speed, acceleration, passes, even } = run;
-    let kinks = if even { &bounds.kinks_on_line } else { &bounds.kinks };
-    let by = |f: &dyn Fn(usize) -> f64| std::array::from_fn(|i| f(from + i));
-    // Where the speed is only bounded its square may be anything down to zero.
-    let least = |v: f64| if even { v } else { v.min(0.0) };
-    let most = |v: f64| if even { v } else { v.max(0.0) };
+    let kinks = Components::of(simd, if even { &bounds.kinks_on_line } else { &bounds.kinks }, from);
+    let slope = Components::of(simd, &bounds.slope, from);
+    let mut low = Components::of(simd, &bounds.curvature_low, from);
+    let mut high = Components::of(simd, &bounds.curvature_high, from);
+    if !even {
+        // Where the speed is only bounded its square may be anything down to zero.
+        low = low.min(low.all(0.0));
+        high = high.max(high.all(0.0));
+    }
     Growth {
-        value: by(&|i| bounds.value[i]),
-        first: by(&|i| bounds.slope[i] * speed),
-        low: by(&|i| least(bounds.curvature_low[i]) * speed * speed - bounds.slope[i] * acceleration),
-        high: by(&|i| most(bounds.curvature_high[i]) * speed * speed + bounds.slope[i] * acceleration),
-        jumps: by(&|i| kinks[i] * speed * passes),
+        value: Components::of(simd, &bounds.value, from),
+        first: slope.scaled(speed),
+        low: low.scaled(speed).scaled(speed) - slope.scaled(acceleration),
+        high: high.scaled(speed).scaled(speed) + slope.scaled(acceleration),
+        jumps: kinks.scaled(speed).scaled(passes),
     }
 }
 
 /// What lies beyond an axis, from its measuring line on, as an interval and as it grows.
-struct Beyond {
-    low: Vector,
-    high: Vector,
-    growth: Growth,
+struct Beyond<S> {
+    low: Components<S>,
+    high: Components<S>,
+    growth: Growth<S>,
 }
 
 /// Adds bounds of `ε × x`, component by component: product rule, first order of equation (11).
-#[inline]
-fn add_cross(sum: &mut Growth, e: &Growth, beyond: &Beyond) {
-    let x = &beyond.growth;
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        for (a, b, minus) in [(j, k, false), (k, j, true)] {
-            sum.value[i] += e.value[a] * x.value[b];
-            sum.first[i] += e.first[a] * x.value[b] + e.value[a] * x.first[b];
-            let (low, high) = product([e.low[a], e.high[a]], [beyond.low[b], beyond.high[b]]);
-            let (low, high) = if minus { (-high, -low) } else { (low, high) };
-            sum.low[i] += low;
-            sum.high[i] += high;
-            sum.either(i, 2.0 * e.first[a] * x.first[b] + e.value[a] * x.second(b));
-            sum.jumps[i] += e.jumps[a] * x.value[b] + e.value[a] * x.jumps[b];
-        }
+#[inline(always)]
+fn add_cross<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>) {
+    // The next component of the one with the one after that of the other, and the other way round.
+    add_product(sum, &next(e), &next_in(&next_in(beyond)), false);
+    add_product(sum, &next(&next(e)), &next_in(beyond), true);
+}
+
+/// The components in the order Y, Z, X.
+#[inline(always)]
+fn next<S: Simd<f64s = f64x4>>(of: &Growth<S>) -> Growth<S> {
+    Growth {
+        value: of.value.next(),
+        first: of.first.next(),
+        low: of.low.next(),
+        high: of.high.next(),
+        jumps: of.jumps.next(),
     }
 }
 
-/// All products of a number of one interval with one of another.
-#[inline]
-fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> (f64, f64) {
-    let all = [a * c, a * d, b * c, b * d];
-    (all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max))
+/// The same of what lies beyond.
+#[inline(always)]
+fn next_in<S: Simd<f64s = f64x4>>(of: &Beyond<S>) -> Beyond<S> {
+    Beyond { low: of.low.next(), high: of.high.next(), growth: next(&of.growth) }
 }
 
-#[inline]
-fn norm(v: &[f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
+/// Adds bounds of a product, or of its negative.
+#[inline(always)]
+fn add_product<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond: &Beyond<S>, minus: bool) {
+    let x = &beyond.growth;
+    sum.value = sum.value + e.value * x.value;
+    sum.first = sum.first + (e.first * x.value + e.value * x.first);
+    // All products of a number of one interval with one of the other.
+    let (a, b) = (e.low * beyond.low, e.low * beyond.high);
+    let (c, d) = (e.high * beyond.low, e.high * beyond.high);
+    let (low, high) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
+    let (low, high) = if minus { (high.negative(), low.negative()) } else { (low, high) };
+    sum.low = sum.low + low;
+    sum.high = sum.high + high;
+    sum.either(e.first.scaled(2.0) * x.first + e.value * x.second());
+    sum.jumps = sum.jumps + (e.jumps * x.value + e.value * x.jumps);
 }
 
 /// Adds bounds of `(R - I - [ε]×)·x`, by norms: second and higher orders of equation (11).
 ///
 /// The exponential series of R from its square term on, with `e^w ≤ 1/(1-w)`.
-#[inline]
-fn add_higher_orders(sum: &mut Growth, e: &Growth, x: &Growth) {
-    let second_of = |g: &Growth| norm(&std::array::from_fn(|i| g.second(i)));
-    let (w, w1, w2, wj) = (norm(&e.value), norm(&e.first), second_of(e), norm(&e.jumps));
+#[inline(always)]
+fn add_higher_orders<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, x: &Growth<S>) {
+    let (w, w1, w2, wj) = (e.value.norm(), e.first.norm(), e.second().norm(), e.jumps.norm());
     let over = if w < 0.5 { 1.0 / (1.0 - w) } else { units::math::exp(w) };
     let value = 0.5 * w * w * over;
     let first = w1 * w * over;
     let second = (w1 * w1 + w2 * w) * over;
     let jumps = wj * w * over;
-    let (v, v1, v2, vj) = (norm(&x.value), norm(&x.first), second_of(x), norm(&x.jumps));
-    for i in 0..3 {
-        sum.value[i] += value * v;
-        sum.first[i] += first * v + value * v1;
-        sum.either(i, second * v + 2.0 * first * v1 + value * v2);
-        sum.jumps[i] += jumps * v + value * vj;
-    }
+    let (v, v1, v2, vj) = (x.value.norm(), x.first.norm(), x.second().norm(), x.jumps.norm());
+    let all = sum.value;
+    sum.value = sum.value + all.all(value * v);
+    sum.first = sum.first + all.all(first * v + value * v1);
+    sum.either(all.all(second * v + 2.0 * first * v1 + value * v2));
+    sum.jumps = sum.jumps + all.all(jumps * v + value * vj);
 }
 
 /// Upper bound, mm, of the distance between the error and its chord over the stretch: equation (12).
@@ -150,10 +175,17 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
     if (0..3).any(leaves) {
         return f64::INFINITY;
     }
-    let growth = growth(model, stretch, |link, range| {
-        link.tables(stretch.state.direction[link.axis]).map(|tables| tables.bounds(range))
-    });
-    growth.leaves_chord_mm() + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+    let own = |link: &Link, range: Range, bounds: &mut SixBounds| {
+        let tables = link.tables(stretch.state.direction[link.axis]);
+        tables.map(|tables| tables.bounds_into(range, bounds)).is_some()
+    };
+    let bounded = together(Along { model, stretch, bounds: own });
+    bounded.leaves_chord_mm + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+}
+
+#[inline]
+fn norm(v: &[f64; 3]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
 /// What holds for every straight stretch inside the volume; `None` where the model has no such bounds.
@@ -171,15 +203,16 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
     };
     let worst = model.worst_bounds();
     let bounded = |class: usize, speed: f64, passes: u8| {
-        growth(model, &stretch(speed, passes), |link, _| {
-            worst[link.axis].as_ref().map(|bounds| bounds[class])
-        })
+        let worst = |link: &Link, _: Range, bounds: &mut SixBounds| {
+            worst[link.axis].as_ref().map(|worst| *bounds = worst[class]).is_some()
+        };
+        together(Along { model, stretch: &stretch(speed, passes), bounds: worst })
     };
     // Along any unit direction no axis is faster than 1.
-    let gradient = norm(&bounded(0, 1.0, 1).first);
+    let gradient = bounded(0, 1.0, 1).gradient;
     let longest = Everywhere::longest_mm();
     let bow =
-        |passes: u8| std::array::from_fn(|class| bounded(class, longest[class], passes).leaves_chord_mm());
+        |passes: u8| std::array::from_fn(|class| bounded(class, longest[class], passes).leaves_chord_mm);
     Everywhere {
         gradient,
         volume,
@@ -189,51 +222,71 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
     }
 }
 
-/// Bounds along a stretch, `bounds` being those of an axis' tables.
-fn growth(model: &RigidBody, stretch: &Move, bounds: impl Fn(&Link, Range) -> Option<SixBounds>) -> Growth {
-    let volume = crate::Engine::volume(model);
-    let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
-    let (mut low, mut high): (Vector, Vector) = (tool, tool);
-    let (mut nominal_speed, mut nominal_acceleration) = ([0.0; 3], [0.0; 3]);
-    let mut error = Growth { value: tool_error.abs().into(), ..Growth::default() };
-    let passes = f64::from(stretch.passes);
-    for link in model.links.iter().rev() {
-        let axis = link.axis;
-        let (speed, acceleration) = (stretch.speed_mm[axis], stretch.acceleration_mm[axis]);
-        let mut range = stretch.range_mm[axis];
-        range.low = range.low.max(volume.0[axis].low);
-        range.high = range.high.min(volume.0[axis].high);
-        if let Some(bounds) = bounds(link, range) {
-            // What lies beyond this axis, from the measuring line on: x = nominal + error - lever.
-            let off = Vector::from(error.value);
-            let mut beyond = Beyond {
-                low: low - link.measured_lever_mm - off,
-                high: high - link.measured_lever_mm + off,
-                growth: error,
-            };
-            for i in 0..3 {
-                beyond.growth.value[i] = beyond.low[i].abs().max(beyond.high[i].abs());
-                beyond.growth.first[i] += nominal_speed[i];
-                beyond.growth.either(i, nominal_acceleration[i]);
+/// Bounds along a stretch; `bounds` writes those of an axis' tables, or says that there are none.
+struct Along<'a, F> {
+    model: &'a RigidBody,
+    stretch: &'a Move,
+    bounds: F,
+}
+
+/// What is known of the error along a stretch.
+struct Bounded {
+    /// Upper bound of its first derivative.
+    gradient: f64,
+    /// Upper bound of its distance from its chord, mm.
+    leaves_chord_mm: f64,
+}
+
+impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
+    type Output = Bounded;
+
+    #[inline(always)]
+    fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Bounded {
+        let Self { model, stretch, bounds } = self;
+        let volume = crate::Engine::volume(model);
+        let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
+        let vector = Components::vector;
+        let (mut low, mut high) = (vector(simd, &tool), vector(simd, &tool));
+        let zero = low.all(0.0);
+        let (mut nominal_speed, mut nominal_acceleration) = (zero, zero);
+        let mut error = Growth::constant(vector(simd, &tool_error).abs());
+        let passes = f64::from(stretch.passes);
+        let mut tables = SixBounds::default();
+        for link in model.links.iter().rev() {
+            let axis = link.axis;
+            let (speed, acceleration) = (stretch.speed_mm[axis], stretch.acceleration_mm[axis]);
+            let mut range = stretch.range_mm[axis];
+            range.low = range.low.max(volume.0[axis].low);
+            range.high = range.high.min(volume.0[axis].high);
+            if bounds(link, range, &mut tables) {
+                // What lies beyond this axis, from the measuring line on: x = nominal + error - lever.
+                let lever = vector(simd, &link.measured_lever_mm);
+                let mut beyond = Beyond {
+                    low: low - lever - error.value,
+                    high: high - lever + error.value,
+                    growth: error,
+                };
+                beyond.growth.value = beyond.low.abs().max(beyond.high.abs());
+                beyond.growth.first = beyond.growth.first + nominal_speed;
+                beyond.growth.either(nominal_acceleration);
+                let even = acceleration == 0.0 && (range.high - range.low - speed).abs() <= 1e-9 * speed;
+                let run = Run { speed, acceleration, passes, even };
+                let angle = along(simd, &tables, 3, run);
+                error.add(&along(simd, &tables, 0, run));
+                add_cross(&mut error, &angle, &beyond);
+                add_higher_orders(&mut error, &angle, &beyond.growth);
             }
-            let even = acceleration == 0.0 && (range.high - range.low - speed).abs() <= 1e-9 * speed;
-            let run = Run { speed, acceleration, passes, even };
-            let angle = along(&bounds, 3, run);
-            error.add(&along(&bounds, 0, run));
-            add_cross(&mut error, &angle, &beyond);
-            add_higher_orders(&mut error, &angle, &beyond.growth);
+            let farthest = range.low.abs().max(range.high.abs());
+            let tilt = vector(simd, &link.tilt).abs();
+            error.value = error.value + tilt.scaled(farthest);
+            error.first = error.first + tilt.scaled(speed);
+            error.either(tilt.scaled(acceleration));
+            let way = vector(simd, &link.way);
+            low = low + way.scaled(range.low);
+            high = high + way.scaled(range.high);
+            nominal_speed = nominal_speed + way.scaled(speed);
+            nominal_acceleration = nominal_acceleration + way.scaled(acceleration);
         }
-        let farthest = range.low.abs().max(range.high.abs());
-        for i in 0..3 {
-            let tilt = link.tilt[i].abs();
-            error.value[i] += tilt * farthest;
-            error.first[i] += tilt * speed;
-            error.either(i, tilt * acceleration);
-        }
-        low[axis] += range.low;
-        high[axis] += range.high;
-        nominal_speed[axis] += speed;
-        nominal_acceleration[axis] += acceleration;
+        Bounded { gradient: error.first.norm(), leaves_chord_mm: error.leaves_chord_mm() }
     }
-    error
 }

@@ -48,6 +48,13 @@ impl Everywhere {
         Self::of_class(&self.bow_of_two_passes_mm, speed_mm) + self.gradient * acceleration_mm / 8.0
     }
 
+    /// The same for one that passes a place up to four times.
+    #[must_use]
+    #[inline]
+    pub fn chord_bound_of_circle_mm(&self, speed_mm: f64, acceleration_mm: f64) -> f64 {
+        Self::of_class(&self.bow_of_four_passes_mm, speed_mm) + self.gradient * acceleration_mm / 8.0
+    }
+
     /// Longest move of an axis by class, mm.
     pub(crate) fn longest_mm() -> [f64; CLASSES] {
         std::array::from_fn(|class| 2f64.powi(SHORTEST + class as i32))

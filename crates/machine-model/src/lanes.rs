@@ -93,6 +93,70 @@ fn all<S: Simd<f64s = f64x4>>(simd: S, mask: S::m64s) -> bool {
     a & b & c & d == u64::MAX
 }
 
+/// The three components of a vector side by side; what is beside them is of no use.
+#[derive(Clone, Copy)]
+pub(crate) struct Components<S> {
+    simd: S,
+    numbers: f64x4,
+}
+
+impl<S: Simd<f64s = f64x4>> Components<S> {
+    /// Three numbers that follow each other.
+    #[inline(always)]
+    pub(crate) fn of(simd: S, numbers: &[f64], from: usize) -> Self {
+        Self { simd, numbers: f64x4(numbers[from], numbers[from + 1], numbers[from + 2], 0.0) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn vector(simd: S, v: &Vector) -> Self {
+        Self { simd, numbers: f64x4(v.x, v.y, v.z, 0.0) }
+    }
+
+    /// The same number for each.
+    #[inline(always)]
+    pub(crate) fn all(self, value: f64) -> Self {
+        Self { numbers: self.simd.splat_f64s(value), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn scaled(self, by: f64) -> Self {
+        self * self.all(by)
+    }
+
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self { numbers: self.simd.max_f64s(self.numbers, other.numbers), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self { numbers: self.simd.min_f64s(self.numbers, other.numbers), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self { numbers: self.simd.abs_f64s(self.numbers), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn negative(self) -> Self {
+        Self { numbers: self.simd.neg_f64s(self.numbers), ..self }
+    }
+
+    /// Y, Z, X.
+    #[inline(always)]
+    pub(crate) fn next(self) -> Self {
+        let f64x4(x, y, z, rest) = self.numbers;
+        Self { numbers: f64x4(y, z, x, rest), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn norm(self) -> f64 {
+        let f64x4(x, y, z, _) = (self * self).numbers;
+        (x + y + z).sqrt()
+    }
+}
+
 /// One number, or one for each of several points.
 pub(crate) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// Directions of motion for each point.
@@ -127,8 +191,8 @@ impl Real for f64 {
 }
 
 macro_rules! each_lane {
-    ($trait:ident, $function:ident, $lanes:ident) => {
-        impl<S: Simd<f64s = f64x4>> $trait for Lanes<S> {
+    ($of:ident, $trait:ident, $function:ident, $lanes:ident) => {
+        impl<S: Simd<f64s = f64x4>> $trait for $of<S> {
             type Output = Self;
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
@@ -138,9 +202,12 @@ macro_rules! each_lane {
     };
 }
 
-each_lane!(Add, add, add_f64s);
-each_lane!(Sub, sub, sub_f64s);
-each_lane!(Mul, mul, mul_f64s);
+each_lane!(Lanes, Add, add, add_f64s);
+each_lane!(Lanes, Sub, sub, sub_f64s);
+each_lane!(Lanes, Mul, mul, mul_f64s);
+each_lane!(Components, Add, add, add_f64s);
+each_lane!(Components, Sub, sub, sub_f64s);
+each_lane!(Components, Mul, mul, mul_f64s);
 
 // No closures from here on where lanes meet: what they call would be compiled for every processor.
 

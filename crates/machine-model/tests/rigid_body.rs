@@ -319,17 +319,22 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
                 assert!(own <= cheap * (1.0 + 1e-12), "{own} > {cheap}");
             }
             let bend = by.amax() * random.number(4.0).abs();
-            let curved = model.chord_bound_mm(&Move {
-                range_mm: std::array::from_fn(|i| Range {
-                    low: start[i].min(end[i]),
-                    high: start[i].max(end[i]),
-                }),
-                speed_mm: by.abs().into(),
-                acceleration_mm: [bend, 0.5 * bend, bend],
-                passes: 2,
-                state,
-            });
-            assert!(curved <= everywhere.chord_bound_of_curve_mm(longest, bend) * (1.0 + 1e-12), "{curved}");
+            for (passes, cheap) in [
+                (2, everywhere.chord_bound_of_curve_mm(longest, bend)),
+                (4, everywhere.chord_bound_of_circle_mm(longest, bend)),
+            ] {
+                let curved = model.chord_bound_mm(&Move {
+                    range_mm: std::array::from_fn(|i| Range {
+                        low: start[i].min(end[i]),
+                        high: start[i].max(end[i]),
+                    }),
+                    speed_mm: by.abs().into(),
+                    acceleration_mm: [bend, 0.5 * bend, bend],
+                    passes,
+                    state,
+                });
+                assert!(curved <= cheap * (1.0 + 1e-12), "{curved}");
+            }
             let steepest = everywhere.gradient * by.norm() * (1.0 + 1e-9) + 1e-15;
             assert!((at(end) - at(start)).norm() <= steepest, "{seed}");
             let target = Command { linear_mm: end, ..state };

@@ -1,6 +1,6 @@
 //! Which block numbers a program uses.
 
-use nc_syntax::Block;
+use nc_syntax::{Block, Number, PlainLine};
 
 /// Largest N that is kept track of: one bit each, 12.5 MB at most.
 const LARGEST_TRACKED: u32 = 99_999_999;
@@ -26,14 +26,27 @@ impl BlockNumbers {
         Self::default()
     }
 
-    /// Notes the block's N word, if it has one.
-    pub fn see(&mut self, block: &Block<'_>) {
+    /// Notes the block's N word; true where it has one.
+    pub fn see(&mut self, block: &Block<'_>) -> bool {
+        let mut seen = false;
         for word in block.words().filter(|word| word.letter == b'N') {
-            let whole = word.number().and_then(|number| u32::try_from(number.integer()?).ok());
-            match whole.filter(|number| *number <= LARGEST_TRACKED) {
-                Some(number) => self.set(number),
-                None => self.irregular = true,
-            }
+            self.note(word.number());
+            seen = true;
+        }
+        seen
+    }
+
+    /// [`BlockNumbers::see`] of a plain line.
+    pub fn see_line(&mut self, line: &PlainLine<'_>) -> bool {
+        let word = line.words().iter().find(|word| word.letter() == b'N');
+        word.map(|word| self.note(Some(word.number()))).is_some()
+    }
+
+    fn note(&mut self, number: Option<Number>) {
+        let whole = number.and_then(|number| u32::try_from(number.integer()?).ok());
+        match whole.filter(|number| *number <= LARGEST_TRACKED) {
+            Some(number) => self.set(number),
+            None => self.irregular = true,
         }
     }
 

@@ -74,7 +74,7 @@ fn program(text: &str, edits: &[(u64, &[&str])]) -> String {
     let dialect = dialect();
     let blocks = read(&dialect, text);
     let mut numbers = BlockNumbers::new();
-    blocks.iter().for_each(|block| numbers.see(block));
+    blocks.iter().for_each(|block| _ = numbers.see(block));
     let mut emitter = Emitter::new(&dialect).with_numbers(&numbers);
     let mut out = Vec::new();
     for block in &blocks {

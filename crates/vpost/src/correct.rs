@@ -155,7 +155,7 @@ fn pass<E: From<Vec<Diagnostic>>>(
 ) -> Result<Option<Corrected>, E> {
     let mut numbers = BlockNumbers::new();
     if job.dialect.output.number_inserted_blocks && memchr::memchr2(b'N', b'n', text).is_some() {
-        each_block(text, job.dialect, |block| numbers.see(block));
+        chunks::see_numbers(&mut Reader::new(text, job.dialect), &mut numbers, |_| ());
     }
     let mut pass = Pass::new(job, State::new(job, &numbers), text.len());
     let mut reader = Reader::new(text, job.dialect);

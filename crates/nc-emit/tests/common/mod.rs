@@ -59,7 +59,7 @@ pub(crate) fn piece(text: &str) -> Piece {
 pub(crate) fn rewritten(dialect: &Dialect, text: &str, pieces: &[&str]) -> String {
     let blocks = read(dialect, text);
     let mut numbers = nc_emit::BlockNumbers::new();
-    blocks.iter().for_each(|block| numbers.see(block));
+    blocks.iter().for_each(|block| _ = numbers.see(block));
     let mut emitter = Emitter::new(dialect).with_numbers(&numbers);
     let mut out = Vec::new();
     let (last, before) = blocks.split_last().expect("a block");

@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 
 use nc_emit::BlockNumbers;
-use nc_syntax::{Block, Dialect, Envelope, EnvelopeFinder, Place, Reader};
+use nc_syntax::{Block, Dialect, Envelope, EnvelopeFinder, Place, PlainLine, Reader};
 
 /// About so long is a chunk: some ten thousand blocks, small enough that all of those in work fit into memory.
 pub(crate) const CHUNK_BYTES: usize = 1 << 20;
@@ -100,6 +100,23 @@ fn lines(text: &[u8]) -> u64 {
     feeds + memchr::memchr_iter(b'\r', text).filter(alone).count() as u64
 }
 
+/// Notes the N words of all that a reader reads; `seen` is told the offset of each block that has one.
+pub(crate) fn see_numbers(reader: &mut Reader<'_>, numbers: &mut BlockNumbers, mut seen: impl FnMut(u64)) {
+    let (mut line, mut block) = (PlainLine::default(), Block::default());
+    loop {
+        let (numbered, offset) = if reader.plain_line(&mut line) {
+            (numbers.see_line(&line), line.offset)
+        } else if reader.next(&mut block) {
+            (numbers.see(&block), block.offset)
+        } else {
+            return;
+        };
+        if numbered {
+            seen(offset);
+        }
+    }
+}
+
 /// What stands anywhere in a program and bears on all of it.
 pub(crate) struct Survey {
     /// Where it starts and ends between its `%` marks.
@@ -141,14 +158,10 @@ impl Survey {
             if dialect.output.number_inserted_blocks && memchr::memchr2(b'N', b'n', text).is_some() {
                 let place = chunk.place(expects_name);
                 let mut reader = Reader::part(text, dialect, finder.open(), place);
-                let mut block = Block::default();
-                while reader.next(&mut block) {
-                    if block.words().any(|word| word.letter == b'N') {
-                        survey.numbers.see(&block);
-                        first_numbered.get_or_insert(block.offset);
-                        last_numbered = block.offset;
-                    }
-                }
+                see_numbers(&mut reader, &mut survey.numbers, |offset| {
+                    first_numbered.get_or_insert(offset);
+                    last_numbered = offset;
+                });
                 expects_name = reader.expects_name();
             }
             if let Some(hasher) = &mut hasher {

@@ -390,7 +390,7 @@ mod tests {
 
     fn in_chunks(text: &[u8], job: &Job<'_>, chunk_bytes: usize, threads: usize) -> (Vec<u8>, Figures) {
         let mut numbers = BlockNumbers::new();
-        crate::correct::each_block(text, job.dialect, |block| numbers.see(block));
+        crate::correct::each_block(text, job.dialect, |block| _ = numbers.see(block));
         let mut finder = EnvelopeFinder::new(job.dialect);
         finder.see(text);
         let start = State::new(job, &numbers);
@@ -446,7 +446,7 @@ mod tests {
 
             // The short way through plain blocks is the long way, without its detours.
             let mut numbers = BlockNumbers::new();
-            crate::correct::each_block(text.as_bytes(), job.dialect, |block| numbers.see(block));
+            crate::correct::each_block(text.as_bytes(), job.dialect, |block| _ = numbers.see(block));
             let mut pass = Pass::new(&job, State::new(&job, &numbers), text.len());
             crate::correct::each_block(text.as_bytes(), job.dialect, |block| pass.block(block).unwrap());
             prop_assert_eq!(String::from_utf8_lossy(&pass.out), String::from_utf8_lossy(&whole.text));
