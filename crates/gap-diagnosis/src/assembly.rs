@@ -10,7 +10,6 @@ use crate::diagnose::Options;
 use crate::diagnosis::{Cause, Diagnosis, Gap, Leftover, Lookalike, Verdict};
 use crate::engine::{Explained, f_tail};
 use crate::library::Library;
-use crate::linear::explained;
 use crate::locate::places;
 use crate::noise::{Noise, NoiseSource, estimate};
 use crate::observation::{Measurements, Scalar};
@@ -84,10 +83,7 @@ impl<'a> Assembly<'a> {
     }
 
     pub(crate) fn square(&self, parts: &[Part]) -> (f64, usize) {
-        let space = &self.model.space;
-        let columns = space.columns(&self.model.library, parts);
-        let (square, rank) = explained(&space.products(self.model.fit.level), &columns, space.reference());
-        ((space.total(self.model.fit.level) - square).max(0.0), rank)
+        self.model.space.left(&self.model.library, parts, self.model.fit.level)
     }
 
     pub(crate) fn rank(&self) -> Vec<Ranked> {

@@ -61,11 +61,17 @@ impl Gram {
     /// Coefficients of all columns under a run-offset ratio.
     #[must_use]
     pub(crate) fn coefficients(&self, rho: f64) -> Vec<f64> {
-        let (whitened, _) = self.whitened(rho);
+        self.normal(&self.whitened(rho).0).1
+    }
+
+    /// The factor of whitened products, and the coefficients of all columns.
+    fn normal(&self, whitened: &DMatrix<f64>) -> (Factor, Vec<f64>) {
         let count = self.terms.len();
         let columns: Vec<usize> = (0..count).collect();
+        let factor = Factor::new(whitened, &columns, &self.squares());
         let b: Vec<f64> = columns.iter().map(|c| whitened[(*c, count)]).collect();
-        Factor::new(&whitened, &columns, &self.squares()).solve(&b, count).iter().copied().collect()
+        let coefficients = factor.solve(&b, count).iter().copied().collect();
+        (factor, coefficients)
     }
 
     /// Solves for all columns under a run-offset ratio.
@@ -73,11 +79,8 @@ impl Gram {
     pub(crate) fn solve(&self, rho: f64, source: &Source<'_>) -> Solution {
         let (whitened, _) = self.whitened(rho);
         let count = self.terms.len();
-        let columns: Vec<usize> = (0..count).collect();
-        let factor = Factor::new(&whitened, &columns, &self.squares());
-        let b: Vec<f64> = columns.iter().map(|c| whitened[(*c, count)]).collect();
-        let coefficients: Vec<f64> = factor.solve(&b, count).iter().copied().collect();
-        let explained: f64 = coefficients.iter().zip(&b).map(|(x, y)| x * y).sum();
+        let (factor, coefficients) = self.normal(&whitened);
+        let explained: f64 = coefficients.iter().enumerate().map(|(i, x)| x * whitened[(i, count)]).sum();
         let marginal = residuals(&self.terms, &coefficients, source);
         let run_offsets_um = self.offsets(rho, &coefficients);
         let residuals_um = marginal

@@ -216,6 +216,14 @@ impl Space {
         self.products(level).product(last, last).max(0.0)
     }
 
+    /// Square of the gap that a model leaves after the set-up, at a level, and the model's rank.
+    #[must_use]
+    pub(crate) fn left(&self, library: &Library, parts: &[Part], level: usize) -> (f64, usize) {
+        let columns = self.columns(library, parts);
+        let (explained, rank) = crate::linear::explained(&self.products(level), &columns, &self.reference);
+        ((self.total(level) - explained).max(0.0), rank)
+    }
+
     /// What looking at this many forms of this many effects costs, and what its columns cost.
     fn price(&self, library: &Library, part: Part) -> f64 {
         let candidate = &library.candidates[part.candidate];
@@ -235,11 +243,9 @@ impl Space {
     #[must_use]
     pub(crate) fn fit(&self, library: &Library, parts: &[Part]) -> Fit {
         let mut best: Option<Fit> = None;
-        let columns = self.columns(library, parts);
         for index in 0..self.levels.len() {
-            let (explained, rank) =
-                crate::linear::explained(&self.products(index), &columns, &self.reference);
-            let fit = self.judged(index, (self.total(index) - explained).max(0.0), rank, 0.0);
+            let (residual, rank) = self.left(library, parts, index);
+            let fit = self.judged(index, residual, rank, 0.0);
             if best.is_none_or(|b| fit.score < b.score) {
                 best = Some(fit);
             }

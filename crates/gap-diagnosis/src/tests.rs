@@ -258,6 +258,25 @@ fn one_feed_cannot_tell_lag_from_backlash_and_two_can() {
     assert!(alike.correlation > 0.999, "{alike:?}");
 }
 
+/// With one tool, the angle of the axis that carries it moves the tip as a straightness does, whatever the order of the
+/// curve: the answer is the set.
+#[test]
+fn one_tool_cannot_tell_a_curve_from_an_angle() {
+    let plan = Plan { tools_mm: &[-100.0], feeds: &[1000.0], ..GOOD };
+    let curve = |row: &Row| {
+        let x = row.command.linear_mm.z / 200.0 - 1.0;
+        // Legendre polynomials of the second and the fifth order, and a slope that is a squareness: with it the angle
+        // fits better than the curve alone.
+        let (two, five) = (1.5 * x * x - 0.5, (63.0 * x.powi(5) - 70.0 * x.powi(3) + 15.0 * x) / 8.0);
+        Vector::new(0.6 * x + 4.0 * two + 6.0 * five, 0.0, 0.0)
+    };
+    let answer = diagnose(&measured(plan, curve), None, &Options::default());
+    let cause = &answer.causes[0];
+    let set: Vec<&str> =
+        std::iter::once(&cause.effect).chain(&cause.cannot_be_told_from).map(String::as_str).collect();
+    assert!(set.contains(&"straightness.EXZ") && set.contains(&"angular.EBZ"), "{set:?} {:?}", cause.nearest);
+}
+
 /// Weighted Bonferroni: the level is shared by the effects, and each effect's by its forms.
 #[test]
 fn every_question_costs_its_share_of_the_level() {

@@ -20,7 +20,7 @@ impl State<'_, '_> {
         let mut with = rest.to_vec();
         with.push(part);
         let kind = self.library.candidates[part.candidate].kind;
-        let (before, rank_before) = self.residual(rest, fit.level);
+        let (before, rank_before) = self.space.left(&self.library, rest, fit.level);
         let gain = (before - fit.residual).max(0.0);
         let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
@@ -46,18 +46,11 @@ impl State<'_, '_> {
         None
     }
 
-    fn residual(&self, parts: &[Part], level: usize) -> (f64, usize) {
-        let columns = self.space.columns(&self.library, parts);
-        let (explained, rank) =
-            crate::linear::explained(&self.space.products(level), &columns, self.space.reference());
-        ((self.space.total(level) - explained).max(0.0), rank)
-    }
-
     /// F test of the last part with the runs' offsets left free.
     fn within_runs(&self, with: &[Part]) -> f64 {
         let level = crate::space::RHO_GRID.len() - 1;
-        let (before, rank_before) = self.residual(&with[..with.len() - 1], level);
-        let (after, rank_after) = self.residual(with, level);
+        let (before, rank_before) = self.space.left(&self.library, &with[..with.len() - 1], level);
+        let (after, rank_after) = self.space.left(&self.library, with, level);
         let columns = rank_after.saturating_sub(rank_before) as f64;
         let degrees = self.space.degrees - 3.0 * self.source.runs as f64 - rank_after as f64;
         if columns < 1.0 || degrees < 1.0 {
@@ -107,12 +100,12 @@ impl State<'_, '_> {
     pub(crate) fn prune(&mut self) {
         loop {
             let level = self.fit.level;
-            let (full, _) = self.residual(&self.parts, level);
+            let (full, _) = self.space.left(&self.library, &self.parts, level);
             let reducible = (self.space.total(level) - full).max(1e-12);
             let weakest = (0..self.parts.len())
                 .map(|place| {
                     let rest = without(&self.parts, place);
-                    ((self.residual(&rest, level).0 - full) / reducible, rest)
+                    ((self.space.left(&self.library, &rest, level).0 - full) / reducible, rest)
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             match weakest {
