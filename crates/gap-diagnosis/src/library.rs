@@ -204,12 +204,11 @@ impl Library {
             }
             EffectKind::Warmup(_) => self.warmup(kind, seen),
             EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
-                let lists: [&[usize]; 6] =
-                    [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
-                // A polynomial with nearly as many terms as places (two are the set-up's) is a guess between them.
+                let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
+                // A polynomial with nearly as many terms as places is a guess between them.
                 let lists: Vec<&[usize]> = lists
                     .into_iter()
-                    .filter(|l| l.len() <= 2 || 7 * (l.len() + 2) <= 5 * seen.places[a])
+                    .filter(|l| l.len() <= 2 || 10 * (l.len() + 2) <= 7 * seen.places[a])
                     .collect();
                 let mut forms = self.selections(kind, interval(a), &lists);
                 // Any curve is one; only beyond the fifth order is it bent so that it could be anything.
