@@ -144,3 +144,59 @@ fn all_inside<S: Simd<f64s = f64x4>>(q: &[Lanes<S>; 3], volume: &Volume) -> bool
     let [x, y, z] = &volume.0;
     q[0].all_in(x) && q[1].all_in(y) && q[2].all_in(z)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        AxisTables, Chain, Description, Interpolation, LinearAxis, PathModel, Range, RotaryAxis, Squareness,
+        Table,
+    };
+
+    /// A processor without instructions for four numbers gives the same bits.
+    #[test]
+    fn bits_do_not_depend_on_the_processor() {
+        for interpolation in [Interpolation::Linear, Interpolation::Monotone] {
+            let mut linear = [0, 1, 2].map(|_| LinearAxis::perfect(Range { low: 0.0, high: 120.0 }));
+            for (i, axis) in linear.iter_mut().enumerate() {
+                let table = |function: usize| {
+                    let nodes = [0.0, 20.0, 45.0, 90.0, 120.0];
+                    let size = if function < 3 { 0.01 } else { 5e-5 };
+                    let value = |k: usize| size * units::math::sin((7 * k + 3 * function + 5 * i) as f64);
+                    Table::new(nodes.to_vec(), (0..nodes.len()).map(value).collect(), interpolation).ok()
+                };
+                axis.errors = AxisTables::new(&std::array::from_fn(table));
+            }
+            let model = RigidBody::new(Description {
+                chain: Chain::parse("[w X Y b Z t]").unwrap(),
+                linear,
+                rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+                squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
+            })
+            .unwrap();
+            let state = Command {
+                linear_mm: Vector::zeros(),
+                rotary_rad: Vector::zeros(),
+                tool_mm: Vector::new(3.0, -5.0, -120.0),
+                direction: [0; 3],
+            };
+            let everywhere = model.everywhere(&state).unwrap();
+            for k in 0..400 {
+                let at = |lane: usize, axis: usize| {
+                    60.0 + 55.0 * units::math::sin(f64::from(k) * 0.37 + 0.01 * lane as f64 + axis as f64)
+                };
+                let targets_mm = std::array::from_fn(|lane| std::array::from_fn(|axis| at(lane, axis)));
+                let work = || NewtonTogether {
+                    model: &model,
+                    targets_mm: &targets_mm,
+                    directions: &[[0; 3]; LANES],
+                    state: &state,
+                    everywhere: &everywhere,
+                };
+                let found = together(work());
+                assert!(found.is_some());
+                assert_eq!(found, work().with(pulp::Scalar256b));
+            }
+        }
+    }
+}

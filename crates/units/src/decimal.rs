@@ -97,72 +97,16 @@ const PAIRS: [u8; 200] = {
     pairs
 };
 
-/// Eight times `0`.
-const ZEROS: u64 = u64::from_le_bytes([b'0'; 8]);
-
-/// A number below 10⁸ as eight digits, the first in the lowest byte.
-#[inline]
-fn eight_digits(number: u32) -> u64 {
-    // Four digits in each half, then two in each quarter, then one in each byte; quotients by reciprocals that are exact
-    // for so few digits.
-    let fours = u64::from(number / 10_000) | u64::from(number % 10_000) << 32;
-    let hundreds = ((fours * 10_486) >> 20) & 0x7F_0000_007F;
-    let twos = hundreds | (fours - 100 * hundreds) << 16;
-    let tens = ((twos * 103) >> 10) & 0x0F_000F_000F_000F;
-    let ones = tens | (twos - 10 * tens) << 8;
-    ones + ZEROS
-}
-
-/// The text of a number of at most eight digits, first byte lowest, and its length; `None` for others.
-///
-/// Made in a register: digits that were stored one by one could not be read back together before all of them have
-/// arrived.
-#[inline]
-fn short_text(counts: i64, decimals: u8, spelling: Spelling) -> Option<(u128, usize)> {
-    let (magnitude, decimals) = (counts.unsigned_abs(), u32::from(decimals));
-    if magnitude >= 100_000_000 || !(1..8).contains(&decimals) {
-        return None;
-    }
-    let digits = eight_digits(magnitude as u32);
-    let not_zero = digits ^ ZEROS;
-    let dropped = if spelling.trailing_zeros { 0 } else { (not_zero.leading_zeros() / 8).min(decimals) };
-    let whole = dropped == decimals;
-    let point = u32::from(!whole || spelling.trailing_point);
-    let before = 8 - decimals;
-    let skipped = (not_zero.trailing_zeros() / 8).min(before - u32::from(spelling.leading_zero || whole));
-    let at = 8 * before;
-    let text =
-        u128::from(digits & ((1 << at) - 1)) | u128::from(b'.') << at | u128::from(digits >> at) << (at + 8);
-    let text = text >> (8 * skipped);
-    let length = (before - skipped + point + decimals - dropped) as usize;
-    Some(match (counts < 0, spelling.plus) {
-        (false, false) => (text, length),
-        (true, _) => (text << 8 | u128::from(b'-'), length + 1),
-        (false, true) => (text << 8 | u128::from(b'+'), length + 1),
-    })
-}
-
 /// Room for a number's text.
 const ROOM: usize = 40;
+/// As much is copied at once, without a call; nearly every number is shorter.
+const AT_ONCE: usize = 16;
+
 /// Appends `counts × 10^-decimals` as text. Never writes an exponent or a negative zero.
 #[inline]
 pub fn write(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
-    match short_text(counts, decimals, spelling) {
-        Some((text, length)) => {
-            // As much is copied at once, without a call; then what is too much is taken away.
-            let before = out.len();
-            out.extend_from_slice(&text.to_le_bytes());
-            out.truncate(before + length);
-        }
-        None => write_any(out, counts, decimals, spelling),
-    }
-}
-
-/// [`write`] for numbers of any length.
-#[cold]
-fn write_any(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
     // From the last digit to the sign, then out at once.
-    let mut text = [b'0'; ROOM];
+    let mut text = [b'0'; ROOM + AT_ONCE];
     let decimals = usize::from(decimals.min(18));
     let mut left = counts.unsigned_abs();
     let point = ROOM - decimals;
@@ -208,7 +152,14 @@ fn write_any(out: &mut Vec<u8>, counts: i64, decimals: u8, spelling: Spelling) {
         at -= 1;
         text[at] = if counts < 0 { b'-' } else { b'+' };
     }
-    out.extend_from_slice(&text[at..end]);
+    let length = end - at;
+    if length <= AT_ONCE {
+        let before = out.len();
+        out.extend_from_slice(&text[at..at + AT_ONCE]);
+        out.truncate(before + length);
+    } else {
+        out.extend_from_slice(&text[at..end]);
+    }
 }
 
 #[cfg(test)]
@@ -262,15 +213,6 @@ mod tests {
         fn rounds_as_the_library_does(value in prop_oneof![-1e7f64..1e7, (-20_000_000..20_000_000).prop_map(|halves| f64::from(halves) / 2.0)]) {
             prop_assert_eq!(round(value), value.round() as i64);
             prop_assert_eq!(nearest_whole(value), value.round());
-        }
-
-        #[test]
-        fn short_numbers_are_written_as_long_ones(counts in prop_oneof![-99_999_999i64..100_000_000, -2000i64..2000], decimals in 0u8..9,
-                                                  trailing_zeros: bool, trailing_point: bool, leading_zero: bool, plus: bool) {
-            let spelling = Spelling { trailing_zeros, trailing_point, leading_zero, plus };
-            let mut long = Vec::new();
-            write_any(&mut long, counts, decimals, spelling);
-            prop_assert_eq!(text(counts, decimals, spelling).into_bytes(), long);
         }
 
         #[test]

@@ -164,6 +164,14 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         let start_mm = group[0].start.linear_mm;
         let short = corrector.short_lines(&block, [0.0; 3]);
         let foreseen = short.as_ref().and_then(|short| corrector.foresee(short, start_mm, &ends_mm));
+        if group.len() == LANES
+            && let (Some(short), Some(foreseen)) = (&short, &foreseen)
+            && let run = (correction::Run { start_mm, ends_mm: &ends_mm, names: [[true; 3]; LANES] })
+            && let Some(run) = corrector.short_run(short, &block, &run, foreseen)
+        {
+            black_box(&run);
+            continue;
+        }
         for (k, feed) in group.iter().enumerate() {
             let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
             let line = short.as_ref().and_then(|short| {
