@@ -11,8 +11,7 @@ use crate::{Command, Everywhere, RigidBody, Vector, Volume};
 const ROUNDS: u32 = 4;
 
 impl RigidBody {
-    /// `q + e(q) = wanted` by one step of Newton's method: `q` and what is left, evaluated; without head and table
-    /// errors.
+    /// `q + e(q) = wanted` by one step of Newton's method, without head and table errors.
     #[inline(always)]
     fn newton_step<T: Real>(&self, wanted: &[T; 3], directions: &T::Directions, tool_mm: &Vector) -> [T; 3] {
         let (error, gradient) = self.chain_error_and_gradient(wanted, directions, tool_mm);

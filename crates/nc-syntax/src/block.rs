@@ -200,8 +200,12 @@ impl<'a> Block<'a> {
     pub fn switches(&self) -> u16 {
         let marks = self.items.iter().filter(|item| item.kind == ItemKind::Skip);
         marks.fold(0, |switches, mark| {
-            let digits = self.text(mark.span).iter().filter(|byte| byte.is_ascii_digit());
-            let number = digits.fold(0_u32, |number, digit| (10 * number + u32::from(digit - b'0')).min(15));
+            // The reader takes one digit behind the mark, if there is any.
+            let number = self
+                .text(mark.span)
+                .iter()
+                .find(|byte| byte.is_ascii_digit())
+                .map_or(0, |digit| digit - b'0');
             switches | 1 << number.max(1)
         })
     }
