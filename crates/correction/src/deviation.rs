@@ -12,6 +12,9 @@ const DEEPEST: usize = 20;
 /// After this many places a motion counts as not provable and is split: a full circle takes about a
 /// hundred, and what runs along its limit for a long way would take millions.
 const MOST_PLACES: usize = 1000;
+/// Each turn of an arc of many may take this many more, up to so many in all.
+const PLACES_PER_TURN: f64 = 16.0;
+const MOST_PLACES_OF_TURNS: f64 = 1e5;
 
 /// The model in the state of one motion.
 #[derive(Clone, Copy)]
@@ -156,6 +159,8 @@ impl Pair<'_> {
         }
         // An arc passes a place at most twice only while it is below half a turn.
         let turning = self.commanded.turning_rad();
+        let more = (PLACES_PER_TURN * turning / std::f64::consts::TAU).min(MOST_PLACES_OF_TURNS);
+        let most_places = MOST_PLACES + more as usize;
         let bound = |a: &Place, b: &Place| {
             if turning * (b.s - a.s) > 3.0 { f64::INFINITY } else { self.bound(machine, a, b, limit_mm) }
         };
@@ -196,7 +201,7 @@ impl Pair<'_> {
                 return refuted;
             }
             places += 1;
-            if height > DEEPEST || places > MOST_PLACES {
+            if height > DEEPEST || places > most_places {
                 return Verdict::Beyond { s: middle.s, distance_mm: bound };
             }
             stack[height] = middle;

@@ -133,8 +133,8 @@ impl<'m> Corrector<'m> {
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
         let began_mm = match self.remembered {
-            Some(remembered) if hole.start.linear_mm[normal] != hole.began_mm => remembered.began_mm,
-            // The first hole of a series, be it right behind another series, or one that stands there again.
+            Some(remembered) if !hole.first => remembered.began_mm,
+            // Be it right behind another series.
             _ => standing[normal],
         };
         let standing_program = self.standing_program(block);

@@ -515,6 +515,7 @@ fn hole(kind: CycleKind, start: Vector, at_r: Vector, bottom_mm: f64) -> Motion 
         start: position(start),
         at_r: position(at_r),
         bottom_mm,
+        first: true,
         began_mm: start.z,
         initial_mm: start.z,
         cycle: Cycle { kind, peck_mm: Some(3.0), dwell: false, return_to_initial: true },

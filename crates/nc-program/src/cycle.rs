@@ -123,6 +123,7 @@ pub(crate) fn holes(
             start: at,
             at_r,
             bottom_mm,
+            first: !cycle.drilled && motions.is_empty(),
             began_mm,
             initial_mm,
             cycle: parameters,
@@ -132,6 +133,7 @@ pub(crate) fn holes(
         motions.push(Motion::Hole(hole));
     }
     state.axes = position(at);
+    state.cycle = Some(CycleState { drilled: true, ..cycle });
     Ok(motions)
 }
 

@@ -267,6 +267,8 @@ pub struct CycleState {
     pub peck_mm: Option<f64>,
     /// P above zero.
     pub dwell: bool,
+    /// It has made a hole.
+    pub drilled: bool,
 }
 
 /// How far the program is.

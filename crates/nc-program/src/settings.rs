@@ -398,6 +398,7 @@ fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
             bottom: None,
             peck_mm: None,
             dwell: false,
+            drilled: false,
         });
         state.cycle = Some(CycleState { code, kind, ..running });
     }

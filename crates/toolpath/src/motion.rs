@@ -123,6 +123,8 @@ pub struct Hole {
     pub at_r: Position,
     /// Command of the normal axis at the bottom, mm.
     pub bottom_mm: f64,
+    /// It begins a series of holes.
+    pub first: bool,
     /// Command of the normal axis where the series of holes began, mm: R counts from there under G91.
     pub began_mm: f64,
     /// Command of the normal axis at the level G98 returns to, mm: where the series began, or R where that is higher.
