@@ -1,121 +1,195 @@
 //! Many small programs against one large one of the same bytes, and against their files alone: what a program costs
-//! besides its blocks.
+//! besides its blocks, and from which size on that does not matter.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Args;
 
-use super::measure::{Run, best, own_cpu_s, run};
+use super::measure::{Run, own_cpu_s, run};
 use super::programs;
 use crate::markdown::table;
 
 /// Options of the benchmark of `vpost batch`.
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// How many small programs.
+    /// How many small programs, of each size. 10,000 take 17 GB while they are measured.
     #[arg(long, default_value_t = 10_000)]
-    programs: u64,
-    /// Mean size of one, kB; sizes run from a fifth of it to nine fifths.
-    #[arg(long, default_value_t = 6)]
-    kilobytes: u64,
+    programs: usize,
+    /// Mean sizes, kB; the programs of one run from a fifth of it to nine fifths. 82 is the smallest program of a CAM
+    /// system among the samples, `plate_fanuc.nc`.
+    #[arg(long, value_delimiter = ',', default_values_t = [6, 24, 82])]
+    kilobytes: Vec<u64>,
     /// Repetitions, of which the best counts.
     #[arg(long, default_value_t = 3)]
     repeat: usize,
     /// Machine profile.
     #[arg(long, default_value = "machine-profiles/stan_s500.toml")]
-    profile: std::path::PathBuf,
+    profile: PathBuf,
 }
 
-/// Of so many programs each gets a process of its own, to see what starting one costs.
+/// So many programs get a process each, to see what starting one costs.
 const ALONE: usize = 200;
 
 /// Arguments: how many programs, the programs, the command for each.
 const ONE_AFTER_ANOTHER: &str =
     r#"n=$1; shift; for program in "${@:1:n}"; do "${@:n+1}" "$program" -o "$OUT" || exit 1; done"#;
 
+/// What is asked for: the share of one program's throughput.
+const WANTED: f64 = 0.8;
+
 /// Measures, and returns a section for docs/performance.md.
 pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
+    ensure!(options.programs > 0 && options.repeat > 0, "nothing to measure");
     let vpost = crate::gap_bench::released()?;
     let folder = tempfile::tempdir()?;
-    let path = |name: &str| folder.path().join(name);
-    let release = release(&path("release"), options)?;
-    let bytes: u64 = release.iter().map(|program| program.1).sum();
-    write(&path("large.nc"), |out| programs::dense(bytes, out))?;
-    let sizes = release.iter().map(|program| program.1);
-    write(&path("joined.nc"), |out| programs::dense_parts(sizes, out))?;
-    let shared = |command: &mut Command| {
-        command.args(["-d", "fanuc", "-q", "-m"]).arg(&options.profile).stdout(std::process::Stdio::null());
-    };
-    // Every run gets a folder of its own, and none is removed before the end: where ten thousand files were just
-    // removed, ext4 takes its time to make new ones, whoever makes them.
-    let batch = |jobs: usize, folder: PathBuf| {
-        let mut command = Command::new(&vpost);
-        command.arg("batch").arg(path("release")).arg("-O").arg(folder).args(["--jobs", &jobs.to_string()]);
-        shared(&mut command);
-        run(&mut command)
-    };
-    let folders = std::cell::Cell::new(0);
-    let last = || path(&format!("out{}", folders.get()));
-    let fresh = || {
-        folders.set(folders.get() + 1);
-        last()
-    };
-    let single = |name: &str| {
-        let mut command = Command::new(&vpost);
-        command.arg(path(name)).arg("-o").arg(path("one.out.nc")).env("RAYON_NUM_THREADS", "1");
-        shared(&mut command);
-        best(options.repeat, || run(&mut command))
-    };
-    let one = single("large.nc")?;
-    let joined = single("joined.nc")?;
-    let files = best(options.repeat, || files_alone(&release, &fresh()))?;
-    let batch_one = best(options.repeat, || batch(1, fresh()))?;
-    let batch_two = best(options.repeat, || batch(2, fresh()))?;
-    let again = best(options.repeat, || batch(1, last()))?;
-    let alone = alone(&vpost, &path("release"), &path("alone"), &shared)?;
-
-    let whole = bytes as f64 / 1e6;
-    let joined_megabytes = path("joined.nc").metadata()?.len() as f64 / 1e6;
-    let per_cpu = |run: Run, megabytes: f64| megabytes / run.cpu_s.max(1e-3);
-    let row = |what: &str, megabytes: f64, run: Run| {
-        vec![
-            what.to_owned(),
-            format!("{megabytes:.1}"),
-            format!("{:.2}", run.wall_s),
-            format!("{:.2}", run.cpu_s),
-            format!("{:.0}", per_cpu(run, megabytes)),
-            format!("{:.0} %", per_cpu(run, megabytes) / per_cpu(one, whole) * 100.0),
-            format!("{:.0}", run.peak_mib),
-        ]
-    };
-    let rows = [
-        row("one program of the same bytes, 1 thread", whole, one),
-        row("all of them one behind the other in one file, 1 thread", joined_megabytes, joined),
-        row("their files alone: read, write beside, rename, nothing else", whole, files),
-        row(&format!("`batch --jobs 1`, {} programs", options.programs), whole, batch_one),
-        row(&format!("`batch --jobs 2`, {} programs", options.programs), whole, batch_two),
-        row("the same again: nothing to do, every hash checked", whole, again),
-        row(&format!("{ALONE} of them, a process for each"), alone.0, alone.1),
-    ];
-    let start_ms = (alone.1.cpu_s / ALONE as f64 - alone.0 / ALONE as f64 / per_cpu(one, whole)) * 1e3;
-    let each_us = |seconds: f64| seconds / options.programs as f64 * 1e6;
-    let [extra_us, opening_us, files_us] =
-        [batch_one.cpu_s - one.cpu_s, joined.cpu_s - one.cpu_s, files.cpu_s].map(each_us);
-    Ok(format!(
-        "{} programs of {:.1} kB on average, straight feed motion in three axes.\n\n{}\n\
-        Beyond its cutting blocks a program costs {extra_us:.0} µs in a batch: {opening_us:.0} µs of it are its opening blocks and its approach, {files_us:.0} µs its files, {:.0} µs all else (find, hash, journal, results); in a process of its own {start_ms:.1} ms.\n\
-        The batch runs at {:.0} % of what blocks and files take alone.\n",
+    let mut sizes = Vec::new();
+    for kilobytes in &options.kilobytes {
+        let bench = Bench { vpost: &vpost, options, folder: folder.path().join(format!("{kilobytes}")) };
+        sizes.push(bench.measured(*kilobytes)?);
+    }
+    let rows: Vec<Vec<String>> = sizes.iter().flat_map(Size::rows).collect();
+    let head = ["kB", "what", "s", "CPU s", "MB per CPU s", "of one program", "on the clock", "peak MiB"];
+    let mut text = format!(
+        "{} programs of each size, straight feed motion in three axes.\n\n{}\n",
         options.programs,
-        whole * 1e3 / options.programs as f64,
-        table(&["what", "MB", "s", "CPU s", "MB per CPU s", "of one program", "peak MiB"], &rows),
-        extra_us - opening_us - files_us,
-        (joined.cpu_s + files.cpu_s) / batch_one.cpu_s * 100.0,
-    ))
+        table(&head, &rows)
+    );
+    for size in &sizes {
+        text += &size.parts();
+    }
+    if let [first, .., last] = sizes.as_slice() {
+        text += &Line::through(first, last).text(&sizes);
+    }
+    Ok(text)
+}
+
+/// The runs of one size.
+struct Bench<'a> {
+    vpost: &'a Path,
+    options: &'a Options,
+    folder: PathBuf,
+}
+
+/// What the runs of one size took.
+struct Size {
+    programs: usize,
+    bytes: u64,
+    /// One program of the same bytes, with one thread and with two.
+    one: [Run; 2],
+    /// The programs as operations of one.
+    joined: Run,
+    /// Their files alone, without any correction.
+    files: Run,
+    /// `batch --jobs 1` and `--jobs 2`.
+    batch: [Run; 2],
+    /// The batch again, where all is done.
+    again: Run,
+    /// A process for each of the first programs: how many, their bytes.
+    alone: (usize, u64, Run),
+}
+
+impl Bench<'_> {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    fn shared(&self, command: &mut Command) {
+        command.args(["-d", "fanuc", "-q", "-m"]).arg(&self.options.profile).stdout(Stdio::null());
+    }
+
+    /// Every run gets a folder of its own, and none is removed before the end: ext4 gives out no inode again that was
+    /// freed a minute ago, and looks for another one by one, whoever makes a file.
+    fn measured(&self, kilobytes: u64) -> anyhow::Result<Size> {
+        let release = self.release(kilobytes)?;
+        let bytes = release.iter().map(|program| program.1).sum();
+        write(&self.path("large.nc"), |out| programs::dense(bytes, out))?;
+        let sizes = release.iter().map(|program| program.1);
+        write(&self.path("joined.nc"), |out| programs::dense_parts(sizes, out))?;
+        // In turn, so that no kind of run has the machine's best minute for itself.
+        let round = |number: usize| -> anyhow::Result<[Run; 7]> {
+            let out = |name: &str| self.path(&format!("{name}{number}"));
+            Ok([
+                self.single("large.nc", 1)?,
+                self.single("large.nc", 2)?,
+                self.single("joined.nc", 1)?,
+                files_alone(&release, &out("files"))?,
+                self.batch(1, &out("one"))?,
+                self.batch(2, &out("two"))?,
+                self.batch(1, &out("one"))?,
+            ])
+        };
+        let mut best = round(0)?;
+        for number in 1..self.options.repeat {
+            for (best, run) in best.iter_mut().zip(round(number)?) {
+                *best = best.least(run);
+            }
+        }
+        let [one, two, joined, files, batch, batch_two, again] = best;
+        Ok(Size {
+            programs: release.len(),
+            bytes,
+            one: [one, two],
+            joined,
+            files,
+            batch: [batch, batch_two],
+            again,
+            alone: self.alone(&release)?,
+        })
+    }
+
+    /// Writes the programs; their paths and bytes.
+    fn release(&self, kilobytes: u64) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+        let mut texts = Vec::new();
+        for fifths in 1..=9 {
+            let mut text = Vec::new();
+            programs::dense(kilobytes * 1000 * fifths / 5, &mut text)?;
+            texts.push(text);
+        }
+        let mut release = Vec::new();
+        for (number, text) in texts.iter().cycle().take(self.options.programs).enumerate() {
+            let below = self.path("release").join(format!("op{:02}", number % 20));
+            std::fs::create_dir_all(&below)?;
+            let path = below.join(format!("part{number:05}.nc"));
+            std::fs::write(&path, text)?;
+            release.push((path, text.len() as u64));
+        }
+        Ok(release)
+    }
+
+    fn single(&self, name: &str, threads: usize) -> anyhow::Result<Run> {
+        let mut command = Command::new(self.vpost);
+        command.arg(self.path(name)).arg("-o").arg(self.path("one.out.nc"));
+        command.env("RAYON_NUM_THREADS", threads.to_string());
+        self.shared(&mut command);
+        run(&mut command)
+    }
+
+    fn batch(&self, jobs: usize, out: &Path) -> anyhow::Result<Run> {
+        let mut command = Command::new(self.vpost);
+        command.arg("batch").arg(self.path("release")).arg("-O").arg(out).args(["--jobs", &jobs.to_string()]);
+        self.shared(&mut command);
+        run(&mut command)
+    }
+
+    /// The first programs, a process for each.
+    fn alone(&self, release: &[(PathBuf, u64)]) -> anyhow::Result<(usize, u64, Run)> {
+        let first = &release[..release.len().min(ALONE)];
+        // One shell starts them all, so that the processor's time of all is one figure.
+        let mut command = Command::new("bash");
+        command
+            .args(["-c", ONE_AFTER_ANOTHER, "bash", &first.len().to_string()])
+            .args(first.iter().map(|program| &program.0))
+            .arg(self.vpost)
+            .env("OUT", self.path("alone.out.nc"))
+            .env("RAYON_NUM_THREADS", "1");
+        self.shared(&mut command);
+        Ok((first.len(), first.iter().map(|program| program.1).sum(), run(&mut command)?))
+    }
 }
 
 /// Writes a file.
@@ -141,48 +215,120 @@ fn files_alone(release: &[(PathBuf, u64)], out: &Path) -> anyhow::Result<Run> {
     Ok(Run { wall_s: started.elapsed().as_secs_f64(), cpu_s: own_cpu_s() - begun, peak_mib: 0.0 })
 }
 
-/// Writes the programs; their paths and bytes.
-fn release(folder: &Path, options: &Options) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let mut release = Vec::new();
-    for number in 0..options.programs {
-        let below = folder.join(format!("op{:02}", number % 20));
-        std::fs::create_dir_all(&below)?;
-        let mut text = Vec::new();
-        programs::dense(options.kilobytes * 1000 * (1 + number % 9) / 5, &mut text)?;
-        let path = below.join(format!("part{number:05}.nc"));
-        std::fs::write(&path, &text)?;
-        release.push((path, text.len() as u64));
+impl Size {
+    /// Mean size of a program, kB.
+    fn kilobytes(&self) -> f64 {
+        self.bytes as f64 / 1e3 / self.programs as f64
     }
-    Ok(release)
+
+    /// A run's processor time for each program, µs.
+    fn each_us(&self, run: Run) -> f64 {
+        run.cpu_s / self.programs as f64 * 1e6
+    }
+
+    /// Share of one program's throughput per second of the processor.
+    fn share(&self, run: Run) -> f64 {
+        self.one[0].cpu_s / run.cpu_s
+    }
+
+    fn rows(&self) -> Vec<Vec<String>> {
+        let percent = |share: f64| format!("{:.0} %", share * 100.0);
+        // On the clock a run is compared with one program on as many cores.
+        let row = |what: &str, run: Run, clock: Option<Run>| {
+            vec![
+                format!("{:.0}", self.kilobytes()),
+                what.to_owned(),
+                format!("{:.2}", run.wall_s),
+                format!("{:.2}", run.cpu_s),
+                format!("{:.0}", self.bytes as f64 / 1e6 / run.cpu_s),
+                percent(self.share(run)),
+                clock.map_or_else(String::new, |one| percent(one.wall_s / run.wall_s)),
+                if run.peak_mib > 0.0 { format!("{:.0}", run.peak_mib) } else { String::new() },
+            ]
+        };
+        let [one, two] = self.one;
+        vec![
+            row(&format!("one program of {:.0} MB, 1 thread", self.bytes as f64 / 1e6), one, Some(one)),
+            row("the same, 2 threads", two, Some(two)),
+            row("all of them one behind the other in one file, 1 thread", self.joined, None),
+            row("their files alone: read, write beside, rename, nothing else", self.files, None),
+            row("`batch --jobs 1`", self.batch[0], Some(one)),
+            row("`batch --jobs 2`", self.batch[1], Some(two)),
+            row("the same again: nothing to do, every hash checked", self.again, None),
+        ]
+    }
+
+    /// Where the time beyond the blocks goes.
+    fn parts(&self) -> String {
+        let blocks_us = self.each_us(self.one[0]);
+        let [batch_us, opening_us, files_us] =
+            [self.batch[0], self.joined, self.files].map(|run| self.each_us(run));
+        let (extra_us, opening_us) = (batch_us - blocks_us, opening_us - blocks_us);
+        let (count, bytes, run) = self.alone;
+        let alone_ms =
+            (run.cpu_s - self.one[0].cpu_s / self.bytes as f64 * bytes as f64) / count as f64 * 1e3;
+        format!(
+            "{:.0} kB: {extra_us:.0} µs of a program beyond its cutting blocks ({blocks_us:.0} µs): opening blocks and approach {opening_us:.0}, files {files_us:.0}, \
+             all else (find, hash, journal, results) {:.0}; in a process of its own {alone_ms:.1} ms. The batch runs at {:.0} % of what blocks and files take alone.\n",
+            self.kilobytes(),
+            extra_us - opening_us - files_us,
+            (self.joined.cpu_s + self.files.cpu_s) / self.batch[0].cpu_s * 100.0,
+        )
+    }
 }
 
-/// The first programs, a process for each: megabytes, and what all of them took together.
-fn alone(
-    vpost: &Path,
-    release: &Path,
-    out: &Path,
-    shared: &dyn Fn(&mut Command),
-) -> anyhow::Result<(f64, Run)> {
-    let folder = release.join("op00");
-    let mut paths: Vec<_> = std::fs::read_dir(&folder)?
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<_, _>>()
-        .with_context(|| folder.display().to_string())?;
-    paths.sort();
-    paths.truncate(ALONE);
-    ensure!(paths.len() == ALONE, "only {} programs for a process each", paths.len());
-    std::fs::create_dir_all(out)?;
-    // One shell starts them all, so that the processor's time of all is one figure.
-    let mut command = Command::new("bash");
-    command.args(["-c", ONE_AFTER_ANOTHER, "bash"]);
-    command
-        .arg(ALONE.to_string())
-        .args(&paths)
-        .arg(vpost)
-        .env("OUT", out.join("out.nc"))
-        .env("RAYON_NUM_THREADS", "1");
-    shared(&mut command);
-    let wall = run(&mut command)?;
-    let bytes: u64 = paths.iter().filter_map(|path| path.metadata().ok()).map(|data| data.len()).sum();
-    Ok((bytes as f64 / 1e6, wall))
+/// A batch's time for a program as a line over its size.
+struct Line {
+    /// Whatever its size, µs.
+    fixed_us: f64,
+    /// µs for a kilobyte, and of one large program.
+    kilobyte_us: f64,
+    one_us: f64,
+}
+
+impl Line {
+    /// Through the runs of two sizes.
+    fn through(small: &Size, large: &Size) -> Self {
+        let [small_us, large_us] = [small, large].map(|size| size.each_us(size.batch[0]));
+        let kilobyte_us = (large_us - small_us) / (large.kilobytes() - small.kilobytes());
+        Self {
+            fixed_us: small_us - kilobyte_us * small.kilobytes(),
+            kilobyte_us,
+            one_us: large.each_us(large.one[0]) / large.kilobytes(),
+        }
+    }
+
+    /// The share of one program's throughput at a size, as the line has it.
+    fn share(&self, kilobytes: f64) -> f64 {
+        self.one_us * kilobytes / (self.fixed_us + self.kilobyte_us * kilobytes)
+    }
+
+    fn text(&self, sizes: &[Size]) -> String {
+        let gained_us = self.one_us - WANTED * self.kilobyte_us;
+        let reached = if gained_us > 0.0 {
+            format!("from {:.0} kB on", WANTED * self.fixed_us / gained_us)
+        } else {
+            "at no size".to_owned()
+        };
+        let shares: Vec<String> = sizes
+            .iter()
+            .map(|size| {
+                let [line, measured] = [self.share(size.kilobytes()), size.share(size.batch[0])];
+                format!(
+                    "{:.0} kB {:.0} % ({:.0} % measured)",
+                    size.kilobytes(),
+                    line * 100.0,
+                    measured * 100.0
+                )
+            })
+            .collect();
+        format!(
+            "By the smallest and the largest a program costs {:.0} µs and {:.2} µs for a kB, where one large program takes {:.2}: {:.0} % of its throughput are reached {reached}; {}.\n",
+            self.fixed_us,
+            self.kilobyte_us,
+            self.one_us,
+            WANTED * 100.0,
+            shares.join(", ")
+        )
+    }
 }

@@ -57,16 +57,22 @@ pub(crate) fn own_cpu_s() -> f64 {
     text.split_whitespace().next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0) / 1e9
 }
 
-/// The quickest of several runs: on a machine that others use too, the rest is their share.
+impl Run {
+    /// The quicker in each respect: on a machine that others use too, the rest is their share.
+    pub(crate) fn least(self, other: Self) -> Self {
+        Self {
+            wall_s: self.wall_s.min(other.wall_s),
+            cpu_s: self.cpu_s.min(other.cpu_s),
+            peak_mib: self.peak_mib.max(other.peak_mib),
+        }
+    }
+}
+
+/// The quickest of several runs.
 pub(crate) fn best(runs: usize, mut once: impl FnMut() -> anyhow::Result<Run>) -> anyhow::Result<Run> {
     let mut best = once()?;
     for _ in 1..runs {
-        let run = once()?;
-        best = Run {
-            wall_s: best.wall_s.min(run.wall_s),
-            cpu_s: best.cpu_s.min(run.cpu_s),
-            peak_mib: best.peak_mib.max(run.peak_mib),
-        };
+        best = best.least(once()?);
     }
     Ok(best)
 }
