@@ -113,7 +113,7 @@ fn dialect(
             least_increment_decimals_inch: numbers.least_increment_decimals_inch.into_inner(),
             spaces_inside: numbers.spaces_inside,
         },
-        codes,
+        codes: codes.into(),
         m_codes,
         commands,
         initial,

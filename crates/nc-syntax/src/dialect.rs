@@ -1,5 +1,7 @@
 //! A dialect as a value: what `grammars/*.toml` say.
 
+use std::ops::Deref;
+
 use units::decimal::Decimal;
 
 use crate::Number;
@@ -7,6 +9,13 @@ use crate::Number;
 /// A preparatory code in tenths: `G81` is 810, `G54.1` is 541.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GCode(pub u16);
+
+impl GCode {
+    /// 81 of G81, 54 of G54.1.
+    const fn whole(self) -> usize {
+        self.0 as usize / 10
+    }
+}
 
 impl std::fmt::Display for GCode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -244,6 +253,43 @@ pub struct CodeEntry {
     pub action: Action,
 }
 
+/// The rows of a dialect's code table, in the order of their codes.
+///
+/// A block's codes are looked up several times, so that a row is found from its code's whole number at once.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Codes {
+    rows: Vec<CodeEntry>,
+    /// Index of the first row that is not below G`n`, by `n`.
+    from: Vec<u32>,
+}
+
+impl From<Vec<CodeEntry>> for Codes {
+    fn from(mut rows: Vec<CodeEntry>) -> Self {
+        rows.sort_by_key(|row| row.code);
+        let mut from = Vec::new();
+        for (index, row) in (0..).zip(&rows) {
+            from.resize(from.len().max(row.code.whole() + 1), index);
+        }
+        Self { rows, from }
+    }
+}
+
+impl Deref for Codes {
+    type Target = [CodeEntry];
+
+    fn deref(&self) -> &[CodeEntry] {
+        &self.rows
+    }
+}
+
+impl Codes {
+    #[inline]
+    fn row(&self, code: GCode) -> Option<&CodeEntry> {
+        let from = *self.from.get(code.whole())?;
+        self.rows[from as usize..].iter().take_while(|row| row.code <= code).find(|row| row.code == code)
+    }
+}
+
 /// An M code that is more than text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MCode {
@@ -346,8 +392,8 @@ pub struct Dialect {
     pub letters: Vec<u8>,
     /// Numbers.
     pub numbers: Numbers,
-    /// Known G codes, sorted by code.
-    pub codes: Vec<CodeEntry>,
+    /// Known G codes.
+    pub codes: Codes,
     /// M codes that matter, sorted by number; all others pass.
     pub m_codes: Vec<MCode>,
     /// Commands by name, sorted by name.
@@ -369,8 +415,9 @@ pub struct Dialect {
 impl Dialect {
     /// The table's row for a code.
     #[must_use]
+    #[inline]
     pub fn code(&self, code: GCode) -> Option<&CodeEntry> {
-        self.codes.binary_search_by_key(&code, |entry| entry.code).ok().map(|at| &self.codes[at])
+        self.codes.row(code)
     }
 
     /// The table's row for an M number.

@@ -1,6 +1,6 @@
 //! Bytes to blocks.
 
-use memchr::memchr2;
+use memchr::{memchr_iter, memchr2, memchr3, memrchr2};
 
 use crate::envelope::{Envelope, EnvelopeFinder};
 use crate::lexer::{Lexer, skip_blanks, trim_end};
@@ -126,6 +126,20 @@ impl<'a> Reader<'a> {
         true
     }
 
+    /// Goes on to the next line in which `letter` stands, in whatever case and place, or to the end: the lines left out
+    /// have no word of it. Goes no further than to a line with a `%`, and nowhere where the next line may be the
+    /// program's name or the rest of a line is yet to be read.
+    pub fn skip_lines_without(&mut self, letter: u8) {
+        if self.at < self.line_end.1 || self.name_line {
+            return;
+        }
+        let rest = &self.text[self.at..];
+        let found = memchr3(letter.to_ascii_uppercase(), letter.to_ascii_lowercase(), b'%', rest);
+        let start = memrchr2(b'\n', b'\r', &rest[..found.unwrap_or(rest.len())]).map_or(0, |end| end + 1);
+        self.line += line_ends(&rest[..start]);
+        self.at += start;
+    }
+
     /// Goes back to the start of a plain line, the last one read.
     pub fn unread(&mut self, line: &PlainLine<'a>) {
         self.at = (line.offset - self.before) as usize;
@@ -191,6 +205,14 @@ fn line_end(text: &[u8], at: usize) -> (usize, usize) {
         _ => 1,
     };
     (end, end + marks)
+}
+
+/// How many line ends stand in whole lines: LF, CR LF, CR CR LF, CR.
+#[must_use]
+pub fn line_ends(text: &[u8]) -> u64 {
+    let feeds = memchr_iter(b'\n', text).count() as u64;
+    let alone = |at: &usize| !matches!(text[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
+    feeds + memchr_iter(b'\r', text).filter(alone).count() as u64
 }
 
 /// A span of a line that may be longer than a span can say.

@@ -49,6 +49,35 @@ fn agrees(text: &str, dialect: &Dialect) -> usize {
     plain
 }
 
+/// The blocks with an N word, `skip`ping what has none.
+fn numbered<'t>(text: &'t str, dialect: &'t Dialect, skip: bool) -> Vec<Block<'t>> {
+    let mut reader = Reader::new(text.as_bytes(), dialect);
+    let (mut block, mut found) = (Block::default(), Vec::new());
+    loop {
+        if skip {
+            reader.skip_lines_without(b'N');
+        }
+        if !reader.next(&mut block) {
+            return found;
+        }
+        if block.word(b'N').is_some() {
+            found.push(block.clone());
+        }
+    }
+}
+
+#[test]
+fn lines_without_a_letter_are_skipped_and_counted() {
+    let (text, dialect) = ("%\nNAME\nX1\r\nX2\rX3\r\r\nn5 X4\nX5\n(ON)\nX6;N7\n%\nN8\n", conventional());
+    let found = numbered(text, &dialect, true);
+    assert_eq!(found.iter().map(|block| block.line).collect::<Vec<_>>(), [6, 9]);
+    let mut reader = Reader::new(b"X1\nX2\nX3 (N)\n", &dialect);
+    let mut block = Block::default();
+    reader.skip_lines_without(b'N');
+    assert!(reader.next(&mut block));
+    assert_eq!((block.offset, block.line), (6, 3));
+}
+
 #[test]
 fn plain_lines_are_found_and_others_are_not() {
     let count = |text: &str| agrees(text, &conventional());
@@ -68,6 +97,8 @@ proptest! {
         text in "((%|X-?[0-9]{0,3}[.]?[0-9]{0,3}|[YZxNFGM][+-]?[0-9.]{1,4}|[ \t(;/,E=]|O1|NAME){0,5}[ ]?(\n|\r\n|\r)){0,6}",
         spaces: bool,
     ) {
-agrees(&text, &if spaces { dialect() } else { conventional() });
+        let dialect = if spaces { dialect() } else { conventional() };
+        agrees(&text, &dialect);
+        prop_assert_eq!(numbered(&text, &dialect, true), numbered(&text, &dialect, false));
     }
 }

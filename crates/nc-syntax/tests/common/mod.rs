@@ -21,7 +21,7 @@ pub(crate) fn dialect() -> Dialect {
             least_increment_decimals_inch: 4,
             spaces_inside: true,
         },
-        codes: Vec::new(),
+        codes: nc_syntax::dialect::Codes::default(),
         m_codes: Vec::new(),
         commands: Vec::new(),
         initial: Vec::new(),

@@ -74,7 +74,7 @@ impl<R: Read> Chunks<R> {
                     let chunk = Chunk { index: self.index, offset: self.offset, line: self.line, text };
                     self.index += 1;
                     self.offset += chunk.text.len() as u64;
-                    self.line += lines(&chunk.text);
+                    self.line += nc_syntax::line_ends(&chunk.text);
                     return Ok(Some(chunk));
                 }
                 None if text.len() > LONGEST_LINE => return Err(Unread::AsAWhole),
@@ -93,18 +93,17 @@ fn last_line_end(text: &[u8]) -> Option<usize> {
     memchr::memrchr_iter(b'\r', text).find(whole).map(|at| at + 1)
 }
 
-/// Line ends in whole lines: LF, CR LF, CR CR LF, CR.
-fn lines(text: &[u8]) -> u64 {
-    let feeds = memchr::memchr_iter(b'\n', text).count() as u64;
-    let alone = |at: &usize| !matches!(text[at + 1..], [b'\n', ..] | [b'\r', b'\n', ..]);
-    feeds + memchr::memchr_iter(b'\r', text).filter(alone).count() as u64
-}
-
 /// Notes the N words of all that a reader reads; `seen` is told the offset of each block that has one.
 pub(crate) fn see_numbers(reader: &mut Reader<'_>, numbers: &mut BlockNumbers, mut seen: impl FnMut(u64)) {
     let (mut line, mut block) = (PlainLine::default(), Block::default());
+    let mut numbered = false;
     loop {
-        let (numbered, offset) = if reader.plain_line(&mut line) {
+        // Behind a numbered block mostly stands another one.
+        if !numbered {
+            reader.skip_lines_without(b'N');
+        }
+        let offset;
+        (numbered, offset) = if reader.plain_line(&mut line) {
             (numbers.see_line(&line), line.offset)
         } else if reader.next(&mut block) {
             (numbers.see(&block), block.offset)
