@@ -73,7 +73,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     let results = batch.run(&items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
-    let kept = journal.end(Records::new(), &results.records);
+    let kept = journal.end(&Records::new(), &results.records);
     finish(&results, Some(&folder), arguments.work.results.as_deref())?;
     kept?;
     match results.records.iter().map(|record| record.status).max() {
@@ -103,7 +103,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
     let results = Results { records: proofs.into_iter().flatten().collect(), resumed: 0 };
     // Where the file system cannot say that nobody else is at work, the journals stay apart.
     if let Some(open) = open.as_ref().filter(|open| open.is_locked()) {
-        Journal::begin(open, journal::WHOLE)?.end(records, &results.records)?;
+        Journal::begin(open, journal::WHOLE)?.end(&records, &results.records)?;
     }
     match (arguments.missing, arguments.shards) {
         (Some(form), Some(of)) => {

@@ -105,7 +105,7 @@ impl OutputFolder {
         Ok(nc_emit::find_provenance(&head).is_some())
     }
 
-    /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put).
+    /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put_new).
     pub(crate) fn temporary(&self) -> io::Result<Place> {
         for_everybody(&mut tempfile::Builder::new()).tempfile_in(&self.temporaries).map(Place::Beside)
     }
@@ -119,25 +119,29 @@ impl OutputFolder {
         file.persist(self.journal().join(name)).map(drop).map_err(|error| error.error)
     }
 
-    /// Puts an output in its place: whole under its final name, or an earlier one stays as it was.
-    pub(crate) fn put(&self, temporary: Place, output: &str) -> io::Result<()> {
-        let Place::Beside(temporary) = temporary else {
-            return Err(io::Error::from(io::ErrorKind::InvalidInput));
-        };
-        let place = self.place(output);
+    /// Puts an output in its place where nothing is: whole under its final name. Gives it back where something is, or
+    /// where the file system cannot tell.
+    pub(crate) fn put_new(&self, temporary: Place, output: &str) -> io::Result<Option<Place>> {
+        let temporary = named(temporary)?;
         // On Linux all outputs are brought to the disk together, at the end: see `sync`.
         if !cfg!(target_os = "linux") {
             temporary.as_file().sync_all()?;
         }
-        let put = temporary.persist(&place).or_else(|missed| match place.parent() {
+        let place = self.place(output);
+        let put = match (temporary.persist_noclobber(&place), place.parent()) {
             // The first output of a folder makes it.
-            Some(folder) if missed.error.kind() == io::ErrorKind::NotFound => {
+            (Err(missed), Some(folder)) if missed.error.kind() == io::ErrorKind::NotFound => {
                 std::fs::create_dir_all(folder)?;
-                missed.file.persist(&place).map_err(|error| error.error)
+                missed.file.persist_noclobber(&place)
             }
-            _ => Err(missed.error),
-        });
-        put.map(drop)
+            (put, _) => put,
+        };
+        Ok(put.err().map(|missed| Place::Beside(missed.file)))
+    }
+
+    /// Puts an output that [`put_new`](Self::put_new) gave back over what is in its place, which stays whole until then.
+    pub(crate) fn replace(&self, temporary: Place, output: &str) -> io::Result<()> {
+        named(temporary)?.persist(self.place(output)).map(drop).map_err(|missed| missed.error)
     }
 
     /// Brings everything written so far to the disk: what is reported as done survives a power cut.
@@ -148,6 +152,14 @@ impl OutputFolder {
         #[cfg(target_os = "linux")]
         rustix::fs::syncfs(File::open(&self.root)?)?;
         Ok(())
+    }
+}
+
+/// Batch's temporaries all have names.
+fn named(temporary: Place) -> io::Result<tempfile::NamedTempFile> {
+    match temporary {
+        Place::Beside(named) => Ok(named),
+        Place::Apart(_) => Err(io::Error::from(io::ErrorKind::InvalidInput)),
     }
 }
 
@@ -198,4 +210,28 @@ fn sweep(folder: &Path) -> io::Result<()> {
         std::fs::remove_file(entry?.path())?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_output_takes_no_others_place() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::open(root.path(), Company::Alone).unwrap();
+        let grown = |text: &[u8]| {
+            let mut temporary = folder.temporary().unwrap();
+            temporary.write_all(text).unwrap();
+            temporary
+        };
+        let read = || std::fs::read(root.path().join("op10/part.nc")).unwrap();
+        assert!(folder.put_new(grown(b"first"), "op10/part.nc").unwrap().is_none());
+        let second = folder.put_new(grown(b"second"), "op10/part.nc").unwrap();
+        assert_eq!(read(), b"first");
+        folder.replace(second.expect("given back"), "op10/part.nc").unwrap();
+        assert_eq!(read(), b"second");
+        drop(folder.put_new(grown(b"third"), "op10/part.nc").unwrap());
+        assert_eq!(std::fs::read_dir(root.path().join(".vpost/tmp")).unwrap().count(), 0);
+    }
 }

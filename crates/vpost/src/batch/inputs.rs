@@ -129,7 +129,7 @@ impl Search {
                 continue;
             }
             // A link may lead to a file. Links to folders may lead in circles.
-            let data = path.metadata();
+            let data = if kind.is_symlink() { path.metadata() } else { entry.metadata() };
             match data {
                 Ok(data) if data.is_file() && self.is_program(&below) => {
                     found.items.push(item(path, &below, data.len())?);

@@ -42,20 +42,17 @@ impl Job {
     }
 }
 
-/// The record of a program that was corrected.
-pub(crate) fn corrected(record: Record, done: &Program) -> Record {
+/// Completes the record of a program that was corrected.
+pub(crate) fn corrected(record: &mut Record, done: &Program) {
     let hex = |hash: Option<Hash>| hash.map(|hash| hash.to_hex().to_string());
-    Record {
-        status: if done.changed { Status::Corrected } else { Status::Unchanged },
-        input_blake3: hex(done.input.hash),
-        output_blake3: hex(done.output.hash),
-        bytes_in: done.input.bytes,
-        bytes_out: Some(done.output.bytes),
-        figures: Some((&done.figures).into()),
-        warnings: done.warnings.iter().flat_map(faults).collect(),
-        subprograms: done.lookups.clone(),
-        ..record
-    }
+    record.status = if done.changed { Status::Corrected } else { Status::Unchanged };
+    record.input_blake3 = hex(done.input.hash);
+    record.output_blake3 = hex(done.output.hash);
+    record.bytes_in = done.input.bytes;
+    record.bytes_out = Some(done.output.bytes);
+    record.figures = Some((&done.figures).into());
+    record.warnings = done.warnings.iter().flat_map(faults).collect();
+    record.subprograms.clone_from(&done.lookups);
 }
 
 /// A report in few words.

@@ -55,18 +55,17 @@ impl<'f> Journal<'f> {
     /// Puts all records of this journal's name into one file; for [`WHOLE`], those of all names.
     ///
     /// `earlier`: what [`read`] gave for them and is to be kept.
-    pub(crate) fn end(self, earlier: Records, records: &[Record]) -> Result<(), Failure> {
+    pub(crate) fn end(self, earlier: &Records, records: &[Record]) -> Result<(), Failure> {
         drop(self.file);
         let own = self.folder.journal();
         let stale = files(&own, (self.name != WHOLE).then_some(self.name.as_str()))?;
         let name = format!("{}.jsonl", self.name);
         let place = own.join(&name);
-        let mut all = earlier;
-        for record in records {
-            all.insert(record.output.clone(), vec![record.clone()]);
-        }
+        let mut all: BTreeMap<&str, &[Record]> =
+            earlier.iter().map(|(output, known)| (output.as_str(), known.as_slice())).collect();
+        all.extend(records.iter().map(|record| (record.output.as_str(), std::slice::from_ref(record))));
         self.folder
-            .put_journal(&name, &record::lines(all.values().flatten()))
+            .put_journal(&name, &record::lines(all.into_values().flatten()))
             .map_err(|error| Failure::file(&file::name(&place), "write", &error))?;
         for path in stale.iter().chain([&self.live]).filter(|path| **path != place) {
             // What cannot be removed is read again and says nothing new.

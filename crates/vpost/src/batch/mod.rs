@@ -68,7 +68,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let results = batch.run(&found.items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
-    let kept = journal.end(earlier, &results.records);
+    let kept = journal.end(&earlier, &results.records);
     finish(&results, Some(&folder), arguments.work.results.as_deref())?;
     kept?;
     if results.records.iter().all(|record| record.status.is_done()) {

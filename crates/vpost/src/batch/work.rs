@@ -27,8 +27,8 @@ const CHANGED: Code = Code(1007);
 const DEFECT: Code = Code(1008);
 
 /// Results of so many bytes read and written are told at once: telling each costs as much as a tenth of correcting a
-/// small program. A run that is killed corrects these again.
-const TOLD_TOGETHER_BYTES: u64 = 1 << 19;
+/// small program. A run that is killed corrects these again, some hundredths of a second's work.
+const TOLD_TOGETHER_BYTES: u64 = 1 << 21;
 
 /// No more refusals are printed with their lines.
 const MOST_PRINTED: usize = 20;
@@ -125,9 +125,8 @@ impl Batch<'_> {
                 journal.add(new.map(|outcome| &outcome.record));
                 for (index, outcome) in done {
                     progress.done(&items[index], outcome.resumed);
-                    told.waiting.insert(index, outcome);
+                    told.take(index, outcome, progress, messages);
                 }
-                told.in_order(progress, messages);
             }
             self.interrupt.check()?;
             Ok(told.results)
@@ -201,22 +200,24 @@ impl Batch<'_> {
             outcome.resumed = true;
             return Ok(());
         }
-        let place = self.folder.place(&item.output);
-        let fail = |error: std::io::Error| Failure::file(&file::name(&place), "write", &error);
+        let place = || self.folder.place(&item.output);
+        let fail = |error: std::io::Error| Failure::file(&file::name(&place()), "write", &error);
         let mut temporary = self.folder.temporary().map_err(fail)?;
         let done = self.job.correct(&item.input, threads, &mut temporary, self.interrupt)?;
         if let Some(hash) = done.input.hash {
             planned(item, hash)?;
         }
-        let present = self.folder.present(&item.output).map_err(fail)?;
-        match present {
-            Some(present) if done.output.hash == Some(present) => {}
-            Some(present) if !self.force && !self.is_ours(&item.output, present).map_err(fail)? => {
-                return Err(foreign(&place));
+        // In most runs nothing is there: whoever looks first looks twice.
+        if let Some(temporary) = self.folder.put_new(temporary, &item.output).map_err(fail)? {
+            match self.folder.present(&item.output).map_err(fail)? {
+                Some(present) if done.output.hash == Some(present) => {}
+                Some(present) if !self.force && !self.is_ours(&item.output, present).map_err(fail)? => {
+                    return Err(foreign(&place()));
+                }
+                _ => self.folder.replace(temporary, &item.output).map_err(fail)?,
             }
-            _ => self.folder.put(temporary, &item.output).map_err(fail)?,
         }
-        *record = job::corrected(record.clone(), &done);
+        job::corrected(record, &done);
         outcome.told = done.warnings;
         Ok(())
     }
@@ -313,22 +314,31 @@ struct Told {
 }
 
 impl Told {
-    /// Tells all outcomes whose forerunners were told.
-    fn in_order(&mut self, progress: &Progress, messages: &Messages) {
-        while let Some(outcome) = self.waiting.remove(&self.results.records.len()) {
-            if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
-                let Self { said, printed, .. } = self;
-                let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
-                    (None, [only]) => said.insert(only.message.clone()),
-                    _ => true,
-                };
-                let told: Vec<&Report> = outcome.told.iter().filter(new).collect();
-                *printed += usize::from(!told.is_empty());
-                progress.aside(|| told.into_iter().for_each(|report| messages.report(report)));
-            }
-            self.results.resumed += usize::from(outcome.resumed);
-            self.results.records.push(outcome.record);
+    /// Tells an outcome, and those that waited for it; before its forerunners were told it waits.
+    fn take(&mut self, index: usize, outcome: Outcome, progress: &Progress, messages: &Messages) {
+        if index != self.results.records.len() {
+            self.waiting.insert(index, outcome);
+            return;
         }
+        self.tell(outcome, progress, messages);
+        while let Some(next) = self.waiting.remove(&self.results.records.len()) {
+            self.tell(next, progress, messages);
+        }
+    }
+
+    fn tell(&mut self, outcome: Outcome, progress: &Progress, messages: &Messages) {
+        if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
+            let Self { said, printed, .. } = self;
+            let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
+                (None, [only]) => said.insert(only.message.clone()),
+                _ => true,
+            };
+            let told: Vec<&Report> = outcome.told.iter().filter(new).collect();
+            *printed += usize::from(!told.is_empty());
+            progress.aside(|| told.into_iter().for_each(|report| messages.report(report)));
+        }
+        self.results.resumed += usize::from(outcome.resumed);
+        self.results.records.push(outcome.record);
     }
 }
 
