@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use diagnostic::{Code, Diagnostic};
 
 use crate::correct::Growing;
+use crate::growing::GrowingFile;
 use crate::message::Failure;
 
 /// A block is longer than any that is read.
@@ -116,7 +117,7 @@ pub(crate) struct Output<'p> {
 #[derive(Debug)]
 pub(crate) enum Place {
     /// Takes the place of the file in the end.
-    Beside(tempfile::NamedTempFile),
+    Beside(GrowingFile),
     /// Is copied in the end: devices and pipes cannot be replaced.
     Apart(tempfile::SpooledTempFile),
 }
@@ -135,9 +136,9 @@ impl<'p> Output<'p> {
         let place = if to.exists() && !to.is_file() {
             Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES))
         } else {
-            let beside =
-                tempfile::Builder::new().prefix(".vpost-").permissions(permissions(to)).tempfile_in(folder);
-            Place::Beside(beside.map_err(|error| fail(&error))?)
+            // An overwritten file keeps its permissions.
+            let permissions = to.metadata().ok().map(|old| old.permissions());
+            Place::Beside(GrowingFile::new(folder, permissions).map_err(|error| fail(&error))?)
         };
         Ok(Self { path, place })
     }
@@ -148,9 +149,8 @@ impl<'p> Output<'p> {
         let fail = |error: &std::io::Error| Failure::file(&named, "write", error);
         match (self.place, self.path) {
             (Place::Beside(beside), Some(path)) => {
-                beside.as_file().sync_all().map_err(|error| fail(&error))?;
-                beside.persist(path).map_err(|error| fail(&error.error))?;
-                Ok(())
+                beside.file().sync_all().map_err(|error| fail(&error))?;
+                beside.put_new(path).or_else(|(_, beside)| beside.replace(path)).map_err(|error| fail(&error))
             }
             (Place::Beside(_), None) => Ok(()),
             (Place::Apart(mut apart), path) => {
@@ -189,10 +189,7 @@ impl Write for Place {
 impl Growing for Place {
     fn clear(&mut self) -> std::io::Result<()> {
         match self {
-            Self::Beside(beside) => {
-                beside.as_file().set_len(0)?;
-                beside.rewind()
-            }
+            Self::Beside(beside) => beside.clear(),
             Self::Apart(apart) => {
                 apart.set_len(0)?;
                 apart.rewind()
@@ -206,21 +203,6 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let mut output = Output::new(Some(path))?;
     output.place.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
     output.finish()
-}
-
-/// A new output gets the usual permissions, an overwritten one keeps its own.
-#[cfg(unix)]
-fn permissions(path: &Path) -> std::fs::Permissions {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::metadata(path).map_or_else(|_| std::fs::Permissions::from_mode(0o666), |old| old.permissions())
-}
-#[cfg(not(unix))]
-fn permissions(path: &Path) -> std::fs::Permissions {
-    // Windows has no mode; the folder's rules apply.
-    std::fs::metadata(path).map_or_else(
-        |_| std::fs::metadata(".").expect("the working directory exists").permissions(),
-        |old| old.permissions(),
-    )
 }
 
 /// Prints to standard output.

@@ -14,6 +14,7 @@ mod expand;
 pub mod export;
 mod file;
 mod grammar;
+mod growing;
 pub mod map;
 mod message;
 mod points;

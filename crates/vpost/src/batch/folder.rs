@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! OUTDIR/.vpost/lock      held while vpost works here
-//! OUTDIR/.vpost/tmp/      outputs before they are whole; renamed into place
+//! OUTDIR/.vpost/tmp/      outputs before they are whole, where they need a name
 //! OUTDIR/.vpost/journal/  what became of each program
 //! OUTDIR/…                the outputs
 //! ```
 //!
-//! Who dies leaves temporaries only in `tmp`. Whoever opens the folder next and is alone with it empties that: locks
+//! Who dies leaves temporaries only in `tmp`, and on Linux mostly none: there a file needs no name before it is whole. Whoever opens the folder next and is alone with it empties that: locks
 //! end with their process, so being alone is known, not guessed from ages or process numbers.
 
 use std::fs::{File, TryLockError};
@@ -18,6 +18,7 @@ use blake3::{Hash, Hasher};
 use diagnostic::{Code, Diagnostic};
 
 use crate::file::{self, Place};
+use crate::growing::GrowingFile;
 use crate::message::{Failure, Report};
 
 /// Someone else works in the output folder.
@@ -107,41 +108,41 @@ impl OutputFolder {
 
     /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put_new).
     pub(crate) fn temporary(&self) -> io::Result<Place> {
-        for_everybody(&mut tempfile::Builder::new()).tempfile_in(&self.temporaries).map(Place::Beside)
+        GrowingFile::new(&self.temporaries, None).map(Place::Beside)
     }
 
     /// Writes a file of the journal: whole, or an earlier one stays as it was.
     pub(crate) fn put_journal(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
         // Not beside its place: who is killed here leaves it where it is swept.
-        let mut file = for_everybody(&mut tempfile::Builder::new()).tempfile_in(&self.temporaries)?;
-        file.as_file_mut().write_all(bytes)?;
-        file.as_file().sync_all()?;
-        file.persist(self.journal().join(name)).map(drop).map_err(|error| error.error)
+        let mut file = GrowingFile::new(&self.temporaries, None)?;
+        file.write_all(bytes)?;
+        file.file().sync_all()?;
+        file.replace(&self.journal().join(name))
     }
 
     /// Puts an output in its place where nothing is: whole under its final name. Gives it back where something is, or
     /// where the file system cannot tell.
     pub(crate) fn put_new(&self, temporary: Place, output: &str) -> io::Result<Option<Place>> {
-        let temporary = named(temporary)?;
+        let temporary = beside(temporary)?;
         // On Linux all outputs are brought to the disk together, at the end: see `sync`.
         if !cfg!(target_os = "linux") {
-            temporary.as_file().sync_all()?;
+            temporary.file().sync_all()?;
         }
         let place = self.place(output);
-        let put = match (temporary.persist_noclobber(&place), place.parent()) {
+        let put = match (temporary.put_new(&place), place.parent()) {
             // The first output of a folder makes it.
-            (Err(missed), Some(folder)) if missed.error.kind() == io::ErrorKind::NotFound => {
+            (Err((error, temporary)), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
                 std::fs::create_dir_all(folder)?;
-                missed.file.persist_noclobber(&place)
+                temporary.put_new(&place)
             }
             (put, _) => put,
         };
-        Ok(put.err().map(|missed| Place::Beside(missed.file)))
+        Ok(put.err().map(|(_, temporary)| Place::Beside(temporary)))
     }
 
     /// Puts an output that [`put_new`](Self::put_new) gave back over what is in its place, which stays whole until then.
     pub(crate) fn replace(&self, temporary: Place, output: &str) -> io::Result<()> {
-        named(temporary)?.persist(self.place(output)).map(drop).map_err(|missed| missed.error)
+        beside(temporary)?.replace(&self.place(output))
     }
 
     /// Brings everything written so far to the disk: what is reported as done survives a power cut.
@@ -155,24 +156,12 @@ impl OutputFolder {
     }
 }
 
-/// Batch's temporaries all have names.
-fn named(temporary: Place) -> io::Result<tempfile::NamedTempFile> {
+/// Batch writes files, and nothing to devices.
+fn beside(temporary: Place) -> io::Result<GrowingFile> {
     match temporary {
-        Place::Beside(named) => Ok(named),
+        Place::Beside(file) => Ok(file),
         Place::Apart(_) => Err(io::Error::from(io::ErrorKind::InvalidInput)),
     }
-}
-
-/// Files with the usual permissions: temporary ones are their owner's alone.
-pub(crate) fn for_everybody<'b, 'p, 's>(
-    builder: &'b mut tempfile::Builder<'p, 's>,
-) -> &'b mut tempfile::Builder<'p, 's> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder
 }
 
 /// True for a folder that some batch wrote its outputs to.

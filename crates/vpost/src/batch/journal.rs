@@ -9,9 +9,10 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::folder::{OutputFolder, for_everybody};
+use super::folder::OutputFolder;
 use super::record::{self, Record};
 use crate::file;
+use crate::growing::for_everybody;
 use crate::message::Failure;
 
 /// The journal of whatever was done in the folder and needs no shard's name.

@@ -1,0 +1,216 @@
+//! A file on its way to its place: whole under its final name, or not there at all.
+
+use std::fs::{File, Permissions};
+use std::io::{self, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// A file that grows in a folder of the file system of its place.
+#[derive(Debug)]
+pub(crate) enum GrowingFile {
+    /// It has no name yet: however the process ends, nothing is left of it. And making one enters no folder, which
+    /// takes the kernel less and makes no thread wait for another.
+    Nameless(File, PathBuf),
+    /// Elsewhere it has one that is nobody's.
+    Named(NamedTempFile),
+}
+
+/// Names of files that are in no place yet.
+const PREFIX: &str = ".vpost-";
+
+impl GrowingFile {
+    /// An empty file that grows in a folder; with the usual permissions where none are given.
+    pub(crate) fn new(folder: &Path, permissions: Option<Permissions>) -> io::Result<Self> {
+        if let Some(file) = nameless(folder, permissions.as_ref()) {
+            return Ok(Self::Nameless(file, folder.to_owned()));
+        }
+        let mut builder = tempfile::Builder::new();
+        for_everybody(builder.prefix(PREFIX));
+        if let Some(permissions) = permissions {
+            builder.permissions(permissions);
+        }
+        builder.tempfile_in(folder).map(Self::Named)
+    }
+
+    /// What is written to.
+    pub(crate) fn file(&self) -> &File {
+        match self {
+            Self::Nameless(file, _) => file,
+            Self::Named(named) => named.as_file(),
+        }
+    }
+
+    /// Puts it in its place where nothing is; gives it back where something is, or where that cannot be told.
+    pub(crate) fn put_new(self, place: &Path) -> Result<(), (io::Error, Self)> {
+        match self {
+            Self::Nameless(file, folder) => {
+                link(&file, place).map_err(|error| (error, Self::Nameless(file, folder)))
+            }
+            Self::Named(named) => match named.persist_noclobber(place) {
+                Ok(_) => Ok(()),
+                Err(missed) => Err((missed.error, Self::Named(missed.file))),
+            },
+        }
+    }
+
+    /// Puts it over what is in its place, which stays whole until then.
+    pub(crate) fn replace(self, place: &Path) -> io::Result<()> {
+        match self {
+            // A link takes no place that is taken; a name does.
+            Self::Nameless(file, folder) => {
+                let named =
+                    tempfile::Builder::new().prefix(PREFIX).make_in(folder, |name| link(&file, name))?;
+                named.persist(place).map(drop).map_err(|missed| missed.error)
+            }
+            Self::Named(named) => named.persist(place).map(drop).map_err(|missed| missed.error),
+        }
+    }
+
+    /// Makes it empty again.
+    pub(crate) fn clear(&mut self) -> io::Result<()> {
+        self.file().set_len(0)?;
+        self.file().rewind()
+    }
+}
+
+impl Write for GrowingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file().flush()
+    }
+}
+
+/// The usual permissions; those of temporary files would be their owner's alone.
+#[cfg(unix)]
+const USUAL: u32 = 0o666;
+
+/// Files with the usual permissions.
+pub(crate) fn for_everybody<'b, 'p, 's>(
+    builder: &'b mut tempfile::Builder<'p, 's>,
+) -> &'b mut tempfile::Builder<'p, 's> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(Permissions::from_mode(USUAL));
+    }
+    builder
+}
+
+/// A file without a name; none where the system or the file system has none.
+#[cfg(target_os = "linux")]
+fn nameless(folder: &Path, permissions: Option<&Permissions>) -> Option<File> {
+    use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+    /// It gets its name by way of its descriptor's.
+    static DESCRIPTORS: std::sync::LazyLock<bool> =
+        std::sync::LazyLock::new(|| Path::new("/proc/self/fd").is_dir());
+    if !*DESCRIPTORS {
+        return None;
+    }
+    File::options()
+        .read(true)
+        .write(true)
+        .mode(permissions.map_or(USUAL, Permissions::mode))
+        .custom_flags(rustix::fs::OFlags::TMPFILE.bits().cast_signed())
+        .open(folder)
+        .ok()
+}
+#[cfg(not(target_os = "linux"))]
+fn nameless(_: &Path, _: Option<&Permissions>) -> Option<File> {
+    None
+}
+
+#[cfg(target_os = "linux")]
+fn link(file: &File, place: &Path) -> io::Result<()> {
+    use std::os::fd::AsRawFd;
+
+    use rustix::fs::{AtFlags, CWD, linkat};
+    let descriptor = format!("/proc/self/fd/{}", file.as_raw_fd());
+    Ok(linkat(CWD, descriptor, CWD, place, AtFlags::SYMLINK_FOLLOW)?)
+}
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(io::Error::from(io::ErrorKind::Unsupported))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With a name and, where the system has such files, without.
+    fn each_way(check: impl Fn(&dyn Fn(&[u8]) -> GrowingFile, &Path)) {
+        for named in [true, false] {
+            let folder = tempfile::tempdir().unwrap();
+            let grown = |text: &[u8]| {
+                let mut file = if named {
+                    GrowingFile::Named(tempfile::NamedTempFile::new_in(folder.path()).unwrap())
+                } else {
+                    GrowingFile::new(folder.path(), None).unwrap()
+                };
+                file.write_all(text).unwrap();
+                file
+            };
+            check(&grown, folder.path());
+        }
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn what_is_new_takes_no_others_place_and_what_replaces_does() {
+        each_way(|grown, folder| {
+            let place = folder.join("part.nc");
+            assert!(grown(b"first").put_new(&place).is_ok());
+            let (error, second) = grown(b"second").put_new(&place).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
+            assert_eq!(std::fs::read(&place).unwrap(), b"first");
+            second.replace(&place).unwrap();
+            assert_eq!(std::fs::read(&place).unwrap(), b"second");
+            drop(grown(b"third"));
+            assert_eq!(names(folder), ["part.nc"]);
+        });
+    }
+
+    #[test]
+    fn without_its_folder_it_is_given_back() {
+        each_way(|grown, folder| {
+            let place = folder.join("op10/part.nc");
+            let (error, file) = grown(b"first").put_new(&place).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::NotFound);
+            std::fs::create_dir(folder.join("op10")).unwrap();
+            assert!(file.put_new(&place).is_ok());
+            assert_eq!(names(folder), ["op10"]);
+        });
+    }
+
+    #[test]
+    fn cleared_it_begins_anew() {
+        each_way(|grown, folder| {
+            let mut file = grown(b"what was begun");
+            file.clear().unwrap();
+            file.write_all(b"anew").unwrap();
+            assert!(file.put_new(&folder.join("part.nc")).is_ok());
+            assert_eq!(std::fs::read(folder.join("part.nc")).unwrap(), b"anew");
+        });
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn its_permissions_are_the_usual_ones_or_those_given() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |name: &str| folder.path().join(name).metadata().unwrap().permissions().mode() & 0o777;
+        std::fs::write(folder.path().join("usual"), "").unwrap();
+        assert!(GrowingFile::new(folder.path(), None).unwrap().put_new(&folder.path().join("new")).is_ok());
+        assert_eq!(mode("new"), mode("usual"));
+        let own = Some(Permissions::from_mode(0o600));
+        assert!(GrowingFile::new(folder.path(), own).unwrap().put_new(&folder.path().join("own")).is_ok());
+        assert_eq!(mode("own"), 0o600);
+    }
+}
