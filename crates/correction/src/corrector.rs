@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
 
 use crate::curve::Curve;
-use crate::deviation::Machine;
+use crate::deviation::{Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
 use crate::{Piece, PieceKind};
@@ -427,6 +427,7 @@ impl<'m> Corrector<'m> {
                 in_step: feed.start.rotary_deg != feed.end.rotary_deg,
                 length_mm: whole.length_mm(),
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
+                solved: None,
                 corrected: &mut corrected,
             };
             match feed.shape {
@@ -579,6 +580,8 @@ pub(crate) struct Follow<'a, 'm> {
     pub(crate) length_mm: f64,
     /// Nominal end minus nominal start of the whole motion, mm.
     pub(crate) nominal_step: Vector,
+    /// What is known of the part that an arc is tried for next.
+    pub(crate) solved: Option<Solved>,
     pub(crate) corrected: &'a mut Corrected,
 }
 

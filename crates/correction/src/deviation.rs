@@ -62,6 +62,47 @@ pub(crate) enum Verdict {
     },
 }
 
+/// Commands that bring the tool to a programmed motion.
+#[derive(Clone, Copy)]
+pub(crate) struct Solved {
+    /// At s = 0, ¼, ½, ¾, 1.
+    pub(crate) commands: [Vector; 5],
+    /// For motion in these directions.
+    pub(crate) direction: [i8; 3],
+}
+
+impl Solved {
+    /// At ¼, ½ and ¾.
+    pub(crate) fn between(&self) -> [Vector; 3] {
+        let [_, a, b, c, _] = self.commands;
+        [a, b, c]
+    }
+
+    /// At the end.
+    pub(crate) fn end(&self) -> Vector {
+        let [.., end] = self.commands;
+        end
+    }
+}
+
+/// More than a corrected command is off, and all rounding in comparing with it, mm.
+const SOLVED_MM: f64 = 1e-8;
+
+/// What corrected commands tell of a motion.
+pub(crate) enum ByCommands {
+    /// The real path stays this near the programmed one, everywhere; mm.
+    Within(f64),
+    /// It is further away than allowed at this s, by at least this many mm.
+    Beyond {
+        /// Where.
+        s: f64,
+        /// How far.
+        distance_mm: f64,
+    },
+    /// The model has to be asked.
+    Open,
+}
+
 /// A place where the deviation is known.
 #[derive(Clone, Copy)]
 struct Place {
@@ -89,7 +130,11 @@ impl Pair<'_> {
     fn place(&self, machine: &Machine<'_>, s: f64) -> Place {
         let (wanted, tangent) = self.wanted.at_and_tangent(s);
         let commanded = self.commanded.at(s);
-        let difference = commanded - wanted + machine.error(commanded);
+        self.place_of(s, commanded - wanted + machine.error(commanded), tangent)
+    }
+
+    /// The place at s where real and programmed tip differ so, seen along a tangent.
+    fn place_of(&self, s: f64, difference: Vector, tangent: Vector) -> Place {
         let tangent = if self.in_step { Vector::zeros() } else { tangent };
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
@@ -132,7 +177,11 @@ impl Pair<'_> {
 
     /// Equation (P4), the error leaving its chord by at most `error_mm`.
     fn between(&self, a: &Place, b: &Place, error_mm: f64) -> f64 {
-        let leaves_chord = error_mm + self.commanded.difference_bound(self.wanted, a.s, b.s);
+        self.between_leaving(a, b, error_mm + self.commanded.difference_bound(self.wanted, a.s, b.s))
+    }
+
+    /// Equation (P4), the deviation leaving its chord by at most `leaves_chord` mm.
+    fn between_leaving(&self, a: &Place, b: &Place, leaves_chord: f64) -> f64 {
         if !leaves_chord.is_finite() {
             // The model jumps here. Infinity times a curvature of zero is not a number, and `max` would forget it.
             return f64::INFINITY;
@@ -146,6 +195,54 @@ impl Pair<'_> {
         let between =
             a.square.max(b.square) + leaves_chord + turned + 0.5 * along * along * self.wanted.curvature();
         between.max(a.distance).max(b.distance)
+    }
+
+    /// What the commands that bring the tool to the programmed path tell of the one commanded, without the model being asked:
+    /// equation (P7).
+    pub(crate) fn by_commands(&self, machine: &Machine<'_>, solved: &Solved, limit_mm: f64) -> ByCommands {
+        /// Of a motion, from place to place.
+        const STRETCH: f64 = 0.25;
+        let Some(everywhere) = &machine.everywhere else { return ByCommands::Open };
+        let mut places = [Place { s: 0.0, difference: Vector::zeros(), square: 0.0, distance: 0.0 }; 5];
+        let mut unsure: f64 = 0.0;
+        for ((place, command), k) in places.iter_mut().zip(&solved.commands).zip(0_u8..) {
+            let s = STRETCH * f64::from(k);
+            let off = self.commanded.at(s) - command;
+            *place = self.place_of(s, off, self.wanted.tangent(s));
+            let own = everywhere.gradient * off.norm() + SOLVED_MM;
+            if own.is_nan() {
+                // An axis whose place is not known: `max` would forget it.
+                return ByCommands::Open;
+            }
+            if place.square - own > limit_mm && 0 < k && k < 4 {
+                return ByCommands::Beyond { s, distance_mm: place.square - own };
+            }
+            unsure = unsure.max(own);
+        }
+        // An arc passes a place at most twice only while it is below half a turn.
+        if self.commanded.turning_rad() * STRETCH > 3.0 || !self.commanded.lies_inside(&everywhere.volume) {
+            return ByCommands::Open;
+        }
+        let bends = self.commanded.difference_bound(self.wanted, 0.0, STRETCH);
+        let bound = |error_mm: f64| {
+            let stretches = places.windows(2);
+            let worst = stretches.map(|ends| self.between_leaving(&ends[0], &ends[1], error_mm + bends));
+            worst.fold(0.0, f64::max) + 4.0 * unsure
+        };
+        // All but the model's share.
+        if bound(0.0) > limit_mm {
+            return ByCommands::Open;
+        }
+        // Of a stretch that runs through all of the motion's box: it holds for those that run through a part of it.
+        let extent = self.commanded.extent(0.0, 1.0);
+        let bound = bound(machine.model.chord_bound_mm(&Move {
+            range_mm: extent.range,
+            speed_mm: extent.speed.map(|speed| speed * STRETCH),
+            acceleration_mm: extent.acceleration.map(|acceleration| acceleration * STRETCH * STRETCH),
+            passes: 2,
+            state: machine.state,
+        }));
+        if bound <= limit_mm { ByCommands::Within(bound) } else { ByCommands::Open }
     }
 
     /// Proves that the real path stays within `limit_mm` of the programmed one, or shows where it does not.

@@ -315,6 +315,7 @@ impl<'m> Corrector<'m> {
                 in_step: false,
                 length_mm: (bottom_mm - r_mm).abs(),
                 nominal_step: Vector::zeros(),
+                solved: None,
                 corrected,
             };
             corrector.follow_line(&mut follow, &part)

@@ -9,8 +9,8 @@
 //! is not proven is halved until it is, or split. See `docs/path-promise.md`.
 
 mod arc;
+mod centre;
 mod compare;
-
 mod corrector;
 mod curve;
 mod deviation;

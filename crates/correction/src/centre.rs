@@ -1,0 +1,253 @@
+//! The words by which a control may be told an arc's centre.
+
+use std::f64::consts::TAU;
+
+use machine_model::Vector;
+use smallvec::SmallVec;
+use toolpath::{Plane, Similarity};
+
+use crate::Centre;
+use crate::curve::Curve;
+use crate::grid::{AxisWord, Block};
+
+/// Where the corrected path is asked for: a centre is fitted to it there, and what misses it there is not tried.
+pub(crate) const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Two ends nearer than this are one place: far below every output step, far above rounding of `f64`.
+pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
+
+/// A centre to try: the words and what the control makes of them.
+pub(crate) struct Candidate {
+    pub(crate) words: Centre,
+    centre: [f64; 2],
+    /// Difference of the radii at start and end, mm.
+    radii_apart: f64,
+}
+
+impl Candidate {
+    /// What the control makes of it; `None` where that is another arc altogether: the short way for the long one.
+    pub(crate) fn arc(&self, search: &Search<'_>) -> Option<Curve> {
+        let Curve::Arc { axes, sweep, .. } = *search.part else { return None };
+        let mut curve = Curve::from_centre(search.from, search.to, axes, self.centre, sweep < 0.0);
+        let Curve::Arc { sweep: turned, .. } = &mut curve else { return None };
+        if search.own_words && search.block.letters.contains(b'P') {
+            // The block's own P counts the whole turns before the last one; it never makes one of a
+            // last turn that came out as nothing.
+            *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
+        }
+        ((*turned - sweep).abs() < 0.5 * sweep.abs().min(1.0)).then_some(curve)
+    }
+
+    /// The block's own words serve.
+    fn is_kept(&self) -> bool {
+        match self.words {
+            Centre::Offsets(words) => words.iter().all(|word| !matches!(word, AxisWord::Write(_))),
+            Centre::Radius(word) => word == AxisWord::Keep,
+        }
+    }
+}
+
+/// What the block's frame makes of the circle; `None` for what is no arc, or no circle in the program.
+pub(crate) fn in_plane(part: &Curve, block: &Block) -> Option<Similarity> {
+    let Curve::Arc { axes, .. } = *part else { return None };
+    let plane = [Plane::Xy, Plane::Zx, Plane::Yz].into_iter().find(|plane| plane.axes() == axes)?;
+    block.frame.similarity(plane)
+}
+
+/// What a centre is looked for.
+pub(crate) struct Search<'a> {
+    /// The programmed arc.
+    pub(crate) part: &'a Curve,
+    pub(crate) block: &'a Block,
+    /// Where the axes stand.
+    pub(crate) from: Vector,
+    /// Where the arc's words lead.
+    pub(crate) to: Vector,
+    /// Commands that bring the tool to `part` at [`PLACES`].
+    pub(crate) corrected: [Vector; 3],
+    /// The block's own words may stay.
+    pub(crate) own_words: bool,
+    /// A circle that misses one of `corrected` by more is not tried, mm.
+    pub(crate) farthest_mm: f64,
+}
+
+impl Search<'_> {
+    /// The centres worth trying, best first.
+    pub(crate) fn candidates(&self) -> SmallVec<[Candidate; 4]> {
+        let mut found = SmallVec::new();
+        let Curve::Arc { axes: [u, v, _], centre, radius, .. } = *self.part else { return found };
+        let block = self.block;
+        let has_centre = [u, v].map(|axis| block.letters.contains(b"IJK"[axis]));
+        let by_radius = !has_centre.contains(&true) && (block.letters.contains(b'R') || !block.centre_words);
+        let scale = in_plane(self.part, block).map_or(1.0, |map| map.scale);
+        let step = scale * block.step_mm(u).max(block.step_mm(v));
+        // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
+        // words may bring more of their own.
+        let allowed = (2.0 * step + (radius[1] - radius[0]).abs())
+            .min((scale * block.arc_radius_tolerance_mm).max(2.0 * step));
+        let mut push = |words: Centre, centre: [f64; 2]| {
+            let (missed, radii_apart) = self.missed_mm(centre);
+            if radii_apart <= allowed && missed <= self.farthest_mm {
+                found.push(Candidate { words, centre, radii_apart });
+            }
+        };
+        if self.own_words && !by_radius {
+            let kept = has_centre.map(|has| if has { AxisWord::Keep } else { AxisWord::Omit });
+            // Relative centre words are measured from where the axes really stand.
+            let start = self.part.at(0.0);
+            let own = if block.arc_centres_absolute {
+                centre
+            } else {
+                [centre[0] + self.from[u] - start[u], centre[1] + self.from[v] - start[v]]
+            };
+            push(Centre::Offsets(kept), own);
+        }
+        let fitted = self.fitted();
+        if by_radius {
+            self.by_radius(fitted, scale, &mut push);
+        }
+        if block.centre_words {
+            self.by_offsets(fitted, has_centre, &mut push);
+        }
+        // The programmed words first, then by how well the two radii agree: a control that is strict
+        // about them alarms, one that is not makes a small step at the end of the arc.
+        found.sort_by(|a, b| b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart)));
+        found
+    }
+
+    /// How far an arc about a centre misses the corrected commands, square to it and in its plane; and by how much its radii
+    /// at start and end differ; mm.
+    ///
+    /// Between the ends its radius runs with the angle. Which angle is that of a corrected command matters by the radii's
+    /// difference times an angle of 1e-4.
+    fn missed_mm(&self, centre: [f64; 2]) -> (f64, f64) {
+        let Curve::Arc { axes: [u, v, _], .. } = *self.part else { return (f64::INFINITY, f64::INFINITY) };
+        let radius = |p: &Vector| {
+            let (pu, pv) = (p[u] - centre[0], p[v] - centre[1]);
+            (pu * pu + pv * pv).sqrt()
+        };
+        let (first, last) = (radius(&self.from), radius(&self.to));
+        let missed = PLACES
+            .iter()
+            .zip(&self.corrected)
+            .map(|(s, corrected)| (first + (last - first) * s - radius(corrected)).abs())
+            .fold(0.0, f64::max);
+        (missed, (last - first).abs())
+    }
+
+    /// Rounded centres around the fitted one, as words of the plane.
+    fn by_offsets(&self, fitted: [f64; 2], has_centre: [bool; 2], push: &mut impl FnMut(Centre, [f64; 2])) {
+        let Curve::Arc { axes: [u, v, _], .. } = *self.part else { return };
+        let block = self.block;
+        let mut centre = self.from;
+        (centre[u], centre[v]) = (fitted[0], fitted[1]);
+        let (centre_program, from_program) = (block.program(&centre), block.program(&self.from));
+        let origin = |axis: usize| if block.arc_centres_absolute { 0.0 } else { from_program[axis] };
+        let counts = [u, v].map(|axis| block.to_counts(axis, centre_program[axis] - origin(axis)));
+        for du in [0, -1, 1] {
+            for dv in [0, -1, 1] {
+                let chosen = [counts[0] + du, counts[1] + dv];
+                if chosen == [0, 0] && !block.arc_centres_absolute {
+                    // An arc about its own start.
+                    continue;
+                }
+                let mut at = from_program;
+                at[u] = origin(u) + block.from_counts(u, chosen[0]);
+                at[v] = origin(v) + block.from_counts(v, chosen[1]);
+                let machine = block.machine(at);
+                let words = [0, 1].map(|i| {
+                    // A missing centre word is zero in every dialect, but two missing ones are no arc.
+                    let needless =
+                        chosen[i] == 0 && !has_centre[i] && !block.arc_centres_absolute && chosen[1 - i] != 0;
+                    if needless { AxisWord::Omit } else { AxisWord::Write(chosen[i]) }
+                });
+                push(Centre::Offsets(words), [machine[u], machine[v]]);
+            }
+        }
+    }
+
+    /// R words around the fitted radius; `scale`: of the frame.
+    fn by_radius(&self, fitted: [f64; 2], scale: f64, push: &mut impl FnMut(Centre, [f64; 2])) {
+        let Curve::Arc { axes: [u, v, _], sweep, radius, .. } = *self.part else { return };
+        let Self { block, from, to, .. } = self;
+        // Near a half turn the centre runs away with the last digit of R, near a full one R says nothing.
+        let chord = [to[u] - from[u], to[v] - from[v]];
+        let length = (chord[0] * chord[0] + chord[1] * chord[1]).sqrt();
+        if length < SAME_PLACE_MM {
+            return;
+        }
+        let major = sweep.abs() > TAU / 2.0;
+        let centre_of = |radius: f64| {
+            // Half a turn: the programmed radius and half the chord are the same number but for its last bits.
+            let height2 = radius * radius - 0.25 * length * length;
+            let height2 = if height2.abs() < 1e-9 * radius * radius { 0.0 } else { height2 };
+            if height2 < 0.0 {
+                return None;
+            }
+            // Left of the chord for a counter-clockwise minor arc.
+            let side = if (sweep > 0.0) == major { -1.0 } else { 1.0 };
+            let k = side * height2.sqrt() / length;
+            Some([0.5 * (from[u] + to[u]) - chord[1] * k, 0.5 * (from[v] + to[v]) + chord[0] * k])
+        };
+        let (ru, rv) = (from[u] - fitted[0], from[v] - fitted[1]);
+        let counts = block.to_counts(u, (ru * ru + rv * rv).sqrt() / scale);
+        if self.own_words
+            && block.letters.contains(b'R')
+            && let Some(centre) = centre_of(radius[0])
+        {
+            push(Centre::Radius(AxisWord::Keep), centre);
+        }
+        for d in [0, 1, -1] {
+            if let Some(centre) = centre_of(block.from_counts(u, counts + d) * scale) {
+                let signed = if major { -(counts + d) } else { counts + d };
+                push(Centre::Radius(AxisWord::Write(signed)), centre);
+            }
+        }
+    }
+
+    /// The centre of the circle through both ends that is nearest to the corrected path between them.
+    ///
+    /// With `|q - C|² = |A - C|²` linear in C: least squares over three places in between, along the
+    /// bisector of the ends, or in both directions where the ends nearly coincide.
+    fn fitted(&self) -> [f64; 2] {
+        let Curve::Arc { axes: [u, v, _], sweep, centre, .. } = *self.part else { return [0.0; 2] };
+        let Self { from, to, .. } = self;
+        let places = self.corrected.map(|q| [q[u] - from[u], q[v] - from[v]]);
+        let end = [to[u] - from[u], to[v] - from[v]];
+        // Relative to the start: 2 C·q = |q|².
+        if sweep.abs() < 0.9 * TAU {
+            let length2 = end[0] * end[0] + end[1] * end[1];
+            let normal = [-end[1], end[0]];
+            let (mut above, mut below) = (0.0, 0.0);
+            for q in &places {
+                // C = end/2 + λ·normal.
+                let weight = 2.0 * (q[0] * normal[0] + q[1] * normal[1]);
+                let rest = q[0] * q[0] + q[1] * q[1] - (q[0] * end[0] + q[1] * end[1]);
+                above += weight * rest;
+                below += weight * weight;
+            }
+            if below <= 0.0 || length2 <= 0.0 {
+                return centre;
+            }
+            let lambda = above / below;
+            return [
+                from[u] + 0.5 * end[0] + lambda * normal[0],
+                from[v] + 0.5 * end[1] + lambda * normal[1],
+            ];
+        }
+        let (mut a, mut b, mut d, mut p, mut r) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for q in places.iter().chain([&end]) {
+            let square = 0.5 * (q[0] * q[0] + q[1] * q[1]);
+            a += q[0] * q[0];
+            b += q[0] * q[1];
+            d += q[1] * q[1];
+            p += q[0] * square;
+            r += q[1] * square;
+        }
+        let determinant = a * d - b * b;
+        if determinant <= 0.0 {
+            return centre;
+        }
+        [from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant]
+    }
+}
