@@ -109,7 +109,8 @@ impl<'m> Corrector<'m> {
             own_words: follow.alone,
             farthest_mm: if sieved.is_some() { limit_mm + BEYOND_DOUBT_MM } else { f64::INFINITY },
         };
-        for candidate in search.candidates() {
+        let mut candidates = search.candidates();
+        while let Some(candidate) = candidates.take_best() {
             let Some(curve) = candidate.arc(&search) else { continue };
             let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
             match judged(&pair, &follow.machine, sieved.as_ref(), limit_mm) {

@@ -1,5 +1,6 @@
 //! The words by which a control may be told an arc's centre.
 
+use std::array::from_fn;
 use std::f64::consts::TAU;
 
 use machine_model::Vector;
@@ -71,10 +72,64 @@ pub(crate) struct Search<'a> {
     pub(crate) farthest_mm: f64,
 }
 
+/// Centres to try.
+pub(crate) struct Candidates(SmallVec<[Candidate; 10]>);
+
+impl Candidates {
+    /// The best of those that are left.
+    ///
+    /// The programmed words first, then by how well the two radii agree: a control that is strict about them alarms, one that
+    /// is not makes a small step at the end of the arc.
+    pub(crate) fn take_best(&mut self) -> Option<Candidate> {
+        let order = |a: &Candidate, b: &Candidate| {
+            b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart))
+        };
+        let (best, _) = self.0.iter().enumerate().min_by(|(_, a), (_, b)| order(a, b))?;
+        Some(self.0.remove(best))
+    }
+}
+
+/// Arcs about centres near one: how far they miss the corrected commands, square to them and in their plane.
+///
+/// Between the ends the radius runs with the angle. Which angle is that of a corrected command matters by the radii's
+/// difference times an angle of 1e-4.
+#[derive(Default)]
+struct Near {
+    centre: [f64; 2],
+    /// Radius at the end less radius at the start, mm, and by how much it grows as the centre moves, mm per mm.
+    apart: f64,
+    spread: [f64; 2],
+    /// Of the arc about this centre less that of the commands, mm, and by how much it grows.
+    missed: [f64; 3],
+    change: [[f64; 2]; 3],
+    /// Distance of the nearest place, mm.
+    nearest: f64,
+}
+
+impl Near {
+    /// Lower bound of the largest distance of a corrected command from the arc about a centre, and what the arc's radii differ by
+    /// at its ends; mm.
+    ///
+    /// A distance `r` is `r - n·Δ` from a centre moved by `Δ`, and more by at most `|Δ|²/2(r - |Δ|)`; one is compared with two that
+    /// weigh 1 together.
+    fn missed_mm(&self, centre: [f64; 2]) -> (f64, f64) {
+        let by = [centre[0] - self.centre[0], centre[1] - self.centre[1]];
+        let moved = length(by);
+        let along = |change: &[f64; 2]| change[0] * by[0] + change[1] * by[1];
+        let missed = (0..3).map(|k| (self.missed[k] + along(&self.change[k])).abs()).fold(0.0, f64::max);
+        let unsure = moved * moved / (self.nearest - moved).max(0.0);
+        (missed - unsure, (self.apart + along(&self.spread)).abs())
+    }
+}
+
+fn length([u, v]: [f64; 2]) -> f64 {
+    (u * u + v * v).sqrt()
+}
+
 impl Search<'_> {
-    /// The centres worth trying, best first.
-    pub(crate) fn candidates(&self) -> SmallVec<[Candidate; 4]> {
-        let mut found = SmallVec::new();
+    /// The centres worth trying.
+    pub(crate) fn candidates(&self) -> Candidates {
+        let mut found = Candidates(SmallVec::new());
         let Curve::Arc { axes: [u, v, _], centre, radius, .. } = *self.part else { return found };
         let block = self.block;
         let has_centre = [u, v].map(|axis| block.letters.contains(b"IJK"[axis]));
@@ -85,10 +140,12 @@ impl Search<'_> {
         // words may bring more of their own.
         let allowed = (2.0 * step + (radius[1] - radius[0]).abs())
             .min((scale * block.arc_radius_tolerance_mm).max(2.0 * step));
+        let fitted = self.fitted();
+        let near = self.near(fitted);
         let mut push = |words: Centre, centre: [f64; 2]| {
-            let (missed, radii_apart) = self.missed_mm(centre);
-            if radii_apart <= allowed && missed <= self.farthest_mm {
-                found.push(Candidate { words, centre, radii_apart });
+            let (missed_mm, radii_apart) = near.missed_mm(centre);
+            if radii_apart <= allowed && missed_mm <= self.farthest_mm {
+                found.0.push(Candidate { words, centre, radii_apart });
             }
         };
         if self.own_words && !by_radius {
@@ -102,37 +159,32 @@ impl Search<'_> {
             };
             push(Centre::Offsets(kept), own);
         }
-        let fitted = self.fitted();
         if by_radius {
             self.by_radius(fitted, scale, &mut push);
         }
         if block.centre_words {
             self.by_offsets(fitted, has_centre, &mut push);
         }
-        // The programmed words first, then by how well the two radii agree: a control that is strict
-        // about them alarms, one that is not makes a small step at the end of the arc.
-        found.sort_by(|a, b| b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart)));
         found
     }
 
-    /// How far an arc about a centre misses the corrected commands, square to it and in its plane; and by how much its radii
-    /// at start and end differ; mm.
-    ///
-    /// Between the ends its radius runs with the angle. Which angle is that of a corrected command matters by the radii's
-    /// difference times an angle of 1e-4.
-    fn missed_mm(&self, centre: [f64; 2]) -> (f64, f64) {
-        let Curve::Arc { axes: [u, v, _], .. } = *self.part else { return (f64::INFINITY, f64::INFINITY) };
-        let radius = |p: &Vector| {
-            let (pu, pv) = (p[u] - centre[0], p[v] - centre[1]);
-            (pu * pu + pv * pv).sqrt()
-        };
-        let (first, last) = (radius(&self.from), radius(&self.to));
-        let missed = PLACES
-            .iter()
-            .zip(&self.corrected)
-            .map(|(s, corrected)| (first + (last - first) * s - radius(corrected)).abs())
-            .fold(0.0, f64::max);
-        (missed, (last - first).abs())
+    /// What arcs about centres near one have to do with the corrected commands.
+    fn near(&self, centre: [f64; 2]) -> Near {
+        let Curve::Arc { axes: [u, v, _], .. } = *self.part else { return Near::default() };
+        let [a, b, c] = &self.corrected;
+        let ways = [&self.from, a, b, c, &self.to].map(|p| [p[u] - centre[0], p[v] - centre[1]]);
+        let radii = ways.map(length);
+        let units: [[f64; 2]; 5] = from_fn(|k| ways[k].map(|component| component / radii[k]));
+        let [first, .., last] = units;
+        let spread = from_fn(|i| first[i] - last[i]);
+        Near {
+            centre,
+            apart: radii[4] - radii[0],
+            spread,
+            missed: from_fn(|k| radii[0] + (radii[4] - radii[0]) * PLACES[k] - radii[k + 1]),
+            change: from_fn(|k| from_fn(|i| units[k + 1][i] - first[i] + spread[i] * PLACES[k])),
+            nearest: radii.into_iter().fold(f64::INFINITY, f64::min),
+        }
     }
 
     /// Rounded centres around the fitted one, as words of the plane.
@@ -144,6 +196,16 @@ impl Search<'_> {
         let (centre_program, from_program) = (block.program(&centre), block.program(&self.from));
         let origin = |axis: usize| if block.arc_centres_absolute { 0.0 } else { from_program[axis] };
         let counts = [u, v].map(|axis| block.to_counts(axis, centre_program[axis] - origin(axis)));
+        let at = |[du, dv]: [i64; 2]| {
+            let mut at = from_program;
+            at[u] = origin(u) + block.from_counts(u, counts[0] + du);
+            at[v] = origin(v) + block.from_counts(v, counts[1] + dv);
+            let machine = block.machine(at);
+            [machine[u], machine[v]]
+        };
+        // A step of either word moves the centre by as much anywhere.
+        let first = at([0, 0]);
+        let steps = [at([1, 0]), at([0, 1])].map(|next| [0, 1].map(|i| next[i] - first[i]));
         for du in [0, -1, 1] {
             for dv in [0, -1, 1] {
                 let chosen = [counts[0] + du, counts[1] + dv];
@@ -151,17 +213,14 @@ impl Search<'_> {
                     // An arc about its own start.
                     continue;
                 }
-                let mut at = from_program;
-                at[u] = origin(u) + block.from_counts(u, chosen[0]);
-                at[v] = origin(v) + block.from_counts(v, chosen[1]);
-                let machine = block.machine(at);
                 let words = [0, 1].map(|i| {
                     // A missing centre word is zero in every dialect, but two missing ones are no arc.
                     let needless =
                         chosen[i] == 0 && !has_centre[i] && !block.arc_centres_absolute && chosen[1 - i] != 0;
                     if needless { AxisWord::Omit } else { AxisWord::Write(chosen[i]) }
                 });
-                push(Centre::Offsets(words), [machine[u], machine[v]]);
+                let centre = [0, 1].map(|i| first[i] + steps[0][i] * du as f64 + steps[1][i] * dv as f64);
+                push(Centre::Offsets(words), centre);
             }
         }
     }
@@ -172,7 +231,7 @@ impl Search<'_> {
         let Self { block, from, to, .. } = self;
         // Near a half turn the centre runs away with the last digit of R, near a full one R says nothing.
         let chord = [to[u] - from[u], to[v] - from[v]];
-        let length = (chord[0] * chord[0] + chord[1] * chord[1]).sqrt();
+        let length = length(chord);
         if length < SAME_PLACE_MM {
             return;
         }

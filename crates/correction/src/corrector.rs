@@ -446,7 +446,6 @@ impl<'m> Corrector<'m> {
     /// motion.
     pub(crate) fn before_mm(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> f64 {
         let machine = self.machine(block, rotary_deg);
-        let extent = whole.extent(0.0, 1.0);
         let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
         if let Some(everywhere) = &machine.everywhere
             && let Some((speed_mm, acceleration_mm)) = whole.fastest(0.0, 1.0)
@@ -455,6 +454,7 @@ impl<'m> Corrector<'m> {
         {
             return 0.0;
         }
+        let extent = whole.extent(0.0, 1.0);
         let between = self.model.chord_bound_mm(&machine_model::Move {
             range_mm: extent.range,
             speed_mm: extent.speed,

@@ -120,6 +120,22 @@ impl Curve {
         }
     }
 
+    /// [`Curve::at`] and [`Curve::tangent`] at s = 0, ¼, ½, ¾, 1; of an arc with two angles' sines and cosines for all.
+    pub(crate) fn quarters(&self) -> [(Vector, Vector); 5] {
+        let Self::Arc { angle, sweep, .. } = self else {
+            return std::array::from_fn(|k| self.at_and_tangent(0.25 * k as f64));
+        };
+        let (sin_step, cos_step) = sin_cos(0.25 * sweep);
+        let mut turned = sin_cos(*angle);
+        std::array::from_fn(|k| {
+            let s = 0.25 * k as f64;
+            let found = (self.at_turned(s, turned), self.tangent_turned(s, turned));
+            let (sin, cos) = turned;
+            turned = (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step);
+            found
+        })
+    }
+
     /// The place at s of an arc, whose angle there has this sine and cosine.
     #[inline]
     fn at_turned(&self, s: f64, (sin, cos): (f64, f64)) -> Vector {

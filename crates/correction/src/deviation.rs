@@ -205,10 +205,11 @@ impl Pair<'_> {
         let Some(everywhere) = &machine.everywhere else { return ByCommands::Open };
         let mut places = [Place { s: 0.0, difference: Vector::zeros(), square: 0.0, distance: 0.0 }; 5];
         let mut unsure: f64 = 0.0;
-        for ((place, command), k) in places.iter_mut().zip(&solved.commands).zip(0_u8..) {
-            let s = STRETCH * f64::from(k);
-            let off = self.commanded.at(s) - command;
-            *place = self.place_of(s, off, self.wanted.tangent(s));
+        let (commanded, wanted) = (self.commanded.quarters(), self.wanted.quarters());
+        for (k, place) in places.iter_mut().enumerate() {
+            let s = STRETCH * k as f64;
+            let off = commanded[k].0 - solved.commands[k];
+            *place = self.place_of(s, off, wanted[k].1);
             let own = everywhere.gradient * off.norm() + SOLVED_MM;
             if own.is_nan() {
                 // An axis whose place is not known: `max` would forget it.
