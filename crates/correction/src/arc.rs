@@ -1,6 +1,5 @@
 //! Following an arc with arcs, or with lines where no arc serves.
 
-use std::array::from_fn;
 use std::f64::consts::TAU;
 
 use machine_model::{LANES, Vector};
@@ -132,7 +131,8 @@ impl<'m> Corrector<'m> {
     /// Commands that bring the tool to an arc, its places all solved at once; `None` where the model has to be asked for each.
     fn solved(&self, follow: &Follow<'_, '_>, part: &Curve) -> Option<Solved> {
         let [a, b, c] = PLACES;
-        let [first, second, third, end] = solved_together(&follow.machine, part, [a, b, c, 1.0])?;
+        let [first, second, third, end] =
+            follow.machine.solved_together([a, b, c, 1.0].map(|s| part.at(s)))?;
         let start = self.solve(&follow.machine, part.at(0.0)).ok()?;
         let direction = follow.machine.state.direction;
         Some(Solved { commands: [start, first, second, third, end], direction })
@@ -154,15 +154,6 @@ fn judged(pair: &Pair<'_>, machine: &Machine<'_>, solved: Option<&Solved>, limit
     }
 }
 
-/// Commands that bring the tool to these places of a curve, all at once.
-fn solved_together(machine: &Machine<'_>, part: &Curve, places: [f64; LANES]) -> Option<[Vector; LANES]> {
-    let everywhere = machine.everywhere.as_ref()?;
-    let targets = places.map(|s| part.at(s).into());
-    let directions = [machine.state.direction; LANES];
-    let [x, y, z] = machine.model.commands_for(&targets, &directions, &machine.state, everywhere)?;
-    Some(from_fn(|k| Vector::new(x[k], y[k], z[k])))
-}
-
 /// What is known of a part for its halves, and what both lack.
 fn solved_halves(follow: &Follow<'_, '_>, part: &Curve, s: f64) -> [Option<Solved>; 2] {
     const LACKING: [f64; LANES] = [0.125, 0.375, 0.625, 0.875];
@@ -173,7 +164,9 @@ fn solved_halves(follow: &Follow<'_, '_>, part: &Curve, s: f64) -> [Option<Solve
     if direction != follow.machine.state.direction {
         return [None; 2];
     }
-    let Some([p, q, r, t]) = solved_together(&follow.machine, part, LACKING) else { return [None; 2] };
+    let Some([p, q, r, t]) = follow.machine.solved_together(LACKING.map(|s| part.at(s))) else {
+        return [None; 2];
+    };
     [[start, p, a, q, middle], [middle, r, b, t, end]].map(|commands| Some(Solved { commands, direction }))
 }
 

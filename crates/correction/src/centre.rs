@@ -21,8 +21,8 @@ pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
 pub(crate) struct Candidate {
     pub(crate) words: Centre,
     centre: [f64; 2],
-    /// Difference of the radii at start and end, mm.
-    radii_apart: f64,
+    /// Difference of the radii at start and end, and how far the arc misses the corrected path, together; mm.
+    cost_mm: f64,
 }
 
 impl Candidate {
@@ -78,11 +78,12 @@ pub(crate) struct Candidates(SmallVec<[Candidate; 10]>);
 impl Candidates {
     /// The best of those that are left.
     ///
-    /// The programmed words first, then by how well the two radii agree: a control that is strict about them alarms, one that
-    /// is not makes a small step at the end of the arc.
+    /// The programmed words first, then by how well the two radii agree – a control that is strict about them alarms, one that
+    /// is not makes a small step at the end of the arc – and how well the arc follows the path: along the bisector of the ends
+    /// all radii agree.
     pub(crate) fn take_best(&mut self) -> Option<Candidate> {
         let order = |a: &Candidate, b: &Candidate| {
-            b.is_kept().cmp(&a.is_kept()).then(a.radii_apart.total_cmp(&b.radii_apart))
+            b.is_kept().cmp(&a.is_kept()).then(a.cost_mm.total_cmp(&b.cost_mm))
         };
         let (best, _) = self.0.iter().enumerate().min_by(|(_, a), (_, b)| order(a, b))?;
         Some(self.0.remove(best))
@@ -145,7 +146,7 @@ impl Search<'_> {
         let mut push = |words: Centre, centre: [f64; 2]| {
             let (missed_mm, radii_apart) = near.missed_mm(centre);
             if radii_apart <= allowed && missed_mm <= self.farthest_mm {
-                found.0.push(Candidate { words, centre, radii_apart });
+                found.0.push(Candidate { words, centre, cost_mm: radii_apart + missed_mm });
             }
         };
         if self.own_words && !by_radius {
@@ -308,5 +309,47 @@ impl Search<'_> {
             return centre;
         }
         [from[u] + (d * p - b * r) / determinant, from[v] + (a * r - b * p) / determinant]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use units::math::sin_cos;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn what_an_arc_misses_near_a_centre(
+            radius in 0.05f64..300.0, angle in -4.0f64..4.0, sweep in 0.05f64..6.2,
+            off in prop::array::uniform5(-0.005f64..0.005), by in prop::array::uniform2(-0.01f64..0.01),
+        ) {
+            let place = |k: usize| {
+                let (sin, cos) = sin_cos(angle + 0.25 * k as f64 * sweep);
+                let r = radius + off[k];
+                Vector::new(20.0 + r * cos, -30.0 + r * sin, 0.0)
+            };
+            let part = Curve::Arc {
+                axes: Plane::Xy.axes(), centre: [20.0, -30.0], angle, sweep, radius: [radius; 2], normal: [0.0; 2],
+            };
+            let corrected = [place(1), place(2), place(3)];
+            let block = Block {
+                frame: Default::default(), unit_mm: 1.0, decimals: [3; 3], incremental: false, arc_centres_absolute: false,
+                letters: Default::default(), whole: [false; 3], tool_mm: [0.0; 3], centre_words: true,
+                arc_radius_tolerance_mm: 0.01, peck_clearance_mm: 0.0, chip_retreat_mm: 0.0,
+            };
+            let search = Search {
+                part: &part, block: &block, from: place(0), to: place(4), corrected, own_words: false, farthest_mm: 1.0,
+            };
+            let centre = [20.0 + by[0], -30.0 + by[1]];
+            let (missed, apart) = search.near([20.0, -30.0]).missed_mm(centre);
+            let r = |k: usize| length([place(k).x - centre[0], place(k).y - centre[1]]);
+            let true_miss = (1..4).map(|k| (r(0) + (r(4) - r(0)) * 0.25 * k as f64 - r(k)).abs()).fold(0.0, f64::max);
+            let unsure = length(by).powi(2) / (radius - 0.02);
+            prop_assert!(missed <= true_miss + 1e-12, "{missed} > {true_miss}");
+            prop_assert!(true_miss - missed <= 2.1 * unsure + 1e-12);
+            prop_assert!((apart - (r(4) - r(0)).abs()).abs() <= unsure + 1e-12);
+        }
     }
 }

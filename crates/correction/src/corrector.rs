@@ -1,6 +1,6 @@
 //! The state that runs through a program, and one motion at a time.
 
-use machine_model::{Command, Everywhere, PathModel, SolveError, Vector};
+use machine_model::{Command, Everywhere, LANES, PathModel, SolveError, Vector};
 use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
 
@@ -8,6 +8,7 @@ use crate::curve::Curve;
 use crate::deviation::{Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
+use crate::short_line::SLACK_MM;
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -95,6 +96,8 @@ pub struct Corrector<'m> {
     pub(crate) direction: [i8; 3],
     /// The last end point solved: nominal command, state and answer. The next motion starts there.
     pub(crate) last: Option<(Command, Vector)>,
+    /// Places that were solved together, in which state, and their answers.
+    known: Option<(Command, [Vector; LANES], [Vector; LANES])>,
     /// Cycles are being written as moves since one could not stay.
     pub(crate) expanding: bool,
     /// Bottom and R as the control remembers them, program mm, and the initial level, mm.
@@ -122,6 +125,7 @@ impl<'m> Corrector<'m> {
             standing: [None; 3],
             direction: [0; 3],
             last: None,
+            known: None,
             expanding: false,
             remembered: None,
             everywhere: None,
@@ -233,6 +237,13 @@ impl<'m> Corrector<'m> {
         {
             return Ok(*answer);
         }
+        if let Some((state, places, answers)) = &self.known
+            && let Some(place) = places.iter().position(|place| *place == nominal)
+            && (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
+            && (state.direction == target.direction || !self.model.depends_on_direction())
+        {
+            return Ok(answers[place]);
+        }
         let answer = match &self.everywhere {
             Some((_, _, Some(everywhere))) => self.model.command_for(&target, everywhere),
             _ => self.model.solve(&target).map(|solution| solution.linear_mm),
@@ -242,6 +253,12 @@ impl<'m> Corrector<'m> {
             (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(machine, nominal)),
             (Err(error), _) => Err(error.into()),
         }
+    }
+
+    /// Solves places together that [`Self::solve`] will be asked for, where the model does that.
+    pub(crate) fn foresee_places(&mut self, machine: &Machine<'_>, places: [Vector; LANES]) {
+        let answers = machine.solved_together(places);
+        self.known = answers.map(|answers| (machine.state, places, answers));
     }
 
     /// The nominal command with the correction of the volume's nearest point.
@@ -438,20 +455,46 @@ impl<'m> Corrector<'m> {
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
         }
-        corrected.correction.before_mm = self.before_mm(&whole, block, feed.end.rotary_deg);
+        corrected.correction.before_mm =
+            self.before_mm(&whole, block, feed.end.rotary_deg, corrected.correction.largest_mm);
         Ok(corrected)
+    }
+
+    /// Upper bound of the error at a place that takes a correction of so many mm: the error at its corrected command is that
+    /// correction, and what it changes from one to the other is little. Infinite where the model says nothing of that.
+    pub(crate) fn error_before_mm(&self, correction_mm: f64) -> f64 {
+        match &self.everywhere {
+            Some((_, _, Some(everywhere))) if !self.model.depends_on_direction() => {
+                correction_mm * (1.0 + everywhere.gradient) + SLACK_MM
+            }
+            _ => f64::INFINITY,
+        }
     }
 
     /// Bound of the deviation that the program would have had uncorrected, mm; 0 where it cannot exceed that of an earlier
     /// motion.
-    pub(crate) fn before_mm(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> f64 {
+    ///
+    /// * `correction_mm` – the largest at its ends
+    pub(crate) fn before_mm(
+        &self,
+        whole: &Curve,
+        block: &Block,
+        rotary_deg: [f64; 3],
+        correction_mm: f64,
+    ) -> f64 {
         let machine = self.machine(block, rotary_deg);
+        let bow = machine
+            .everywhere
+            .filter(|everywhere| whole.lies_inside(&everywhere.volume))
+            .and_then(|everywhere| {
+                whole.fastest(0.0, 1.0).map(|(v, a)| everywhere.chord_bound_of_circle_mm(v, a))
+            })
+            .unwrap_or(f64::INFINITY);
+        if self.error_before_mm(correction_mm) + bow <= self.told_mm[0] {
+            return 0.0;
+        }
         let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
-        if let Some(everywhere) = &machine.everywhere
-            && let Some((speed_mm, acceleration_mm)) = whole.fastest(0.0, 1.0)
-            && whole.lies_inside(&everywhere.volume)
-            && ends + everywhere.chord_bound_of_circle_mm(speed_mm, acceleration_mm) <= self.told_mm[0]
-        {
+        if ends + bow <= self.told_mm[0] {
             return 0.0;
         }
         let extent = whole.extent(0.0, 1.0);

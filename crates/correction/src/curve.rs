@@ -120,19 +120,27 @@ impl Curve {
         }
     }
 
-    /// [`Curve::at`] and [`Curve::tangent`] at s = 0, ¼, ½, ¾, 1; of an arc with two angles' sines and cosines for all.
-    pub(crate) fn quarters(&self) -> [(Vector, Vector); 5] {
-        let Self::Arc { angle, sweep, .. } = self else {
-            return std::array::from_fn(|k| self.at_and_tangent(0.25 * k as f64));
-        };
+    /// [`Curve::at`] at s = 0, ¼, ½, ¾, 1.
+    pub(crate) fn at_quarters(&self) -> [Vector; 5] {
+        let turned = self.turned_at_quarters();
+        std::array::from_fn(|k| self.at_turned(0.25 * k as f64, turned[k]))
+    }
+
+    /// [`Curve::tangent`] there.
+    pub(crate) fn tangents_at_quarters(&self) -> [Vector; 5] {
+        let turned = self.turned_at_quarters();
+        std::array::from_fn(|k| self.tangent_turned(0.25 * k as f64, turned[k]))
+    }
+
+    /// Sine and cosine of an arc's angle there, from those of two angles.
+    fn turned_at_quarters(&self) -> [(f64, f64); 5] {
+        let Self::Arc { angle, sweep, .. } = self else { return [(0.0, 0.0); 5] };
         let (sin_step, cos_step) = sin_cos(0.25 * sweep);
-        let mut turned = sin_cos(*angle);
-        std::array::from_fn(|k| {
-            let s = 0.25 * k as f64;
-            let found = (self.at_turned(s, turned), self.tangent_turned(s, turned));
-            let (sin, cos) = turned;
-            turned = (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step);
-            found
+        let mut next = sin_cos(*angle);
+        std::array::from_fn(|_| {
+            let (sin, cos) = next;
+            next = (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step);
+            (sin, cos)
         })
     }
 

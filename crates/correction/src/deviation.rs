@@ -1,6 +1,8 @@
 //! How far the real tool leaves the programmed path: computed at places, bounded between them.
 
-use machine_model::{Command, Everywhere, Move, PathModel, Vector};
+use std::array::from_fn;
+
+use machine_model::{Command, Everywhere, LANES, Move, PathModel, Vector};
 use smallvec::SmallVec;
 
 use crate::curve::Curve;
@@ -33,6 +35,15 @@ impl Machine<'_> {
     /// Real tip minus nominal tip for an axis command, mm.
     pub(crate) fn error(&self, linear_mm: Vector) -> Vector {
         self.model.error_mm(&Command { linear_mm, ..self.state })
+    }
+
+    /// Commands that bring the tool to several places at once; `None` where the model has to be asked for each.
+    pub(crate) fn solved_together(&self, places: [Vector; LANES]) -> Option<[Vector; LANES]> {
+        let targets = places.map(Into::into);
+        let directions = [self.state.direction; LANES];
+        let [x, y, z] =
+            self.model.commands_for(&targets, &directions, &self.state, self.everywhere.as_ref()?)?;
+        Some(from_fn(|k| Vector::new(x[k], y[k], z[k])))
     }
 }
 
@@ -104,11 +115,13 @@ pub(crate) enum ByCommands {
 }
 
 /// A place where the deviation is known.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Place {
     s: f64,
     /// Real tip minus programmed tip at the same s, mm.
     difference: Vector,
+    /// Its length, mm.
+    size: f64,
     /// The part of it square to the programmed path, mm.
     square: f64,
     /// Upper bound of the distance from the programmed path, mm.
@@ -139,12 +152,10 @@ impl Pair<'_> {
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
         // An end has to be reached, not only its neighbourhood: there all of the difference counts.
-        let distance = if s <= 0.0 || s >= 1.0 {
-            difference.norm()
-        } else {
-            square + 0.5 * along * along * self.wanted.curvature()
-        };
-        Place { s, difference, square, distance }
+        let size = difference.norm();
+        let distance =
+            if s <= 0.0 || s >= 1.0 { size } else { square + 0.5 * along * along * self.wanted.curvature() };
+        Place { s, difference, size, square, distance }
     }
 
     /// Upper bound of the distance between two places where it is known, mm; where that exceeds `limit_mm`, any number
@@ -189,7 +200,7 @@ impl Pair<'_> {
         // The chord itself, seen square to a tangent that turns by θ: P(s)·chord(s) has a second
         // derivative of at most 4θ²·|chord| + 2θ·|b - a|.
         let turning = self.wanted.turning_rad() * (b.s - a.s);
-        let largest = a.difference.norm().max(b.difference.norm());
+        let largest = a.size.max(b.size);
         let turned = turning * (4.0 * turning * largest + 2.0 * (b.difference - a.difference).norm()) / 8.0;
         let along = largest + leaves_chord;
         let between =
@@ -203,14 +214,14 @@ impl Pair<'_> {
         /// Of a motion, from place to place.
         const STRETCH: f64 = 0.25;
         let Some(everywhere) = &machine.everywhere else { return ByCommands::Open };
-        let mut places = [Place { s: 0.0, difference: Vector::zeros(), square: 0.0, distance: 0.0 }; 5];
+        let mut places = [Place::default(); 5];
         let mut unsure: f64 = 0.0;
-        let (commanded, wanted) = (self.commanded.quarters(), self.wanted.quarters());
+        let (commanded, tangents) = (self.commanded.at_quarters(), self.wanted.tangents_at_quarters());
         for (k, place) in places.iter_mut().enumerate() {
             let s = STRETCH * k as f64;
-            let off = commanded[k].0 - solved.commands[k];
-            *place = self.place_of(s, off, wanted[k].1);
-            let own = everywhere.gradient * off.norm() + SOLVED_MM;
+            let off = commanded[k] - solved.commands[k];
+            *place = self.place_of(s, off, tangents[k]);
+            let own = everywhere.gradient * place.size + SOLVED_MM;
             if own.is_nan() {
                 // An axis whose place is not known: `max` would forget it.
                 return ByCommands::Open;
@@ -220,29 +231,21 @@ impl Pair<'_> {
             }
             unsure = unsure.max(own);
         }
-        // An arc passes a place at most twice only while it is below half a turn.
-        if self.commanded.turning_rad() * STRETCH > 3.0 || !self.commanded.lies_inside(&everywhere.volume) {
-            return ByCommands::Open;
-        }
-        let bends = self.commanded.difference_bound(self.wanted, 0.0, STRETCH);
-        let bound = |error_mm: f64| {
-            let stretches = places.windows(2);
-            let worst = stretches.map(|ends| self.between_leaving(&ends[0], &ends[1], error_mm + bends));
-            worst.fold(0.0, f64::max) + 4.0 * unsure
-        };
-        // All but the model's share.
-        if bound(0.0) > limit_mm {
+        // More than one turn is not for four places.
+        if self.commanded.turning_rad() * STRETCH > 1.6 || !self.commanded.lies_inside(&everywhere.volume) {
             return ByCommands::Open;
         }
         // Of a stretch that runs through all of the motion's box: it holds for those that run through a part of it.
         let extent = self.commanded.extent(0.0, 1.0);
-        let bound = bound(machine.model.chord_bound_mm(&Move {
+        let leaves_chord = machine.model.chord_bound_mm(&Move {
             range_mm: extent.range,
             speed_mm: extent.speed.map(|speed| speed * STRETCH),
             acceleration_mm: extent.acceleration.map(|acceleration| acceleration * STRETCH * STRETCH),
             passes: 2,
             state: machine.state,
-        }));
+        }) + self.commanded.difference_bound(self.wanted, 0.0, STRETCH);
+        let worst = places.windows(2).map(|ends| self.between_leaving(&ends[0], &ends[1], leaves_chord));
+        let bound = worst.fold(0.0, f64::max) + 4.0 * unsure;
         if bound <= limit_mm { ByCommands::Within(bound) } else { ByCommands::Open }
     }
 
@@ -320,5 +323,86 @@ impl Pair<'_> {
             }
         }
         worst.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use machine_model::{
+        AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
+        Table,
+    };
+    use proptest::prelude::*;
+    use toolpath::Plane;
+
+    use super::*;
+
+    fn machine(interpolation: Interpolation) -> RigidBody {
+        let mut linear = [0, 1, 2].map(|_| LinearAxis::perfect(Range { low: 0.0, high: 200.0 }));
+        for (i, axis) in linear.iter_mut().enumerate() {
+            let table = |function: usize| {
+                let nodes = [0.0, 31.0, 64.0, 90.0, 131.0, 200.0];
+                let size = if function < 3 { 0.004 } else { 2e-5 };
+                let value = |k: usize| size * units::math::sin((7 * k + 3 * function + 5 * i) as f64);
+                Table::new(nodes.to_vec(), (0..nodes.len()).map(value).collect(), interpolation).ok()
+            };
+            axis.errors = AxisTables::new(&from_fn(table));
+        }
+        let description = Description {
+            chain: Chain::parse("[w X Y b Z t]").unwrap(),
+            linear,
+            rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+            squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
+        };
+        RigidBody::new(description).unwrap()
+    }
+
+    proptest! {
+        /// Equation (P7), held against the model at many places.
+        #[test]
+        fn what_corrected_commands_tell_is_so(
+            monotone: bool, plane in 0usize..3, middle in prop::array::uniform3(60.0f64..140.0), radius in 0.3f64..40.0,
+            angle in -4.0f64..4.0, sweep in prop_oneof![-6.2f64..-0.05, 0.05f64..6.2], rise in prop_oneof![Just(0.0), -5.0f64..5.0],
+            rounded in prop::array::uniform6(-0.001f64..0.001), centred in prop::array::uniform2(-0.003f64..0.003),
+            limit_um in 0.5f64..12.0,
+        ) {
+            let model = machine(if monotone { Interpolation::Monotone } else { Interpolation::Linear });
+            let state = Command {
+                linear_mm: Vector::zeros(), rotary_rad: Vector::zeros(), tool_mm: Vector::new(3.0, -5.0, -120.0), direction: [0; 3],
+            };
+            let machine = Machine { model: &model, state, everywhere: model.everywhere(&state), told_mm: 0.0 };
+            let axes = [Plane::Xy, Plane::Zx, Plane::Yz][plane].axes();
+            let [u, v, n] = axes;
+            let wanted = Curve::Arc {
+                axes, centre: [middle[u], middle[v]], angle, sweep, radius: [radius; 2], normal: [middle[n], middle[n] + rise],
+            };
+            let at = |s: f64| wanted.at(s);
+            let solve = |places: [f64; LANES]| machine.solved_together(places.map(at)).unwrap();
+            let ([a, b, c, end], [start, ..]) = (solve([0.25, 0.5, 0.75, 1.0]), solve([0.0; LANES]));
+            let solved = Solved { commands: [start, a, b, c, end], direction: [0; 3] };
+            let from = start + Vector::new(rounded[0], rounded[1], rounded[2]);
+            let to = end + Vector::new(rounded[3], rounded[4], rounded[5]);
+            let shift = 0.5 * (start - at(0.0) + end - at(1.0));
+            let centre = [middle[u] + shift[u] + centred[0], middle[v] + shift[v] + centred[1]];
+            let commanded = Curve::from_centre(from, to, axes, centre, sweep < 0.0);
+            let Curve::Arc { sweep: turned, .. } = commanded else { panic!() };
+            prop_assume!((turned - sweep).abs() < 0.1);
+            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false };
+            let furthest = |places: u32| (0..=places)
+                .map(|k| pair.place(&machine, f64::from(k) / f64::from(places)).distance)
+                .fold(0.0, f64::max);
+            let limit_mm = limit_um * 1e-3;
+            match pair.by_commands(&machine, &solved, limit_mm) {
+                ByCommands::Within(bound) => {
+                    prop_assert!(bound <= limit_mm);
+                    prop_assert!(furthest(257) <= bound + 1e-12, "{} > {}", furthest(257), bound);
+                }
+                ByCommands::Beyond { distance_mm, .. } => {
+                    prop_assert!(distance_mm > limit_mm);
+                    prop_assert!(furthest(4) >= distance_mm);
+                }
+                ByCommands::Open => {}
+            }
+        }
     }
 }

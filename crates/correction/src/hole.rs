@@ -28,17 +28,55 @@ struct Kept {
     piece: Piece,
     /// Its words are the program's.
     untouched: bool,
-    /// How far its hole is from the programmed one.
-    verdict: Verdict,
+    /// The programmed hole, and the one that the words drill.
+    wanted: Curve,
+    commanded: Curve,
+    /// What the control counts its pecks along.
+    pecks: Option<Curve>,
     /// Where R is, axis command.
     r_mm: f64,
 }
 
 impl Kept {
+    /// How far its hole is from the programmed one.
+    fn verdict(&self, machine: &Machine<'_>, limit_mm: f64) -> Verdict {
+        let Self { wanted, commanded, .. } = self;
+        let verdict = Pair { wanted, commanded, in_step: false }.verdict(machine, limit_mm);
+        if let (Verdict::Within(_), Some(pecks)) = (verdict, &self.pecks) {
+            let counted = Pair { wanted, commanded: pecks, in_step: true }.verdict(machine, limit_mm);
+            if matches!(counted, Verdict::Beyond { .. }) {
+                return counted;
+            }
+        }
+        verdict
+    }
+
     fn with(self, correction: Correction) -> Corrected {
         let pieces = if self.untouched { SmallVec::new() } else { SmallVec::from_slice(&[self.piece]) };
         Corrected { pieces, correction }
     }
+}
+
+/// A place on a hole's line, axis command.
+fn on_hole(hole: &Hole, mm: f64) -> Vector {
+    let mut place = Vector::from(hole.at_r.linear_mm);
+    place[hole.plane.axes()[2]] = mm;
+    place
+}
+
+/// The level at which a hole written as moves is come to, axis command, mm.
+///
+/// A start below R rises first, as the cycle does. Under G98 one below the initial level (after a hole
+/// under G99) rises to that: LinuxCNC goes across at it, and where a control would not, higher is clear too.
+fn above(hole: &Hole) -> f64 {
+    let normal = hole.plane.axes()[2];
+    let (start, least) = (hole.start.linear_mm[normal], after(hole));
+    if hole.bottom_mm < hole.at_r.linear_mm[normal] { start.max(least) } else { start.min(least) }
+}
+
+/// The level to which it is left, axis command, mm.
+fn after(hole: &Hole) -> f64 {
+    if hole.cycle.return_to_initial { hole.initial_mm } else { hole.at_r.linear_mm[hole.plane.axes()[2]] }
 }
 
 impl<'m> Corrector<'m> {
@@ -49,8 +87,10 @@ impl<'m> Corrector<'m> {
     pub(crate) fn hole(&mut self, hole: &Hole, block: &Block) -> Result<Corrected, CorrectionError> {
         let normal = hole.plane.axes()[2];
         let at_r = Vector::from(hole.at_r.linear_mm);
-        let mut at_bottom = at_r;
-        at_bottom[normal] = hole.bottom_mm;
+        let place = |mm: f64| on_hole(hole, mm);
+        let at_bottom = place(hole.bottom_mm);
+        // Where its moves lead, should it be written as moves.
+        let levels = [above(hole), at_r[normal], hole.bottom_mm, after(hole)];
         let start = Vector::from(hole.start.linear_mm);
         let came = self.direction;
         self.turn_towards(&start, &at_r);
@@ -61,8 +101,9 @@ impl<'m> Corrector<'m> {
             let mut machine = self.machine(block, hole.at_r.rotary_deg);
             // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
             machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
+            self.foresee_places(&machine, levels.map(place));
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
-            let kept = self.keep_cycle(hole, block, &machine, (top, bottom));
+            let kept = self.keep_cycle(hole, block, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
             let mut reached = self.standing;
             reached[normal] = flat.then_some(kept.r_mm);
@@ -78,9 +119,11 @@ impl<'m> Corrector<'m> {
         let down = machine.state.direction[normal];
         let mut correction = Correction {
             largest_mm: (top - at_r).norm().max((bottom - at_bottom).norm()),
-            before_mm: machine.error(at_r).norm().max(machine.error(at_bottom).norm()),
             ..Correction::default()
         };
+        if self.error_before_mm(correction.largest_mm) > self.told_mm[0] {
+            correction.before_mm = machine.error(at_r).norm().max(machine.error(at_bottom).norm());
+        }
         // Afterwards the axis has come back out of the hole.
         let out = match self.standing[normal] {
             Some(end) if flat => heading(kept.r_mm, end, down),
@@ -91,7 +134,7 @@ impl<'m> Corrector<'m> {
         if self.expanding && expandable {
             (self.standing, self.remembered) = before;
         } else {
-            match kept.verdict {
+            match kept.verdict(&machine, self.limit_mm(block)) {
                 Verdict::Within(bound) => {
                     correction.after_mm = bound;
                     return Ok(kept.with(correction));
@@ -122,13 +165,7 @@ impl<'m> Corrector<'m> {
     }
 
     /// The cycle block with its words moved.
-    fn keep_cycle(
-        &mut self,
-        hole: &Hole,
-        block: &Block,
-        machine: &Machine<'_>,
-        (top, bottom): (Vector, Vector),
-    ) -> Kept {
+    fn keep_cycle(&mut self, hole: &Hole, block: &Block, (top, bottom): (Vector, Vector)) -> Kept {
         let [first, second, normal] = hole.plane.axes();
         let at_r = Vector::from(hole.at_r.linear_mm);
         let standing = self.standing_or(&Vector::from(hole.start.linear_mm));
@@ -228,22 +265,14 @@ impl<'m> Corrector<'m> {
         let to = block.machine(place);
         let mut end_bottom = at_r;
         end_bottom[normal] = hole.bottom_mm;
-        let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
-        let limit = self.limit_mm(block);
-        let mut verdict =
-            Pair { wanted: &wanted, commanded: &commanded, in_step: false }.verdict(machine, limit);
-        if let (Verdict::Within(_), CycleKind::PeckFull | CycleKind::PeckChip, Some(_)) =
-            (verdict, hole.cycle.kind, hole.cycle.peck_mm)
-        {
+        let pecks = matches!(hole.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip)
+            && hole.cycle.peck_mm.is_some();
+        let pecks = pecks.then(|| {
             // The control counts its pecks from R by Q, whatever the depth: where they end counts too.
             let mut unscaled = from;
             unscaled[normal] += hole.bottom_mm - at_r[normal];
-            let pecks = Curve::Line(from, unscaled);
-            let counted = Pair { wanted: &wanted, commanded: &pecks, in_step: true }.verdict(machine, limit);
-            if matches!(counted, Verdict::Beyond { .. }) {
-                verdict = counted;
-            }
-        }
+            Curve::Line(from, unscaled)
+        });
         let mut end = from;
         if hole.cycle.return_to_initial {
             // Never below R.
@@ -253,7 +282,8 @@ impl<'m> Corrector<'m> {
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         let piece = Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 };
-        Kept { piece, untouched, verdict, r_mm: from[normal] }
+        let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
+        Kept { piece, untouched, wanted, commanded, pecks, r_mm: from[normal] }
     }
 
     /// The cycle as the moves it is made of.
@@ -265,14 +295,8 @@ impl<'m> Corrector<'m> {
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let normal = hole.plane.axes()[2];
-        let at_r = Vector::from(hole.at_r.linear_mm);
-        let place = |mm: f64| {
-            let mut p = at_r;
-            p[normal] = mm;
-            p
-        };
-        let initial_mm = hole.initial_mm;
-        let (r_mm, bottom_mm) = (at_r[normal], hole.bottom_mm);
+        let place = |mm: f64| on_hole(hole, mm);
+        let (r_mm, bottom_mm) = (hole.at_r.linear_mm[normal], hole.bottom_mm);
         let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
         let rapid =
             |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
@@ -320,11 +344,8 @@ impl<'m> Corrector<'m> {
             };
             corrector.follow_line(&mut follow, &part)
         };
-        // A start below R rises first, as the cycle does. Under G98 one below the initial level (after a hole
-        // under G99) rises to that: LinuxCNC goes across at it, and where a control would not, higher is clear too.
         let start = Vector::from(hole.start.linear_mm);
-        let least = if hole.cycle.return_to_initial { initial_mm } else { r_mm };
-        let above = if down < 0.0 { start[normal].max(least) } else { start[normal].min(least) };
+        let above = above(hole);
         if above != start[normal] {
             let mut rise = start;
             rise[normal] = above;
@@ -361,11 +382,10 @@ impl<'m> Corrector<'m> {
         if hole.cycle.dwell {
             corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
         }
-        let after_mm = if hole.cycle.return_to_initial { initial_mm } else { r_mm };
         if hole.cycle.kind == CycleKind::Bore {
             feed(self, bottom_mm, r_mm, corrected)?;
         }
-        rapid(self, place(after_mm), corrected)?;
+        rapid(self, place(after(hole)), corrected)?;
         Ok(())
     }
 }

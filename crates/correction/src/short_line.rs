@@ -209,7 +209,7 @@ impl Corrector<'_> {
             return None;
         }
         if before_mm > self.told_mm[0] {
-            correction.before_mm = self.before_mm(&Curve::Line(start, end), block, lines.rotary_deg);
+            correction.before_mm = self.before_mm(&Curve::Line(start, end), block, lines.rotary_deg, largest);
         }
         self.last = Some((target, wanted));
         Some(ShortLine { axes, correction })
