@@ -332,6 +332,7 @@ mod tests {
             };
             let part = Curve::Arc {
                 axes: Plane::Xy.axes(), centre: [20.0, -30.0], angle, sweep, radius: [radius; 2], normal: [0.0; 2],
+                ends: [place(0), place(4)],
             };
             let corrected = [place(1), place(2), place(3)];
             let block = Block {

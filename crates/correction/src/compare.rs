@@ -222,7 +222,7 @@ fn project(curve: &Curve, place: &Vector, near: f64) -> f64 {
             let square = step.norm_squared();
             if square > 0.0 { (place - a).dot(&step) / square } else { 1.0 }
         }
-        Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
+        Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal, .. } => {
             let here = units::math::atan2(place[*v] - centre[1], place[*u] - centre[0]);
             let expected = angle + sweep * near;
             let turns = ((expected - here) / std::f64::consts::TAU).round();

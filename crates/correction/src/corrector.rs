@@ -232,15 +232,19 @@ impl<'m> Corrector<'m> {
     /// The command that brings the tool to a nominal command's place.
     pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
         let target = Command { linear_mm: nominal, ..machine.state };
+        let alike = |state: &Command| {
+            (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
+                && (state.direction == target.direction || !self.model.depends_on_direction())
+        };
         if let Some((same, answer)) = &self.last
-            && *same == target
+            && same.linear_mm == nominal
+            && alike(same)
         {
             return Ok(*answer);
         }
         if let Some((state, places, answers)) = &self.known
             && let Some(place) = places.iter().position(|place| *place == nominal)
-            && (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
-            && (state.direction == target.direction || !self.model.depends_on_direction())
+            && alike(state)
         {
             return Ok(answers[place]);
         }

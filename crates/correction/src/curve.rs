@@ -25,6 +25,8 @@ pub enum Curve {
         radius: [f64; 2],
         /// Normal axis at s = 0 and s = 1, mm.
         normal: [f64; 2],
+        /// The places at s = 0 and s = 1: what the angles lead to, but for rounding.
+        ends: [Vector; 2],
     },
 }
 
@@ -58,6 +60,7 @@ impl Curve {
                     sweep: arc.sweep_rad,
                     radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
                     normal: [start[n], end[n]],
+                    ends: [start, end],
                 }
             }
         }
@@ -87,6 +90,7 @@ impl Curve {
             sweep,
             radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
             normal: [start[n], end[n]],
+            ends: [start, end],
         }
     }
 
@@ -97,6 +101,8 @@ impl Curve {
             // The end itself, not what is left of it after a subtraction and an addition.
             Self::Line(_, b) if s >= 1.0 => *b,
             Self::Line(a, b) => a + (b - a) * s,
+            Self::Arc { ends, .. } if s <= 0.0 => ends[0],
+            Self::Arc { ends, .. } if s >= 1.0 => ends[1],
             Self::Arc { angle, sweep, .. } => self.at_turned(s, sin_cos(angle + sweep * s)),
         }
     }
@@ -112,18 +118,19 @@ impl Curve {
     /// [`Curve::at`] and [`Curve::tangent`] of one place.
     pub(crate) fn at_and_tangent(&self, s: f64) -> (Vector, Vector) {
         match self {
-            Self::Line(..) => (self.at(s), self.tangent(s)),
-            Self::Arc { angle, sweep, .. } => {
+            Self::Arc { angle, sweep, .. } if 0.0 < s && s < 1.0 => {
                 let turned = sin_cos(angle + sweep * s);
                 (self.at_turned(s, turned), self.tangent_turned(s, turned))
             }
+            _ => (self.at(s), self.tangent(s)),
         }
     }
 
     /// [`Curve::at`] at s = 0, ¼, ½, ¾, 1.
     pub(crate) fn at_quarters(&self) -> [Vector; 5] {
-        let turned = self.turned_at_quarters();
-        std::array::from_fn(|k| self.at_turned(0.25 * k as f64, turned[k]))
+        let [_, a, b, c, _] = self.turned_at_quarters();
+        let inside = |s: f64, turned| self.at_turned(s, turned);
+        [self.at(0.0), inside(0.25, a), inside(0.5, b), inside(0.75, c), self.at(1.0)]
     }
 
     /// [`Curve::tangent`] there.
@@ -175,13 +182,14 @@ impl Curve {
         let between = |pair: &[f64; 2]| [s0, s1].map(|s| pair[0] + (pair[1] - pair[0]) * s);
         match self {
             Self::Line(..) => Self::Line(self.at(s0), self.at(s1)),
-            Self::Arc { axes, centre, angle, sweep, radius, normal } => Self::Arc {
+            Self::Arc { axes, centre, angle, sweep, radius, normal, .. } => Self::Arc {
                 axes: *axes,
                 centre: *centre,
                 angle: angle + sweep * s0,
                 sweep: sweep * (s1 - s0),
                 radius: between(radius),
                 normal: between(normal),
+                ends: [self.at(s0), self.at(s1)],
             },
         }
     }
@@ -230,7 +238,7 @@ impl Curve {
                     acceleration: [0.0; 3],
                 }
             }
-            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal } => {
+            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal, .. } => {
                 let r = radius[0].max(radius[1]);
                 let dr = (radius[1] - radius[0]).abs() * h;
                 let turn = sweep.abs() * h;
@@ -364,6 +372,10 @@ mod tests {
     use toolpath::{Arc, Plane};
 
     fn arc(angle: f64, sweep: f64, r0: f64, r1: f64, rise: f64) -> Curve {
+        let place = |angle: f64, r: f64, z: f64| {
+            let (sin, cos) = sin_cos(angle);
+            Vector::new(10.0 + r * cos, -5.0 + r * sin, z)
+        };
         Curve::Arc {
             axes: Plane::Xy.axes(),
             centre: [10.0, -5.0],
@@ -371,6 +383,7 @@ mod tests {
             sweep,
             radius: [r0, r1],
             normal: [1.0, 1.0 + rise],
+            ends: [place(angle, r0, 1.0), place(angle + sweep, r1, 1.0 + rise)],
         }
     }
 

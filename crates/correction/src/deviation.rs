@@ -269,6 +269,20 @@ impl Pair<'_> {
         if whole <= limit_mm {
             return Verdict::Within(whole);
         }
+        // A line that is too long for one bound mostly is not for two.
+        if turning == 0.0 {
+            let middle = self.place(machine, 0.5);
+            if let Some(refuted) = beyond(&middle) {
+                return refuted;
+            }
+            let first_half = bound(&first, &middle);
+            if first_half <= limit_mm {
+                let halves = first_half.max(bound(&middle, &last));
+                if halves <= limit_mm {
+                    return Verdict::Within(halves);
+                }
+            }
+        }
         // What does not hold mostly shows at a few places: cheaper than proving all that comes before them.
         let mut looked_at: SmallVec<[Place; 5]> = SmallVec::new();
         for s in [0.5, 0.25, 0.75, 0.125, 0.875] {
@@ -373,8 +387,15 @@ mod tests {
             let machine = Machine { model: &model, state, everywhere: model.everywhere(&state), told_mm: 0.0 };
             let axes = [Plane::Xy, Plane::Zx, Plane::Yz][plane].axes();
             let [u, v, n] = axes;
+            let on_circle = |angle: f64, along: f64| {
+                let (sin, cos) = units::math::sin_cos(angle);
+                let mut place = Vector::zeros();
+                (place[u], place[v], place[n]) = (middle[u] + radius * cos, middle[v] + radius * sin, middle[n] + along);
+                place
+            };
             let wanted = Curve::Arc {
                 axes, centre: [middle[u], middle[v]], angle, sweep, radius: [radius; 2], normal: [middle[n], middle[n] + rise],
+                ends: [on_circle(angle, 0.0), on_circle(angle + sweep, rise)],
             };
             let at = |s: f64| wanted.at(s);
             let solve = |places: [f64; LANES]| machine.solved_together(places.map(at)).unwrap();

@@ -158,6 +158,7 @@ impl Control {
                     sweep,
                     radius: [radius(&start), radius(&end)],
                     normal: [start[n], end[n]],
+                    ends: [start, end],
                 })
             }
             _ => None,
