@@ -101,8 +101,8 @@ impl Curve {
             // The end itself, not what is left of it after a subtraction and an addition.
             Self::Line(_, b) if s >= 1.0 => *b,
             Self::Line(a, b) => a + (b - a) * s,
-            Self::Arc { ends, .. } if s <= 0.0 => ends[0],
-            Self::Arc { ends, .. } if s >= 1.0 => ends[1],
+            Self::Arc { ends, .. } if s == 0.0 => ends[0],
+            Self::Arc { ends, .. } if s == 1.0 => ends[1],
             Self::Arc { angle, sweep, .. } => self.at_turned(s, sin_cos(angle + sweep * s)),
         }
     }
@@ -118,7 +118,7 @@ impl Curve {
     /// [`Curve::at`] and [`Curve::tangent`] of one place.
     pub(crate) fn at_and_tangent(&self, s: f64) -> (Vector, Vector) {
         match self {
-            Self::Arc { angle, sweep, .. } if 0.0 < s && s < 1.0 => {
+            Self::Arc { angle, sweep, .. } if s != 0.0 && s != 1.0 => {
                 let turned = sin_cos(angle + sweep * s);
                 (self.at_turned(s, turned), self.tangent_turned(s, turned))
             }
