@@ -60,8 +60,9 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         table(&head, &rows)
     );
     for size in &sizes {
-        text += &size.parts();
+        text += &size.besides();
     }
+    text += &sizes.first().map(Size::parts).unwrap_or_default();
     if let [first, .., last] = sizes.as_slice() {
         text += &Line::through(first, last).text(&sizes);
     }
@@ -258,21 +259,30 @@ impl Size {
         ]
     }
 
-    /// Where the time beyond the blocks goes.
-    fn parts(&self) -> String {
-        let blocks_us = self.each_us(self.one[0]);
-        let [batch_us, opening_us, files_us] =
-            [self.batch[0], self.joined, self.files].map(|run| self.each_us(run));
-        let (extra_us, opening_us) = (batch_us - blocks_us, opening_us - blocks_us);
+    /// What a program costs besides its blocks.
+    fn besides(&self) -> String {
+        let [one_us, batch_us, files_us] =
+            [self.one[0], self.batch[0], self.files].map(|run| self.each_us(run));
         let (count, bytes, run) = self.alone;
         let alone_ms =
             (run.cpu_s - self.one[0].cpu_s / self.bytes as f64 * bytes as f64) / count as f64 * 1e3;
         format!(
-            "{:.0} kB: {extra_us:.0} µs of a program beyond its cutting blocks ({blocks_us:.0} µs): opening blocks and approach {opening_us:.0}, files {files_us:.0}, \
-             all else (find, hash, journal, results) {:.0}; in a process of its own {alone_ms:.1} ms. The batch runs at {:.0} % of what blocks and files take alone.\n",
+            "{:.0} kB: {:.0} µs of a program beyond its {one_us:.0} of one large program; its files alone take {files_us:.0}. In a process of its own {alone_ms:.1} ms.\n",
             self.kilobytes(),
-            extra_us - opening_us - files_us,
-            (self.joined.cpu_s + self.files.cpu_s) / self.batch[0].cpu_s * 100.0,
+            batch_us - one_us,
+        )
+    }
+
+    /// The parts of that; to be had of small programs only, since each is a difference of two runs.
+    fn parts(&self) -> String {
+        let [one_us, joined_us, files_us, batch_us] =
+            [self.one[0], self.joined, self.files, self.batch[0]].map(|run| self.each_us(run));
+        format!(
+            "{:.0} kB: opening blocks and approach {:.0} µs, files {files_us:.0}, all else (find, hash, journal, results) {:.0}. The batch runs at {:.0} % of what blocks and files take alone.\n",
+            self.kilobytes(),
+            joined_us - one_us,
+            batch_us - joined_us - files_us,
+            (joined_us + files_us) / batch_us * 100.0,
         )
     }
 }

@@ -7,8 +7,9 @@
 //! OUTDIR/…                the outputs
 //! ```
 //!
-//! Who dies leaves temporaries only in `tmp`, and on Linux mostly none: there a file needs no name before it is whole. Whoever opens the folder next and is alone with it empties that: locks
-//! end with their process, so being alone is known, not guessed from ages or process numbers.
+//! Who dies leaves temporaries only in `tmp`, and on Linux mostly none: there a file needs no name before it is whole.
+//! Whoever opens the folder next and is alone with it empties that: locks end with their process, so being alone is
+//! known, not guessed from ages or process numbers.
 
 use std::fs::{File, TryLockError};
 use std::io::{self, Read, Write};
