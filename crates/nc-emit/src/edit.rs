@@ -1,4 +1,5 @@
 use nc_syntax::dialect::GCode;
+use smallvec::SmallVec;
 
 /// What becomes of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,9 @@ pub enum WordEdit {
     Remove,
 }
 
+/// Edits by upper-case letter; an arc has five.
+pub type WordEdits = SmallVec<[(u8, WordEdit); 6]>;
+
 /// One block of output that stands for a block of input, or for a part of it.
 ///
 /// Letters that `words` does not name: the first piece keeps them; later pieces have none, except that
@@ -24,6 +28,6 @@ pub enum WordEdit {
 pub struct Piece {
     /// Motion code that must be in force for this block; `None` where the block moves nothing.
     pub motion: Option<GCode>,
-    /// Edits by upper-case letter.
-    pub words: Vec<(u8, WordEdit)>,
+    /// What becomes of its words.
+    pub words: WordEdits,
 }

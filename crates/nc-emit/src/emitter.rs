@@ -2,12 +2,12 @@
 
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{GCode, Semicolon};
-use nc_syntax::{Block, Dialect, ItemKind, PlainLine, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Span, Value};
 
 use crate::edit::{Piece, WordEdit};
 use crate::habits::{Habits, Increments, Modes, is_motion, line_end};
 use crate::numbers::BlockNumbers;
-use crate::splice::{Splices, Style, number_span};
+use crate::splice::{Splices, Style, bit, letters, number_span};
 
 /// A block longer than the control takes.
 const BLOCK_TOO_LONG: Code = Code(601);
@@ -130,11 +130,12 @@ impl<'d> Emitter<'d> {
                 )
                 .help("no machine goes there: check the unit and the decimal points of this block"));
         }
-        self.habits.learn(block);
+        let separator = self.habits.learn(block);
         let in_force = self.modes.motion_for(self.dialect, block);
         self.modes.read(self.dialect, block);
         let style = Style {
-            habits: &self.habits.of_block(block),
+            habits: &self.habits,
+            separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
         };
         let (content, end) = self.split_end(block);
@@ -142,9 +143,13 @@ impl<'d> Emitter<'d> {
         let end_between = if end.is_empty() { style.habits.line_end } else { end };
 
         let mut from = out.len();
-        if !(later.is_empty() && self.write_numbers(block, first, in_force, &style, content, out)) {
+        let stays = |item: &Item| later.is_empty() || !is_after_motion(self.dialect, item.kind);
+        if !(block.items.iter().all(stays)
+            && self.write_numbers(block, first, in_force, &style, content, out))
+        {
             out.truncate(from);
-            let splices = Splices::of_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
+            let mut splices = Splices::default();
+            splices.make_first_piece(self.dialect, block, first, in_force, !later.is_empty())?;
             splices.write(block, content, &style, out);
         }
         if let Some(code) = first.motion {
@@ -198,6 +203,7 @@ impl<'d> Emitter<'d> {
         self.habits.learn_line(line);
         let style = Style {
             habits: &self.habits,
+            separator: self.habits.separator,
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
         };
         let from = out.len();
@@ -241,8 +247,13 @@ impl<'d> Emitter<'d> {
         content: &[u8],
         out: &mut Vec<u8>,
     ) -> bool {
+        // Words to be put in or taken out make another case.
+        let own = letters(block.words().map(|word| word.letter).filter(|letter| *letter != b'G'));
+        let fits = |(letter, edit): &(u8, WordEdit)| (own & bit(*letter) != 0) != (*edit == WordEdit::Remove);
+        if !piece.words.iter().all(fits) {
+            return false;
+        }
         let mut motion_is_right = piece.motion.is_none() || piece.motion == in_force;
-        let mut left = piece.words.iter().filter(|(_, edit)| *edit != WordEdit::Remove).count();
         let mut seen = 0_u32;
         let mut done = 0;
         for item in &block.items {
@@ -259,27 +270,25 @@ impl<'d> Emitter<'d> {
                 continue;
             }
             let Some((_, edit)) = piece.words.iter().find(|(edited, _)| *edited == letter) else { continue };
-            let bit = 1 << (letter & 31);
-            if seen & bit != 0 {
+            if seen & bit(letter) != 0 {
                 return false;
             }
-            seen |= bit;
+            seen |= bit(letter);
             match *edit {
-                WordEdit::Keep => {}
-                WordEdit::Remove => return false,
+                WordEdit::Keep | WordEdit::Remove => {}
                 WordEdit::Write { counts, decimals } => {
                     let Value::Number(replaced) = value else { return false };
                     if !style.same_value(letter, replaced, counts, decimals) {
                         let number = number_span(block, item.span);
-                        out.extend_from_slice(&content[done..number.start as usize]);
+                        // A byte or two: cheaper one by one than by a call.
+                        content[done..number.start as usize].iter().for_each(|byte| out.push(*byte));
                         style.write_number(letter, Some(replaced), counts, decimals, out);
                         done = number.end as usize;
                     }
                 }
             }
-            left = left.saturating_sub(1);
         }
-        if !motion_is_right || left > 0 {
+        if !motion_is_right {
             return false;
         }
         out.extend_from_slice(&content[done..]);
@@ -333,7 +342,7 @@ impl<'d> Emitter<'d> {
         last: bool,
         out: &mut Vec<u8>,
     ) -> Result<(), Diagnostic> {
-        let mut line = Line { out, separator: style.habits.separator, started: false };
+        let mut line = Line { out, separator: style.separator, started: false };
         for item in &block.items {
             match item.kind {
                 ItemKind::Skip => line.add(block.text(item.span)),
@@ -396,7 +405,7 @@ struct Line<'o> {
 impl Line<'_> {
     fn blank(&mut self) {
         if self.started {
-            self.out.extend_from_slice(self.separator);
+            self.separator.iter().for_each(|byte| self.out.push(*byte));
         }
         self.started = true;
     }

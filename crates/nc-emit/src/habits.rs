@@ -57,9 +57,11 @@ impl Habits {
         }
     }
 
-    /// Learns from the words of one block.
-    pub(crate) fn learn(&mut self, block: &Block<'_>) {
+    /// Learns from the words of one block; returns what stands between two of its own, the last ones that follow each
+    /// other.
+    pub(crate) fn learn(&mut self, block: &Block<'_>) -> Option<&'static [u8]> {
         let mut before: Option<(Span, bool)> = None;
+        let mut own = None;
         for item in &block.items {
             let ItemKind::Word { letter, value } = item.kind else {
                 before = None;
@@ -80,6 +82,7 @@ impl Habits {
             if let Some((span, is_number)) = before {
                 let gap = &block.bytes[span.end as usize..item.span.start as usize];
                 let known = separator(gap);
+                own = Some(known);
                 if !is_number || known.is_empty() {
                     self.separator = known;
                 }
@@ -90,6 +93,7 @@ impl Habits {
         if !end.is_empty() {
             self.line_end = end;
         }
+        own
     }
 
     /// [`Habits::learn`] from a plain line.
@@ -122,26 +126,9 @@ impl Habits {
     /// decimals there and the spelling as it was.
     #[inline]
     fn knows(&self, word: &PlainWord) -> bool {
-        let number = word.number();
-        let usual = number.has_point
-            && number.leading_digit
-            && number.sign != Sign::Plus
-            && number.decimal.decimals == self.most_decimals;
-        usual && self.settled && (self.spelling.trailing_zeros || number.decimal.mantissa % 10 != 0)
-    }
-
-    /// These habits, with the block's own separator and case where it has any.
-    pub(crate) fn of_block(&self, block: &Block<'_>) -> Self {
-        let mut own = *self;
-        let mut before: Option<Span> = None;
-        for item in &block.items {
-            let word = matches!(item.kind, ItemKind::Word { .. }).then_some(item.span);
-            if let (Some(before), Some(word)) = (before, word) {
-                own.separator = separator(&block.bytes[before.end as usize..word.start as usize]);
-            }
-            before = word;
-        }
-        own
+        self.settled
+            && word.form() == PlainWord::usual_form(self.most_decimals)
+            && (self.spelling.trailing_zeros || word.number().decimal.mantissa % 10 != 0)
     }
 
     fn learn_g(&mut self, number: Number, text: &[u8]) {

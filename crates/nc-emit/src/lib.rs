@@ -12,7 +12,7 @@ mod numbers;
 mod provenance;
 mod splice;
 
-pub use edit::{Piece, WordEdit};
+pub use edit::{Piece, WordEdit, WordEdits};
 pub use emitter::Emitter;
 pub use numbers::BlockNumbers;
 pub use provenance::{

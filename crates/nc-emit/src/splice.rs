@@ -16,14 +16,35 @@ const ORDER: &[u8] = b"GXYZABCUVWIJKRPQLFSTM";
 const LAST_COORDINATE: u8 = b'R';
 
 /// Place of a letter in the order of words; unknown letters come last.
-pub(crate) fn rank(letter: u8) -> usize {
-    ORDER.iter().position(|known| *known == letter).unwrap_or(ORDER.len())
+pub(crate) const fn rank(letter: u8) -> u8 {
+    const RANKS: [u8; 256] = {
+        let mut ranks = [ORDER.len() as u8; 256];
+        let mut at = 0;
+        while at < ORDER.len() {
+            ranks[ORDER[at] as usize] = at as u8;
+            at += 1;
+        }
+        ranks
+    };
+    RANKS[letter as usize]
+}
+
+/// A letter as a bit, upper or lower case.
+pub(crate) const fn bit(letter: u8) -> u32 {
+    1 << (letter & 31)
+}
+
+/// Letters as bits.
+pub(crate) fn letters(letters: impl Iterator<Item = u8>) -> u32 {
+    letters.fold(0, |letters, letter| letters | bit(letter))
 }
 
 /// How words are written into this block.
 #[derive(Clone, Copy)]
 pub(crate) struct Style<'h> {
     pub(crate) habits: &'h Habits,
+    /// What stands between two words: the block's own, where it has any.
+    pub(crate) separator: &'static [u8],
     pub(crate) increments: Increments,
 }
 
@@ -62,9 +83,9 @@ impl Style<'_> {
         if written.decimals == decimals {
             return written.counts == counts;
         }
-        let shift = |value: i64, by: u8| {
-            10_i128.checked_pow(u32::from(by)).and_then(|by| i128::from(value).checked_mul(by))
-        };
+        // What overflows is no number that the other, which is not shifted, could be.
+        let shift =
+            |value: i64, by: u8| 10_i64.checked_pow(u32::from(by)).and_then(|by| value.checked_mul(by));
         let most = written.decimals.max(decimals);
         let (one, other) = (shift(written.counts, most - written.decimals), shift(counts, most - decimals));
         one.is_some() && one == other
@@ -142,61 +163,63 @@ enum Place {
 struct Splice {
     span: Span,
     /// Order among insertions at one place.
-    rank: usize,
+    rank: u8,
     text: Text,
 }
 
 /// All changes to one block, in the order of its bytes.
+#[derive(Default)]
 pub(crate) struct Splices {
     list: SmallVec<[Splice; 12]>,
 }
 
 impl Splices {
-    /// What turns `block` into its first piece; `several` where more pieces follow it.
-    pub(crate) fn of_first_piece(
+    /// Adds what turns `block` into its first piece; `several` where more pieces follow it.
+    pub(crate) fn make_first_piece(
+        &mut self,
         dialect: &Dialect,
         block: &Block<'_>,
         piece: &Piece,
         in_force: Option<GCode>,
         several: bool,
-    ) -> Result<Self, Diagnostic> {
-        let mut this = Self { list: SmallVec::new() };
+    ) -> Result<(), Diagnostic> {
+        let removed =
+            letters(piece.words.iter().filter(|word| word.1 == WordEdit::Remove).map(|word| word.0));
         let survives = |kind: ItemKind| {
             let ItemKind::Word { letter, .. } = kind else { return false };
-            let removed = piece.words.contains(&(letter, WordEdit::Remove));
-            !(removed || several && is_after_motion(dialect, kind))
+            !(removed & bit(letter) != 0 || several && is_after_motion(dialect, kind))
         };
-        this.motion(dialect, block, piece, in_force, &survives);
+        self.motion(dialect, block, piece, in_force, &survives);
         for &(letter, edit) in &piece.words {
             let word = find_word(block, letter)?;
             match (edit, word) {
                 (WordEdit::Keep, None) => return Err(missing(block, letter)),
                 (WordEdit::Keep, Some(_)) | (WordEdit::Remove, None) => {}
-                (WordEdit::Remove, Some((span, _))) => this.remove(block, span),
+                (WordEdit::Remove, Some((span, _))) => self.remove(block, span),
                 (WordEdit::Write { counts, decimals }, Some((span, value))) => {
                     let Value::Number(replaced) = value else {
                         return Err(not_a_number(block, letter, span));
                     };
                     let text = Text::Number { letter, replaced, counts, decimals };
-                    this.add(number_span(block, span), 0, text);
+                    self.add(number_span(block, span), 0, text);
                 }
                 (WordEdit::Write { counts, decimals }, None) => {
                     let (at, place) = place_of(block, letter, &survives);
                     let text = Text::Word { letter, counts, decimals, place };
-                    this.add(Span { start: at, end: at }, 1 + rank(letter), text);
+                    self.add(Span { start: at, end: at }, 1 + rank(letter), text);
                 }
             }
         }
         if several {
             for item in &block.items {
                 if is_after_motion(dialect, item.kind) {
-                    this.remove(block, item.span);
+                    self.remove(block, item.span);
                 }
             }
         }
         // Insertions go before a removal that starts at the same byte.
-        this.list.sort_by_key(|splice| (splice.span.start, splice.span.end > splice.span.start, splice.rank));
-        Ok(this)
+        self.list.sort_by_key(|splice| (splice.span.start, splice.span.end > splice.span.start, splice.rank));
+        Ok(())
     }
 
     /// The block's own motion code if it has one, else an inserted one where the output needs it.
@@ -233,7 +256,7 @@ impl Splices {
         }
     }
 
-    fn add(&mut self, span: Span, rank: usize, text: Text) {
+    fn add(&mut self, span: Span, rank: u8, text: Text) {
         self.list.push(Splice { span, rank, text });
     }
 
@@ -259,7 +282,7 @@ impl Splices {
                 out.extend_from_slice(&content[done..start]);
             }
             done = done.max(splice.span.end as usize).max(start);
-            let separator = style.habits.separator;
+            let separator = style.separator;
             match splice.text {
                 Text::Nothing => {}
                 Text::Number { letter, replaced, counts, decimals } => {

@@ -107,7 +107,7 @@ proptest! {
         habit.iter().for_each(|block| emitter.pass(block, &mut out));
         let in_force = emitter.motion();
         out.clear();
-        let piece = Piece { motion: Some(GCode(motion)), words: asked.clone() };
+        let piece = Piece { motion: Some(GCode(motion)), words: asked.clone().into() };
         emitter.rewrite(original, &[piece], &mut out).unwrap();
 
         let text = String::from_utf8(out).unwrap();
@@ -160,7 +160,7 @@ proptest! {
         let original = read(&dialect, &text);
         prop_assume!(!original.is_empty());
         let original = &original[0];
-        let pieces: Vec<Piece> = asked.iter().map(|(words, motion)| Piece { motion: Some(GCode(*motion)), words: words.clone() }).collect();
+        let pieces: Vec<Piece> = asked.iter().map(|(words, motion)| Piece { motion: Some(GCode(*motion)), words: words.clone().into() }).collect();
         let mut out = Vec::new();
         Emitter::new(&dialect).rewrite(original, &pieces, &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();

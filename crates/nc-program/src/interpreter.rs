@@ -127,52 +127,50 @@ impl<'d> Interpreter<'d> {
     /// was before the block.
     pub fn step(&mut self, block: &Block<'_>) -> Result<Step, Vec<Diagnostic>> {
         self.plain = Plain::Unasked;
-        match self.execute(block) {
-            Ok((step, modal)) => {
-                self.modal = modal;
-                Ok(step)
-            }
-            Err(diagnostic) => Err(vec![*diagnostic]),
-        }
+        let before = self.modal.clone();
+        self.execute(block, &before).map_err(|diagnostic| {
+            self.modal = before;
+            vec![*diagnostic]
+        })
     }
 
-    /// What a block means, and the state behind it.
-    fn execute(&self, block: &Block<'_>) -> Outcome<(Step, Modal)> {
-        let env = &self.env;
+    /// What a block means; the state (which comes in equal to `before`) is then the one behind it.
+    fn execute(&mut self, block: &Block<'_>, before: &Modal) -> Outcome<Step> {
+        let (env, state) = (&self.env, &mut self.modal);
         let mut moved = Moved { repeats: 1, ..Moved::default() };
-        if self.modal.progress == Progress::Ended {
+        if before.progress == Progress::Ended {
             after_end(block)?;
-            return Ok((stepped(env, &self.modal, &self.modal, moved), self.modal.clone()));
+            return Ok(stepped(env, before, state, moved));
         }
         let mut words = Words::new(block, env.dialect);
         words.read()?;
         let acts = block.acts();
         let switches = block.switches();
         // The first block that the switch has nothing to do with must be right in both states.
-        let both = match &self.modal.aside {
-            Some(aside) if acts && aside.switches != switches => {
-                Some(delete::merge(&words, aside, &self.modal)?)
-            }
+        let both = match &before.aside {
+            Some(aside) if acts && aside.switches != switches => Some(delete::merge(&words, aside, before)?),
             _ => None,
         };
-        let before = both.as_ref().unwrap_or(&self.modal);
-        let mut state = before.clone();
+        let before = both.as_ref().unwrap_or(before);
+        if both.is_some() {
+            *state = before.clone();
+        }
         if acts && switches != 0 && state.aside.is_none() {
             let aside = Aside { switches, line: block.line, skipped: before.clone(), moved: false };
             state.aside = Some(Box::new(aside));
         }
-        run(env, &words, before, &mut state, &mut moved)?;
-        let mut step = stepped(env, before, &state, moved);
+        run(env, &words, before, state, &mut moved)?;
+        let mut step = stepped(env, before, state, moved);
         if let Some(mut aside) = state.aside.take() {
             aside.moved |= !step.motions.is_empty();
             if state.progress == Progress::Ended {
-                state = delete::merge(&words, &aside, &state)?;
+                *state = delete::merge(&words, &aside, state)?;
                 step.ends_program = false;
             } else {
                 state.aside = Some(aside);
             }
         }
-        Ok((step, state))
+        Ok(step)
     }
 }
 
@@ -284,9 +282,11 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,
-        whole: [0, 1, 2].map(|i| {
-            let (was, is) = (before.transform.touches()[i], state.transform.touches()[i]);
-            before.unsettled[i] || before.transform != state.transform && (was || is)
-        }),
+        whole: if before.transform == state.transform {
+            before.unsettled
+        } else {
+            let (was, is) = (before.transform.touches(), state.transform.touches());
+            [0, 1, 2].map(|i| before.unsettled[i] || was[i] || is[i])
+        },
     }
 }

@@ -76,6 +76,21 @@ impl PlainWord {
         }
     }
 
+    /// How its number is spelt, a minus aside: decimals, point, digit before the point, plus. Words of one form differ in
+    /// their digits only.
+    #[must_use]
+    #[inline]
+    pub const fn form(&self) -> u16 {
+        (self.facts >> 8) as u16 & !((MINUS as u16) << 8)
+    }
+
+    /// The [`PlainWord::form`] of `0.5` with so many decimals.
+    #[must_use]
+    #[inline]
+    pub const fn usual_form(decimals: u8) -> u16 {
+        decimals as u16 | ((HAS_POINT | LEADING_DIGIT) as u16) << 8
+    }
+
     /// Where letter and number stand in the line.
     #[must_use]
     #[inline]

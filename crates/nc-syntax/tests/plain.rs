@@ -5,7 +5,7 @@ mod common;
 use proptest::prelude::*;
 
 use common::{conventional, dialect};
-use nc_syntax::{Block, Dialect, ItemKind, PlainLine, Reader, Value};
+use nc_syntax::{Block, Dialect, ItemKind, PlainLine, PlainWord, Reader, Sign, Value};
 
 /// What is read as a plain line is what the reader shows as a block.
 fn agrees(text: &str, dialect: &Dialect) -> usize {
@@ -34,6 +34,11 @@ fn agrees(text: &str, dialect: &Dialect) -> usize {
             let items: Vec<_> = block.items.iter().map(|item| (item.kind, item.span)).collect();
             assert_eq!(words, items, "{text:?}");
             assert!(line.words().iter().all(|word| word.number_span().start == word.span().start + 1));
+            assert!(line.words().iter().all(|word| {
+                let number = word.number();
+                let usual = number.has_point && number.leading_digit && number.sign != Sign::Plus;
+                usual == (word.form() == PlainWord::usual_form(number.decimal.decimals))
+            }));
             assert_eq!([line.content(), line.end()].concat(), line.bytes);
             quick.block_of(&line, &mut again);
             assert_eq!(again, block);

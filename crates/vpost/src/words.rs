@@ -1,7 +1,7 @@
 //! Between the wings: corrected pieces become edits of words.
 
 use correction::{AxisWord, Centre, Letters, PieceKind};
-use nc_emit::{Piece, WordEdit};
+use nc_emit::{Piece, WordEdit, WordEdits};
 use nc_program::Context;
 use nc_syntax::Block;
 use nc_syntax::dialect::{Action, Dialect, GCode};
@@ -85,7 +85,7 @@ impl Editing<'_> {
     /// One piece; `first`: it is the block itself, whose other words are still there; `only`: nothing
     /// else stands for the block.
     pub(crate) fn edit(&self, piece: &correction::Piece, first: bool, only: bool) -> Piece {
-        let mut words: Vec<(u8, WordEdit)> = Vec::with_capacity(6);
+        let mut words = WordEdits::new();
         let mut push = |letter: u8, word: AxisWord, decimals: u8| {
             let edit = match word {
                 AxisWord::Omit if first && self.letters.contains(letter) => WordEdit::Remove,

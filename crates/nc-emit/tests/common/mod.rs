@@ -52,7 +52,7 @@ pub(crate) fn piece(text: &str) -> Piece {
             }
         }
     }
-    Piece { motion, words }
+    Piece { motion, words: words.into() }
 }
 
 /// The text after passing every block but the last and rewriting that one.

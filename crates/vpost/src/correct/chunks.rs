@@ -58,6 +58,15 @@ impl<R: Read> Chunks<R> {
 
     /// The next chunk; `None` at the end.
     pub(crate) fn next(&mut self) -> Result<Option<Chunk>, Unread> {
+        let next = self.next_uncounted()?;
+        if let Some(chunk) = &next {
+            self.line += nc_syntax::line_ends(&chunk.text);
+        }
+        Ok(next)
+    }
+
+    /// The next chunk, for those who ask for no lines: the chunks behind it do not know theirs.
+    fn next_uncounted(&mut self) -> Result<Option<Chunk>, Unread> {
         let wanted = if self.index == 0 { self.chunk_bytes / FIRST } else { self.chunk_bytes };
         let mut text = Vec::with_capacity(wanted + 4096);
         text.append(&mut self.rest);
@@ -74,7 +83,6 @@ impl<R: Read> Chunks<R> {
                     let chunk = Chunk { index: self.index, offset: self.offset, line: self.line, text };
                     self.index += 1;
                     self.offset += chunk.text.len() as u64;
-                    self.line += nc_syntax::line_ends(&chunk.text);
                     return Ok(Some(chunk));
                 }
                 None if text.len() > LONGEST_LINE => return Err(Unread::AsAWhole),
@@ -150,7 +158,7 @@ impl Survey {
         };
         let mut expects_name = false;
         let (mut first_numbered, mut last_numbered) = (None, 0);
-        while let Some(chunk) = chunks.next()? {
+        while let Some(chunk) = chunks.next_uncounted()? {
             let text = &chunk.text;
             finder.see(text);
             survey.corrected_before |= nc_emit::find_provenance(text).is_some();

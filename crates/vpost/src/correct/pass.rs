@@ -149,7 +149,9 @@ impl Pass<'_> {
     /// Corrects a block, whatever it is.
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
-        let step = self.state.interpreter.step(block)?;
+        let executed = self.state.interpreter.step(block);
+        // Looked at where it lies: hundreds of bytes.
+        let Ok(step) = &executed else { return executed.map(|_| ()) };
         self.state.emitter.meet(block);
         let context = &step.context;
         if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
@@ -223,8 +225,8 @@ impl Pass<'_> {
         let nominal = self.state.interpreter.modal().axes.linear;
         let standing = self.state.corrector.standing_mm();
         let inch = context.unit_mm != 1.0;
-        let decimals = self.info(context, Letters::default()).decimals;
-        let mut words = Vec::new();
+        let decimals = decimals(self.job, context);
+        let mut words = nc_emit::WordEdits::new();
         for (i, letter) in b"XYZ".iter().enumerate() {
             let (Some(word), Some(nominal), Some(standing)) =
                 (block.word(*letter), nominal[i].known(), standing[i])
@@ -277,7 +279,7 @@ impl Pass<'_> {
     ) -> Result<(), Vec<Diagnostic>> {
         let relies = motions.iter().any(|motion| !matches!(motion, Motion::Uncorrected { .. }));
         if relies && context.motion_code.is_some() && self.state.emitter.motion() != context.motion_code {
-            let piece = nc_emit::Piece { motion: context.motion_code, words: Vec::new() };
+            let piece = nc_emit::Piece { motion: context.motion_code, words: nc_emit::WordEdits::new() };
             return self
                 .state
                 .emitter
@@ -313,7 +315,7 @@ impl Pass<'_> {
             corrections.push(corrected.correction);
             let editing = self.editing(context, letters, motion);
             if corrected.pieces.is_empty() {
-                pieces.push(nc_emit::Piece { motion: context.motion_code, words: Vec::new() });
+                pieces.push(nc_emit::Piece { motion: context.motion_code, words: nc_emit::WordEdits::new() });
             }
             pieces.extend(
                 corrected
@@ -350,7 +352,7 @@ impl Pass<'_> {
             context,
             letters,
             original: Original::of(motion),
-            decimals: self.info(context, letters).decimals,
+            decimals: decimals(self.job, context),
             inverse_time: match motion {
                 Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
                 _ => None,
@@ -392,14 +394,19 @@ impl Pass<'_> {
     }
 }
 
+/// Decimals of X, Y, Z in the units in force.
+fn decimals(job: &Job<'_>, context: &Context) -> [u8; 3] {
+    let inch = context.unit_mm != 1.0;
+    if inch { [job.dialect.output.decimals_inch; 3] } else { job.decimals_mm }
+}
+
 /// What correction must know of a block.
 pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
     let output = &job.dialect.output;
-    let inch = context.unit_mm != 1.0;
     correction::Block {
         frame: context.frame,
         unit_mm: context.unit_mm,
-        decimals: if inch { [output.decimals_inch; 3] } else { job.decimals_mm },
+        decimals: decimals(job, context),
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,
         letters,
