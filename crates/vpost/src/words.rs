@@ -85,7 +85,7 @@ impl Editing<'_> {
     /// One piece; `first`: it is the block itself, whose other words are still there; `only`: nothing
     /// else stands for the block.
     pub(crate) fn edit(&self, piece: &correction::Piece, first: bool, only: bool) -> Piece {
-        let mut words = WordEdits::new();
+        let mut edited = Piece { motion: None, words: WordEdits::new() };
         let mut push = |letter: u8, word: AxisWord, decimals: u8| {
             let edit = match word {
                 AxisWord::Omit if first && self.letters.contains(letter) => WordEdit::Remove,
@@ -93,7 +93,7 @@ impl Editing<'_> {
                 AxisWord::Keep => WordEdit::Keep,
                 AxisWord::Write(counts) => WordEdit::Write { counts, decimals },
             };
-            words.push((letter, edit));
+            edited.words.push((letter, edit));
         };
         if piece.kind != PieceKind::Dwell {
             for axis in 0..3 {
@@ -101,7 +101,7 @@ impl Editing<'_> {
             }
         }
         let [u, v, n] = self.context.plane.axes();
-        let motion = match piece.kind {
+        edited.motion = match piece.kind {
             PieceKind::Rapid | PieceKind::Line => {
                 // The words of the arc or cycle that this was have no meaning on a straight move.
                 let own: &[u8] = match self.original {
@@ -144,8 +144,8 @@ impl Editing<'_> {
         {
             let steps = f64::from(10u32.pow(u32::from(self.decimals_feed)));
             let counts = units::decimal::counts(rate / piece.share.max(1e-9), steps).unwrap_or(i64::MAX);
-            words.push((b'F', WordEdit::Write { counts, decimals: self.decimals_feed }));
+            edited.words.push((b'F', WordEdit::Write { counts, decimals: self.decimals_feed }));
         }
-        Piece { motion, words }
+        edited
     }
 }

@@ -91,6 +91,9 @@ pub(super) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
     }
 }
 
+/// What stands for a block; a hole written as moves has four.
+type Pieces = SmallVec<[nc_emit::Piece; 4]>;
+
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
     pub(super) job: &'a Job<'a>,
@@ -176,7 +179,7 @@ impl Pass<'_> {
         let info = self.info(context, letters);
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
         let before = (motions.len() > 1).then(|| self.state.corrector.clone());
-        let mut pieces: SmallVec<[nc_emit::Piece; 2]> = SmallVec::new();
+        let mut pieces = Pieces::new();
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
         for motion in motions {
@@ -190,9 +193,9 @@ impl Pass<'_> {
             if motions.len() == 1 && !corrected.pieces.is_empty() {
                 let editing = self.editing(context, letters, motion);
                 let only = corrected.pieces.len() == 1;
-                pieces.extend(
-                    corrected.pieces.iter().enumerate().map(|(k, piece)| editing.edit(piece, k == 0, only)),
-                );
+                for (k, piece) in corrected.pieces.iter().enumerate() {
+                    pieces.push(editing.edit(piece, k == 0, only));
+                }
             }
         }
         if let (false, Some(before)) = (untouched, before) {
@@ -297,7 +300,7 @@ impl Pass<'_> {
         context: &Context,
         letters: Letters,
         motions: &[Motion],
-        pieces: &mut SmallVec<[nc_emit::Piece; 2]>,
+        pieces: &mut Pieces,
         corrections: &mut SmallVec<[Correction; 1]>,
     ) -> Result<(), Vec<Diagnostic>> {
         let repeats = [b'L', b'K'].into_iter().filter(|letter| letters.contains(*letter));
