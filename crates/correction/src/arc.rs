@@ -18,8 +18,8 @@ const SHORTEST_CHORD_STEPS: f64 = 30.0;
 const NEARLY_MEETING_MM: f64 = 0.1;
 
 /// A circle this much beyond the limit from a corrected command is not put to the proof, mm: between the two the error changes
-/// by the gradient of a few micrometres.
-const BEYOND_DOUBT_MM: f64 = 1e-5;
+/// by the gradient of a few micrometres, and the distance is known within 1e-5.
+const BEYOND_DOUBT_MM: f64 = 2e-5;
 
 impl<'m> Corrector<'m> {
     /// Commands arcs from where the axes stand to the end of `part`, as few as hold the tolerance.
