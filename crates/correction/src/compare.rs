@@ -253,8 +253,7 @@ pub fn compare(model: &dyn PathModel, wanted: &Program, commanded: &Program, lim
     for w in &wanted {
         let mut before_mm = 0.0f64;
         for_samples(&w.curve, |s| {
-            let at = w.curve.at(s);
-            let real = at + model.error_mm(&Command { linear_mm: at, ..w.state });
+            let real = real_tip(model, w, s);
             before_mm = before_mm.max(distance(&w.curve, &real, project(&w.curve, &real, s)));
         });
         result.before.note(before_mm, w.line);
@@ -275,6 +274,12 @@ fn for_samples(curve: &Curve, mut f: impl FnMut(f64)) {
         f(k / pieces);
         k += 1.0;
     }
+}
+
+/// Where the tool really is, at s of a motion.
+fn real_tip(model: &dyn PathModel, motion: &Feeding, s: f64) -> Vector {
+    let at = motion.curve.at(s);
+    at + model.error_mm(&Command { linear_mm: at, ..motion.state })
 }
 
 struct Matcher<'a> {
@@ -316,11 +321,15 @@ impl Fit {
 }
 
 impl Matcher<'_> {
+    /// Where the tool really is, at s of a piece.
+    fn tip(&self, piece: &Feeding, s: f64) -> Vector {
+        real_tip(self.model, piece, s)
+    }
+
     fn fit(&self, w: &Feeding, piece: &Feeding, s0: f64) -> Fit {
         let mut fit = Fit { distance_mm: 0.0, s: s0, back_mm: 0.0, jump_mm: 0.0 };
         for_samples(&piece.curve, |s| {
-            let at = piece.curve.at(s);
-            let real = at + self.model.error_mm(&Command { linear_mm: at, ..piece.state });
+            let real = self.tip(piece, s);
             let on = project(&w.curve, &real, fit.s);
             fit.distance_mm = fit.distance_mm.max(distance(&w.curve, &real, on));
             fit.back_mm = fit.back_mm.max((fit.s - on) * w.length_mm);
@@ -344,8 +353,7 @@ impl Matcher<'_> {
         let mut at = self.at;
         let mut s0 = self.s;
         let mut first: Option<(usize, Fit)> = None;
-        let end = piece.curve.at(1.0);
-        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        let real = self.tip(piece, 1.0);
         let mut ends_where_one_goes_on = false;
         while at < self.wanted.len() {
             let w = &self.wanted[at];
@@ -387,20 +395,22 @@ impl Matcher<'_> {
             return;
         };
         // What is under way may have ended short of its end: then the piece is of a later one.
-        let (under_way, nearly) = (at, fit.off_mm() <= NEARLY_LIMITS * self.limit_mm);
-        for later in under_way + 1..self.wanted.len() {
-            let w = &self.wanted[later];
-            let of_later = self.fit(w, piece, 0.0);
-            if of_later.off_mm() <= NEARLY_LIMITS * self.limit_mm && !nearly {
-                (at, fit) = (later, of_later);
-                break;
-            }
-            if !self.skippable(w) {
-                break;
+        let under_way = at;
+        if fit.off_mm() > NEARLY_LIMITS * self.limit_mm {
+            for later in under_way + 1..self.wanted.len() {
+                let w = &self.wanted[later];
+                let of_later = self.fit(w, piece, 0.0);
+                if of_later.off_mm() <= NEARLY_LIMITS * self.limit_mm {
+                    (at, fit) = (later, of_later);
+                    break;
+                }
+                if !self.skippable(w) {
+                    break;
+                }
             }
         }
         if at > under_way {
-            self.left_over(under_way, if under_way == self.at { self.s } else { 0.0 });
+            self.left_over(under_way);
         }
         let w = &self.wanted[at];
         self.note(at, fit.distance_mm);
@@ -430,10 +440,7 @@ impl Matcher<'_> {
     /// The next hole, from its top, be it where the last one was.
     fn drills_anew(&self, piece: &Feeding) -> bool {
         let Some(next) = self.wanted.get(self.at).filter(|w| w.hole && self.s == 0.0) else { return false };
-        let place = |s: f64| {
-            let at = piece.curve.at(s);
-            project(&next.curve, &(at + self.model.error_mm(&Command { linear_mm: at, ..piece.state })), s)
-        };
+        let place = |s: f64| project(&next.curve, &self.tip(piece, s), s);
         let from = place(0.0);
         from.abs() * next.length_mm <= self.limit_mm
             && place(1.0) > from
@@ -476,8 +483,7 @@ impl Matcher<'_> {
             return true;
         }
         // Play taken up before the way back: only where it ends counts.
-        let end = piece.curve.at(1.0);
-        let real = end + self.model.error_mm(&Command { linear_mm: end, ..piece.state });
+        let real = self.tip(piece, 1.0);
         let s = project(&hole.curve, &real, 1.0);
         let approach = piece.length_mm < 1.0 && distance(&hole.curve, &real, s) <= self.limit_mm;
         self.result.approaches += usize::from(approach);
@@ -497,7 +503,8 @@ impl Matcher<'_> {
     }
 
     /// Says that a motion was not made, or not to its end.
-    fn left_over(&mut self, at: usize, s: f64) {
+    fn left_over(&mut self, at: usize) {
+        let s = if at == self.at { self.s } else { 0.0 };
         let w = &self.wanted[at];
         let left_mm = ((1.0 - s) * w.length_mm).min(w.reach_mm);
         if left_mm > self.limit_mm {
@@ -512,7 +519,7 @@ impl Matcher<'_> {
 
     fn finish(mut self) -> Comparison {
         for at in self.at..self.wanted.len() {
-            self.left_over(at, if at == self.at { self.s } else { 0.0 });
+            self.left_over(at);
         }
         self.result
     }

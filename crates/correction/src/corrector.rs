@@ -7,7 +7,7 @@ use toolpath::{Feed, Motion, Partial, Shape};
 use crate::curve::Curve;
 use crate::deviation::{Machine, Solved};
 use crate::grid::{AxisWord, Block};
-use crate::play::heading;
+use crate::play::{heading, side};
 use crate::short_line::SLACK_MM;
 use crate::{Piece, PieceKind};
 
@@ -65,6 +65,14 @@ pub struct Corrected {
     pub pieces: SmallVec<[Piece; 2]>,
     /// What was done, for the summary.
     pub correction: Correction,
+}
+
+impl Corrected {
+    /// One block, which stays as it is where it is `untouched`.
+    pub(crate) fn block(piece: Piece, untouched: bool, correction: Correction) -> Self {
+        let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
+        Self { pieces, correction }
+    }
 }
 
 /// Figures of one motion.
@@ -338,7 +346,8 @@ impl<'m> Corrector<'m> {
             self.turn_as_moved(before);
         }
         correction.largest_mm = (wanted - end_mm).norm();
-        self.last = Some((Command { linear_mm: end_mm, ..machine.state }, wanted));
+        // The nearest point's correction is no answer for a feed motion that starts here.
+        self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..machine.state }, wanted));
         Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
     }
 
@@ -595,9 +604,9 @@ impl<'m> Corrector<'m> {
         if away {
             let before = self.standing;
             let axes = self.go(block, &start, &wanted, false);
-            for (i, side) in came.iter_mut().enumerate() {
+            for (i, came) in came.iter_mut().enumerate() {
                 if let (Some(from), Some(to)) = (before[i], self.standing[i]) {
-                    *side = heading(from, to, *side);
+                    *came = side(from, to, *came);
                 }
             }
             if axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing {
@@ -647,6 +656,5 @@ impl Follow<'_, '_> {
 
 fn one(piece: Piece, correction: Correction) -> Corrected {
     let untouched = piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit));
-    let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
-    Corrected { pieces, correction }
+    Corrected::block(piece, untouched, correction)
 }

@@ -52,8 +52,7 @@ impl Kept {
     }
 
     fn with(self, correction: Correction) -> Corrected {
-        let pieces = if self.untouched { SmallVec::new() } else { SmallVec::from_slice(&[self.piece]) };
-        Corrected { pieces, correction }
+        Corrected::block(self.piece, self.untouched, correction)
     }
 }
 

@@ -28,6 +28,11 @@ pub(crate) fn heading(from: f64, to: f64, otherwise: i8) -> i8 {
     }
 }
 
+/// The side of its play to which an axis goes; one that does not move stays on the side to which it `came`.
+pub(crate) fn side(from: f64, to: f64, came: i8) -> i8 {
+    if (to - from).abs() > SAME_MM { heading(from, to, came) } else { came }
+}
+
 /// Axes that are on another side of their play than was computed for.
 #[derive(Clone, Copy)]
 pub(crate) struct Against {
@@ -77,7 +82,7 @@ impl<'m> Corrector<'m> {
         let mut against = Against { sides: self.direction, turned: [false; 3] };
         for i in 0..3 {
             let (Some(from), Some(to)) = (before[i], reached[i]) else { continue };
-            against.sides[i] = if (to - from).abs() > SAME_MM { heading(from, to, 0) } else { came[i] };
+            against.sides[i] = side(from, to, came[i]);
             against.turned[i] = against.sides[i] != direction[i];
         }
         against.turned.contains(&true).then_some(against)
@@ -86,10 +91,8 @@ impl<'m> Corrector<'m> {
     /// Turns the axes the way they went from `before`: in a turned frame each moves by the rounding of all.
     pub(crate) fn turn_as_moved(&mut self, before: [Option<f64>; 3]) {
         for (i, from) in before.into_iter().enumerate() {
-            if let (Some(from), Some(to)) = (from, self.standing[i])
-                && (to - from).abs() > SAME_MM
-            {
-                self.direction[i] = heading(from, to, 0);
+            if let (Some(from), Some(to)) = (from, self.standing[i]) {
+                self.direction[i] = side(from, to, self.direction[i]);
             }
         }
     }
