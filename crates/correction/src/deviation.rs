@@ -236,7 +236,7 @@ impl Pair<'_> {
             return ByCommands::Open;
         }
         // Of a stretch that runs through all of the motion's box: it holds for those that run through a part of it.
-        let extent = self.commanded.extent(0.0, 1.0);
+        let Some(extent) = self.commanded.extent_by(&commanded) else { return ByCommands::Open };
         let leaves_chord = machine.model.chord_bound_mm(&Move {
             range_mm: extent.range,
             speed_mm: extent.speed.map(|speed| speed * STRETCH),
