@@ -359,6 +359,11 @@ impl Matcher<'_> {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
             if fit.holds(w, self.limit_mm) {
+                if fit.jump_mm > self.limit_mm && self.ends_near_last(piece, &real) {
+                    // Of a motion that is yet to be made it would leave out more than a limit.
+                    self.result.approaches += 1;
+                    return;
+                }
                 self.note(at, fit.distance_mm);
                 self.hole_by_moves = !piece.hole;
                 let done = (1.0 - fit.s) * w.length_mm <= self.limit_mm;
@@ -380,13 +385,7 @@ impl Matcher<'_> {
             return;
         }
         // A short move that ends on the last of the last motion, or where one of the next goes on, is an approach.
-        // Taken for done, a motion may have a limit of way left; the pieces of that way begin a limit away from it.
-        let ends_near = |w: &Feeding| {
-            let s = project(&w.curve, &real, 1.0);
-            (1.0 - s) * w.length_mm <= 2.0 * self.limit_mm && distance(&w.curve, &real, s) <= self.limit_mm
-        };
-        let last = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]);
-        if piece.length_mm < 1.0 && (ends_where_one_goes_on || last.is_some_and(ends_near)) {
+        if (piece.length_mm < 1.0 && ends_where_one_goes_on) || self.ends_near_last(piece, &real) {
             self.result.approaches += 1;
             return;
         }
@@ -428,6 +427,19 @@ impl Matcher<'_> {
         } else {
             (at, fit.s.clamp(0.0, 1.0))
         };
+    }
+
+    /// A short move that ends on the last of the last motion.
+    ///
+    /// Taken for done, a motion may have a limit of way left; the pieces of that way begin a limit away from it.
+    fn ends_near_last(&self, piece: &Feeding, real: &Vector) -> bool {
+        let Some(w) = self.at.checked_sub(1).filter(|_| self.s == 0.0).map(|last| &self.wanted[last]) else {
+            return false;
+        };
+        let s = project(&w.curve, real, 1.0);
+        piece.length_mm < 1.0
+            && (1.0 - s) * w.length_mm <= 2.0 * self.limit_mm
+            && distance(&w.curve, real, s) <= self.limit_mm
     }
 
     /// The place is where a motion goes on, or on its way near there: the play along the way is not yet taken up.
