@@ -109,7 +109,11 @@ fn judged(dialect: &str, machine: Machine, text: &[u8]) -> Outcome {
     // A tapping cycle drills straight down whatever the machine does: the command says by how much it leans, and the
     // check says it too.
     if warnings.iter().any(|warning| warning.code == vpost::correct::LEANING_CYCLE) {
-        findings.retain(|finding| !finding.contains(" um off the path of line "));
+        // Where many holes lean the list ends before the last of them.
+        let leans = |finding: &String| {
+            finding.contains(" um off the path of line ") || finding.starts_with("and more;")
+        };
+        findings.retain(|finding| !leans(finding));
     }
     assert!(findings.is_empty(), "{dialect}, {machine:?}: {findings:#?}\n{}", both(text, &out));
     if out == text {
