@@ -21,7 +21,8 @@ pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
 pub(crate) struct Candidate {
     pub(crate) words: Centre,
     centre: [f64; 2],
-    /// Difference of the radii at start and end, and how far the arc misses the corrected path, together; mm.
+    /// Difference of the radii at start and end, and how far the arc misses the corrected path, together, mm; nothing is better
+    /// than the block's own words.
     cost_mm: f64,
 }
 
@@ -38,13 +39,13 @@ impl Candidate {
         }
         ((*turned - sweep).abs() < 0.5 * sweep.abs().min(1.0)).then_some(curve)
     }
+}
 
-    /// The block's own words serve.
-    fn is_kept(&self) -> bool {
-        match self.words {
-            Centre::Offsets(words) => words.iter().all(|word| !matches!(word, AxisWord::Write(_))),
-            Centre::Radius(word) => word == AxisWord::Keep,
-        }
+/// The block's own words serve.
+fn is_kept(words: &Centre) -> bool {
+    match words {
+        Centre::Offsets(words) => words.iter().all(|word| !matches!(word, AxisWord::Write(_))),
+        Centre::Radius(word) => *word == AxisWord::Keep,
     }
 }
 
@@ -82,11 +83,10 @@ impl Candidates {
     /// is not makes a small step at the end of the arc – and how well the arc follows the path: along the bisector of the ends
     /// all radii agree.
     pub(crate) fn take_best(&mut self) -> Option<Candidate> {
-        let order = |a: &Candidate, b: &Candidate| {
-            b.is_kept().cmp(&a.is_kept()).then(a.cost_mm.total_cmp(&b.cost_mm))
-        };
-        let (best, _) = self.0.iter().enumerate().min_by(|(_, a), (_, b)| order(a, b))?;
-        Some(self.0.remove(best))
+        let by_cost =
+            |(_, a): &(usize, &Candidate), (_, b): &(usize, &Candidate)| a.cost_mm.total_cmp(&b.cost_mm);
+        let (best, _) = self.0.iter().enumerate().min_by(by_cost)?;
+        Some(self.0.swap_remove(best))
     }
 }
 
@@ -154,7 +154,8 @@ impl Search<'_> {
                 && radii_apart <= allowed
                 && missed_mm <= self.farthest_mm
             {
-                found.0.push(Candidate { words, centre, cost_mm: radii_apart + missed_mm });
+                let cost_mm = if is_kept(&words) { f64::NEG_INFINITY } else { radii_apart + missed_mm };
+                found.0.push(Candidate { words, centre, cost_mm });
             }
         };
         if self.own_words && !by_radius {

@@ -327,25 +327,26 @@ impl AxisTables {
         if last > first && nodes[last] >= high {
             last -= 1; // the interval ends on the node: what follows is not inside
         }
-        *all = SixBounds::default();
-        for cell in first..=last {
-            let [c0, c1] = &self.straight[cell];
-            let from = if cell == first { low - nodes[cell] } else { 0.0 };
-            let to = high.min(nodes[cell + 1]) - nodes[cell];
+        let within = |cell: usize, i: usize, from: f64| {
+            let ([c0, c1], to) = (&self.straight[cell], high.min(nodes[cell + 1]) - nodes[cell]);
+            larger((c0[i] + from * c1[i]).abs(), (c0[i] + to * c1[i]).abs())
+        };
+        let from = low - nodes[first];
+        *all = SixBounds {
+            value: std::array::from_fn(|i| within(first, i, from)),
+            slope: std::array::from_fn(|i| self.straight[first][1][i].abs()),
+            ..SixBounds::default()
+        };
+        for cell in first + 1..=last {
+            let ([_, before], [_, c1]) = (&self.straight[cell - 1], &self.straight[cell]);
+            let at = (nodes[cell] - low) / (high - low);
+            let weight = (4.0 * at * (1.0 - at)).max(0.0);
             for i in 0..6 {
-                let value = (c0[i] + from * c1[i]).abs().max((c0[i] + to * c1[i]).abs());
-                all.value[i] = all.value[i].max(value);
-                all.slope[i] = all.slope[i].max(c1[i].abs());
-            }
-            if cell > first {
-                let at = (nodes[cell] - low) / (high - low);
-                let weight = (4.0 * at * (1.0 - at)).max(0.0);
-                let [_, before] = &self.straight[cell - 1];
-                for i in 0..6 {
-                    let jump = table::real_jump(c1[i] - before[i], c1[i], before[i]);
-                    all.kinks[i] += jump;
-                    all.kinks_on_line[i] += jump * weight;
-                }
+                all.value[i] = larger(all.value[i], within(cell, i, 0.0));
+                all.slope[i] = larger(all.slope[i], c1[i].abs());
+                let jump = table::real_jump(c1[i] - before[i], c1[i], before[i]);
+                all.kinks[i] += jump;
+                all.kinks_on_line[i] += jump * weight;
             }
         }
     }
@@ -363,6 +364,12 @@ impl AxisTables {
         }
         all
     }
+}
+
+/// The larger of two numbers that are numbers.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 #[cfg(test)]
