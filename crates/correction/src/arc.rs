@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use machine_model::{LANES, Vector};
+use machine_model::Vector;
 
 use crate::centre::{PLACES, SAME_PLACE_MM, Search, in_plane};
 use crate::corrector::{CorrectionError, Corrector, Follow};
@@ -130,10 +130,9 @@ impl<'m> Corrector<'m> {
 
     /// Commands that bring the tool to an arc, its places all solved at once; `None` where the model has to be asked for each.
     fn solved(&self, follow: &Follow<'_, '_>, part: &Curve) -> Option<Solved> {
-        let [a, b, c] = PLACES;
-        let [first, second, third, end] =
-            follow.machine.solved_together([a, b, c, 1.0].map(|s| part.at(s)))?;
-        let start = self.solve(&follow.machine, part.at(0.0)).ok()?;
+        let [start, a, b, c, end] = part.at_quarters();
+        let [first, second, third, end] = follow.machine.solved_together([a, b, c, end])?;
+        let start = self.solve(&follow.machine, start).ok()?;
         let direction = follow.machine.state.direction;
         Some(Solved { commands: [start, first, second, third, end], direction })
     }
@@ -156,7 +155,6 @@ fn judged(pair: &Pair<'_>, machine: &Machine<'_>, solved: Option<&Solved>, limit
 
 /// What is known of a part for its halves, and what both lack.
 fn solved_halves(follow: &Follow<'_, '_>, part: &Curve, s: f64) -> [Option<Solved>; 2] {
-    const LACKING: [f64; LANES] = [0.125, 0.375, 0.625, 0.875];
     let Some(Solved { commands: [start, a, middle, b, end], direction }) = follow.solved.filter(|_| s == 0.5)
     else {
         return [None; 2];
@@ -164,9 +162,7 @@ fn solved_halves(follow: &Follow<'_, '_>, part: &Curve, s: f64) -> [Option<Solve
     if direction != follow.machine.state.direction {
         return [None; 2];
     }
-    let Some([p, q, r, t]) = follow.machine.solved_together(LACKING.map(|s| part.at(s))) else {
-        return [None; 2];
-    };
+    let Some([p, q, r, t]) = follow.machine.solved_together(part.at_odd_eighths()) else { return [None; 2] };
     [[start, p, a, q, middle], [middle, r, b, t, end]].map(|commands| Some(Solved { commands, direction }))
 }
 

@@ -1,5 +1,7 @@
 //! The state that runs through a program, and one motion at a time.
 
+use std::sync::Arc;
+
 use machine_model::{Command, Everywhere, LANES, PathModel, SolveError, Vector};
 use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
@@ -111,7 +113,7 @@ pub struct Corrector<'m> {
     /// Bottom and R as the control remembers them, program mm, and the initial level, mm.
     pub(crate) remembered: Option<crate::hole::Remembered>,
     /// What the model does anywhere, for the tool vector and the rotary axes in force.
-    pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Everywhere>)>,
+    pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Arc<Everywhere>>)>,
     /// The largest bounds that any motion so far was told with: before and after, mm.
     pub(crate) told_mm: [f64; 2],
 }
@@ -185,7 +187,7 @@ impl<'m> Corrector<'m> {
         let tool = Vector::from(block.tool_mm);
         if !self.everywhere.as_ref().is_some_and(|known| known.0 == tool && known.1 == rotary_deg) {
             let state = self.state(block, rotary_deg);
-            self.everywhere = Some((tool, rotary_deg, self.model.everywhere(&state)));
+            self.everywhere = Some((tool, rotary_deg, self.model.everywhere(&state).map(Arc::new)));
         }
     }
 
@@ -214,7 +216,7 @@ impl<'m> Corrector<'m> {
         Machine {
             model: self.model,
             state: self.state(block, rotary_deg),
-            everywhere: self.everywhere.as_ref().and_then(|known| known.2),
+            everywhere: self.everywhere.as_ref().and_then(|known| known.2.clone()),
             told_mm: self.told_mm[1],
         }
     }
@@ -495,9 +497,10 @@ impl<'m> Corrector<'m> {
         rotary_deg: [f64; 3],
         correction_mm: f64,
     ) -> f64 {
-        let machine = self.machine(block, rotary_deg);
-        let bow = machine
+        let bow = self
             .everywhere
+            .as_ref()
+            .and_then(|known| known.2.as_deref())
             .filter(|everywhere| whole.lies_inside(&everywhere.volume))
             .and_then(|everywhere| {
                 whole.fastest(0.0, 1.0).map(|(v, a)| everywhere.chord_bound_of_circle_mm(v, a))
@@ -506,7 +509,9 @@ impl<'m> Corrector<'m> {
         if self.error_before_mm(correction_mm) + bow <= self.told_mm[0] {
             return 0.0;
         }
-        let ends = machine.error(whole.at(0.0)).norm().max(machine.error(whole.at(1.0)).norm());
+        let state = self.state(block, rotary_deg);
+        let error = |s: f64| self.model.error_mm(&Command { linear_mm: whole.at(s), ..state }).norm();
+        let ends = error(0.0).max(error(1.0));
         if ends + bow <= self.told_mm[0] {
             return 0.0;
         }
@@ -516,7 +521,7 @@ impl<'m> Corrector<'m> {
             speed_mm: extent.speed,
             acceleration_mm: extent.acceleration,
             passes: 4,
-            state: machine.state,
+            state,
         });
         if between.is_finite() { ends + between } else { ends }
     }
@@ -577,7 +582,7 @@ impl<'m> Corrector<'m> {
             for (direction, new) in state.direction.iter_mut().zip(turned) {
                 *direction = if new == 0 { *direction } else { new };
             }
-            let behind = Machine { state, ..*machine };
+            let behind = Machine { state, ..machine.clone() };
             let mut from_behind = self.solve(&behind, start)?;
             // The axes that need not turn do not creep back meanwhile.
             let _ = self.approachable(&mut from_behind, state.direction, block);

@@ -128,22 +128,28 @@ impl Curve {
 
     /// [`Curve::at`] at s = 0, ¼, ½, ¾, 1.
     pub(crate) fn at_quarters(&self) -> [Vector; 5] {
-        let [_, a, b, c, _] = self.turned_at_quarters();
+        let [_, a, b, c] = self.turned_from(0.0);
         let inside = |s: f64, turned| self.at_turned(s, turned);
         [self.at(0.0), inside(0.25, a), inside(0.5, b), inside(0.75, c), self.at(1.0)]
     }
 
     /// [`Curve::tangent`] there.
     pub(crate) fn tangents_at_quarters(&self) -> [Vector; 5] {
-        let turned = self.turned_at_quarters();
+        let turned: [_; 5] = self.turned_from(0.0);
         std::array::from_fn(|k| self.tangent_turned(0.25 * k as f64, turned[k]))
     }
 
-    /// Sine and cosine of an arc's angle there, from those of two angles.
-    fn turned_at_quarters(&self) -> [(f64, f64); 5] {
-        let Self::Arc { angle, sweep, .. } = self else { return [(0.0, 0.0); 5] };
+    /// [`Curve::at`] at s = ⅛, ⅜, ⅝, ⅞.
+    pub(crate) fn at_odd_eighths(&self) -> [Vector; 4] {
+        let turned: [_; 4] = self.turned_from(0.125);
+        std::array::from_fn(|k| self.at_turned(0.125 + 0.25 * k as f64, turned[k]))
+    }
+
+    /// Sine and cosine of an arc's angle at `s` and quarter by quarter on from there, from those of two angles.
+    fn turned_from<const N: usize>(&self, s: f64) -> [(f64, f64); N] {
+        let Self::Arc { angle, sweep, .. } = self else { return [(0.0, 0.0); N] };
         let (sin_step, cos_step) = sin_cos(0.25 * sweep);
-        let mut next = sin_cos(*angle);
+        let mut next = sin_cos(angle + sweep * s);
         std::array::from_fn(|_| {
             let (sin, cos) = next;
             next = (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step);

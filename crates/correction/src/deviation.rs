@@ -1,6 +1,7 @@
 //! How far the real tool leaves the programmed path: computed at places, bounded between them.
 
 use std::array::from_fn;
+use std::sync::Arc;
 
 use machine_model::{Command, Everywhere, LANES, Move, PathModel, Vector};
 use smallvec::SmallVec;
@@ -19,14 +20,14 @@ const PLACES_PER_TURN: f64 = 16.0;
 const MOST_PLACES_OF_TURNS: f64 = 1e5;
 
 /// The model in the state of one motion.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Machine<'m> {
     /// Where the tool really goes.
     pub(crate) model: &'m dyn PathModel,
     /// Tool vector, rotary axes and directions; its linear position is not used.
     pub(crate) state: Command,
     /// What holds for that state in the whole volume, where the model says so.
-    pub(crate) everywhere: Option<Everywhere>,
+    pub(crate) everywhere: Option<Arc<Everywhere>>,
     /// A bound up to this need not be worked out exactly, mm: an earlier motion was told with it.
     pub(crate) told_mm: f64,
 }
@@ -42,7 +43,7 @@ impl Machine<'_> {
         let targets = places.map(Into::into);
         let directions = [self.state.direction; LANES];
         let [x, y, z] =
-            self.model.commands_for(&targets, &directions, &self.state, self.everywhere.as_ref()?)?;
+            self.model.commands_for(&targets, &directions, &self.state, self.everywhere.as_deref()?)?;
         Some(from_fn(|k| Vector::new(x[k], y[k], z[k])))
     }
 }
@@ -384,7 +385,7 @@ mod tests {
             let state = Command {
                 linear_mm: Vector::zeros(), rotary_rad: Vector::zeros(), tool_mm: Vector::new(3.0, -5.0, -120.0), direction: [0; 3],
             };
-            let machine = Machine { model: &model, state, everywhere: model.everywhere(&state), told_mm: 0.0 };
+            let machine = Machine { model: &model, state, everywhere: model.everywhere(&state).map(Arc::new), told_mm: 0.0 };
             let axes = [Plane::Xy, Plane::Zx, Plane::Yz][plane].axes();
             let [u, v, n] = axes;
             let on_circle = |angle: f64, along: f64| {

@@ -74,6 +74,8 @@ pub struct Block {
 const AXES: [u8; 3] = *b"XYZ";
 /// Exact in an f64.
 const POWERS_OF_TEN: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+/// One over each, rounded as a division would.
+const STEPS: [f64; 10] = [1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
 impl Block {
     /// A length in program units.
@@ -92,7 +94,8 @@ impl Block {
     /// The output step of an axis, mm.
     #[inline]
     pub fn step_mm(&self, axis: usize) -> f64 {
-        self.unit_mm / self.per_unit(axis)
+        let decimals = usize::from(self.decimals[axis].min(9));
+        if self.unit_mm == 1.0 { STEPS[decimals] } else { self.unit_mm / POWERS_OF_TEN[decimals] }
     }
 
     /// What an output step of a program axis moves its machine axis by, mm (axial frames).

@@ -160,7 +160,7 @@ impl<'m> Corrector<'m> {
         let mut state = machine.state;
         state.direction = self.direction;
         state.direction[normal] = machine.state.direction[normal];
-        Machine { state, ..*machine }
+        Machine { state, ..machine.clone() }
     }
 
     /// The cycle block with its words moved.

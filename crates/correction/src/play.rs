@@ -117,7 +117,7 @@ impl<'m> Corrector<'m> {
             return Ok(Tried::Done);
         }
         let before = self.clone();
-        let (machine, alone, came) = (follow.machine, follow.alone, follow.came);
+        let (machine, alone, came) = (follow.machine.clone(), follow.alone, follow.came);
         let (written, correction) = (follow.corrected.pieces.len(), follow.corrected.correction);
         self.turn(against);
         follow.machine.state.direction = self.direction;
