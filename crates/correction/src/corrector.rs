@@ -444,6 +444,7 @@ impl<'m> Corrector<'m> {
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
+        let mut own_words = true;
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
             let mut came = self.direction;
@@ -469,10 +470,26 @@ impl<'m> Corrector<'m> {
                 }
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
+            own_words &= follow.alone;
+        }
+        if corrected.pieces.is_empty() && !own_words {
+            // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
+            corrected.pieces.push(self.standstill(block));
         }
         corrected.correction.before_mm =
             self.before_mm(&whole, block, feed.end.rotary_deg, corrected.correction.largest_mm);
         Ok(corrected)
+    }
+
+    /// A line to where the axes stand, with a word for each axis that the block names, or for the first.
+    fn standstill(&self, block: &Block) -> Piece {
+        let standing = self.standing_program(block);
+        let named = |i: usize| block.has_axis(i) || (i == 0 && !(0..3).any(|axis| block.has_axis(axis)));
+        let axes = [0, 1, 2].map(|i| match standing[i] {
+            Some(mm) if named(i) => block.write(i, mm, standing[i]).0,
+            _ => AxisWord::Omit,
+        });
+        Piece { kind: PieceKind::Line, axes, share: 1.0 }
     }
 
     /// Upper bound of the error at a place that takes a correction of so many mm: the error at its corrected command is that

@@ -151,6 +151,10 @@ impl Corrector<'_> {
         {
             return None;
         }
+        if everywhere.chord_bound_mm((end - start).amax()) > limit_mm {
+            // Too long, wherever it ends.
+            return None;
+        }
         let target = Command { linear_mm: end, direction, ..state };
         let wanted = match foreseen {
             Some((Foreseen { directions, commands_mm: [x, y, z] }, line))
