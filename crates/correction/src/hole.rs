@@ -94,6 +94,9 @@ impl<'m> Corrector<'m> {
         let came = self.direction;
         self.turn_towards(&start, &at_r);
         let flat = hole.bottom_mm == at_r[normal];
+        let expandable = hole.cycle.kind != CycleKind::Synchronised;
+        // A further hole of a series that is written as moves: its cycle says nothing but, with play, where axes come from.
+        let by_moves = self.expanding && expandable && !flat && !self.model.depends_on_direction();
         let before = (self.standing, self.remembered);
         let mut turns = 0;
         let (machine, [top, bottom], kept) = loop {
@@ -102,6 +105,9 @@ impl<'m> Corrector<'m> {
             machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
             self.foresee_places(&machine, levels.map(place));
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
+            if by_moves {
+                break (machine, [top, bottom], None);
+            }
             let kept = self.keep_cycle(hole, block, (top, bottom));
             // In the plane an axis that only the correction moves comes from where the correction sends it.
             let mut reached = self.standing;
@@ -112,7 +118,7 @@ impl<'m> Corrector<'m> {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
                 }
-                _ => break (machine, [top, bottom], kept),
+                _ => break (machine, [top, bottom], Some(kept)),
             }
         };
         let down = machine.state.direction[normal];
@@ -124,31 +130,29 @@ impl<'m> Corrector<'m> {
             correction.before_mm = machine.error(at_r).norm().max(machine.error(at_bottom).norm());
         }
         // Afterwards the axis has come back out of the hole.
-        let out = match self.standing[normal] {
-            Some(end) if flat => heading(kept.r_mm, end, down),
+        let out = match (self.standing[normal], &kept) {
+            (Some(end), Some(kept)) if flat => heading(kept.r_mm, end, down),
             _ => -down,
         };
         self.direction[normal] = out;
-        let expandable = hole.cycle.kind != CycleKind::Synchronised;
-        if self.expanding && expandable {
-            (self.standing, self.remembered) = before;
-        } else {
-            match kept.verdict(&machine, self.limit_mm(block)) {
-                Verdict::Within(bound) => {
-                    correction.after_mm = bound;
-                    return Ok(kept.with(correction));
-                }
-                Verdict::Beyond { distance_mm, .. } if !expandable => {
-                    correction.after_mm = distance_mm;
-                    correction.leaning_mm = Some(distance_mm);
-                    return Ok(kept.with(correction));
-                }
-                Verdict::Beyond { .. } => {
-                    (self.standing, self.remembered) = before;
-                    self.expanding = true;
+        match kept {
+            Some(kept) if !(self.expanding && expandable) => {
+                match kept.verdict(&machine, self.limit_mm(block)) {
+                    Verdict::Within(bound) => {
+                        correction.after_mm = bound;
+                        return Ok(kept.with(correction));
+                    }
+                    Verdict::Beyond { distance_mm, .. } if !expandable => {
+                        correction.after_mm = distance_mm;
+                        correction.leaning_mm = Some(distance_mm);
+                        return Ok(kept.with(correction));
+                    }
+                    Verdict::Beyond { .. } => self.expanding = true,
                 }
             }
+            _ => {}
         }
+        (self.standing, self.remembered) = before;
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
         self.direction[normal] = out;
