@@ -337,9 +337,9 @@ impl AxisTables {
             slope: std::array::from_fn(|i| self.straight[first][1][i].abs()),
             ..SixBounds::default()
         };
-        for cell in first + 1..=last {
+        for (cell, node) in nodes.iter().enumerate().take(last + 1).skip(first + 1) {
             let ([_, before], [_, c1]) = (&self.straight[cell - 1], &self.straight[cell]);
-            let at = (nodes[cell] - low) / (high - low);
+            let at = (node - low) / (high - low);
             let weight = (4.0 * at * (1.0 - at)).max(0.0);
             for i in 0..6 {
                 all.value[i] = larger(all.value[i], within(cell, i, 0.0));
