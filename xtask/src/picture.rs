@@ -37,6 +37,9 @@ const LEVEL_HALF_WIDTH_MM: f64 = 0.1;
 const MAGNIFICATION: f64 = 40.0;
 /// Longest step between computed points, mm.
 const STEP_MM: f64 = 0.5;
+/// The same of the programmed path where distances from it are measured: chords of the smallest arc, of 5 mm, leave it by
+/// 0.06 µm.
+const FINE_STEP_MM: f64 = 0.05;
 const PIXELS_PER_MM: f64 = 3.0;
 
 /// What is drawn ends here: later operations pass the same level again, in thousands of short moves.
@@ -87,13 +90,17 @@ pub(crate) fn picture() -> anyhow::Result<String> {
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
     let model = engine.path_model().context("the profile's engine corrects paths")?;
     let corrected = corrected(&text, model, &profile, dialect, &setup)?;
-    let before = strokes(&text, model, dialect, &setup)?;
-    let after = strokes(&corrected, model, dialect, &setup)?;
-    let programmed: Vec<&[[f64; 3]]> = before.iter().map(|stroke| &stroke.commanded[..]).collect();
+    let before = strokes(&text, model, dialect, &setup, STEP_MM)?;
+    let after = strokes(&corrected, model, dialect, &setup, STEP_MM)?;
+    let fine = strokes(&text, model, dialect, &setup, FINE_STEP_MM)?;
+    let commanded = |strokes: &'_ [Stroke]| -> Vec<Vec<[f64; 3]>> {
+        strokes.iter().map(|stroke| stroke.commanded.clone()).collect()
+    };
+    let (drawn, programmed) = (commanded(&before), commanded(&fine));
     // As posted, the command is the programmed point; corrected, the nearest programmed point is meant.
     let before = side("As posted", "before", &before, &programmed, |_, commanded| commanded);
     let after = side("Corrected", "after", &after, &programmed, |real, _| nearest(&programmed, real));
-    Ok(draw(&programmed, &[before, after]))
+    Ok(draw(&drawn, &[before, after]))
 }
 
 /// `meant`: the programmed point that a real and a commanded one belong to.
@@ -101,7 +108,7 @@ fn side<'a>(
     title: &'a str,
     class: &'a str,
     strokes: &[Stroke],
-    programmed: &[&[[f64; 3]]],
+    programmed: &[Vec<[f64; 3]>],
     meant: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
 ) -> Side<'a> {
     let mut side = Side { title, class, lines: Vec::new(), largest_mm: 0.0 };
@@ -155,6 +162,7 @@ fn strokes(
     model: &dyn PathModel,
     dialect: &Dialect,
     setup: &Setup,
+    step_mm: f64,
 ) -> anyhow::Result<Vec<Stroke>> {
     let mut found = Vec::new();
     let mut interpreter = Interpreter::new(dialect, setup);
@@ -168,7 +176,7 @@ fn strokes(
             let height = |mm: [f64; 3]| step.context.frame.to_program(mm)[2] - LEVEL_MM;
             let ends = [height(feed.start.linear_mm), height(feed.end.linear_mm)];
             if ends.iter().all(|z| z.abs() < LEVEL_HALF_WIDTH_MM) {
-                found.push(stroke(feed, &step.context, model));
+                found.push(stroke(feed, &step.context, model, step_mm));
             }
         }
         if step.ends_program {
@@ -181,9 +189,9 @@ fn strokes(
     Ok(found)
 }
 
-fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel) -> Stroke {
+fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel, step_mm: f64) -> Stroke {
     let curve = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
-    let count = (curve.length_mm() / STEP_MM).ceil().max(1.0) as usize;
+    let count = (curve.length_mm() / step_mm).ceil().max(1.0) as usize;
     let mut stroke = Stroke { commanded: Vec::new(), real: Vec::new() };
     for k in 0..=count {
         let commanded = curve.at(k as f64 / count as f64);
@@ -201,7 +209,7 @@ fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel) -> 
 }
 
 /// The nearest point of the programmed lines, mm.
-fn nearest(programmed: &[&[[f64; 3]]], point: [f64; 3]) -> [f64; 3] {
+fn nearest(programmed: &[Vec<[f64; 3]>], point: [f64; 3]) -> [f64; 3] {
     let mut best = (f64::INFINITY, point);
     for pair in programmed.iter().flat_map(|line| line.windows(2)) {
         let (a, b) = (pair[0], pair[1]);
@@ -271,7 +279,7 @@ const STYLE: &str = "text{font:13px system-ui,sans-serif;fill:#848d97}.title{fon
 path{fill:none;stroke-linejoin:round;stroke-linecap:round}.wanted{stroke:#848d97;stroke-width:3}\
 .before{stroke:#e5534b;stroke-width:1.3}.after{stroke:#2da44e;stroke-width:1.3}.bar{stroke:#848d97;stroke-width:2}";
 
-fn draw(programmed: &[&[[f64; 3]]], sides: &[Side<'_>]) -> String {
+fn draw(programmed: &[Vec<[f64; 3]>], sides: &[Side<'_>]) -> String {
     const MARGIN_MM: f64 = 5.0;
     let flat: Vec<Vec<[f64; 2]>> =
         programmed.iter().map(|line| line.iter().map(|p| [p[0], p[1]]).collect()).collect();
