@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn the_nearest_point_lies_on_a_segment() {
-        let line: &[[f64; 3]] = &[[0.0; 3], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0]];
+        let line = vec![[0.0; 3], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0]];
         assert_eq!(nearest(&[line], [12.0, 5.0, 1.0]), [10.0, 5.0, 0.0]);
     }
 
