@@ -70,11 +70,11 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let mut rows = Vec::new();
     // MB per second on the clock, and of processor time.
     let mut row = |what: &str, path: &Path, run: Run, tokenizer: f64| -> anyhow::Result<[f64; 2]> {
-        let [speed, per_core] = [run.wall_s, run.cpu_s.max(1e-3)].map(|s| s.recip());
-        let (speed, per_core) = (speed * megabytes(path)?, per_core * megabytes(path)?);
+        let size = megabytes(path)?;
+        let [speed, per_core] = [run.wall_s, run.cpu_s.max(1e-3)].map(|s| size / s);
         rows.push(vec![
             what.to_owned(),
-            format!("{:.0}", megabytes(path)?),
+            format!("{size:.0}"),
             format!("{:.2}", run.wall_s),
             format!("{speed:.0}"),
             format!("{per_core:.0}"),

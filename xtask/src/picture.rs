@@ -93,9 +93,6 @@ pub(crate) fn picture() -> anyhow::Result<String> {
     let before = strokes(&text, model, dialect, &setup, STEP_MM)?;
     let after = strokes(&corrected, model, dialect, &setup, STEP_MM)?;
     let fine = strokes(&text, model, dialect, &setup, FINE_STEP_MM)?;
-    let commanded = |strokes: &'_ [Stroke]| -> Vec<Vec<[f64; 3]>> {
-        strokes.iter().map(|stroke| stroke.commanded.clone()).collect()
-    };
     let (drawn, programmed) = (commanded(&before), commanded(&fine));
     // As posted, the command is the programmed point; corrected, the nearest programmed point is meant.
     let before = side("As posted", "before", &before, &programmed, |_, commanded| commanded);
@@ -103,12 +100,16 @@ pub(crate) fn picture() -> anyhow::Result<String> {
     Ok(draw(&drawn, &[before, after]))
 }
 
+fn commanded(strokes: &[Stroke]) -> Vec<&[[f64; 3]]> {
+    strokes.iter().map(|stroke| &stroke.commanded[..]).collect()
+}
+
 /// `meant`: the programmed point that a real and a commanded one belong to.
 fn side<'a>(
     title: &'a str,
     class: &'a str,
     strokes: &[Stroke],
-    programmed: &[Vec<[f64; 3]>],
+    programmed: &[&[[f64; 3]]],
     meant: impl Fn([f64; 3], [f64; 3]) -> [f64; 3],
 ) -> Side<'a> {
     let mut side = Side { title, class, lines: Vec::new(), largest_mm: 0.0 };
@@ -209,7 +210,7 @@ fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel, ste
 }
 
 /// The nearest point of the programmed lines, mm.
-fn nearest(programmed: &[Vec<[f64; 3]>], point: [f64; 3]) -> [f64; 3] {
+fn nearest(programmed: &[&[[f64; 3]]], point: [f64; 3]) -> [f64; 3] {
     let mut best = (f64::INFINITY, point);
     for pair in programmed.iter().flat_map(|line| line.windows(2)) {
         let (a, b) = (pair[0], pair[1]);
@@ -279,7 +280,7 @@ const STYLE: &str = "text{font:13px system-ui,sans-serif;fill:#848d97}.title{fon
 path{fill:none;stroke-linejoin:round;stroke-linecap:round}.wanted{stroke:#848d97;stroke-width:3}\
 .before{stroke:#e5534b;stroke-width:1.3}.after{stroke:#2da44e;stroke-width:1.3}.bar{stroke:#848d97;stroke-width:2}";
 
-fn draw(programmed: &[Vec<[f64; 3]>], sides: &[Side<'_>]) -> String {
+fn draw(programmed: &[&[[f64; 3]]], sides: &[Side<'_>]) -> String {
     const MARGIN_MM: f64 = 5.0;
     let flat: Vec<Vec<[f64; 2]>> =
         programmed.iter().map(|line| line.iter().map(|p| [p[0], p[1]]).collect()).collect();
@@ -344,7 +345,7 @@ mod tests {
 
     #[test]
     fn the_nearest_point_lies_on_a_segment() {
-        let line = vec![[0.0; 3], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0]];
+        let line: &[[f64; 3]] = &[[0.0; 3], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0]];
         assert_eq!(nearest(&[line], [12.0, 5.0, 1.0]), [10.0, 5.0, 0.0]);
     }
 
