@@ -41,9 +41,7 @@ impl RigidBody {
     #[inline]
     pub(crate) fn newton(&self, target: &Command, everywhere: &Everywhere) -> Option<Vector> {
         let wanted = target.linear_mm.into();
-        if !self.volume.contains(&target.linear_mm)
-            || (self.description.chain.has_rotary() && self.rotary_inside(target).is_err())
-        {
+        if !self.volume.contains(&target.linear_mm) || self.is_rotary_outside(target) {
             return None;
         }
         let mut q = self.newton_step(&wanted, &target.direction, &target.tool_mm);
@@ -70,7 +68,15 @@ impl RigidBody {
         state: &Command,
         everywhere: &Everywhere,
     ) -> Option<[[f64; LANES]; 3]> {
+        if self.is_rotary_outside(state) {
+            return None;
+        }
         together(NewtonTogether { model: self, targets_mm, directions, state, everywhere })
+    }
+
+    #[inline]
+    fn is_rotary_outside(&self, state: &Command) -> bool {
+        self.description.chain.has_rotary() && self.rotary_inside(state).is_err()
     }
 }
 

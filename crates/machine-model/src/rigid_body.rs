@@ -443,9 +443,6 @@ impl PathModel for RigidBody {
         state: &Command,
         everywhere: &Everywhere,
     ) -> Option<[[f64; LANES]; 3]> {
-        if self.description.chain.has_rotary() && self.rotary_inside(state).is_err() {
-            return None;
-        }
         self.newton_together(targets_mm, directions, state, everywhere)
     }
 
