@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use machine_model::Vector;
 
-use crate::centre::{PLACES, SAME_PLACE_MM, Search, in_plane};
+use crate::centre::{PLACES, Search, in_plane};
 use crate::corrector::{CorrectionError, Corrector, Follow};
-use crate::curve::Curve;
-use crate::deviation::{ByCommands, Machine, Pair, Solved, Verdict};
+use crate::curve::{Curve, SAME_PLACE_MM};
+use crate::deviation::{Pair, Solved, Verdict};
 use crate::play::Tried;
 use crate::{Piece, PieceKind};
 
@@ -112,7 +112,7 @@ impl<'m> Corrector<'m> {
         while let Some(candidate) = candidates.take_best() {
             let Some(curve) = candidate.arc(&search) else { continue };
             let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
-            match judged(&pair, &follow.machine, sieved.as_ref(), limit_mm) {
+            match pair.verdict_by(&follow.machine, sieved.as_ref(), limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
@@ -135,21 +135,6 @@ impl<'m> Corrector<'m> {
         let start = self.solve(&follow.machine, start).ok()?;
         let direction = follow.machine.state.direction;
         Some(Solved { commands: [start, first, second, third, end], direction })
-    }
-}
-
-/// [`Pair::verdict`], without asking the model where corrected commands tell enough.
-fn judged(pair: &Pair<'_>, machine: &Machine<'_>, solved: Option<&Solved>, limit_mm: f64) -> Verdict {
-    let known = solved.map_or(ByCommands::Open, |solved| pair.by_commands(machine, solved, limit_mm));
-    match known {
-        ByCommands::Beyond { s, distance_mm } => Verdict::Beyond { s, distance_mm },
-        ByCommands::Within(bound) if bound <= machine.told_mm => Verdict::Within(bound),
-        // Proven, but the summary may have to tell how well.
-        ByCommands::Within(bound) => match pair.verdict(machine, limit_mm) {
-            Verdict::Within(own) => Verdict::Within(own.min(bound)),
-            Verdict::Beyond { .. } => Verdict::Within(bound),
-        },
-        ByCommands::Open => pair.verdict(machine, limit_mm),
     }
 }
 

@@ -8,14 +8,11 @@ use smallvec::SmallVec;
 use toolpath::{Plane, Similarity};
 
 use crate::Centre;
-use crate::curve::Curve;
+use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::grid::{AxisWord, Block};
 
 /// Where the corrected path is asked for: a centre is fitted to it there, and what misses it there is not tried.
 pub(crate) const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
-
-/// Two ends nearer than this are one place: far below every output step, far above rounding of `f64`.
-pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
 
 /// A centre to try: the words and what the control makes of them.
 pub(crate) struct Candidate {

@@ -6,6 +6,9 @@ use machine_model::{Range, Vector, Volume};
 use toolpath::Shape;
 use units::math::{atan2, sin_cos};
 
+/// Commands nearer than this are one place: far below every output step, far above rounding of `f64`.
+pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
+
 /// A line, or an arc whose radius and normal axis run linearly with the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {

@@ -101,7 +101,7 @@ impl Solved {
 const SOLVED_MM: f64 = 1e-8;
 
 /// What corrected commands tell of a motion.
-pub(crate) enum ByCommands {
+enum ByCommands {
     /// The real path stays this near the programmed one, everywhere; mm.
     Within(f64),
     /// It is further away than allowed at this s, by at least this many mm.
@@ -209,9 +209,29 @@ impl Pair<'_> {
         between.max(a.distance).max(b.distance)
     }
 
+    /// [`Pair::verdict`], without asking the model where corrected commands tell enough.
+    pub(crate) fn verdict_by(
+        &self,
+        machine: &Machine<'_>,
+        solved: Option<&Solved>,
+        limit_mm: f64,
+    ) -> Verdict {
+        let known = solved.map_or(ByCommands::Open, |solved| self.by_commands(machine, solved, limit_mm));
+        match known {
+            ByCommands::Beyond { s, distance_mm } => Verdict::Beyond { s, distance_mm },
+            ByCommands::Within(bound) if bound <= machine.told_mm => Verdict::Within(bound),
+            // Proven, but the summary may have to tell how well.
+            ByCommands::Within(bound) => match self.verdict(machine, limit_mm) {
+                Verdict::Within(own) => Verdict::Within(own.min(bound)),
+                Verdict::Beyond { .. } => Verdict::Within(bound),
+            },
+            ByCommands::Open => self.verdict(machine, limit_mm),
+        }
+    }
+
     /// What the commands that bring the tool to the programmed path tell of the one commanded, without the model being asked:
     /// equation (P7).
-    pub(crate) fn by_commands(&self, machine: &Machine<'_>, solved: &Solved, limit_mm: f64) -> ByCommands {
+    fn by_commands(&self, machine: &Machine<'_>, solved: &Solved, limit_mm: f64) -> ByCommands {
         /// Of a motion, from place to place.
         const STRETCH: f64 = 0.25;
         let Some(everywhere) = &machine.everywhere else { return ByCommands::Open };
@@ -270,12 +290,14 @@ impl Pair<'_> {
         if whole <= limit_mm {
             return Verdict::Within(whole);
         }
+        let middle = self.place(machine, 0.5);
+        if let Some(refuted) = beyond(&middle) {
+            return refuted;
+        }
+        // Bounds that are asked for first below, the last of them first.
+        let mut known_bounds: SmallVec<[f64; 2]> = SmallVec::new();
         // A line that is too long for one bound mostly is not for two.
         if turning == 0.0 {
-            let middle = self.place(machine, 0.5);
-            if let Some(refuted) = beyond(&middle) {
-                return refuted;
-            }
             let first_half = bound(&first, &middle);
             if first_half <= limit_mm {
                 let halves = first_half.max(bound(&middle, &last));
@@ -283,10 +305,12 @@ impl Pair<'_> {
                     return Verdict::Within(halves);
                 }
             }
+            known_bounds.push(first_half);
         }
+        known_bounds.push(whole);
         // What does not hold mostly shows at a few places: cheaper than proving all that comes before them.
-        let mut looked_at: SmallVec<[Place; 5]> = SmallVec::new();
-        for s in [0.5, 0.25, 0.75, 0.125, 0.875] {
+        let mut looked_at: SmallVec<[Place; 5]> = SmallVec::from_slice(&[middle]);
+        for s in [0.25, 0.75, 0.125, 0.875] {
             let place = self.place(machine, s);
             if let Some(refuted) = beyond(&place) {
                 return refuted;
@@ -294,7 +318,6 @@ impl Pair<'_> {
             looked_at.push(place);
         }
         let mut worst_proven: f64 = 0.0;
-        let mut of_the_whole = Some(whole);
         // Depth first, left to right, on a stack of right halves: no recursion, no allocation.
         let mut stack = [first; DEEPEST + 3];
         stack[0] = last;
@@ -303,7 +326,7 @@ impl Pair<'_> {
         let mut places = 0;
         while height > 0 {
             let right = stack[height - 1];
-            let bound = of_the_whole.take().unwrap_or_else(|| bound(&left, &right));
+            let bound = known_bounds.pop().unwrap_or_else(|| bound(&left, &right));
             if bound <= limit_mm {
                 worst_proven = worst_proven.max(bound);
                 left = right;

@@ -135,22 +135,21 @@ impl<'m> Corrector<'m> {
             _ => -down,
         };
         self.direction[normal] = out;
-        match kept {
-            Some(kept) if !(self.expanding && expandable) => {
-                match kept.verdict(&machine, self.limit_mm(block)) {
-                    Verdict::Within(bound) => {
-                        correction.after_mm = bound;
-                        return Ok(kept.with(correction));
-                    }
-                    Verdict::Beyond { distance_mm, .. } if !expandable => {
-                        correction.after_mm = distance_mm;
-                        correction.leaning_mm = Some(distance_mm);
-                        return Ok(kept.with(correction));
-                    }
-                    Verdict::Beyond { .. } => self.expanding = true,
+        if let Some(kept) = kept
+            && !(self.expanding && expandable)
+        {
+            match kept.verdict(&machine, self.limit_mm(block)) {
+                Verdict::Within(bound) => {
+                    correction.after_mm = bound;
+                    return Ok(kept.with(correction));
                 }
+                Verdict::Beyond { distance_mm, .. } if !expandable => {
+                    correction.after_mm = distance_mm;
+                    correction.leaning_mm = Some(distance_mm);
+                    return Ok(kept.with(correction));
+                }
+                Verdict::Beyond { .. } => self.expanding = true,
             }
-            _ => {}
         }
         (self.standing, self.remembered) = before;
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
@@ -191,11 +190,7 @@ impl<'m> Corrector<'m> {
         block.complete(&mut axes, &mut reached, standing_program);
         axes[normal] = AxisWord::Omit;
         // Along the hole: R from the initial level and the bottom from R under G91.
-        let level = |mm: f64| {
-            let mut p = at_r;
-            p[normal] = mm;
-            block.program(&p)[normal]
-        };
+        let level = |mm: f64| block.program(&on_hole(hole, mm))[normal];
         let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
         let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
         let (r_origin, own_r_origin) =
@@ -266,8 +261,6 @@ impl<'m> Corrector<'m> {
         let from = block.machine(place);
         place[normal] = b_origin + b_value;
         let to = block.machine(place);
-        let mut end_bottom = at_r;
-        end_bottom[normal] = hole.bottom_mm;
         let pecks = matches!(hole.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip)
             && hole.cycle.peck_mm.is_some();
         let pecks = pecks.then(|| {
@@ -285,7 +278,7 @@ impl<'m> Corrector<'m> {
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         let piece = Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 };
-        let (wanted, commanded) = (Curve::Line(at_r, end_bottom), Curve::Line(from, to));
+        let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
         Kept { piece, untouched, wanted, commanded, pecks, r_mm: from[normal] }
     }
 

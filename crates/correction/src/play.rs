@@ -10,11 +10,8 @@
 use machine_model::Vector;
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
-use crate::curve::Curve;
+use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::grid::Block;
-
-/// Commands nearer than this are the same place: far below every output step.
-const SAME_MM: f64 = 1e-9;
 
 /// Which way an axis goes; one that does not move keeps its direction.
 #[inline]
@@ -30,7 +27,7 @@ pub(crate) fn heading(from: f64, to: f64, otherwise: i8) -> i8 {
 
 /// The side of its play to which an axis goes; one that does not move stays on the side to which it `came`.
 pub(crate) fn side(from: f64, to: f64, came: i8) -> i8 {
-    if (to - from).abs() > SAME_MM { heading(from, to, came) } else { came }
+    if (to - from).abs() > SAME_PLACE_MM { heading(from, to, came) } else { came }
 }
 
 /// Axes that are on another side of their play than was computed for.
