@@ -127,6 +127,14 @@ struct Feeding {
     hole: bool,
 }
 
+impl Feeding {
+    /// Where the tool really is, at s.
+    fn tip(&self, model: &dyn PathModel, s: f64) -> Vector {
+        let at = self.curve.at(s);
+        at + model.error_mm(&Command { linear_mm: at, ..self.state })
+    }
+}
+
 /// Where the axes are and which way they came.
 #[derive(Default)]
 struct Way {
@@ -253,7 +261,7 @@ pub fn compare(model: &dyn PathModel, wanted: &Program, commanded: &Program, lim
     for w in &wanted {
         let mut before_mm = 0.0f64;
         for_samples(&w.curve, |s| {
-            let real = real_tip(model, w, s);
+            let real = w.tip(model, s);
             before_mm = before_mm.max(distance(&w.curve, &real, project(&w.curve, &real, s)));
         });
         result.before.note(before_mm, w.line);
@@ -274,12 +282,6 @@ fn for_samples(curve: &Curve, mut f: impl FnMut(f64)) {
         f(k / pieces);
         k += 1.0;
     }
-}
-
-/// Where the tool really is, at s of a motion.
-fn real_tip(model: &dyn PathModel, motion: &Feeding, s: f64) -> Vector {
-    let at = motion.curve.at(s);
-    at + model.error_mm(&Command { linear_mm: at, ..motion.state })
 }
 
 struct Matcher<'a> {
@@ -321,15 +323,10 @@ impl Fit {
 }
 
 impl Matcher<'_> {
-    /// Where the tool really is, at s of a piece.
-    fn tip(&self, piece: &Feeding, s: f64) -> Vector {
-        real_tip(self.model, piece, s)
-    }
-
     fn fit(&self, w: &Feeding, piece: &Feeding, s0: f64) -> Fit {
         let mut fit = Fit { distance_mm: 0.0, s: s0, back_mm: 0.0, jump_mm: 0.0 };
         for_samples(&piece.curve, |s| {
-            let real = self.tip(piece, s);
+            let real = piece.tip(self.model, s);
             let on = project(&w.curve, &real, fit.s);
             fit.distance_mm = fit.distance_mm.max(distance(&w.curve, &real, on));
             fit.back_mm = fit.back_mm.max((fit.s - on) * w.length_mm);
@@ -353,7 +350,7 @@ impl Matcher<'_> {
         let mut at = self.at;
         let mut s0 = self.s;
         let mut first: Option<(usize, Fit)> = None;
-        let real = self.tip(piece, 1.0);
+        let real = piece.tip(self.model, 1.0);
         let mut ends_where_one_goes_on = false;
         while at < self.wanted.len() {
             let w = &self.wanted[at];
@@ -452,7 +449,7 @@ impl Matcher<'_> {
     /// The next hole, from its top, be it where the last one was.
     fn drills_anew(&self, piece: &Feeding) -> bool {
         let Some(next) = self.wanted.get(self.at).filter(|w| w.hole && self.s == 0.0) else { return false };
-        let place = |s: f64| project(&next.curve, &self.tip(piece, s), s);
+        let place = |s: f64| project(&next.curve, &piece.tip(self.model, s), s);
         let from = place(0.0);
         from.abs() * next.length_mm <= self.limit_mm
             && place(1.0) > from
@@ -495,7 +492,7 @@ impl Matcher<'_> {
             return true;
         }
         // Play taken up before the way back: only where it ends counts.
-        let real = self.tip(piece, 1.0);
+        let real = piece.tip(self.model, 1.0);
         let s = project(&hole.curve, &real, 1.0);
         let approach = piece.length_mm < 1.0 && distance(&hole.curve, &real, s) <= self.limit_mm;
         self.result.approaches += usize::from(approach);

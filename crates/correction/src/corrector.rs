@@ -10,7 +10,7 @@ use crate::curve::Curve;
 use crate::deviation::{Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::{heading, side};
-use crate::short_line::SLACK_MM;
+use crate::short_line::with_its_error;
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -242,6 +242,7 @@ impl<'m> Corrector<'m> {
     /// The command that brings the tool to a nominal command's place.
     pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
         let target = Command { linear_mm: nominal, ..machine.state };
+        // Place apart, where the same is asked for.
         let alike = |state: &Command| {
             (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
                 && (state.direction == target.direction || !self.model.depends_on_direction())
@@ -497,7 +498,7 @@ impl<'m> Corrector<'m> {
     pub(crate) fn error_before_mm(&self, correction_mm: f64) -> f64 {
         match &self.everywhere {
             Some((_, _, Some(everywhere))) if !self.model.depends_on_direction() => {
-                correction_mm * (1.0 + everywhere.gradient) + SLACK_MM
+                with_its_error(everywhere, correction_mm)
             }
             _ => f64::INFINITY,
         }

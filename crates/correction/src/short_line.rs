@@ -8,7 +8,7 @@
 use std::array::from_fn;
 use std::cmp::Ordering;
 
-use machine_model::{Command, LANES, Vector};
+use machine_model::{Command, Everywhere, LANES, Vector};
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
@@ -17,7 +17,13 @@ use crate::grid::{AxisWord, Block};
 use crate::play::heading;
 
 /// Room for the rounding of the few additions here, mm.
-pub(crate) const SLACK_MM: f64 = 1e-9;
+const SLACK_MM: f64 = 1e-9;
+
+/// Upper bound of a distance in commands together with what the error changes over it, mm.
+#[inline]
+pub(crate) fn with_its_error(everywhere: &Everywhere, mm: f64) -> f64 {
+    mm * (1.0 + everywhere.gradient) + SLACK_MM
+}
 
 /// A line that was corrected the short way: one block of output.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,14 +183,13 @@ impl Corrector<'_> {
 
         // At an end the tool is off by the rounding of its command, and what that changes in the error.
         let rounded = (to - wanted).norm_squared().max((from - answer).norm_squared()).sqrt();
-        let at_ends = rounded * (1.0 + everywhere.gradient) + SLACK_MM;
+        let at_ends = with_its_error(everywhere, rounded);
         let way = to - from;
         let after_mm = at_ends + everywhere.chord_bound_mm(way.amax());
         // The error at a place is its correction, but for what the error changes over the correction.
         let held = self.held(answer, from, depends);
         let largest = (wanted - end).norm_squared().max((held - start).norm_squared()).sqrt();
-        let before_mm = largest * (1.0 + everywhere.gradient)
-            + SLACK_MM
+        let before_mm = with_its_error(everywhere, largest)
             + everywhere.chord_bound_of_four_passes_mm((end - start).amax());
         let inside = everywhere.volume.contains(&start)
             && everywhere.volume.contains(&from)

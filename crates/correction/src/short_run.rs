@@ -10,7 +10,7 @@ use units::decimal::nearest_whole;
 
 use crate::corrector::Corrector;
 use crate::grid::Block;
-use crate::short_line::{Foreseen, SLACK_MM, ShortLines};
+use crate::short_line::{Foreseen, ShortLines, with_its_error};
 
 /// Lines that follow each other, in axis commands.
 #[derive(Clone, Copy, Debug)]
@@ -156,12 +156,11 @@ impl Corrector<'_> {
 
         // As for one line, with the worst of all.
         let rounded = rounding.into_iter().fold(0.0, f64::max).sqrt();
-        let after_mm = rounded * (1.0 + everywhere.gradient) + SLACK_MM + everywhere.chord_bound_mm(way_mm);
+        let after_mm = with_its_error(everywhere, rounded) + everywhere.chord_bound_mm(way_mm);
         let most = correction.into_iter().fold(0.0, f64::max);
         let largest_mm = most.sqrt();
-        let before_mm = largest_mm * (1.0 + everywhere.gradient)
-            + SLACK_MM
-            + everywhere.chord_bound_of_four_passes_mm(programmed_mm);
+        let before_mm =
+            with_its_error(everywhere, largest_mm) + everywhere.chord_bound_of_four_passes_mm(programmed_mm);
         let proven = after_mm.partial_cmp(&lines.limit_mm) == Some(Ordering::Less);
         if !holds || !proven || after_mm > self.told_mm[1] || before_mm > self.told_mm[0] {
             return None;
