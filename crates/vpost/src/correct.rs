@@ -240,7 +240,7 @@ pub(crate) fn run(
         hashes: arguments.summary.is_some(),
     };
     let mut output = file::Output::new(arguments.output.as_deref())?;
-    let done = program(input, &settings, manner, &mut output.place, &progress)?;
+    let done = program(input, &settings, manner, &mut output, &progress)?;
     interrupt.check()?;
     report(100);
     output.finish()?;

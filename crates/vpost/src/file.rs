@@ -11,6 +11,7 @@ use diagnostic::{Code, Diagnostic};
 use crate::correct::Growing;
 use crate::growing::GrowingFile;
 use crate::message::Failure;
+use crate::to_disk::ToDisk;
 
 /// A block is longer than any that is read.
 const TOO_LONG: Code = Code(106);
@@ -110,7 +111,8 @@ const SPOOLED_BYTES: usize = 16 << 20;
 pub(crate) struct Output<'p> {
     path: Option<&'p Path>,
     /// What is written to.
-    pub(crate) place: Place,
+    place: Place,
+    to_disk: ToDisk,
 }
 
 /// Where that is.
@@ -126,7 +128,8 @@ impl<'p> Output<'p> {
     /// An output to a file, or to standard output.
     pub(crate) fn new(path: Option<&'p Path>) -> Result<Self, Failure> {
         let Some(to) = path else {
-            return Ok(Self { path, place: Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES)) });
+            let place = Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES));
+            return Ok(Self { path, place, to_disk: ToDisk::default() });
         };
         let fail = |error: &std::io::Error| Failure::file(&name(to), "write", error);
         let folder = to.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -140,7 +143,7 @@ impl<'p> Output<'p> {
             let permissions = to.metadata().ok().map(|old| old.permissions());
             Place::Beside(GrowingFile::new(folder, permissions).map_err(|error| fail(&error))?)
         };
-        Ok(Self { path, place })
+        Ok(Self { path, place, to_disk: ToDisk::default() })
     }
 
     /// Shows it.
@@ -149,7 +152,7 @@ impl<'p> Output<'p> {
         let fail = |error: &std::io::Error| Failure::file(&named, "write", error);
         match (self.place, self.path) {
             (Place::Beside(beside), Some(path)) => {
-                beside.file().sync_all().map_err(|error| fail(&error))?;
+                self.to_disk.finish(beside.file()).map_err(|error| fail(&error))?;
                 beside.put_new(path).or_else(|(_, beside)| beside.replace(path)).map_err(|error| fail(&error))
             }
             (Place::Beside(_), None) => Ok(()),
@@ -167,6 +170,26 @@ impl<'p> Output<'p> {
                 }
             }
         }
+    }
+}
+
+impl Write for Output<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.place.write(bytes)?;
+        if let Place::Beside(beside) = &self.place {
+            self.to_disk.wrote(beside.file(), written);
+        }
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.place.flush()
+    }
+}
+
+impl Growing for Output<'_> {
+    fn clear(&mut self) -> std::io::Result<()> {
+        self.place.clear()
     }
 }
 
@@ -201,7 +224,7 @@ impl Growing for Place {
 /// Writes a file so that it is there whole or, where that fails, an earlier one is left as it was.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let mut output = Output::new(Some(path))?;
-    output.place.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
+    output.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
     output.finish()
 }
 

@@ -25,6 +25,7 @@ pub mod session;
 mod settings;
 mod solve;
 mod summary;
+mod to_disk;
 mod words;
 
 use std::ffi::OsString;

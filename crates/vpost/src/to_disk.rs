@@ -1,0 +1,67 @@
+//! A large output goes to the disk while it grows: in the end there is little to wait for.
+
+use std::fs::File;
+use std::io;
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::{self, JoinHandle};
+
+/// A disk is asked to take about so much at a time.
+const PART_BYTES: u64 = 8 << 20;
+
+/// Brings what was written to the disk, beside those who write.
+#[derive(Debug, Default)]
+pub(crate) struct ToDisk {
+    /// Written, and not asked for.
+    waiting_bytes: u64,
+    worker: Option<Worker>,
+}
+
+#[derive(Debug)]
+struct Worker {
+    ask: SyncSender<()>,
+    /// What the disk says is said once, to who asks first: it must not be lost.
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl ToDisk {
+    /// So many more bytes of a file were written.
+    pub(crate) fn wrote(&mut self, file: &File, bytes: usize) {
+        self.waiting_bytes += bytes as u64;
+        if self.waiting_bytes < PART_BYTES {
+            return;
+        }
+        if self.worker.is_none() {
+            self.worker = Worker::start(file).ok();
+        }
+        // Who is still at work on the last part takes this one with the next.
+        if self.worker.as_ref().is_some_and(|worker| worker.ask.try_send(()).is_ok()) {
+            self.waiting_bytes = 0;
+        }
+    }
+
+    /// All of the file is on the disk.
+    ///
+    /// # Errors
+    /// What the disk said, now or before.
+    pub(crate) fn finish(self, file: &File) -> io::Result<()> {
+        if let Some(Worker { ask, thread }) = self.worker {
+            drop(ask);
+            thread.join().map_err(|_| io::Error::other("the thread that writes to the disk has died"))??;
+        }
+        file.sync_all()
+    }
+}
+
+impl Worker {
+    fn start(file: &File) -> io::Result<Self> {
+        let file = file.try_clone()?;
+        let (ask, asked) = sync_channel(1);
+        let thread = thread::Builder::new().spawn(move || {
+            while asked.recv().is_ok() {
+                file.sync_data()?;
+            }
+            Ok(())
+        })?;
+        Ok(Self { ask, thread })
+    }
+}
