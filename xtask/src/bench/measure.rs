@@ -2,9 +2,11 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
+use wait4::Wait4;
 
 /// What one run took.
 #[derive(Clone, Copy, Debug)]
@@ -17,38 +19,40 @@ pub(crate) struct Run {
     pub(crate) peak_mib: f64,
 }
 
-/// Ticks of `/proc/PID/stat` in a second; the same on every Linux that Rust runs on.
-const TICKS_PER_SECOND: f64 = 100.0;
-
 /// Runs a command to its end.
 pub(crate) fn run(command: &mut Command) -> anyhow::Result<Run> {
     let started = Instant::now();
     let mut child = command.stdin(Stdio::null()).spawn().with_context(|| format!("{command:?}"))?;
-    let folder = Path::new("/proc").join(child.id().to_string());
-    let mut found = Run { wall_s: 0.0, cpu_s: 0.0, peak_mib: 0.0 };
-    loop {
-        if let Ok(status) = std::fs::read_to_string(folder.join("status"))
-            && let Some(line) = status.lines().find(|line| line.starts_with("VmHWM:"))
-            && let Some(kib) = line.split_whitespace().nth(1).and_then(|kib| kib.parse::<f64>().ok())
-        {
-            found.peak_mib = kib / 1024.0;
-        }
-        // An ended child keeps its times until it is waited for.
-        let stat = std::fs::read_to_string(folder.join("stat")).context("reading /proc needs Linux")?;
-        let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
-        let ticks = |at: usize| fields.get(at).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
-        found.cpu_s = (11..=14).map(ticks).sum::<f64>() / TICKS_PER_SECOND;
-        if fields.first() == Some(&"Z") {
-            found.wall_s = started.elapsed().as_secs_f64();
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(2));
+    let status = Path::new("/proc").join(child.id().to_string()).join("status");
+    let (ended, end) = channel();
+    let (used, wall_s, peak_mib) = std::thread::scope(|scope| {
+        let watch = scope.spawn(move || peak_mib(&status, &end));
+        let used = child.wait4();
+        let wall_s = started.elapsed().as_secs_f64();
+        drop(ended);
+        (used, wall_s, watch.join().unwrap_or(0.0))
+    });
+    let used = used?;
+    if !used.status.success() {
+        bail!("{command:?}: {}", used.status);
     }
-    let status = child.wait()?;
-    if !status.success() {
-        bail!("{command:?}: {status}");
+    Ok(Run { wall_s, cpu_s: (used.rusage.utime + used.rusage.stime).as_secs_f64(), peak_mib })
+}
+
+/// Largest resident memory of a running process until its end, MiB; 0 where the system does not tell. What is counted for an ended
+/// process has that of this one in it.
+fn peak_mib(status: &Path, end: &Receiver<()>) -> f64 {
+    /// Seldom enough to take nothing from what is measured.
+    const EVERY: Duration = Duration::from_millis(20);
+    let mut peak_kib: f64 = 0.0;
+    while end.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+        let text = std::fs::read_to_string(status).unwrap_or_default();
+        let kib = text
+            .lines()
+            .find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next()?.parse().ok());
+        peak_kib = peak_kib.max(kib.unwrap_or(0.0));
     }
-    Ok(found)
+    peak_kib / 1024.0
 }
 
 /// Seconds of the processor that this thread took so far: others' work on the machine does not count.
@@ -66,13 +70,4 @@ impl Run {
             peak_mib: self.peak_mib.max(other.peak_mib),
         }
     }
-}
-
-/// The quickest of several runs.
-pub(crate) fn best(runs: usize, mut once: impl FnMut() -> anyhow::Result<Run>) -> anyhow::Result<Run> {
-    let mut best = once()?;
-    for _ in 1..runs {
-        best = best.least(once()?);
-    }
-    Ok(best)
 }
