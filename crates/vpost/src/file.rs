@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use diagnostic::{Code, Diagnostic};
 
 use crate::correct::Growing;
-use crate::growing::GrowingFile;
+use crate::growing::{GrowingFile, Nursery};
 use crate::message::Failure;
 use crate::to_disk::ToDisk;
 
@@ -124,6 +124,11 @@ pub(crate) enum Place {
     Apart(tempfile::SpooledTempFile),
 }
 
+/// The folder that a file lies in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 impl<'p> Output<'p> {
     /// An output to a file, or to standard output.
     pub(crate) fn new(path: Option<&'p Path>) -> Result<Self, Failure> {
@@ -132,7 +137,6 @@ impl<'p> Output<'p> {
             return Ok(Self { path, place, to_disk: ToDisk::default() });
         };
         let fail = |error: &std::io::Error| Failure::file(&name(to), "write", error);
-        let folder = to.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if to.is_dir() {
             return Err(fail(&std::io::Error::from(std::io::ErrorKind::IsADirectory)));
         }
@@ -141,7 +145,9 @@ impl<'p> Output<'p> {
         } else {
             // An overwritten file keeps its permissions.
             let permissions = to.metadata().ok().map(|old| old.permissions());
-            Place::Beside(GrowingFile::new(folder, permissions).map_err(|error| fail(&error))?)
+            Place::Beside(
+                Nursery::new(folder_of(to).to_owned()).file(permissions).map_err(|error| fail(&error))?,
+            )
         };
         Ok(Self { path, place, to_disk: ToDisk::default() })
     }
@@ -153,7 +159,10 @@ impl<'p> Output<'p> {
         match (self.place, self.path) {
             (Place::Beside(beside), Some(path)) => {
                 self.to_disk.finish(beside.file()).map_err(|error| fail(&error))?;
-                beside.put_new(path).or_else(|(_, beside)| beside.replace(path)).map_err(|error| fail(&error))
+                beside
+                    .put_new(path)
+                    .or_else(|(_, beside)| beside.replace(folder_of(path), path))
+                    .map_err(|error| fail(&error))
             }
             (Place::Beside(_), None) => Ok(()),
             (Place::Apart(mut apart), path) => {

@@ -6,12 +6,20 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-/// A file that grows in a folder of the file system of its place.
+/// A folder that files grow in, of the file system of their places.
+#[derive(Debug)]
+pub(crate) struct Nursery {
+    path: PathBuf,
+    /// Open, where files need no name in it: its path is not walked for each of them.
+    opened: Option<File>,
+}
+
+/// A file that grows.
 #[derive(Debug)]
 pub(crate) enum GrowingFile {
     /// It has no name yet: however the process ends, nothing is left of it. And making one enters no folder, which
     /// takes the kernel less and makes no thread wait for another.
-    Nameless(File, PathBuf),
+    Nameless(File),
     /// Elsewhere it has one that is nobody's.
     Named(NamedTempFile),
 }
@@ -19,24 +27,39 @@ pub(crate) enum GrowingFile {
 /// Names of files that are in no place yet.
 const PREFIX: &str = ".vpost-";
 
-impl GrowingFile {
-    /// An empty file that grows in a folder; with the usual permissions where none are given.
-    pub(crate) fn new(folder: &Path, permissions: Option<Permissions>) -> io::Result<Self> {
-        if let Some(file) = nameless(folder, permissions.as_ref()) {
-            return Ok(Self::Nameless(file, folder.to_owned()));
+impl Nursery {
+    /// A folder that is there.
+    pub(crate) fn new(path: PathBuf) -> Self {
+        // A file without a name may have to get one by way of its descriptor's.
+        let opened = Path::new("/proc/self/fd").is_dir().then(|| File::open(&path).ok()).flatten();
+        Self { path, opened }
+    }
+
+    /// Its path.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// An empty file; with the usual permissions where none are given.
+    pub(crate) fn file(&self, permissions: Option<Permissions>) -> io::Result<GrowingFile> {
+        let nameless = self.opened.as_ref().and_then(|opened| nameless(opened, permissions.as_ref()));
+        if let Some(file) = nameless {
+            return Ok(GrowingFile::Nameless(file));
         }
         let mut builder = tempfile::Builder::new();
         for_everybody(builder.prefix(PREFIX));
         if let Some(permissions) = permissions {
             builder.permissions(permissions);
         }
-        builder.tempfile_in(folder).map(Self::Named)
+        builder.tempfile_in(&self.path).map(GrowingFile::Named)
     }
+}
 
+impl GrowingFile {
     /// What is written to.
     pub(crate) fn file(&self) -> &File {
         match self {
-            Self::Nameless(file, _) => file,
+            Self::Nameless(file) => file,
             Self::Named(named) => named.as_file(),
         }
     }
@@ -44,9 +67,7 @@ impl GrowingFile {
     /// Puts it in its place where nothing is; gives it back where something is, or where that cannot be told.
     pub(crate) fn put_new(self, place: &Path) -> Result<(), (io::Error, Self)> {
         match self {
-            Self::Nameless(file, folder) => {
-                link(&file, place).map_err(|error| (error, Self::Nameless(file, folder)))
-            }
+            Self::Nameless(file) => link(&file, place).map_err(|error| (error, Self::Nameless(file))),
             Self::Named(named) => match named.persist_noclobber(place) {
                 Ok(_) => Ok(()),
                 Err(missed) => Err((missed.error, Self::Named(missed.file))),
@@ -54,11 +75,12 @@ impl GrowingFile {
         }
     }
 
-    /// Puts it over what is in its place, which stays whole until then.
-    pub(crate) fn replace(self, place: &Path) -> io::Result<()> {
+    /// Puts it over what is in its place, which stays whole until then. Where it needs a name for that, it gets one in
+    /// `folder`.
+    pub(crate) fn replace(self, folder: &Path, place: &Path) -> io::Result<()> {
         match self {
             // A link takes no place that is taken; a name does.
-            Self::Nameless(file, folder) => {
+            Self::Nameless(file) => {
                 let named =
                     tempfile::Builder::new().prefix(PREFIX).make_in(folder, |name| link(&file, name))?;
                 named.persist(place).map(drop).map_err(|missed| missed.error)
@@ -102,24 +124,15 @@ pub(crate) fn for_everybody<'b, 'p, 's>(
 
 /// A file without a name; none where the system or the file system has none.
 #[cfg(target_os = "linux")]
-fn nameless(folder: &Path, permissions: Option<&Permissions>) -> Option<File> {
-    use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
-    /// It gets its name by way of its descriptor's.
-    static DESCRIPTORS: std::sync::LazyLock<bool> =
-        std::sync::LazyLock::new(|| Path::new("/proc/self/fd").is_dir());
-    if !*DESCRIPTORS {
-        return None;
-    }
-    File::options()
-        .read(true)
-        .write(true)
-        .mode(permissions.map_or(USUAL, Permissions::mode))
-        .custom_flags(rustix::fs::OFlags::TMPFILE.bits().cast_signed())
-        .open(folder)
-        .ok()
+fn nameless(folder: &File, permissions: Option<&Permissions>) -> Option<File> {
+    use std::os::unix::fs::PermissionsExt;
+
+    use rustix::fs::{Mode, OFlags, openat};
+    let mode = Mode::from_raw_mode(permissions.map_or(USUAL, Permissions::mode));
+    openat(folder, ".", OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC, mode).ok().map(File::from)
 }
 #[cfg(not(target_os = "linux"))]
-fn nameless(_: &Path, _: Option<&Permissions>) -> Option<File> {
+fn nameless(_: &File, _: Option<&Permissions>) -> Option<File> {
     None
 }
 
@@ -128,8 +141,17 @@ fn link(file: &File, place: &Path) -> io::Result<()> {
     use std::os::fd::AsRawFd;
 
     use rustix::fs::{AtFlags, CWD, linkat};
-    let descriptor = format!("/proc/self/fd/{}", file.as_raw_fd());
-    Ok(linkat(CWD, descriptor, CWD, place, AtFlags::SYMLINK_FOLLOW)?)
+    use rustix::io::Errno;
+    match linkat(file, "", CWD, place, AtFlags::EMPTY_PATH) {
+        Ok(()) => Ok(()),
+        Err(Errno::EXIST) => Err(Errno::EXIST.into()),
+        // Before Linux 6.10 only a superuser may link what has no path. Where it is the place that is not there, the
+        // longer way says so, too.
+        Err(_) => {
+            let descriptor = format!("/proc/self/fd/{}", file.as_raw_fd());
+            Ok(linkat(CWD, descriptor, CWD, place, AtFlags::SYMLINK_FOLLOW)?)
+        }
+    }
 }
 #[cfg(not(target_os = "linux"))]
 fn link(_: &File, _: &Path) -> io::Result<()> {
@@ -148,7 +170,7 @@ mod tests {
                 let mut file = if named {
                     GrowingFile::Named(tempfile::NamedTempFile::new_in(folder.path()).unwrap())
                 } else {
-                    GrowingFile::new(folder.path(), None).unwrap()
+                    Nursery::new(folder.path().to_owned()).file(None).unwrap()
                 };
                 file.write_all(text).unwrap();
                 file
@@ -170,7 +192,7 @@ mod tests {
             let (error, second) = grown(b"second").put_new(&place).unwrap_err();
             assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
             assert_eq!(std::fs::read(&place).unwrap(), b"first");
-            second.replace(&place).unwrap();
+            second.replace(folder, &place).unwrap();
             assert_eq!(std::fs::read(&place).unwrap(), b"second");
             drop(grown(b"third"));
             assert_eq!(names(folder), ["part.nc"]);
@@ -207,10 +229,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mode = |name: &str| folder.path().join(name).metadata().unwrap().permissions().mode() & 0o777;
         std::fs::write(folder.path().join("usual"), "").unwrap();
-        assert!(GrowingFile::new(folder.path(), None).unwrap().put_new(&folder.path().join("new")).is_ok());
+        let nursery = Nursery::new(folder.path().to_owned());
+        assert!(nursery.file(None).unwrap().put_new(&folder.path().join("new")).is_ok());
         assert_eq!(mode("new"), mode("usual"));
         let own = Some(Permissions::from_mode(0o600));
-        assert!(GrowingFile::new(folder.path(), own).unwrap().put_new(&folder.path().join("own")).is_ok());
+        assert!(nursery.file(own).unwrap().put_new(&folder.path().join("own")).is_ok());
         assert_eq!(mode("own"), 0o600);
     }
 }

@@ -19,7 +19,7 @@ use blake3::{Hash, Hasher};
 use diagnostic::{Code, Diagnostic};
 
 use crate::file::{self, Place};
-use crate::growing::GrowingFile;
+use crate::growing::{GrowingFile, Nursery};
 use crate::message::{Failure, Report};
 
 /// Someone else works in the output folder.
@@ -38,7 +38,7 @@ pub(crate) enum Company {
 #[derive(Debug)]
 pub(crate) struct OutputFolder {
     root: PathBuf,
-    temporaries: PathBuf,
+    temporaries: Nursery,
     /// Held until this value goes. None where the file system knows no locks.
     lock: Option<File>,
 }
@@ -59,7 +59,11 @@ impl OutputFolder {
             Err(TryLockError::WouldBlock) => false,
             // A file system without locks: nobody can be asked for, and nothing is swept.
             Err(TryLockError::Error(_)) => {
-                return Ok(Self { root: root.to_owned(), temporaries, lock: None });
+                return Ok(Self {
+                    root: root.to_owned(),
+                    temporaries: Nursery::new(temporaries),
+                    lock: None,
+                });
             }
         };
         if alone {
@@ -72,7 +76,7 @@ impl OutputFolder {
         if !held {
             return Err(busy(root));
         }
-        Ok(Self { root: root.to_owned(), temporaries, lock: Some(lock) })
+        Ok(Self { root: root.to_owned(), temporaries: Nursery::new(temporaries), lock: Some(lock) })
     }
 
     /// True where nobody else can be at work here.
@@ -109,16 +113,16 @@ impl OutputFolder {
 
     /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put_new).
     pub(crate) fn temporary(&self) -> io::Result<Place> {
-        GrowingFile::new(&self.temporaries, None).map(Place::Beside)
+        self.temporaries.file(None).map(Place::Beside)
     }
 
     /// Writes a file of the journal: whole, or an earlier one stays as it was.
     pub(crate) fn put_journal(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
         // Not beside its place: who is killed here leaves it where it is swept.
-        let mut file = GrowingFile::new(&self.temporaries, None)?;
+        let mut file = self.temporaries.file(None)?;
         file.write_all(bytes)?;
         file.file().sync_all()?;
-        file.replace(&self.journal().join(name))
+        file.replace(self.temporaries.path(), &self.journal().join(name))
     }
 
     /// Puts an output in its place where nothing is: whole under its final name. Gives it back where something is, or
@@ -143,7 +147,7 @@ impl OutputFolder {
 
     /// Puts an output that [`put_new`](Self::put_new) gave back over what is in its place, which stays whole until then.
     pub(crate) fn replace(&self, temporary: Place, output: &str) -> io::Result<()> {
-        beside(temporary)?.replace(&self.place(output))
+        beside(temporary)?.replace(self.temporaries.path(), &self.place(output))
     }
 
     /// Brings everything written so far to the disk: what is reported as done survives a power cut.
