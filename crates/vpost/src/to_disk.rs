@@ -65,3 +65,32 @@ impl Worker {
         Ok(Self { ask, thread })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    #[test]
+    fn all_of_a_file_is_there_in_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.nc");
+        let mut output = crate::file::Output::new(Some(&path)).unwrap();
+        let part: Vec<u8> = (0..1_u32 << 18).flat_map(u32::to_le_bytes).collect();
+        let parts = 3 * PART_BYTES as usize / part.len();
+        (0..parts).for_each(|_| output.write_all(&part).unwrap());
+        output.finish().unwrap();
+        assert!(std::fs::read(path).unwrap() == part.repeat(parts));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_the_disk_said_meanwhile_is_told_in_the_end() {
+        // A device that cannot be brought to a disk.
+        let fails = File::options().write(true).open("/dev/null").unwrap();
+        let mut to_disk = ToDisk::default();
+        to_disk.wrote(&fails, PART_BYTES as usize);
+        to_disk.finish(&tempfile::tempfile().unwrap()).unwrap_err();
+    }
+}
