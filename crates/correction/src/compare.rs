@@ -356,6 +356,10 @@ impl Matcher<'_> {
             let w = &self.wanted[at];
             let fit = self.fit(w, piece, s0);
             if fit.holds(w, self.limit_mm) {
+                // Before motions in between are passed over, what was made last has a claim to it.
+                if at > self.at && self.lingers(piece) {
+                    return;
+                }
                 if fit.jump_mm > self.limit_mm && self.ends_near_last(piece, &real) {
                     // Of a motion that is yet to be made it would leave out more than a limit.
                     self.result.approaches += 1;
