@@ -501,7 +501,7 @@ fn every_message_number_has_an_entry_and_every_entry_a_message() {
 
 /// Each example below an entry is given to the command, which must answer with that number.
 ///
-/// `nc D`: a program of dialect D for the STAN S500, with further options behind it; `toml`: a profile;
+/// `nc D`: a program of dialect D for the STAN S500 or for the profile that is named with further options behind it; `toml`: a profile;
 /// `csv predict`, `csv diagnose`: a file for that job.
 #[test]
 fn the_examples_of_messages_cause_them() {
@@ -515,10 +515,12 @@ fn the_examples_of_messages_cause_them() {
             continue;
         };
         let (file, job) = match fence.language() {
-            "nc" => (
-                "example.nc",
-                format!("vpost example.nc -m machine-profiles/stan_s500.toml -d {}", fence.option()),
-            ),
+            "nc" => {
+                let options = fence.option();
+                let machine =
+                    if options.contains(" -m ") { "" } else { " -m machine-profiles/stan_s500.toml" };
+                ("example.nc", format!("vpost example.nc{machine} -d {options}"))
+            }
             "toml" => ("example.toml", "vpost profile check example.toml".to_owned()),
             "csv" => (
                 "example.csv",

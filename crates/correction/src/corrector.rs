@@ -93,6 +93,8 @@ pub struct Correction {
     pub approach: bool,
     /// A cycle left to the control leans by this much over its depth, mm, more than the tolerance.
     pub leaning_mm: Option<f64>,
+    /// Nobody knows on which side of its play an axis stands: the tool is off by up to this much besides, mm.
+    pub unknown_side_mm: f64,
 }
 
 /// Corrects motions in the order of the program.
@@ -194,8 +196,14 @@ impl<'m> Corrector<'m> {
     fn correct_in_state(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
         match motion {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
-            Motion::Feed(feed) => self.feed(feed, block),
-            Motion::Hole(hole) => self.hole(hole, block),
+            Motion::Feed(feed) => {
+                let corrected = self.feed(feed, block)?;
+                Ok(self.with_unknown_side(corrected, block, &feed.end))
+            }
+            Motion::Hole(hole) => {
+                let corrected = self.hole(hole, block)?;
+                Ok(self.with_unknown_side(corrected, block, &hole.at_r))
+            }
             Motion::Uncorrected { end } => {
                 for axis in 0..3 {
                     // An axis that the block does not name stays where the output has brought it.
@@ -237,6 +245,37 @@ impl<'m> Corrector<'m> {
         for (i, direction) in self.direction.iter_mut().enumerate() {
             *direction = heading(from[i], to[i], *direction);
         }
+    }
+
+    /// An axis with play whose last direction nobody knows.
+    pub(crate) fn is_side_unknown(&self) -> bool {
+        self.direction.contains(&0) && self.model.depends_on_direction()
+    }
+
+    /// Says by how much the tool may be off at the end of a motion, for axes that stand on an unknown side of their play.
+    ///
+    /// Such an axis takes the middle of its play: the error of either side is half of their difference away.
+    fn with_unknown_side(
+        &self,
+        mut corrected: Corrected,
+        block: &Block,
+        end: &toolpath::Position,
+    ) -> Corrected {
+        if self.is_side_unknown() {
+            let state = Command { linear_mm: end.linear_mm.into(), ..self.state(block, end.rotary_deg) };
+            let unknown = (0..3).filter(|axis| self.direction[*axis] == 0);
+            corrected.correction.unknown_side_mm = unknown
+                .map(|axis| {
+                    let [up, down] = [1, -1].map(|side| {
+                        let mut state = state;
+                        state.direction[axis] = side;
+                        self.model.error_mm(&state)
+                    });
+                    0.5 * (up - down).norm()
+                })
+                .sum();
+        }
+        corrected
     }
 
     /// The command that brings the tool to a nominal command's place.

@@ -81,7 +81,7 @@ impl Corrector<'_> {
     pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
         self.heed(block, rotary_deg);
         let ordinary = !block.incremental && block.frame.is_shift() && block.whole == [false; 3];
-        if !ordinary || !matches!(self.everywhere, Some((_, _, Some(_)))) {
+        if !ordinary || self.is_side_unknown() || !matches!(self.everywhere, Some((_, _, Some(_)))) {
             return None;
         }
         Some(ShortLines {

@@ -45,6 +45,8 @@ pub const LEANING_CYCLE: Code = Code(506);
 pub const RAPID_OUTSIDE: Code = Code(507);
 /// Motion under cutter compensation was corrected.
 pub const COMPENSATED: Code = Code(508);
+/// Nobody knows on which side of its play an axis stands.
+pub const UNKNOWN_SIDE: Code = Code(509);
 
 /// The mark of the correction stands behind one of so many blocks at most.
 const OPENING_BLOCKS: usize = 64;

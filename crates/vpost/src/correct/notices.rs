@@ -10,6 +10,7 @@ use toolpath::Motion;
 
 use super::{
     COMPENSATED, LEANING_CYCLE, MUST_NOT_SPLIT, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE,
+    UNKNOWN_SIDE,
 };
 
 /// Things that happen more than once and are told once.
@@ -18,6 +19,7 @@ pub(crate) struct Notices {
     pub(crate) clamped: Notice,
     pub(crate) leaning: Notice,
     pub(crate) compensated: Notice,
+    pub(crate) unknown_side: Notice,
 }
 
 /// One kind of them.
@@ -53,6 +55,7 @@ impl Notices {
         self.clamped.add(&later.clamped);
         self.leaning.add(&later.leaning);
         self.compensated.add(&later.compensated);
+        self.unknown_side.add(&later.unknown_side);
     }
 
     pub(crate) fn warnings(&self) -> Vec<Warning> {
@@ -82,6 +85,17 @@ impl Notices {
                 Diagnostic::warning(COMPENSATED, format!("{count} motion(s) under cutter compensation"))
                     .at(first.clone(), "the programmed contour was corrected, not the path of the tool's centre")
                     .help("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters"), *line));
+        }
+        if let Notice { count, first: Some((first, line)), largest_mm } = &self.unknown_side {
+            all.push((
+                Diagnostic::warning(
+                    UNKNOWN_SIDE,
+                    format!("{count} motion(s) with an axis on an unknown side of its play, off by up to {:.1} um", largest_mm * 1e3),
+                )
+                .at(first.clone(), "the first; the middle of the play was taken, since nothing before tells from where the axis came")
+                .help("say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return or `/`, feed the axis to its place from one side first"),
+                *line,
+            ));
         }
         all
     }

@@ -390,6 +390,9 @@ impl Pass<'_> {
             if let Some(lean) = correction.leaning_mm {
                 notices.leaning.see(&span, line, lean);
             }
+            if correction.unknown_side_mm > 0.0 {
+                notices.unknown_side.see(&span, line, correction.unknown_side_mm);
+            }
             if context.compensation && matches!(motion, Motion::Feed(_)) {
                 notices.compensated.see(&span, line, 0.0);
             }
