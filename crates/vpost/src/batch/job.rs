@@ -1,9 +1,8 @@
 //! How programs are corrected, as a value that can be hashed: with the same one the same input gives the same bytes.
 
-use std::path::Path;
-
 use blake3::{Hash, Hasher};
 
+use super::inputs::Item;
 use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
 use crate::correct::{self, Input, Manner, Program};
@@ -32,13 +31,14 @@ impl Job {
     /// `threads`: for a large program; the bytes are the same for any number.
     pub(crate) fn correct(
         &self,
-        input: &Path,
+        item: &Item,
         threads: usize,
         out: &mut Place,
         interrupt: &Interrupt,
     ) -> Result<Program, Failure> {
         let manner = Manner { force: false, threads, hashes: true };
-        correct::program(Input::File(input.to_owned()), &self.settings, manner, out, &|_| interrupt.check())
+        let input = Input::File(item.input.clone(), item.bytes);
+        correct::program(input, &self.settings, manner, out, &|_| interrupt.check())
     }
 }
 

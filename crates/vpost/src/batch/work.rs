@@ -203,7 +203,7 @@ impl Batch<'_> {
         let place = || self.folder.place(&item.output);
         let fail = |error: std::io::Error| Failure::file(&file::name(&place()), "write", &error);
         let mut temporary = self.folder.temporary().map_err(fail)?;
-        let done = self.job.correct(&item.input, threads, &mut temporary, self.interrupt)?;
+        let done = self.job.correct(item, threads, &mut temporary, self.interrupt)?;
         if let Some(hash) = done.input.hash {
             planned(item, hash)?;
         }

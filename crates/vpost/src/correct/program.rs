@@ -23,8 +23,8 @@ const SMALL_BYTES: u64 = 4 << 20;
 
 /// Where a program comes from.
 pub(crate) enum Input {
-    /// A file, which can be read more than once.
-    File(PathBuf),
+    /// A file, which can be read more than once, and its length where that is known: only room is made by it.
+    File(PathBuf, u64),
     /// Anything else, by the name it has in messages.
     Stream(String, Box<dyn Read + Send>),
 }
@@ -34,19 +34,19 @@ impl Input {
     pub(crate) fn open(path: &Path) -> Self {
         if path.as_os_str() == "-" {
             Self::Stream(file::name(path), Box::new(io::stdin()))
-        } else if path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-            match File::open(path) {
-                Ok(pipe) => Self::Stream(file::name(path), Box::new(pipe)),
-                Err(_) => Self::File(path.to_owned()),
-            }
         } else {
-            Self::File(path.to_owned())
+            let found = path.metadata().ok();
+            let pipe = found.as_ref().is_some_and(|found| !found.is_file() && !found.is_dir());
+            match pipe.then(|| File::open(path)) {
+                Some(Ok(pipe)) => Self::Stream(file::name(path), Box::new(pipe)),
+                _ => Self::File(path.to_owned(), found.map_or(0, |found| found.len())),
+            }
         }
     }
 
     fn name(&self) -> String {
         match self {
-            Self::File(path) => file::name(path),
+            Self::File(path, _) => file::name(path),
             Self::Stream(name, _) => name.clone(),
         }
     }
@@ -115,9 +115,8 @@ pub(crate) fn program(
     let name = input.name();
     let unread = |error: &io::Error| Failure::file(&name, "read", error);
     let (path, bytes, mut rest): (Option<PathBuf>, u64, Box<dyn Read + Send>) = match input {
-        Input::File(path) => {
+        Input::File(path, bytes) => {
             let file = File::open(&path).map_err(|error| unread(&error))?;
-            let bytes = file.metadata().map_or(0, |data| data.len());
             (Some(path), bytes, Box::new(file))
         }
         Input::Stream(_, stream) => (None, 0, stream),
