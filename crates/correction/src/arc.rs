@@ -7,7 +7,7 @@ use machine_model::Vector;
 use crate::centre::{PLACES, Search, in_plane};
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::{Curve, SAME_PLACE_MM};
-use crate::deviation::{Pair, Solved, Verdict};
+use crate::deviation::{Enclosed, Machine, Pair, Solved, Verdict};
 use crate::play::Tried;
 use crate::{Piece, PieceKind};
 
@@ -42,11 +42,16 @@ impl<'m> Corrector<'m> {
         {
             return self.follow_line(follow, part);
         }
-        let [first, second] = solved_halves(follow, part, s);
-        follow.solved = first;
-        self.follow_arc(follow, &part.part(0.0, s))?;
-        follow.solved = second;
-        self.follow_arc(follow, &part.part(s, 1.0))
+        let halves = part.split(s);
+        let solved = solved_halves(follow, part, s);
+        if let [Some(first), Some(second)] = &solved {
+            follow.enclosed = Enclosed::of(&follow.machine, &halves, [first, second]);
+        }
+        for (half, solved) in halves.iter().zip(solved) {
+            follow.solved = solved;
+            self.follow_arc(follow, half)?;
+        }
+        Ok(())
     }
 
     /// Tries one arc to the end of `part`; the axes stand where they stood unless it is done.
@@ -64,7 +69,7 @@ impl<'m> Corrector<'m> {
         let nominal_end = part.at(1.0);
         let direction = follow.machine.state.direction;
         if follow.solved.is_none_or(|solved| solved.direction != direction) {
-            follow.solved = self.solved(follow, part);
+            follow.solved = self.solved(&follow.machine, part);
         }
         let wanted = match &follow.solved {
             Some(solved) => solved.end(),
@@ -112,7 +117,7 @@ impl<'m> Corrector<'m> {
         while let Some(candidate) = candidates.take_best() {
             let Some(curve) = candidate.arc(&search) else { continue };
             let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
-            match pair.verdict_by(&follow.machine, sieved.as_ref(), limit_mm) {
+            match pair.verdict_by(&follow.machine, sieved.as_ref(), follow.enclosed.as_ref(), limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
@@ -129,12 +134,19 @@ impl<'m> Corrector<'m> {
     }
 
     /// Commands that bring the tool to an arc, its places all solved at once; `None` where the model has to be asked for each.
-    fn solved(&self, follow: &Follow<'_, '_>, part: &Curve) -> Option<Solved> {
-        let [start, a, b, c, end] = part.at_quarters();
-        let [first, second, third, end] = follow.machine.solved_together([a, b, c, end])?;
-        let start = self.solve(&follow.machine, start).ok()?;
-        let direction = follow.machine.state.direction;
-        Some(Solved { commands: [start, first, second, third, end], direction })
+    fn solved(&self, machine: &Machine<'_>, part: &Curve) -> Option<Solved> {
+        Some(self.solved_arc(machine, part)?.0)
+    }
+
+    /// The same, and the largest correction at these places, mm.
+    pub(crate) fn solved_arc(&self, machine: &Machine<'_>, part: &Curve) -> Option<(Solved, f64)> {
+        let places = part.at_quarters();
+        let [start, a, b, c, end] = places;
+        let [first, second, third, end] = machine.solved_together([a, b, c, end])?;
+        let commands = [self.solve(machine, start).ok()?, first, second, third, end];
+        let squared = commands.iter().zip(&places).map(|(command, place)| (command - place).norm_squared());
+        let largest_mm = squared.fold(0.0, f64::max).sqrt();
+        Some((Solved { commands, direction: machine.state.direction }, largest_mm))
     }
 }
 

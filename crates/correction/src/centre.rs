@@ -87,6 +87,10 @@ impl Candidates {
     }
 }
 
+/// No rounding of the fitted centre that [`Search::by_offsets`] tries is further from it, output steps: one and a half in
+/// each word.
+const FARTHEST_STEPS: f64 = 3.1;
+
 /// What lengths may be off by where they are taken for linear in a centre, mm: a hundredth of the finest output step.
 const LINEAR_MM: f64 = 1e-5;
 
@@ -116,12 +120,34 @@ impl Near {
     fn missed_mm(&self, centre: [f64; 2]) -> Option<(f64, f64)> {
         let by = [centre[0] - self.centre[0], centre[1] - self.centre[1]];
         let moved_squared = by[0] * by[0] + by[1] * by[1];
-        if moved_squared * self.bend > LINEAR_MM || moved_squared * self.bend * self.bend > 1.0 {
+        if !self.reaches(moved_squared) {
             return None;
         }
         let along = |change: &[f64; 2]| change[0] * by[0] + change[1] * by[1];
         let missed = (0..3).map(|k| (self.missed[k] + along(&self.change[k])).abs()).fold(0.0, f64::max);
         Some((missed, (self.apart + along(&self.spread)).abs()))
+    }
+
+    /// A lower bound of what [`Self::missed_mm`] says of any centre about which the radii differ by at most `apart_mm` at the
+    /// ends, mm.
+    ///
+    /// For three vectors of a plane `a×b·c + b×c·a + c×a·b = 0`: with these weights the sum of three lengths that are linear in
+    /// a centre is the same for all centres, and one of them is as large as that asks for.
+    fn least_missed_mm(&self, apart_mm: f64) -> f64 {
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let ([first, middle, last], [a, b, c]) = (self.missed, self.change);
+        let [of_first, of_middle, of_last] = [cross(b, c), cross(c, a), cross(a, b)];
+        let sum = of_first * first + of_middle * middle + of_last * last;
+        let by_three = sum.abs() / (of_first.abs() + of_middle.abs() + of_last.abs());
+        let [of_first, of_last, of_apart] = [cross(c, self.spread), cross(self.spread, a), cross(a, c)];
+        let sum = of_first * first + of_last * last + of_apart * self.apart;
+        let by_radii = (sum.abs() - of_apart.abs() * apart_mm) / (of_first.abs() + of_last.abs());
+        by_three.max(by_radii)
+    }
+
+    /// Centres of which this is the square of the distance, mm², are near enough for [`Self::missed_mm`].
+    fn reaches(&self, moved_squared: f64) -> bool {
+        moved_squared * self.bend <= LINEAR_MM && moved_squared * self.bend * self.bend <= 1.0
     }
 }
 
@@ -169,7 +195,10 @@ impl Search<'_> {
         if by_radius {
             self.by_radius(fitted, scale, &mut push);
         }
-        if block.centre_words {
+        // An arc of half a turn on a machine out of square is an ellipse that no circle follows.
+        let hopeless = near.reaches(FARTHEST_STEPS * FARTHEST_STEPS * step * step)
+            && near.least_missed_mm(allowed) > self.farthest_mm + 2.0 * SAME_PLACE_MM;
+        if block.centre_words && !hopeless {
             self.by_offsets(fitted, has_centre, &mut push);
         }
         found
@@ -325,6 +354,43 @@ mod tests {
     use units::math::sin_cos;
 
     use super::*;
+    use crate::testing::block;
+
+    /// On a machine out of square half a turn becomes half an ellipse: no centre serves, and none is tried.
+    #[test]
+    fn no_centre_is_tried_for_half_an_ellipse() {
+        let place = |angle: f64, shear: f64| {
+            let (sin, cos) = sin_cos(angle);
+            Vector::new(10.0 * cos + shear * 10.0 * sin, 10.0 * sin, 0.0)
+        };
+        for (start, shear, tried) in
+            [(0.0, 1e-3, false), (0.8, 2e-3, false), (0.0, 1e-5, true), (0.8, 1e-5, true)]
+        {
+            let at = |s: f64| place(start + s * TAU / 2.0, shear);
+            let part = Curve::Arc {
+                axes: Plane::Xy.axes(),
+                centre: [0.0; 2],
+                angle: start,
+                sweep: TAU / 2.0,
+                radius: [10.0; 2],
+                normal: [0.0; 2],
+                ends: [place(start, 0.0), place(start + TAU / 2.0, 0.0)],
+            };
+            let block = block([0.0; 3]);
+            let search = Search {
+                part: &part,
+                block: &block,
+                from: at(0.0),
+                to: at(1.0),
+                corrected: PLACES.map(at),
+                own_words: false,
+                farthest_mm: 0.0018,
+            };
+            let least = search.near(search.fitted()).least_missed_mm(0.002);
+            assert_eq!(least <= search.farthest_mm, tried, "{start} {shear}: {least}");
+            assert_eq!(!search.candidates().0.is_empty(), tried, "{start} {shear}");
+        }
+    }
 
     proptest! {
         #[test]
@@ -342,11 +408,7 @@ mod tests {
                 ends: [place(0), place(4)],
             };
             let corrected = [place(1), place(2), place(3)];
-            let block = Block {
-                frame: Default::default(), unit_mm: 1.0, decimals: [3; 3], incremental: false, arc_centres_absolute: false,
-                letters: Default::default(), whole: [false; 3], tool_mm: [0.0; 3], centre_words: true,
-                arc_radius_tolerance_mm: 0.01, peck_clearance_mm: 0.0, chip_retreat_mm: 0.0,
-            };
+            let block = block([0.0; 3]);
             let search = Search {
                 part: &part, block: &block, from: place(0), to: place(4), corrected, own_words: false, farthest_mm: 1.0,
             };
@@ -355,8 +417,10 @@ mod tests {
             let missed = (1..4).map(|k| (r(0) + (r(4) - r(0)) * 0.25 * k as f64 - r(k)).abs()).fold(0.0, f64::max);
             let (own, apart) = search.near(centre).missed_mm(centre).unwrap();
             prop_assert!((own - missed).abs() < 1e-12 && (apart - (r(4) - r(0)).abs()).abs() < 1e-12);
-            match search.near([20.0, -30.0]).missed_mm(centre) {
+            let given = search.near([20.0, -30.0]);
+            match given.missed_mm(centre) {
                 Some((near, near_apart)) => {
+                    prop_assert!(given.least_missed_mm(near_apart) <= near + SAME_PLACE_MM);
                     prop_assert!((near - missed).abs() <= LINEAR_MM && (near_apart - apart).abs() <= LINEAR_MM);
                 }
                 None => prop_assert!(length(by) > 1e-3 * radius.sqrt()),

@@ -7,10 +7,9 @@ use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
 
 use crate::curve::Curve;
-use crate::deviation::{Machine, Solved};
+use crate::deviation::{Enclosed, Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::{heading, side};
-use crate::short_line::with_its_error;
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -278,9 +277,9 @@ impl<'m> Corrector<'m> {
         corrected
     }
 
-    /// The command that brings the tool to a nominal command's place.
-    pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
-        let target = Command { linear_mm: nominal, ..machine.state };
+    /// What [`Self::solve`] answers, where it was found before.
+    pub(crate) fn found(&self, machine: &Machine<'_>, nominal: Vector) -> Option<Vector> {
+        let target = &machine.state;
         // Place apart, where the same is asked for.
         let alike = |state: &Command| {
             (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
@@ -290,14 +289,19 @@ impl<'m> Corrector<'m> {
             && same.linear_mm == nominal
             && alike(same)
         {
-            return Ok(*answer);
+            return Some(*answer);
         }
-        if let Some((state, places, answers)) = &self.known
-            && let Some(place) = places.iter().position(|place| *place == nominal)
-            && alike(state)
-        {
-            return Ok(answers[place]);
+        let (state, places, answers) = self.known.as_ref()?;
+        let place = places.iter().position(|place| *place == nominal)?;
+        alike(state).then(|| answers[place])
+    }
+
+    /// The command that brings the tool to a nominal command's place.
+    pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
+        if let Some(answer) = self.found(machine, nominal) {
+            return Ok(answer);
         }
+        let target = Command { linear_mm: nominal, ..machine.state };
         let answer = match &self.everywhere {
             Some((_, _, Some(everywhere))) => self.model.command_for(&target, everywhere),
             _ => self.model.solve(&target).map(|solution| solution.linear_mm),
@@ -484,7 +488,7 @@ impl<'m> Corrector<'m> {
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
-        let mut own_words = true;
+        let (mut own_words, mut at_quarters_mm) = (true, None);
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
             let mut came = self.direction;
@@ -501,11 +505,17 @@ impl<'m> Corrector<'m> {
                 length_mm: whole.length_mm(),
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
                 solved: None,
+                enclosed: None,
+                foreseen: false,
                 corrected: &mut corrected,
             };
             match feed.shape {
                 Shape::Line => self.follow_line(&mut follow, &part)?,
                 Shape::Arc(arc) if block.frame.similarity(arc.plane).is_some() => {
+                    if let Some((solved, largest_mm)) = self.solved_arc(&follow.machine, &part) {
+                        follow.solved = Some(solved);
+                        at_quarters_mm = Some(largest_mm).filter(|_| parts.len() == 1);
+                    }
                     self.follow_arc(&mut follow, &part)?;
                 }
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
@@ -516,8 +526,11 @@ impl<'m> Corrector<'m> {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
             corrected.pieces.push(self.standstill(block));
         }
-        corrected.correction.before_mm =
-            self.before_mm(&whole, block, feed.end.rotary_deg, corrected.correction.largest_mm);
+        let (rotary_deg, largest_mm) = (feed.end.rotary_deg, corrected.correction.largest_mm);
+        corrected.correction.before_mm = match at_quarters_mm {
+            Some(mm) => self.before_arc_mm(&whole, block, rotary_deg, largest_mm, mm),
+            None => self.before_mm(&whole, block, rotary_deg, largest_mm),
+        };
         Ok(corrected)
     }
 
@@ -530,57 +543,6 @@ impl<'m> Corrector<'m> {
             _ => AxisWord::Omit,
         });
         Piece { kind: PieceKind::Line, axes, share: 1.0 }
-    }
-
-    /// Upper bound of the error at a place that takes a correction of so many mm: the error at its corrected command is that
-    /// correction, and what it changes from one to the other is little. Infinite where the model says nothing of that.
-    pub(crate) fn error_before_mm(&self, correction_mm: f64) -> f64 {
-        match &self.everywhere {
-            Some((_, _, Some(everywhere))) if !self.model.depends_on_direction() => {
-                with_its_error(everywhere, correction_mm)
-            }
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// Bound of the deviation that the program would have had uncorrected, mm; 0 where it cannot exceed that of an earlier
-    /// motion.
-    ///
-    /// * `correction_mm` – the largest at its ends
-    pub(crate) fn before_mm(
-        &self,
-        whole: &Curve,
-        block: &Block,
-        rotary_deg: [f64; 3],
-        correction_mm: f64,
-    ) -> f64 {
-        let bow = self
-            .everywhere
-            .as_ref()
-            .and_then(|known| known.2.as_deref())
-            .filter(|everywhere| whole.lies_inside(&everywhere.volume))
-            .and_then(|everywhere| {
-                whole.fastest(0.0, 1.0).map(|(v, a)| everywhere.chord_bound_of_circle_mm(v, a))
-            })
-            .unwrap_or(f64::INFINITY);
-        if self.error_before_mm(correction_mm) + bow <= self.told_mm[0] {
-            return 0.0;
-        }
-        let state = self.state(block, rotary_deg);
-        let error = |s: f64| self.model.error_mm(&Command { linear_mm: whole.at(s), ..state }).norm();
-        let ends = error(0.0).max(error(1.0));
-        if ends + bow <= self.told_mm[0] {
-            return 0.0;
-        }
-        let extent = whole.extent(0.0, 1.0);
-        let between = self.model.chord_bound_mm(&machine_model::Move {
-            range_mm: extent.range,
-            speed_mm: extent.speed,
-            acceleration_mm: extent.acceleration,
-            passes: 4,
-            state,
-        });
-        if between.is_finite() { ends + between } else { ends }
     }
 
     /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every
@@ -700,6 +662,10 @@ pub(crate) struct Follow<'a, 'm> {
     pub(crate) nominal_step: Vector,
     /// What is known of the part that an arc is tried for next.
     pub(crate) solved: Option<Solved>,
+    /// What the model says of the arc whose halves are tried next.
+    pub(crate) enclosed: Option<Enclosed>,
+    /// Places of a line were solved together ([`Corrector::foresee_places`]).
+    pub(crate) foreseen: bool,
     pub(crate) corrected: &'a mut Corrected,
 }
 

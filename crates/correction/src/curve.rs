@@ -131,33 +131,43 @@ impl Curve {
 
     /// [`Curve::at`] at s = 0, ¼, ½, ¾, 1.
     pub(crate) fn at_quarters(&self) -> [Vector; 5] {
-        let [_, a, b, c] = self.turned_from(0.0);
+        let [_, a, b, c] = self.turned_by_quarters();
         let inside = |s: f64, turned| self.at_turned(s, turned);
         [self.at(0.0), inside(0.25, a), inside(0.5, b), inside(0.75, c), self.at(1.0)]
     }
 
     /// [`Curve::tangent`] there.
     pub(crate) fn tangents_at_quarters(&self) -> [Vector; 5] {
-        let turned: [_; 5] = self.turned_from(0.0);
+        let turned: [_; 5] = self.turned_by_quarters();
         std::array::from_fn(|k| self.tangent_turned(0.25 * k as f64, turned[k]))
     }
 
     /// [`Curve::at`] at s = ⅛, ⅜, ⅝, ⅞.
     pub(crate) fn at_odd_eighths(&self) -> [Vector; 4] {
-        let turned: [_; 4] = self.turned_from(0.125);
+        let Self::Arc { sweep, .. } = self else { return [Vector::zeros(); 4] };
+        let eighth = sin_cos(0.125 * sweep);
+        let turned: [_; 4] =
+            turned_on(turned_on_once(self.turned_at_start(), eighth), turned_on_once(eighth, eighth));
         std::array::from_fn(|k| self.at_turned(0.125 + 0.25 * k as f64, turned[k]))
     }
 
-    /// Sine and cosine of an arc's angle at `s` and quarter by quarter on from there, from those of two angles.
-    fn turned_from<const N: usize>(&self, s: f64) -> [(f64, f64); N] {
-        let Self::Arc { angle, sweep, .. } = self else { return [(0.0, 0.0); N] };
-        let (sin_step, cos_step) = sin_cos(0.25 * sweep);
-        let mut next = sin_cos(angle + sweep * s);
-        std::array::from_fn(|_| {
-            let (sin, cos) = next;
-            next = (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step);
-            (sin, cos)
-        })
+    /// Sine and cosine of an arc's angle at its start and quarter by quarter on from there.
+    fn turned_by_quarters<const N: usize>(&self) -> [(f64, f64); N] {
+        let Self::Arc { sweep, .. } = self else { return [(0.0, 0.0); N] };
+        turned_on(self.turned_at_start(), sin_cos(0.25 * sweep))
+    }
+
+    /// Sine and cosine of an arc's angle at its start: the place there tells them.
+    fn turned_at_start(&self) -> (f64, f64) {
+        let Self::Arc { axes: [u, v, _], centre, angle, radius: [radius, _], ends: [start, _], .. } = self
+        else {
+            return (0.0, 0.0);
+        };
+        if *radius > 0.0 {
+            ((start[*v] - centre[1]) / radius, (start[*u] - centre[0]) / radius)
+        } else {
+            sin_cos(*angle)
+        }
     }
 
     /// The place at s of an arc, whose angle there has this sine and cosine.
@@ -193,9 +203,20 @@ impl Curve {
     /// The part from s0 to s1, as a curve of its own.
     #[must_use]
     pub fn part(&self, s0: f64, s1: f64) -> Self {
+        self.part_to(s0, s1, [self.at(s0), self.at(s1)])
+    }
+
+    /// The parts before and behind s.
+    pub(crate) fn split(&self, s: f64) -> [Self; 2] {
+        let (start, at, end) = (self.at(0.0), self.at(s), self.at(1.0));
+        [self.part_to(0.0, s, [start, at]), self.part_to(s, 1.0, [at, end])]
+    }
+
+    /// The part from s0 to s1, the places there given.
+    fn part_to(&self, s0: f64, s1: f64, ends: [Vector; 2]) -> Self {
         let between = |pair: &[f64; 2]| [s0, s1].map(|s| pair[0] + (pair[1] - pair[0]) * s);
         match self {
-            Self::Line(..) => Self::Line(self.at(s0), self.at(s1)),
+            Self::Line(..) => Self::Line(ends[0], ends[1]),
             Self::Arc { axes, centre, angle, sweep, radius, normal, .. } => Self::Arc {
                 axes: *axes,
                 centre: *centre,
@@ -203,7 +224,7 @@ impl Curve {
                 sweep: sweep * (s1 - s0),
                 radius: between(radius),
                 normal: between(normal),
-                ends: [self.at(s0), self.at(s1)],
+                ends,
             },
         }
     }
@@ -366,6 +387,20 @@ impl Curve {
     }
 }
 
+/// Sine and cosine of the sum of two angles, those of each given.
+fn turned_on_once((sin, cos): (f64, f64), (sin_step, cos_step): (f64, f64)) -> (f64, f64) {
+    (sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step)
+}
+
+/// Sine and cosine of an angle and step by step on from there.
+fn turned_on<const N: usize>(mut next: (f64, f64), step: (f64, f64)) -> [(f64, f64); N] {
+    std::array::from_fn(|_| {
+        let now = next;
+        next = turned_on_once(now, step);
+        now
+    })
+}
+
 /// A vector of length 1; zero where there is none.
 fn unit(v: Vector) -> Vector {
     let length = v.norm();
@@ -456,6 +491,14 @@ mod tests {
             let (f0, f1) = (f(s0), f(s1));
             let bound = curve.difference_bound(&near, s0, s1);
             let part = curve.part(s0, s1);
+            let (quarters, eighths) = (curve.at_quarters(), curve.at_odd_eighths());
+            for k in 0..4 {
+                prop_assert!((quarters[k] - curve.at(0.25 * k as f64)).norm() < 1e-12 * (1.0 + r));
+                prop_assert!((eighths[k] - curve.at(0.125 + 0.25 * k as f64)).norm() < 1e-12 * (1.0 + r));
+            }
+            let [before, behind] = curve.split(s0);
+            prop_assert_eq!(before, curve.part(0.0, s0));
+            prop_assert_eq!(behind, curve.part(s0, 1.0));
             let (rough, exact) = (curve.extent_by(&curve.at_quarters()).unwrap(), curve.extent(0.0, 1.0));
             for k in 0..=64 {
                 let x = f64::from(k) / 64.0;

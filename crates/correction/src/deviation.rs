@@ -6,7 +6,7 @@ use std::sync::Arc;
 use machine_model::{Command, Everywhere, LANES, Move, PathModel, Vector};
 use smallvec::SmallVec;
 
-use crate::curve::Curve;
+use crate::curve::{Curve, Extent};
 
 /// How often a stretch may be halved before it counts as not provable: 2^-20 of any motion is below
 /// every machine's resolution.
@@ -36,6 +36,17 @@ impl Machine<'_> {
     /// Real tip minus nominal tip for an axis command, mm.
     pub(crate) fn error(&self, linear_mm: Vector) -> Vector {
         self.model.error_mm(&Command { linear_mm, ..self.state })
+    }
+
+    /// Upper bound of how far the error leaves its chord on a stretch, mm.
+    fn leaves_chord_mm(&self, extent: &Extent, passes: u8) -> f64 {
+        self.model.chord_bound_mm(&Move {
+            range_mm: extent.range,
+            speed_mm: extent.speed,
+            acceleration_mm: extent.acceleration,
+            passes,
+            state: self.state,
+        })
     }
 
     /// Commands that bring the tool to several places at once; `None` where the model has to be asked for each.
@@ -95,6 +106,60 @@ impl Solved {
         let [.., end] = self.commands;
         end
     }
+}
+
+/// What the model says of all stretches in the box of an arc's two halves: one question for both.
+#[derive(Clone, Copy)]
+pub(crate) struct Enclosed {
+    /// What a stretch may be.
+    extent: Extent,
+    state: Command,
+    /// Upper bound of how far the error leaves its chord, mm.
+    leaves_chord_mm: f64,
+}
+
+impl Enclosed {
+    /// For a quarter of either half, or of an arc that stands for it.
+    pub(crate) fn of(machine: &Machine<'_>, halves: &[Curve; 2], solved: [&Solved; 2]) -> Option<Self> {
+        /// What a commanded arc may have over the one through the corrected commands, mm and as a part.
+        const ROOM_MM: f64 = 0.02;
+        const ROOM: f64 = 1.01;
+        let mut extent = of_a_quarter(&halves[0], &solved[0].commands)?;
+        let other = of_a_quarter(&halves[1], &solved[1].commands)?;
+        for axis in 0..3 {
+            let (range, other_range) = (&mut extent.range[axis], other.range[axis]);
+            range.low = range.low.min(other_range.low) - ROOM_MM;
+            range.high = range.high.max(other_range.high) + ROOM_MM;
+            extent.speed[axis] = extent.speed[axis].max(other.speed[axis]) * ROOM + ROOM_MM;
+            extent.acceleration[axis] =
+                extent.acceleration[axis].max(other.acceleration[axis]) * ROOM + ROOM_MM;
+        }
+        let leaves_chord_mm = machine.leaves_chord_mm(&extent, 2);
+        Some(Self { extent, state: machine.state, leaves_chord_mm })
+    }
+
+    /// True where what it says holds for a stretch.
+    fn holds(&self, machine: &Machine<'_>, stretch: &Extent) -> bool {
+        let Extent { range, speed, acceleration } = &self.extent;
+        self.state == machine.state
+            && (0..3).all(|i| {
+                range[i].low <= stretch.range[i].low
+                    && stretch.range[i].high <= range[i].high
+                    && stretch.speed[i] <= speed[i]
+                    && stretch.acceleration[i] <= acceleration[i]
+            })
+    }
+}
+
+/// Of a motion, from place to place that is compared with a corrected command.
+const STRETCH: f64 = 0.25;
+
+/// A stretch from place to place that may be anywhere in an arc's box; `None` for a line.
+fn of_a_quarter(arc: &Curve, at_quarters: &[Vector; 5]) -> Option<Extent> {
+    let mut extent = arc.extent_by(at_quarters)?;
+    extent.speed = extent.speed.map(|speed| speed * STRETCH);
+    extent.acceleration = extent.acceleration.map(|acceleration| acceleration * STRETCH * STRETCH);
+    Some(extent)
 }
 
 /// More than a corrected command is off, and all rounding in comparing with it, mm.
@@ -177,14 +242,8 @@ impl Pair<'_> {
             }
         }
         let extent = self.commanded.extent(a.s, b.s);
-        let leaves_chord = machine.model.chord_bound_mm(&Move {
-            range_mm: extent.range,
-            speed_mm: extent.speed,
-            acceleration_mm: extent.acceleration,
-            passes: if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 },
-            state: machine.state,
-        });
-        self.between(a, b, leaves_chord)
+        let passes = if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 };
+        self.between(a, b, machine.leaves_chord_mm(&extent, passes))
     }
 
     /// Equation (P4), the error leaving its chord by at most `error_mm`.
@@ -214,26 +273,38 @@ impl Pair<'_> {
         &self,
         machine: &Machine<'_>,
         solved: Option<&Solved>,
+        enclosed: Option<&Enclosed>,
         limit_mm: f64,
     ) -> Verdict {
-        let known = solved.map_or(ByCommands::Open, |solved| self.by_commands(machine, solved, limit_mm));
+        let known =
+            solved.map_or(ByCommands::Open, |solved| self.by_commands(machine, solved, enclosed, limit_mm));
         match known {
             ByCommands::Beyond { s, distance_mm } => Verdict::Beyond { s, distance_mm },
-            ByCommands::Within(bound) if bound <= machine.told_mm => Verdict::Within(bound),
-            // Proven, but the summary may have to tell how well.
-            ByCommands::Within(bound) => match self.verdict(machine, limit_mm) {
-                Verdict::Within(own) => Verdict::Within(own.min(bound)),
-                Verdict::Beyond { .. } => Verdict::Within(bound),
-            },
+            ByCommands::Within(bound) => self.proven(machine, bound, limit_mm),
             ByCommands::Open => self.verdict(machine, limit_mm),
+        }
+    }
+
+    /// The verdict where a bound within the limit is known: the summary may have to tell the better one.
+    fn proven(&self, machine: &Machine<'_>, bound: f64, limit_mm: f64) -> Verdict {
+        if bound <= machine.told_mm {
+            return Verdict::Within(bound);
+        }
+        match self.verdict(machine, limit_mm) {
+            Verdict::Within(own) => Verdict::Within(own.min(bound)),
+            Verdict::Beyond { .. } => Verdict::Within(bound),
         }
     }
 
     /// What the commands that bring the tool to the programmed path tell of the one commanded, without the model being asked:
     /// equation (P7).
-    fn by_commands(&self, machine: &Machine<'_>, solved: &Solved, limit_mm: f64) -> ByCommands {
-        /// Of a motion, from place to place.
-        const STRETCH: f64 = 0.25;
+    fn by_commands(
+        &self,
+        machine: &Machine<'_>,
+        solved: &Solved,
+        enclosed: Option<&Enclosed>,
+        limit_mm: f64,
+    ) -> ByCommands {
         let Some(everywhere) = &machine.everywhere else { return ByCommands::Open };
         let mut places = [Place::default(); 5];
         let mut unsure: f64 = 0.0;
@@ -257,17 +328,58 @@ impl Pair<'_> {
             return ByCommands::Open;
         }
         // Of a stretch that runs through all of the motion's box: it holds for those that run through a part of it.
-        let Some(extent) = self.commanded.extent_by(&commanded) else { return ByCommands::Open };
-        let leaves_chord = machine.model.chord_bound_mm(&Move {
-            range_mm: extent.range,
-            speed_mm: extent.speed.map(|speed| speed * STRETCH),
-            acceleration_mm: extent.acceleration.map(|acceleration| acceleration * STRETCH * STRETCH),
-            passes: 2,
-            state: machine.state,
-        }) + self.commanded.difference_bound(self.wanted, 0.0, STRETCH);
-        let worst = places.windows(2).map(|ends| self.between_leaving(&ends[0], &ends[1], leaves_chord));
-        let bound = worst.fold(0.0, f64::max) + 4.0 * unsure;
+        let Some(extent) = of_a_quarter(self.commanded, &commanded) else { return ByCommands::Open };
+        let difference = self.commanded.difference_bound(self.wanted, 0.0, STRETCH);
+        let bound = |leaves_chord_mm: f64| {
+            let leaves = leaves_chord_mm + difference;
+            let worst = places.windows(2).map(|ends| self.between_leaving(&ends[0], &ends[1], leaves));
+            worst.fold(0.0, f64::max) + 4.0 * unsure
+        };
+        if let Some(enclosed) = enclosed.filter(|enclosed| enclosed.holds(machine, &extent)) {
+            let bound = bound(enclosed.leaves_chord_mm);
+            if bound <= limit_mm && bound <= machine.told_mm {
+                return ByCommands::Within(bound);
+            }
+        }
+        let bound = bound(machine.leaves_chord_mm(&extent, 2));
         if bound <= limit_mm { ByCommands::Within(bound) } else { ByCommands::Open }
+    }
+
+    /// [`Pair::verdict`] of a line that stands for a line, with less asked of the model where the commands are known that
+    /// bring the tool to the programmed one at s = 0, ½, 1.
+    pub(crate) fn line_verdict_by(
+        &self,
+        machine: &Machine<'_>,
+        solved: Option<&[Vector; 3]>,
+        limit_mm: f64,
+    ) -> Verdict {
+        match solved.and_then(|solved| self.line_by_commands(machine, solved)) {
+            Some(bound) if bound <= limit_mm => self.proven(machine, bound, limit_mm),
+            _ => self.verdict(machine, limit_mm),
+        }
+    }
+
+    /// Upper bound of the distance from the programmed line, mm: equation (P8).
+    fn line_by_commands(&self, machine: &Machine<'_>, solved: &[Vector; 3]) -> Option<f64> {
+        /// Of the line, from place to place.
+        const HALF: f64 = 0.5;
+        let everywhere = machine.everywhere.as_ref()?;
+        if !self.commanded.lies_inside(&everywhere.volume) {
+            return None;
+        }
+        let (tangent, mut unsure) = (self.wanted.tangent(0.0), 0.0_f64);
+        let places: [Place; 3] = from_fn(|k| {
+            let s = HALF * k as f64;
+            let place = self.place_of(s, self.commanded.at(s) - solved[k], tangent);
+            unsure = unsure.max(everywhere.gradient * place.size + SOLVED_MM);
+            place
+        });
+        // Of a stretch that runs through all of the line's box at half its speed: it holds for both halves.
+        let mut extent = self.commanded.extent(0.0, 1.0);
+        extent.speed = extent.speed.map(|speed| speed * HALF);
+        let leaves_chord = machine.leaves_chord_mm(&extent, 1);
+        let worst = places.windows(2).map(|ends| self.between_leaving(&ends[0], &ends[1], leaves_chord));
+        Some(worst.fold(0.0, f64::max) + unsure)
     }
 
     /// Proves that the real path stays within `limit_mm` of the programmed one, or shows where it does not.
@@ -366,33 +478,27 @@ impl Pair<'_> {
 
 #[cfg(test)]
 mod tests {
-    use machine_model::{
-        AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
-        Table,
-    };
     use proptest::prelude::*;
     use toolpath::Plane;
 
     use super::*;
+    use crate::testing::machine;
 
-    fn machine(interpolation: Interpolation) -> RigidBody {
-        let mut linear = [0, 1, 2].map(|_| LinearAxis::perfect(Range { low: 0.0, high: 200.0 }));
-        for (i, axis) in linear.iter_mut().enumerate() {
-            let table = |function: usize| {
-                let nodes = [0.0, 31.0, 64.0, 90.0, 131.0, 200.0];
-                let size = if function < 3 { 0.004 } else { 2e-5 };
-                let value = |k: usize| size * units::math::sin((7 * k + 3 * function + 5 * i) as f64);
-                Table::new(nodes.to_vec(), (0..nodes.len()).map(value).collect(), interpolation).ok()
-            };
-            axis.errors = AxisTables::new(&from_fn(table));
-        }
-        let description = Description {
-            chain: Chain::parse("[w X Y b Z t]").unwrap(),
-            linear,
-            rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
-            squareness: Squareness { ec0y_rad: 8e-4, eb0z_rad: -3e-4, ea0z_rad: 5e-4 },
+    /// The machine with a tool, with all told that there is to tell.
+    fn with_tool(model: &dyn PathModel) -> Machine<'_> {
+        let state = Command {
+            linear_mm: Vector::zeros(),
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::new(3.0, -5.0, -120.0),
+            direction: [0; 3],
         };
-        RigidBody::new(description).unwrap()
+        Machine { model, state, everywhere: model.everywhere(&state).map(Arc::new), told_mm: f64::INFINITY }
+    }
+
+    /// The largest distance found at many places.
+    fn furthest(pair: &Pair<'_>, machine: &Machine<'_>, places: u32) -> f64 {
+        let distance = |k: u32| pair.place(machine, f64::from(k) / f64::from(places)).distance;
+        (0..=places).map(distance).fold(0.0, f64::max)
     }
 
     proptest! {
@@ -404,11 +510,8 @@ mod tests {
             rounded in prop::array::uniform6(-0.001f64..0.001), centred in prop::array::uniform2(-0.003f64..0.003),
             limit_um in 0.5f64..12.0,
         ) {
-            let model = machine(if monotone { Interpolation::Monotone } else { Interpolation::Linear });
-            let state = Command {
-                linear_mm: Vector::zeros(), rotary_rad: Vector::zeros(), tool_mm: Vector::new(3.0, -5.0, -120.0), direction: [0; 3],
-            };
-            let machine = Machine { model: &model, state, everywhere: model.everywhere(&state).map(Arc::new), told_mm: 0.0 };
+            let model = machine(monotone);
+            let machine = with_tool(&model);
             let axes = [Plane::Xy, Plane::Zx, Plane::Yz][plane].axes();
             let [u, v, n] = axes;
             let on_circle = |angle: f64, along: f64| {
@@ -433,21 +536,65 @@ mod tests {
             let Curve::Arc { sweep: turned, .. } = commanded else { panic!() };
             prop_assume!((turned - sweep).abs() < 0.1);
             let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false };
-            let furthest = |places: u32| (0..=places)
-                .map(|k| pair.place(&machine, f64::from(k) / f64::from(places)).distance)
-                .fold(0.0, f64::max);
             let limit_mm = limit_um * 1e-3;
-            match pair.by_commands(&machine, &solved, limit_mm) {
+            let told = |enclosed: Option<&Enclosed>| match pair.by_commands(&machine, &solved, enclosed, limit_mm) {
                 ByCommands::Within(bound) => {
-                    prop_assert!(bound <= limit_mm);
-                    prop_assert!(furthest(257) <= bound + 1e-12, "{} > {}", furthest(257), bound);
+                    assert!(bound <= limit_mm);
+                    let found = furthest(&pair, &machine, 257);
+                    assert!(found <= bound + 1e-12, "{found} > {bound}");
+                    Some(bound)
                 }
                 ByCommands::Beyond { distance_mm, .. } => {
-                    prop_assert!(distance_mm > limit_mm);
-                    prop_assert!(furthest(4) >= distance_mm);
+                    assert!(distance_mm > limit_mm);
+                    assert!(furthest(&pair, &machine, 4) >= distance_mm);
+                    None
                 }
-                ByCommands::Open => {}
+                ByCommands::Open => None,
+            };
+            let own = told(None);
+            // With the bound for both halves of an arc of which this is the one.
+            if sweep.abs() < 3.0 {
+                let other = Curve::Arc {
+                    axes, centre: [middle[u], middle[v]], angle: angle + sweep, sweep, radius: [radius; 2],
+                    normal: [middle[n] + rise, middle[n] + 2.0 * rise],
+                    ends: [on_circle(angle + sweep, rise), on_circle(angle + 2.0 * sweep, 2.0 * rise)],
+                };
+                let [_, a, b, c, last] = other.at_quarters();
+                let [a, b, c, last] = machine.solved_together([a, b, c, last]).unwrap();
+                let behind = Solved { commands: [end, a, b, c, last], direction: [0; 3] };
+                let enclosed = Enclosed::of(&machine, &[wanted, other], [&solved, &behind]).unwrap();
+                prop_assert!(radius > 8.0 || enclosed.holds(&machine, &of_a_quarter(&commanded, &commanded.at_quarters()).unwrap()));
+                let with_other = told(Some(&enclosed));
+                prop_assert!(own.is_some() || with_other.is_none());
+                prop_assert!(with_other.is_none_or(|bound| Some(bound) >= own.map(|own| own - 1e-12)));
             }
+        }
+
+        /// Equation (P8), held against the model at many places.
+        #[test]
+        fn what_corrected_commands_tell_of_a_line_is_so(
+            monotone: bool, from in prop::array::uniform3(20.0f64..180.0), along in 0usize..4, length in -60.0f64..60.0,
+            beside in prop::array::uniform3(-0.01f64..0.01), rounded in prop::array::uniform6(-0.001f64..0.001),
+        ) {
+            let model = machine(monotone);
+            let machine = with_tool(&model);
+            let from = Vector::from(from);
+            // Along an axis but for its correction, or across all.
+            let way = Vector::from(beside) + match along {
+                3 => Vector::new(length, 0.4 * length, -0.3 * length),
+                axis => Vector::ith(axis, length),
+            };
+            let end = from + way;
+            prop_assume!((0..3).all(|axis| (5.0..195.0).contains(&end[axis])));
+            let wanted = Curve::Line(from, end);
+            let [start, middle, last, _] = machine.solved_together([from, wanted.at(0.5), end, end]).unwrap();
+            let commanded = Curve::Line(
+                start + Vector::new(rounded[0], rounded[1], rounded[2]), last + Vector::new(rounded[3], rounded[4], rounded[5]),
+            );
+            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false };
+            let bound = pair.line_by_commands(&machine, &[start, middle, last]).unwrap();
+            let found = furthest(&pair, &machine, 257);
+            prop_assert!(found <= bound + 1e-12, "{found} > {bound}");
         }
     }
 }

@@ -42,7 +42,7 @@ pub enum AxisWord {
 }
 
 /// What correction must know of the block a motion came from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Program millimetres to axis commands.
     pub frame: Frame,

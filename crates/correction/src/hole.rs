@@ -1,6 +1,6 @@
 //! Drilling cycles, hole by hole.
 
-use machine_model::Vector;
+use machine_model::{LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Hole};
 
@@ -78,6 +78,20 @@ fn after(hole: &Hole) -> f64 {
     if hole.cycle.return_to_initial { hole.initial_mm } else { hole.at_r.linear_mm[hole.plane.axes()[2]] }
 }
 
+/// What its moves ask the model for, should it be written as moves: where they lead, and where one level comes twice, as it
+/// mostly does, the middle of the drilled line.
+fn places(hole: &Hole) -> [Vector; LANES] {
+    let r_mm = hole.at_r.linear_mm[hole.plane.axes()[2]];
+    let (above, after) = (above(hole), after(hole));
+    let [r, bottom, above_r, behind] = [r_mm, hole.bottom_mm, above, after].map(|mm| on_hole(hole, mm));
+    let middle = Curve::Line(r, bottom).at(0.5);
+    if after == r_mm || after == above {
+        [r, bottom, above_r, middle]
+    } else {
+        [r, bottom, if above == r_mm { middle } else { above_r }, behind]
+    }
+}
+
 impl<'m> Corrector<'m> {
     /// One hole: position, R level and depth move with the machine's error there.
     ///
@@ -88,8 +102,7 @@ impl<'m> Corrector<'m> {
         let at_r = Vector::from(hole.at_r.linear_mm);
         let place = |mm: f64| on_hole(hole, mm);
         let at_bottom = place(hole.bottom_mm);
-        // Where its moves lead, should it be written as moves.
-        let levels = [above(hole), at_r[normal], hole.bottom_mm, after(hole)];
+        let places = places(hole);
         let start = Vector::from(hole.start.linear_mm);
         let came = self.direction;
         self.turn_towards(&start, &at_r);
@@ -103,7 +116,7 @@ impl<'m> Corrector<'m> {
             let mut machine = self.machine(block, hole.at_r.rotary_deg);
             // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
             machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
-            self.foresee_places(&machine, levels.map(place));
+            self.foresee_places(&machine, places);
             let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
             if by_moves {
                 break (machine, [top, bottom], None);
@@ -204,7 +217,7 @@ impl<'m> Corrector<'m> {
             Some(last) if !last.incremental && !block.incremental => Some(told(last)),
             Some(_) => None,
         };
-        let absolute = Block { incremental: false, ..*block };
+        let absolute = Block { incremental: false, ..block.clone() };
         let own_r = r_own - own_r_origin;
         let r_told = block.letters.contains(b'R').then_some(own_r);
         let (mut r, mut r_value) =
@@ -336,6 +349,8 @@ impl<'m> Corrector<'m> {
                 length_mm: (bottom_mm - r_mm).abs(),
                 nominal_step: Vector::zeros(),
                 solved: None,
+                enclosed: None,
+                foreseen: true,
                 corrected,
             };
             corrector.follow_line(&mut follow, &part)

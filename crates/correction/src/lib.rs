@@ -9,6 +9,7 @@
 //! is not proven is halved until it is, or split. See `docs/path-promise.md`.
 
 mod arc;
+mod before;
 mod centre;
 mod compare;
 mod corrector;
@@ -20,6 +21,8 @@ mod line;
 mod play;
 mod short_line;
 mod short_run;
+#[cfg(test)]
+mod testing;
 
 pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, Trace, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};

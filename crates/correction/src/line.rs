@@ -4,7 +4,7 @@ use machine_model::Vector;
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
-use crate::deviation::{Pair, Verdict};
+use crate::deviation::{Machine, Pair, Verdict};
 use crate::grid::AxisWord;
 use crate::play::Tried;
 use crate::{Centre, Piece, PieceKind};
@@ -61,7 +61,8 @@ impl<'m> Corrector<'m> {
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
         let commanded = Curve::Line(from, to);
         let pair = Pair { wanted: part, commanded: &commanded, in_step: follow.in_step };
-        match pair.verdict(&follow.machine, self.limit_mm(follow.block)) {
+        let solved = if follow.foreseen { self.solved_line(&follow.machine, part, wanted) } else { None };
+        match pair.line_verdict_by(&follow.machine, solved.as_ref(), self.limit_mm(follow.block)) {
             Verdict::Within(bound) => {
                 follow.finish(
                     Piece { kind: PieceKind::Line, axes, share: follow.share(part) },
@@ -77,6 +78,14 @@ impl<'m> Corrector<'m> {
                 Ok(Tried::Beyond { distance_mm, s: pair.worst_place(&follow.machine) })
             }
         }
+    }
+}
+
+impl Corrector<'_> {
+    /// The commands that bring the tool to a line at s = 0, ½, 1, where they were all found before.
+    fn solved_line(&self, machine: &Machine<'_>, part: &Curve, end: Vector) -> Option<[Vector; 3]> {
+        let found = |s: f64| self.found(machine, part.at(s));
+        Some([found(0.0)?, found(0.5)?, end])
     }
 }
 

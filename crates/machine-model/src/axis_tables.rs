@@ -27,8 +27,8 @@ pub(crate) struct Cell<'t> {
     pub(crate) low: f64,
     /// The upper node.
     pub(crate) high: f64,
-    straight: &'t [Six; 2],
-    curved: Option<&'t [Six; 2]>,
+    pub(crate) straight: &'t [Six; 2],
+    pub(crate) curved: Option<&'t [Six; 2]>,
 }
 
 impl Cell<'_> {
@@ -247,7 +247,7 @@ impl AxisTables {
 
     /// The cell of `q`, or of the nearer end, and how far it lies from the lower node.
     #[inline(always)]
-    fn cell_of(&self, q: f64) -> (Cell<'_>, f64) {
+    pub(crate) fn cell_of(&self, q: f64) -> (Cell<'_>, f64) {
         let q = q.clamp(self.grid.low(), self.grid.high());
         let cell = self.cell(self.grid.cell(q));
         let t = q - cell.low;

@@ -146,16 +146,17 @@ fn add_product<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, beyond
 
 /// Adds bounds of `(R - I - [ε]×)·x`, by norms: second and higher orders of equation (11).
 ///
-/// The exponential series of R from its square term on, with `e^w ≤ 1/(1-w)`.
+/// The exponential series of R from its square term on, with `e^w ≤ 1/(1-w)`. The sum of a vector's components stands for
+/// its length, which is no more: these orders are a thousandth of the first, and roots would take longer than all of it.
 #[inline(always)]
 fn add_higher_orders<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, x: &Growth<S>) {
-    let (w, w1, w2, wj) = (e.value.norm(), e.first.norm(), e.second().norm(), e.jumps.norm());
+    let (w, w1, w2, wj) = (e.value.sum(), e.first.sum(), e.second().sum(), e.jumps.sum());
     let over = if w < 0.5 { 1.0 / (1.0 - w) } else { units::math::exp(w) };
     let value = 0.5 * w * w * over;
     let first = w1 * w * over;
     let second = (w1 * w1 + w2 * w) * over;
     let jumps = wj * w * over;
-    let (v, v1, v2, vj) = (x.value.norm(), x.first.norm(), x.second().norm(), x.jumps.norm());
+    let (v, v1, v2, vj) = (x.value.sum(), x.first.sum(), x.second().sum(), x.jumps.sum());
     let all = sum.value;
     sum.value = sum.value + all.all(value * v);
     sum.first = sum.first + all.all(first * v + value * v1);

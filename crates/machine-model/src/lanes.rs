@@ -151,6 +151,12 @@ impl<S: Simd<f64s = f64x4>> Components<S> {
     }
 
     #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        let f64x4(x, y, z, _) = self.numbers;
+        x + y + z
+    }
+
+    #[inline(always)]
     pub(crate) fn norm(self) -> f64 {
         let f64x4(x, y, z, _) = (self * self).numbers;
         (x + y + z).sqrt()
@@ -225,14 +231,18 @@ impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
         if let Some((cell, t)) = common_cell(&tables, q) {
             return Some(cell.at(t));
         }
-        let (mut rows, places) = ([[0.0; LANES]; 6], q.each());
-        for lane in 0..LANES {
-            let six = tables[lane].at(places[lane]);
-            for function in 0..6 {
-                rows[function][lane] = six[function];
-            }
+        let (cells, t) = Cells::of(&tables, &q.each());
+        let (straight, curved, t) = (cells.straight(q.simd), cells.curved(q.simd), Self::new(q.simd, t));
+        let [c0, c1] = straight;
+        let mut six = c0;
+        for i in 0..6 {
+            six[i] = c0[i]
+                + t * match &curved {
+                    None => c1[i],
+                    Some([c2, c3]) => c1[i] + t * (c2[i] + t * c3[i]),
+                };
         }
-        Some(lanes(q.simd, &rows))
+        Some(six)
     }
 
     #[inline(always)]
@@ -245,28 +255,74 @@ impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
         if let Some((cell, t)) = common_cell(&tables, q) {
             return Some(cell.with_slopes(t));
         }
-        let (mut rows, mut slopes, places) = ([[0.0; LANES]; 6], [[0.0; LANES]; 6], q.each());
-        for lane in 0..LANES {
-            let (six, own) = tables[lane].with_slopes(places[lane]);
-            for function in 0..6 {
-                (rows[function][lane], slopes[function][lane]) = (six[function], own[function]);
+        let (cells, t) = Cells::of(&tables, &q.each());
+        let (straight, curved, t) = (cells.straight(q.simd), cells.curved(q.simd), Self::new(q.simd, t));
+        let [c0, c1] = straight;
+        let (mut six, mut slopes) = (c0, c1);
+        for i in 0..6 {
+            match &curved {
+                None => six[i] = c0[i] + t * c1[i],
+                Some([c2, c3]) => {
+                    six[i] = c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]));
+                    slopes[i] = c1[i] + t * (t.all(2.0) * c2[i] + t * (t.all(3.0) * c3[i]));
+                }
             }
         }
-        Some((lanes(q.simd, &rows), lanes(q.simd, &slopes)))
+        Some((six, slopes))
     }
 }
 
+/// The cells that several points lie in.
+struct Cells<'t>([Cell<'t>; LANES]);
+
+/// The six functions' coefficients of two powers for each point.
+type Rows<S> = [[Lanes<S>; 6]; 2];
+
+impl<'t> Cells<'t> {
+    /// The cells, and how far each point lies from the lower node of its own.
+    #[inline(always)]
+    fn of(tables: &[&'t AxisTables; LANES], q: &[f64; LANES]) -> (Self, [f64; LANES]) {
+        let [(a, at_a), (b, at_b)] = [tables[0].cell_of(q[0]), tables[1].cell_of(q[1])];
+        let [(c, at_c), (d, at_d)] = [tables[2].cell_of(q[2]), tables[3].cell_of(q[3])];
+        (Self([a, b, c, d]), [at_a, at_b, at_c, at_d])
+    }
+
+    #[inline(always)]
+    fn straight<S: Simd<f64s = f64x4>>(&self, simd: S) -> Rows<S> {
+        let [a, b, c, d] = &self.0;
+        rows(simd, [a.straight, b.straight, c.straight, d.straight])
+    }
+
+    /// `None` where all functions are straight lines.
+    #[inline(always)]
+    fn curved<S: Simd<f64s = f64x4>>(&self, simd: S) -> Option<Rows<S>> {
+        static NONE: [Six; 2] = [[0.0; 6]; 2];
+        let [a, b, c, d] = &self.0;
+        if let (None, None, None, None) = (a.curved, b.curved, c.curved, d.curved) {
+            return None;
+        }
+        let or_none = [a.curved, b.curved, c.curved, d.curved];
+        let mut curved = [&NONE; LANES];
+        for lane in 0..LANES {
+            if let Some(own) = or_none[lane] {
+                curved[lane] = own;
+            }
+        }
+        Some(rows(simd, curved))
+    }
+}
+
+/// Function by function what is stored point by point.
 #[inline(always)]
-fn lanes<S: Simd<f64s = f64x4>>(simd: S, rows: &[[f64; LANES]; 6]) -> [Lanes<S>; 6] {
-    let [x, y, z, a, b, c] = *rows;
-    [
-        Lanes::new(simd, x),
-        Lanes::new(simd, y),
-        Lanes::new(simd, z),
-        Lanes::new(simd, a),
-        Lanes::new(simd, b),
-        Lanes::new(simd, c),
-    ]
+fn rows<S: Simd<f64s = f64x4>>(simd: S, cells: [&[Six; 2]; LANES]) -> Rows<S> {
+    let [a, b, c, d] = cells;
+    let mut rows = [[Lanes::new(simd, [0.0; LANES]); 6]; 2];
+    for power in 0..2 {
+        for i in 0..6 {
+            rows[power][i] = Lanes::new(simd, [a[power][i], b[power][i], c[power][i], d[power][i]]);
+        }
+    }
+    rows
 }
 
 /// The cell that all points lie in, and how far from its lower node; `None` where they lie in several, or outside.

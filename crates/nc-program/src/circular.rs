@@ -22,7 +22,7 @@ pub(crate) fn circular(
     motions: &mut Motions,
 ) -> Outcome<()> {
     settle(words, state)?;
-    let frame = *require_frame(env, words, state)?;
+    let frame = require_frame(env, words, state)?.clone();
     let start = state.axes;
     let end = end(words, state, &frame)?;
     let what = "the arc";

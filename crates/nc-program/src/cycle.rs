@@ -68,7 +68,7 @@ pub(crate) fn holes(
             .help("program G94 before it"));
     }
     settle(words, state)?;
-    let frame = *require_frame(env, words, state)?;
+    let frame = require_frame(env, words, state)?.clone();
     let [first, second, normal] = state.plane.axes();
     no_scaling(words, state, normal, &cycle)?;
     let shift = frame.offset_mm();

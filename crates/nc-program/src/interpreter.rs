@@ -33,7 +33,7 @@ pub struct Step {
 }
 
 /// Everything correction and emission must know of a block's state, valid for its motions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Context {
     /// Program mm to axis commands mm: work offset plus tool length. A shift by zero where the block
     /// moves nothing and the work offset is not given.
@@ -271,7 +271,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         ToolLength::On { applied_mm, .. } | ToolLength::Written { applied_mm } => applied_mm.map(|v| 0.0 - v),
     };
     Context {
-        frame: state.frame.unwrap_or_default(),
+        frame: state.frame.clone().unwrap_or_default(),
         unit_mm: state.units.mm(),
         incremental: state.distance == Distance::Incremental,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,

@@ -6,7 +6,7 @@
 
 use nc_syntax::dialect::{GCode, Numbers};
 use nc_syntax::{PlainLine, PlainWord};
-use toolpath::{Feed, FeedRate, Position, Shape};
+use toolpath::{Feed, FeedRate, Frame, Position, Shape};
 
 use crate::interpreter::{Context, Interpreter, context};
 use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Progress};
@@ -65,7 +65,7 @@ impl Plain {
             && modal.compensation == Compensation::Off
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
-            && modal.frame.is_some_and(|frame| frame.is_shift())
+            && modal.frame.as_ref().is_some_and(Frame::is_shift)
             && known(&modal.axes.linear);
         let [Axis::At(a), Axis::At(b), Axis::At(c)] = modal.axes.rotary else { return Self::No };
         if !plain {

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use crate::Plane;
 
 /// What a frame makes of circles.
@@ -13,18 +15,24 @@ pub struct Similarity {
 ///
 /// Without G68, G51 or G51.1 the matrix is the identity and the frame a mere shift: work offset plus
 /// tool length. The matrix is invertible by construction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Rows of the matrix; the identity for a shift.
-    matrix: [[f64; 3]; 3],
-    inverse: [[f64; 3]; 3],
     /// Axis commands of the program's zero.
     offset_mm: [f64; 3],
-    /// The matrix is the identity: asked for several times in every block.
-    is_shift: bool,
+    /// `None` for a shift. A frame goes with every block, and next to all are shifts: what those do not have must not
+    /// be copied with them.
+    turned: Option<Arc<Turned>>,
 }
 
-const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// A matrix that is not the identity.
+#[derive(Debug, PartialEq)]
+struct Turned {
+    /// By rows.
+    matrix: [[f64; 3]; 3],
+    inverse: [[f64; 3]; 3],
+}
+
+static IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl Default for Frame {
     fn default() -> Self {
@@ -36,7 +44,7 @@ impl Frame {
     /// A frame parallel to the machine's.
     #[must_use]
     pub const fn shift(offset_mm: [f64; 3]) -> Self {
-        Self { matrix: IDENTITY, inverse: IDENTITY, offset_mm, is_shift: true }
+        Self { offset_mm, turned: None }
     }
 
     /// A rotated, scaled or mirrored frame; `None` where the matrix has no inverse.
@@ -52,7 +60,8 @@ impl Frame {
             return None;
         }
         let inverse = [0, 1, 2].map(|r| [0, 1, 2].map(|c| cofactor(c, r) / determinant));
-        Some(Self { matrix, inverse, offset_mm, is_shift: matrix == IDENTITY })
+        let turned = (matrix != IDENTITY).then(|| Arc::new(Turned { matrix, inverse }));
+        Some(Self { offset_mm, turned })
     }
 
     /// Axis commands of the program's zero, mm.
@@ -64,34 +73,33 @@ impl Frame {
     /// True where program axes are machine axes: each program word moves its own axis alone, by as much.
     #[must_use]
     pub const fn is_shift(&self) -> bool {
-        self.is_shift
+        self.turned.is_none()
     }
 
     /// True where each program word moves its own axis alone, be it mirrored or scaled.
     #[must_use]
     pub fn is_axial(&self) -> bool {
-        (0..3).all(|r| (0..3).all(|c| r == c || self.matrix[r][c] == 0.0))
+        self.is_shift() || (0..3).all(|r| (0..3).all(|c| r == c || self.matrix()[r][c] == 0.0))
     }
 
     /// Rows of the matrix; the identity for a shift.
     #[must_use]
-    pub const fn matrix(&self) -> &[[f64; 3]; 3] {
-        &self.matrix
+    pub fn matrix(&self) -> &[[f64; 3]; 3] {
+        self.turned.as_ref().map_or(&IDENTITY, |turned| &turned.matrix)
     }
 
     /// Rows of the inverse: program coordinates by axis commands.
     #[must_use]
-    pub const fn inverse(&self) -> &[[f64; 3]; 3] {
-        &self.inverse
+    pub fn inverse(&self) -> &[[f64; 3]; 3] {
+        self.turned.as_ref().map_or(&IDENTITY, |turned| &turned.inverse)
     }
 
     /// How circles of a plane are mapped; `None` where they become ellipses or leave the plane.
     #[must_use]
     pub fn similarity(&self, plane: Plane) -> Option<Similarity> {
-        if self.is_shift() {
+        let Some(Turned { matrix: m, .. }) = self.turned.as_deref() else {
             return Some(Similarity { scale: 1.0, mirrored: false });
-        }
-        let m = &self.matrix;
+        };
         let [u, v, n] = plane.axes();
         let (a, b, c, d) = (m[u][u], m[u][v], m[v][u], m[v][v]);
         let near = |x: f64, y: f64| (x - y).abs() <= 1e-12 * (x.abs() + y.abs()).max(1e-3);
@@ -105,18 +113,22 @@ impl Frame {
     /// The largest factor by which the matrix lengthens a program axis; 1 for a shift.
     #[must_use]
     pub fn largest_scale(&self) -> f64 {
+        let Some(Turned { matrix, .. }) = self.turned.as_deref() else { return 1.0 };
         let column = |c: usize| {
-            let [x, y, z] = [0, 1, 2].map(|r| self.matrix[r][c]);
+            let [x, y, z] = [0, 1, 2].map(|r| matrix[r][c]);
             (x * x + y * y + z * z).sqrt()
         };
-        if self.is_shift() { 1.0 } else { column(0).max(column(1)).max(column(2)) }
+        column(0).max(column(1)).max(column(2))
     }
 
     /// Axis command of a program point.
     #[must_use]
     #[inline]
     pub fn to_machine(&self, program_mm: [f64; 3]) -> [f64; 3] {
-        let turned = if self.is_shift() { program_mm } else { product(&self.matrix, program_mm) };
+        let turned = match &self.turned {
+            None => program_mm,
+            Some(turned) => product(&turned.matrix, program_mm),
+        };
         [0, 1, 2].map(|i| turned[i] + self.offset_mm[i])
     }
 
@@ -125,7 +137,10 @@ impl Frame {
     #[inline]
     pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
         let shifted = [0, 1, 2].map(|i| machine_mm[i] - self.offset_mm[i]);
-        if self.is_shift() { shifted } else { product(&self.inverse, shifted) }
+        match &self.turned {
+            None => shifted,
+            Some(turned) => product(&turned.inverse, shifted),
+        }
     }
 }
 

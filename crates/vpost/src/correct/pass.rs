@@ -410,7 +410,7 @@ fn decimals(job: &Job<'_>, context: &Context) -> [u8; 3] {
 pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
     let output = &job.dialect.output;
     correction::Block {
-        frame: context.frame,
+        frame: context.frame.clone(),
         unit_mm: context.unit_mm,
         decimals: decimals(job, context),
         incremental: context.incremental,

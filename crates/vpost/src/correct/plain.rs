@@ -165,7 +165,7 @@ impl Pass<'_> {
         reader.block_of(ahead.line, &mut block);
         let Some((feeds, _)) = self.state.interpreter.plain_feeds() else { return self.block(&block) };
         let feed = Motion::Feed(feeds.feed(ahead.start_mm, ahead.end.end_mm));
-        let context = feeds.context;
+        let context = feeds.context.clone();
         let Some(corrected) = corrected else {
             self.tally.figures.blocks_in += 1;
             return self.moved(&block, &context, letters(&block), &[feed]);
