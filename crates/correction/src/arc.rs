@@ -73,7 +73,7 @@ impl<'m> Corrector<'m> {
         }
         let wanted = match &follow.solved {
             Some(solved) => solved.end(),
-            None => self.solve(&follow.machine, nominal_end)?,
+            None => self.solve(&follow.machine.state, nominal_end)?,
         };
         let before = self.standing;
         let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
@@ -98,7 +98,7 @@ impl<'m> Corrector<'m> {
         let corrected = match &follow.solved {
             Some(solved) => solved.between(),
             None => {
-                let [a, b, c] = PLACES.map(|s| self.solve(&follow.machine, part.at(s)));
+                let [a, b, c] = PLACES.map(|s| self.solve(&follow.machine.state, part.at(s)));
                 [a?, b?, c?]
             }
         };
@@ -123,7 +123,7 @@ impl<'m> Corrector<'m> {
                     let piece = Piece { kind, axes, share: follow.share(part) };
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
                     follow.came = direction;
-                    self.note_end(&follow.machine, nominal_end, wanted);
+                    self.note_end(&follow.machine.state, nominal_end, wanted);
                     return Ok(Tried::Done);
                 }
                 Verdict::Beyond { distance_mm, .. } => nearest = nearest.min(distance_mm),
@@ -143,7 +143,7 @@ impl<'m> Corrector<'m> {
         let places = part.at_quarters();
         let [start, a, b, c, end] = places;
         let [first, second, third, end] = machine.solved_together([a, b, c, end])?;
-        let commands = [self.solve(machine, start).ok()?, first, second, third, end];
+        let commands = [self.solve(&machine.state, start).ok()?, first, second, third, end];
         let squared = commands.iter().zip(&places).map(|(command, place)| (command - place).norm_squared());
         let largest_mm = squared.fold(0.0, f64::max).sqrt();
         Some((Solved { commands, direction: machine.state.direction }, largest_mm))

@@ -278,8 +278,7 @@ impl<'m> Corrector<'m> {
     }
 
     /// What [`Self::solve`] answers, where it was found before.
-    pub(crate) fn found(&self, machine: &Machine<'_>, nominal: Vector) -> Option<Vector> {
-        let target = &machine.state;
+    pub(crate) fn found(&self, target: &Command, nominal: Vector) -> Option<Vector> {
         // Place apart, where the same is asked for.
         let alike = |state: &Command| {
             (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
@@ -297,18 +296,18 @@ impl<'m> Corrector<'m> {
     }
 
     /// The command that brings the tool to a nominal command's place.
-    pub(crate) fn solve(&self, machine: &Machine<'_>, nominal: Vector) -> Result<Vector, CorrectionError> {
-        if let Some(answer) = self.found(machine, nominal) {
+    pub(crate) fn solve(&self, state: &Command, nominal: Vector) -> Result<Vector, CorrectionError> {
+        if let Some(answer) = self.found(state, nominal) {
             return Ok(answer);
         }
-        let target = Command { linear_mm: nominal, ..machine.state };
+        let target = Command { linear_mm: nominal, ..*state };
         let answer = match &self.everywhere {
             Some((_, _, Some(everywhere))) => self.model.command_for(&target, everywhere),
             _ => self.model.solve(&target).map(|solution| solution.linear_mm),
         };
         match (answer, self.options.outside) {
             (Ok(command), _) => Ok(command),
-            (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(machine, nominal)),
+            (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(state, nominal)),
             (Err(error), _) => Err(error.into()),
         }
     }
@@ -320,9 +319,9 @@ impl<'m> Corrector<'m> {
     }
 
     /// The nominal command with the correction of the volume's nearest point.
-    fn nearest(&self, machine: &Machine<'_>, nominal: Vector) -> Vector {
+    fn nearest(&self, state: &Command, nominal: Vector) -> Vector {
         let edge = self.model.volume().nearest(&nominal);
-        nominal - machine.error(edge)
+        nominal - self.model.error_mm(&Command { linear_mm: edge, ..*state })
     }
 
     pub(crate) fn standing_program(&self, block: &Block) -> [Option<f64>; 3] {
@@ -367,24 +366,24 @@ impl<'m> Corrector<'m> {
         let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
         let before = self.standing;
         let mut turns = 0;
-        let (machine, wanted, axes) = loop {
-            let machine = self.machine(block, nominal.rotary_deg);
-            let wanted = match self.solve(&machine, end_mm) {
+        let (state, wanted, axes) = loop {
+            let state = self.state(block, nominal.rotary_deg);
+            let wanted = match self.solve(&state, end_mm) {
                 Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
                     correction.clamped = true;
-                    self.nearest(&machine, end_mm)
+                    self.nearest(&state, end_mm)
                 }
                 other => other?,
             };
             let axes = self.go(block, &own_end, &wanted, true);
             // An axis comes from where the output sends it, and where it does not from where it came before.
             let Some(against) = self.against(before, self.standing, came, self.direction, block) else {
-                break (machine, wanted, axes);
+                break (state, wanted, axes);
             };
             self.turn(against);
             turns += 1;
             if turns == MOST_TURNS {
-                break (machine, wanted, axes);
+                break (state, wanted, axes);
             }
             self.standing = before;
         };
@@ -393,7 +392,7 @@ impl<'m> Corrector<'m> {
         }
         correction.largest_mm = (wanted - end_mm).norm();
         // The nearest point's correction is no answer for a feed motion that starts here.
-        self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..machine.state }, wanted));
+        self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..state }, wanted));
         Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
     }
 
@@ -590,19 +589,18 @@ impl<'m> Corrector<'m> {
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let start = part.at(0.0);
-        let mut wanted = self.solve(machine, start)?;
+        let mut wanted = self.solve(&machine.state, start)?;
         if let Some(first) = self.first_moves(&wanted, machine.state.direction, block) {
             self.direction = first;
             machine.state.direction = first;
-            wanted = self.solve(machine, start)?;
+            wanted = self.solve(&machine.state, start)?;
         }
         if let Some(turned) = self.approachable(&mut wanted, machine.state.direction, block) {
             let mut state = machine.state;
             for (direction, new) in state.direction.iter_mut().zip(turned) {
                 *direction = if new == 0 { *direction } else { new };
             }
-            let behind = Machine { state, ..machine.clone() };
-            let mut from_behind = self.solve(&behind, start)?;
+            let mut from_behind = self.solve(&state, start)?;
             // The axes that need not turn do not creep back meanwhile.
             let _ = self.approachable(&mut from_behind, state.direction, block);
             self.approach_to(from_behind, start, block, came, corrected);
@@ -640,8 +638,8 @@ impl<'m> Corrector<'m> {
         }
     }
 
-    pub(crate) fn note_end(&mut self, machine: &Machine<'_>, nominal: Vector, answer: Vector) {
-        self.last = Some((Command { linear_mm: nominal, ..machine.state }, answer));
+    pub(crate) fn note_end(&mut self, state: &Command, nominal: Vector, answer: Vector) {
+        self.last = Some((Command { linear_mm: nominal, ..*state }, answer));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Drilling cycles, hole by hole.
 
-use machine_model::{LANES, Vector};
+use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Hole};
 
@@ -117,7 +117,7 @@ impl<'m> Corrector<'m> {
             // The depth is fed one way, whatever way the axis went before; without a depth it is as it came to R.
             machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
             self.foresee_places(&machine, places);
-            let (top, bottom) = (self.solve(&machine, at_r)?, self.solve(&machine, at_bottom)?);
+            let (top, bottom) = (self.solve(&machine.state, at_r)?, self.solve(&machine.state, at_bottom)?);
             if by_moves {
                 break (machine, [top, bottom], None);
             }
@@ -172,11 +172,11 @@ impl<'m> Corrector<'m> {
     }
 
     /// The machine as it drills: in the plane the axes come from where they came from last.
-    fn drilling(&self, machine: &Machine<'m>, normal: usize) -> Machine<'m> {
+    fn drilling(&self, machine: &Machine<'m>, normal: usize) -> Command {
         let mut state = machine.state;
         state.direction = self.direction;
         state.direction[normal] = machine.state.direction[normal];
-        Machine { state, ..machine.clone() }
+        state
     }
 
     /// The cycle block with its words moved.
@@ -311,25 +311,25 @@ impl<'m> Corrector<'m> {
             |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
                 let (before, came) = (corrector.standing, corrector.direction);
                 let mut turns = 0;
-                let (machine, wanted, axes) = loop {
-                    let machine = corrector.drilling(machine, normal);
-                    let wanted = corrector.solve(&machine, to)?;
+                let (state, wanted, axes) = loop {
+                    let state = corrector.drilling(machine, normal);
+                    let wanted = corrector.solve(&state, to)?;
                     let axes = corrector.go(block, &to, &wanted, false);
                     let mut reached = corrector.standing;
                     reached[normal] = None;
                     turns += 1;
-                    match corrector.against(before, reached, came, machine.state.direction, block) {
+                    match corrector.against(before, reached, came, state.direction, block) {
                         Some(against) if turns < MOST_TURNS => {
                             corrector.turn(against);
                             corrector.standing = before;
                         }
-                        _ => break (machine, wanted, axes),
+                        _ => break (state, wanted, axes),
                     }
                 };
                 if axes.iter().any(|word| *word != AxisWord::Omit) {
                     corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
                 }
-                corrector.note_end(&machine, to, wanted);
+                corrector.note_end(&state, to, wanted);
                 Ok(())
             };
         let feed = |corrector: &mut Self,
@@ -338,7 +338,7 @@ impl<'m> Corrector<'m> {
                     corrected: &mut Corrected|
          -> Result<(), CorrectionError> {
             let part = Curve::Line(place(from), place(to));
-            let machine = corrector.drilling(machine, normal);
+            let machine = Machine { state: corrector.drilling(machine, normal), ..machine.clone() };
             let mut follow = Follow {
                 came: machine.state.direction,
                 machine,

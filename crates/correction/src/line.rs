@@ -1,10 +1,10 @@
 //! Following a curve with lines.
 
-use machine_model::Vector;
+use machine_model::{Command, Vector};
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
-use crate::deviation::{Machine, Pair, Verdict};
+use crate::deviation::{Pair, Verdict};
 use crate::grid::AxisWord;
 use crate::play::Tried;
 use crate::{Centre, Piece, PieceKind};
@@ -48,7 +48,7 @@ impl<'m> Corrector<'m> {
         hold: [bool; 3],
     ) -> Result<Tried, CorrectionError> {
         let nominal_end = part.at(1.0);
-        let wanted = self.solve(&follow.machine, nominal_end)?;
+        let wanted = self.solve(&follow.machine.state, nominal_end)?;
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
@@ -61,7 +61,8 @@ impl<'m> Corrector<'m> {
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
         let commanded = Curve::Line(from, to);
         let pair = Pair { wanted: part, commanded: &commanded, in_step: follow.in_step };
-        let solved = if follow.foreseen { self.solved_line(&follow.machine, part, wanted) } else { None };
+        let solved =
+            if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
         match pair.line_verdict_by(&follow.machine, solved.as_ref(), self.limit_mm(follow.block)) {
             Verdict::Within(bound) => {
                 follow.finish(
@@ -70,7 +71,7 @@ impl<'m> Corrector<'m> {
                     (wanted - nominal_end).norm(),
                 );
                 follow.came = direction;
-                self.note_end(&follow.machine, nominal_end, wanted);
+                self.note_end(&follow.machine.state, nominal_end, wanted);
                 Ok(Tried::Done)
             }
             Verdict::Beyond { distance_mm, .. } => {
@@ -83,8 +84,8 @@ impl<'m> Corrector<'m> {
 
 impl Corrector<'_> {
     /// The commands that bring the tool to a line at s = 0, ½, 1, where they were all found before.
-    fn solved_line(&self, machine: &Machine<'_>, part: &Curve, end: Vector) -> Option<[Vector; 3]> {
-        let found = |s: f64| self.found(machine, part.at(s));
+    fn solved_line(&self, state: &Command, part: &Curve, end: Vector) -> Option<[Vector; 3]> {
+        let found = |s: f64| self.found(state, part.at(s));
         Some([found(0.0)?, found(0.5)?, end])
     }
 }

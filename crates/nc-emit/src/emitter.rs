@@ -361,9 +361,12 @@ impl<'d> Emitter<'d> {
             line.blank();
             style.write_g(motion, line.out);
         }
-        let mut words: smallvec::SmallVec<[(u8, WordEdit); 12]> = piece.words.iter().copied().collect();
-        words.sort_by_key(|(letter, _)| crate::splice::rank(*letter));
-        for (letter, edit) in words {
+        let rank = |(letter, _): &(u8, WordEdit)| crate::splice::rank(*letter);
+        let mut words = std::borrow::Cow::Borrowed(piece.words.as_slice());
+        if !words.is_sorted_by_key(rank) {
+            words.to_mut().sort_by_key(rank);
+        }
+        for &(letter, edit) in words.iter() {
             match edit {
                 WordEdit::Remove => {}
                 WordEdit::Keep => {
