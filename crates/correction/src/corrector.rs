@@ -196,12 +196,14 @@ impl<'m> Corrector<'m> {
         match motion {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
             Motion::Feed(feed) => {
-                let corrected = self.feed(feed, block)?;
-                Ok(self.with_unknown_side(corrected, block, &feed.end))
+                let mut corrected = self.feed(feed, block)?;
+                corrected.correction.unknown_side_mm = self.unknown_side_mm(block, &feed.end);
+                Ok(corrected)
             }
             Motion::Hole(hole) => {
-                let corrected = self.hole(hole, block)?;
-                Ok(self.with_unknown_side(corrected, block, &hole.at_r))
+                let mut corrected = self.hole(hole, block)?;
+                corrected.correction.unknown_side_mm = self.unknown_side_mm(block, &hole.at_r);
+                Ok(corrected)
             }
             Motion::Uncorrected { end } => {
                 for axis in 0..3 {
@@ -251,30 +253,25 @@ impl<'m> Corrector<'m> {
         self.direction.contains(&0) && self.model.depends_on_direction()
     }
 
-    /// Says by how much the tool may be off at the end of a motion, for axes that stand on an unknown side of their play.
+    /// By how much the tool may be off at the end of a motion, mm, for axes that stand on an unknown side of their play.
     ///
     /// Such an axis takes the middle of its play: the error of either side is half of their difference away.
-    fn with_unknown_side(
-        &self,
-        mut corrected: Corrected,
-        block: &Block,
-        end: &toolpath::Position,
-    ) -> Corrected {
-        if self.is_side_unknown() {
-            let state = Command { linear_mm: end.linear_mm.into(), ..self.state(block, end.rotary_deg) };
-            let unknown = (0..3).filter(|axis| self.direction[*axis] == 0);
-            corrected.correction.unknown_side_mm = unknown
-                .map(|axis| {
-                    let [up, down] = [1, -1].map(|side| {
-                        let mut state = state;
-                        state.direction[axis] = side;
-                        self.model.error_mm(&state)
-                    });
-                    0.5 * (up - down).norm()
-                })
-                .sum();
+    fn unknown_side_mm(&self, block: &Block, end: &toolpath::Position) -> f64 {
+        if !self.is_side_unknown() {
+            return 0.0;
         }
-        corrected
+        let state = Command { linear_mm: end.linear_mm.into(), ..self.state(block, end.rotary_deg) };
+        let unknown = (0..3).filter(|axis| self.direction[*axis] == 0);
+        unknown
+            .map(|axis| {
+                let [up, down] = [1, -1].map(|side| {
+                    let mut state = state;
+                    state.direction[axis] = side;
+                    self.model.error_mm(&state)
+                });
+                0.5 * (up - down).norm()
+            })
+            .sum()
     }
 
     /// What [`Self::solve`] answers, where it was found before.

@@ -316,13 +316,14 @@ impl Curve {
         let (speed, acceleration) = self.fastest(0.0, 1.0)?;
         // A quarter of the motion leaves its chord by at most an eighth of its second derivative.
         let bow = acceleration / (8.0 * 16.0);
+        let [first, rest @ ..] = places;
+        let (mut low, mut high) = (*first, *first);
+        for place in rest {
+            (low, high) = (low.inf(place), high.sup(place));
+        }
         let range = std::array::from_fn(|axis| {
-            let of = places.map(|place| place[axis]);
             let bow = if axis == *n { 0.0 } else { bow };
-            Range {
-                low: of.into_iter().fold(f64::INFINITY, f64::min) - bow,
-                high: of.into_iter().fold(f64::NEG_INFINITY, f64::max) + bow,
-            }
+            Range { low: low[axis] - bow, high: high[axis] + bow }
         });
         let (mut speeds, mut accelerations) = ([speed; 3], [acceleration; 3]);
         (speeds[*n], accelerations[*n]) = ((normal[1] - normal[0]).abs(), 0.0);
