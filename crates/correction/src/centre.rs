@@ -34,6 +34,11 @@ impl Candidate {
             // last turn that came out as nothing.
             *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
         }
+        // Where both rays all but meet, the last bit says whether that is a whole turn or none. The block's own words between
+        // its own ends are what the program made of them.
+        if is_kept(&self.words) && search.stays() && ((*turned - sweep).abs() - TAU).abs() < 1e-9 {
+            *turned = sweep;
+        }
         ((*turned - sweep).abs() < 0.5 * sweep.abs().min(1.0)).then_some(curve)
     }
 }
@@ -156,6 +161,12 @@ fn length([u, v]: [f64; 2]) -> f64 {
 }
 
 impl Search<'_> {
+    /// The arc has the ends that were programmed.
+    fn stays(&self) -> bool {
+        let near = |s: f64, place: Vector| (self.part.at(s) - place).norm() < SAME_PLACE_MM;
+        near(0.0, self.from) && near(1.0, self.to)
+    }
+
     /// The centres worth trying.
     pub(crate) fn candidates(&self) -> Candidates {
         let mut found = Candidates(SmallVec::new());
