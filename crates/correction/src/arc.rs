@@ -69,7 +69,7 @@ impl<'m> Corrector<'m> {
         let nominal_end = part.at(1.0);
         let direction = follow.machine.state.direction;
         if follow.solved.is_none_or(|solved| solved.direction != direction) {
-            follow.solved = self.solved(&follow.machine, part);
+            follow.solved = self.solved_arc(&follow.machine, part).map(|(solved, _)| solved);
         }
         let wanted = match &follow.solved {
             Some(solved) => solved.end(),
@@ -133,12 +133,8 @@ impl<'m> Corrector<'m> {
         Ok(Tried::Beyond { distance_mm: nearest, s: 0.5 })
     }
 
-    /// Commands that bring the tool to an arc, its places all solved at once; `None` where the model has to be asked for each.
-    fn solved(&self, machine: &Machine<'_>, part: &Curve) -> Option<Solved> {
-        Some(self.solved_arc(machine, part)?.0)
-    }
-
-    /// The same, and the largest correction at these places, mm.
+    /// Commands that bring the tool to an arc, its places all solved at once, and the largest correction at them, mm; `None` where
+    /// the model has to be asked for each.
     pub(crate) fn solved_arc(&self, machine: &Machine<'_>, part: &Curve) -> Option<(Solved, f64)> {
         let places = part.at_quarters();
         let [start, a, b, c, end] = places;

@@ -60,15 +60,15 @@ impl Corrector<'_> {
         rotary_deg: [f64; 3],
         correction_mm: f64,
     ) -> f64 {
-        let (speed, acceleration) = whole.fastest(0.0, 1.0).unwrap_or_default();
         let bow = self
             .everywhere
             .as_ref()
             .and_then(|known| known.2.as_deref())
             .filter(|everywhere| whole.lies_inside(&everywhere.volume))
-            .map_or(f64::INFINITY, |everywhere| match whole {
-                Curve::Line(a, b) => everywhere.chord_bound_of_four_passes_mm((b - a).amax()),
-                Curve::Arc { .. } => everywhere.chord_bound_of_circle_mm(speed, acceleration),
+            .map_or(f64::INFINITY, |everywhere| match whole.fastest(0.0, 1.0) {
+                Some((speed, acceleration)) => everywhere.chord_bound_of_circle_mm(speed, acceleration),
+                // A line.
+                None => everywhere.chord_bound_of_four_passes_mm((whole.at(1.0) - whole.at(0.0)).amax()),
             });
         if self.error_before_mm(correction_mm) + bow <= self.told_mm[0] {
             return 0.0;

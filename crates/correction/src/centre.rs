@@ -384,7 +384,6 @@ mod tests {
                 angle: start,
                 sweep: TAU / 2.0,
                 radius: [10.0; 2],
-                normal: [0.0; 2],
                 ends: [place(start, 0.0), place(start + TAU / 2.0, 0.0)],
             };
             let block = block([0.0; 3]);
@@ -415,7 +414,7 @@ mod tests {
                 Vector::new(20.0 + r * cos, -30.0 + r * sin, 0.0)
             };
             let part = Curve::Arc {
-                axes: Plane::Xy.axes(), centre: [20.0, -30.0], angle, sweep, radius: [radius; 2], normal: [0.0; 2],
+                axes: Plane::Xy.axes(), centre: [20.0, -30.0], angle, sweep, radius: [radius; 2],
                 ends: [place(0), place(4)],
             };
             let corrected = [place(1), place(2), place(3)];

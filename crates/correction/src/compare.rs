@@ -230,17 +230,17 @@ fn project(curve: &Curve, place: &Vector, near: f64) -> f64 {
             let square = step.norm_squared();
             if square > 0.0 { (place - a).dot(&step) / square } else { 1.0 }
         }
-        Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal, .. } => {
+        Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, ends: [start, end] } => {
             let here = units::math::atan2(place[*v] - centre[1], place[*u] - centre[0]);
             let expected = angle + sweep * near;
             let turns = ((expected - here) / std::f64::consts::TAU).round();
             let by_angle = (here + turns * std::f64::consts::TAU - angle) / sweep;
             // A steep helix is known by its height rather than by its angle: each weighs by the way it makes.
-            let rise = normal[1] - normal[0];
+            let rise = end[*n] - start[*n];
             if rise == 0.0 {
                 return by_angle;
             }
-            let by_height = (place[*n] - normal[0]) / rise;
+            let by_height = (place[*n] - start[*n]) / rise;
             let around = 0.5 * (radius[0] + radius[1]) * sweep;
             (by_angle * around * around + by_height * rise * rise) / (around * around + rise * rise)
         }

@@ -26,9 +26,7 @@ pub enum Curve {
         sweep: f64,
         /// Radius at s = 0 and s = 1, mm.
         radius: [f64; 2],
-        /// Normal axis at s = 0 and s = 1, mm.
-        normal: [f64; 2],
-        /// The places at s = 0 and s = 1: what the angles lead to, but for rounding.
+        /// The places at s = 0 and s = 1: in the first two axes what the angles lead to, but for rounding.
         ends: [Vector; 2],
     },
 }
@@ -52,7 +50,7 @@ impl Curve {
             Shape::Line => Self::Line(start, end),
             Shape::Arc(arc) => {
                 let axes = arc.plane.axes();
-                let [u, v, n] = axes;
+                let [u, v, _] = axes;
                 let [cu, cv] = arc.centre_mm;
                 let (su, sv) = (start[u] - cu, start[v] - cv);
                 let (eu, ev) = (end[u] - cu, end[v] - cv);
@@ -62,7 +60,6 @@ impl Curve {
                     angle: atan2(sv, su),
                     sweep: arc.sweep_rad,
                     radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
-                    normal: [start[n], end[n]],
                     ends: [start, end],
                 }
             }
@@ -77,7 +74,7 @@ impl Curve {
         centre: [f64; 2],
         clockwise: bool,
     ) -> Self {
-        let [u, v, n] = axes;
+        let [u, v, _] = axes;
         let (su, sv) = (start[u] - centre[0], start[v] - centre[1]);
         let (eu, ev) = (end[u] - centre[0], end[v] - centre[1]);
         let angle = atan2(sv, su);
@@ -92,7 +89,6 @@ impl Curve {
             angle,
             sweep,
             radius: [(su * su + sv * sv).sqrt(), (eu * eu + ev * ev).sqrt()],
-            normal: [start[n], end[n]],
             ends: [start, end],
         }
     }
@@ -173,22 +169,26 @@ impl Curve {
     /// The place at s of an arc, whose angle there has this sine and cosine.
     #[inline]
     fn at_turned(&self, s: f64, (sin, cos): (f64, f64)) -> Vector {
-        let Self::Arc { axes: [u, v, n], centre, radius, normal, .. } = self else { return self.at(s) };
+        let Self::Arc { axes: [u, v, n], centre, radius, ends: [start, end], .. } = self else {
+            return self.at(s);
+        };
         let r = radius[0] + (radius[1] - radius[0]) * s;
         let mut p = Vector::zeros();
         p[*u] = centre[0] + r * cos;
         p[*v] = centre[1] + r * sin;
-        p[*n] = normal[0] + (normal[1] - normal[0]) * s;
+        p[*n] = start[*n] + (end[*n] - start[*n]) * s;
         p
     }
 
     /// The same of the unit tangent.
     #[inline]
     fn tangent_turned(&self, s: f64, (sin, cos): (f64, f64)) -> Vector {
-        let Self::Arc { axes: [u, v, n], sweep, radius, normal, .. } = self else { return self.tangent(s) };
+        let Self::Arc { axes: [u, v, n], sweep, radius, ends: [start, end], .. } = self else {
+            return self.tangent(s);
+        };
         let mut t = Vector::zeros();
         let dr = radius[1] - radius[0];
-        if dr.abs() <= 1e-12 * radius[0] && normal[0] == normal[1] && *sweep != 0.0 {
+        if dr.abs() <= 1e-12 * radius[0] && start[*n] == end[*n] && *sweep != 0.0 {
             // A circle but for last bits: its tangent is of length 1 as it is.
             (t[*u], t[*v]) = (-sin * sweep.signum(), cos * sweep.signum());
             return t;
@@ -196,7 +196,7 @@ impl Curve {
         let r = radius[0] + dr * s;
         t[*u] = dr * cos - r * sweep * sin;
         t[*v] = dr * sin + r * sweep * cos;
-        t[*n] = normal[1] - normal[0];
+        t[*n] = end[*n] - start[*n];
         unit(t)
     }
 
@@ -214,16 +214,14 @@ impl Curve {
 
     /// The part from s0 to s1, the places there given.
     fn part_to(&self, s0: f64, s1: f64, ends: [Vector; 2]) -> Self {
-        let between = |pair: &[f64; 2]| [s0, s1].map(|s| pair[0] + (pair[1] - pair[0]) * s);
         match self {
             Self::Line(..) => Self::Line(ends[0], ends[1]),
-            Self::Arc { axes, centre, angle, sweep, radius, normal, .. } => Self::Arc {
+            Self::Arc { axes, centre, angle, sweep, radius, .. } => Self::Arc {
                 axes: *axes,
                 centre: *centre,
                 angle: angle + sweep * s0,
                 sweep: sweep * (s1 - s0),
-                radius: between(radius),
-                normal: between(normal),
+                radius: [s0, s1].map(|s| radius[0] + (radius[1] - radius[0]) * s),
                 ends,
             },
         }
@@ -234,9 +232,9 @@ impl Curve {
     pub fn length_mm(&self) -> f64 {
         match self {
             Self::Line(a, b) => (b - a).norm(),
-            Self::Arc { sweep, radius, normal, .. } => {
+            Self::Arc { axes: [_, _, n], sweep, radius, ends: [start, end], .. } => {
                 let along = 0.5 * (radius[0] + radius[1]) * sweep;
-                let rise = normal[1] - normal[0];
+                let rise = end[*n] - start[*n];
                 (along * along + rise * rise).sqrt()
             }
         }
@@ -273,7 +271,7 @@ impl Curve {
                     acceleration: [0.0; 3],
                 }
             }
-            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, normal, .. } => {
+            Self::Arc { axes: [u, v, n], centre, angle, sweep, radius, ends: [start, end] } => {
                 let r = radius[0].max(radius[1]);
                 let dr = (radius[1] - radius[0]).abs() * h;
                 let turn = sweep.abs() * h;
@@ -286,8 +284,7 @@ impl Curve {
                     low: c + r * low - spread,
                     high: c + r * high + spread,
                 };
-                let (a, b) =
-                    (normal[0] + (normal[1] - normal[0]) * s0, normal[0] + (normal[1] - normal[0]) * s1);
+                let [a, b] = [s0, s1].map(|s| start[*n] + (end[*n] - start[*n]) * s);
                 let mut extent = Extent {
                     range: [Range { low: 0.0, high: 0.0 }; 3],
                     speed: [0.0; 3],
@@ -312,7 +309,7 @@ impl Curve {
     /// [`Curve::extent`] of all of an arc that turns once at most, from its places at s = 0, ¼, ½, ¾, 1: quicker, and rougher. `None`
     /// for a line.
     pub(crate) fn extent_by(&self, places: &[Vector; 5]) -> Option<Extent> {
-        let Self::Arc { axes: [_, _, n], normal, .. } = self else { return None };
+        let Self::Arc { axes: [_, _, n], ends: [start, end], .. } = self else { return None };
         let (speed, acceleration) = self.fastest(0.0, 1.0)?;
         // A quarter of the motion leaves its chord by at most an eighth of its second derivative.
         let bow = acceleration / (8.0 * 16.0);
@@ -326,17 +323,17 @@ impl Curve {
             Range { low: low[axis] - bow, high: high[axis] + bow }
         });
         let (mut speeds, mut accelerations) = ([speed; 3], [acceleration; 3]);
-        (speeds[*n], accelerations[*n]) = ((normal[1] - normal[0]).abs(), 0.0);
+        (speeds[*n], accelerations[*n]) = ((end[*n] - start[*n]).abs(), 0.0);
         Some(Extent { range, speed: speeds, acceleration: accelerations })
     }
 
     /// Upper bounds of the first and second derivative of any axis on the part from s0 to s1, with s running 0..=1
     /// over that part: quicker than [`Curve::extent`], and rougher. `None` for a line, where they would be no rougher.
     pub(crate) fn fastest(&self, s0: f64, s1: f64) -> Option<(f64, f64)> {
-        let Self::Arc { sweep, radius, normal, .. } = self else { return None };
+        let Self::Arc { axes: [_, _, n], sweep, radius, ends: [start, end], .. } = self else { return None };
         let h = s1 - s0;
         let (r, turn) = (radius[0].max(radius[1]), sweep.abs() * h);
-        let (growth, rise) = ((radius[1] - radius[0]).abs() * h, (normal[1] - normal[0]).abs() * h);
+        let (growth, rise) = ((radius[1] - radius[0]).abs() * h, (end[*n] - start[*n]).abs() * h);
         Some(((r * turn + growth).max(rise), r * turn * turn + 2.0 * growth * turn))
     }
 
@@ -344,14 +341,14 @@ impl Curve {
     pub(crate) fn lies_inside(&self, volume: &Volume) -> bool {
         match self {
             Self::Line(a, b) => volume.contains(a) && volume.contains(b),
-            Self::Arc { axes: [u, v, n], centre, radius, normal, .. } => {
+            Self::Arc { axes: [u, v, n], centre, radius, ends: [start, end], .. } => {
                 let r = radius[0].max(radius[1]);
                 let holds = |axis: usize, low: f64, high: f64| {
                     volume.0[axis].low <= low && high <= volume.0[axis].high
                 };
                 holds(*u, centre[0] - r, centre[0] + r)
                     && holds(*v, centre[1] - r, centre[1] + r)
-                    && holds(*n, normal[0].min(normal[1]), normal[0].max(normal[1]))
+                    && holds(*n, start[*n].min(end[*n]), start[*n].max(end[*n]))
             }
         }
     }
@@ -452,7 +449,6 @@ mod tests {
             angle,
             sweep,
             radius: [r0, r1],
-            normal: [1.0, 1.0 + rise],
             ends: [place(angle, r0, 1.0), place(angle + sweep, r1, 1.0 + rise)],
         }
     }

@@ -521,7 +521,7 @@ mod tests {
                 place
             };
             let wanted = Curve::Arc {
-                axes, centre: [middle[u], middle[v]], angle, sweep, radius: [radius; 2], normal: [middle[n], middle[n] + rise],
+                axes, centre: [middle[u], middle[v]], angle, sweep, radius: [radius; 2],
                 ends: [on_circle(angle, 0.0), on_circle(angle + sweep, rise)],
             };
             let at = |s: f64| wanted.at(s);
@@ -556,7 +556,6 @@ mod tests {
             if sweep.abs() < 3.0 {
                 let other = Curve::Arc {
                     axes, centre: [middle[u], middle[v]], angle: angle + sweep, sweep, radius: [radius; 2],
-                    normal: [middle[n] + rise, middle[n] + 2.0 * rise],
                     ends: [on_circle(angle + sweep, rise), on_circle(angle + 2.0 * sweep, 2.0 * rise)],
                 };
                 let [_, a, b, c, last] = other.at_quarters();

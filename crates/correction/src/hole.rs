@@ -100,8 +100,7 @@ impl<'m> Corrector<'m> {
     pub(crate) fn hole(&mut self, hole: &Hole, block: &Block) -> Result<Corrected, CorrectionError> {
         let normal = hole.plane.axes()[2];
         let at_r = Vector::from(hole.at_r.linear_mm);
-        let place = |mm: f64| on_hole(hole, mm);
-        let at_bottom = place(hole.bottom_mm);
+        let at_bottom = on_hole(hole, hole.bottom_mm);
         let places = places(hole);
         let start = Vector::from(hole.start.linear_mm);
         let came = self.direction;
@@ -171,12 +170,11 @@ impl<'m> Corrector<'m> {
         Ok(corrected)
     }
 
-    /// The machine as it drills: in the plane the axes come from where they came from last.
-    fn drilling(&self, machine: &Machine<'m>, normal: usize) -> Command {
-        let mut state = machine.state;
-        state.direction = self.direction;
-        state.direction[normal] = machine.state.direction[normal];
-        state
+    /// The state in which the machine drills: in the plane the axes come from where they came from last.
+    fn drilling(&self, state: &Command, normal: usize) -> Command {
+        let mut direction = self.direction;
+        direction[normal] = state.direction[normal];
+        Command { direction, ..*state }
     }
 
     /// The cycle block with its words moved.
@@ -312,7 +310,7 @@ impl<'m> Corrector<'m> {
                 let (before, came) = (corrector.standing, corrector.direction);
                 let mut turns = 0;
                 let (state, wanted, axes) = loop {
-                    let state = corrector.drilling(machine, normal);
+                    let state = corrector.drilling(&machine.state, normal);
                     let wanted = corrector.solve(&state, to)?;
                     let axes = corrector.go(block, &to, &wanted, false);
                     let mut reached = corrector.standing;
@@ -338,7 +336,7 @@ impl<'m> Corrector<'m> {
                     corrected: &mut Corrected|
          -> Result<(), CorrectionError> {
             let part = Curve::Line(place(from), place(to));
-            let machine = Machine { state: corrector.drilling(machine, normal), ..machine.clone() };
+            let machine = Machine { state: corrector.drilling(&machine.state, normal), ..machine.clone() };
             let mut follow = Follow {
                 came: machine.state.direction,
                 machine,

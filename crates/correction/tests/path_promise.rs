@@ -157,7 +157,6 @@ impl Control {
                     angle: angle(&start),
                     sweep,
                     radius: [radius(&start), radius(&end)],
-                    normal: [start[n], end[n]],
                     ends: [start, end],
                 })
             }
