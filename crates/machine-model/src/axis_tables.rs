@@ -1,7 +1,7 @@
 //! The six error functions of one axis, looked up together.
 
 use crate::lanes::Real;
-use crate::table::{self, Cubic, Grid};
+use crate::table::{self, Cubic, Grid, slope_of, value_of};
 use crate::{Bounds, Range, Table};
 
 /// What one axis does wrong at one command: `EX EY EZ` in mm, `EA EB EC` in rad.
@@ -55,19 +55,18 @@ impl Cell<'_> {
     #[inline(always)]
     fn value<T: Real>(&self, i: usize, t: T) -> T {
         let [c0, c1] = self.straight;
-        let beyond = match self.curved {
-            None => t.all(c1[i]),
-            Some([c2, c3]) => t.all(c1[i]) + t * (t.all(c2[i]) + t * t.all(c3[i])),
-        };
-        t.all(c0[i]) + t * beyond
+        match self.curved {
+            None => t.all(c0[i]) + t * t.all(c1[i]),
+            Some([c2, c3]) => value_of(&[t.all(c0[i]), t.all(c1[i]), t.all(c2[i]), t.all(c3[i])], t),
+        }
     }
 
     #[inline(always)]
     fn slope<T: Real>(&self, i: usize, t: T) -> T {
-        let [_, c1] = self.straight;
+        let [c0, c1] = self.straight;
         match self.curved {
             None => t.all(c1[i]),
-            Some([c2, c3]) => t.all(c1[i]) + t * (t.all(2.0 * c2[i]) + t * t.all(3.0 * c3[i])),
+            Some([c2, c3]) => slope_of(&[t.all(c0[i]), t.all(c1[i]), t.all(c2[i]), t.all(c3[i])], t),
         }
     }
 }

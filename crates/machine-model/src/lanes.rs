@@ -12,6 +12,7 @@ use pulp::{Simd, f64x4};
 
 use crate::axis_tables::{AxisTables, Cell, Six};
 use crate::rigid_body::Link;
+use crate::table::{slope_of, value_of};
 use crate::{Range, Vector};
 
 /// How many points are evaluated together.
@@ -236,11 +237,10 @@ impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
         let [c0, c1] = straight;
         let mut six = c0;
         for i in 0..6 {
-            six[i] = c0[i]
-                + t * match &curved {
-                    None => c1[i],
-                    Some([c2, c3]) => c1[i] + t * (c2[i] + t * c3[i]),
-                };
+            six[i] = match &curved {
+                None => c0[i] + t * c1[i],
+                Some([c2, c3]) => value_of(&[c0[i], c1[i], c2[i], c3[i]], t),
+            };
         }
         Some(six)
     }
@@ -263,8 +263,8 @@ impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
             match &curved {
                 None => six[i] = c0[i] + t * c1[i],
                 Some([c2, c3]) => {
-                    six[i] = c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i]));
-                    slopes[i] = c1[i] + t * (t.all(2.0) * c2[i] + t * (t.all(3.0) * c3[i]));
+                    six[i] = value_of(&[c0[i], c1[i], c2[i], c3[i]], t);
+                    slopes[i] = slope_of(&[c0[i], c1[i], c2[i], c3[i]], t);
                 }
             }
         }
@@ -298,10 +298,10 @@ impl<'t> Cells<'t> {
     fn curved<S: Simd<f64s = f64x4>>(&self, simd: S) -> Option<Rows<S>> {
         static NONE: [Six; 2] = [[0.0; 6]; 2];
         let [a, b, c, d] = &self.0;
-        if let (None, None, None, None) = (a.curved, b.curved, c.curved, d.curved) {
+        let or_none = [a.curved, b.curved, c.curved, d.curved];
+        if let [None, None, None, None] = or_none {
             return None;
         }
-        let or_none = [a.curved, b.curved, c.curved, d.curved];
         let mut curved = [&NONE; LANES];
         for lane in 0..LANES {
             if let Some(own) = or_none[lane] {

@@ -3,6 +3,7 @@
 //! Equations (1) to (4) of `docs/equations.md`.
 
 use crate::Range;
+use crate::lanes::Real;
 
 /// What lies between the nodes of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -132,13 +133,13 @@ pub(crate) fn check(nodes: &[f64], values: &[f64]) -> Result<(), TableError> {
 /// Coefficients of one cell, `c0 + t·(c1 + t·(c2 + t·c3))`, `t` from the cell's lower node.
 pub(crate) type Cubic = [f64; 4];
 
-#[inline]
-pub(crate) fn value_of(c: &Cubic, t: f64) -> f64 {
+#[inline(always)]
+pub(crate) fn value_of<T: Real>(c: &[T; 4], t: T) -> T {
     c[0] + t * (c[1] + t * (c[2] + t * c[3]))
 }
-#[inline]
-pub(crate) fn slope_of(c: &Cubic, t: f64) -> f64 {
-    c[1] + t * (2.0 * c[2] + t * (3.0 * c[3]))
+#[inline(always)]
+pub(crate) fn slope_of<T: Real>(c: &[T; 4], t: T) -> T {
+    c[1] + t * (t.all(2.0) * c[2] + t * (t.all(3.0) * c[3]))
 }
 
 /// Bounds of one cubic for `t` in `low..=high`: equation (4).
