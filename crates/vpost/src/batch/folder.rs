@@ -54,20 +54,18 @@ impl OutputFolder {
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
             .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+        let temporaries = Nursery::new(temporaries);
         let alone = match lock.try_lock() {
             Ok(()) => true,
             Err(TryLockError::WouldBlock) => false,
             // A file system without locks: nobody can be asked for, and nothing is swept.
             Err(TryLockError::Error(_)) => {
-                return Ok(Self {
-                    root: root.to_owned(),
-                    temporaries: Nursery::new(temporaries),
-                    lock: None,
-                });
+                return Ok(Self { root: root.to_owned(), temporaries, lock: None });
             }
         };
         if alone {
-            sweep(&temporaries).map_err(|error| Failure::file(&file::name(&temporaries), "empty", &error))?;
+            let folder = temporaries.path();
+            sweep(folder).map_err(|error| Failure::file(&file::name(folder), "empty", &error))?;
         }
         let held = match company {
             Company::Alone => alone,
@@ -76,7 +74,7 @@ impl OutputFolder {
         if !held {
             return Err(busy(root));
         }
-        Ok(Self { root: root.to_owned(), temporaries: Nursery::new(temporaries), lock: Some(lock) })
+        Ok(Self { root: root.to_owned(), temporaries, lock: Some(lock) })
     }
 
     /// True where nobody else can be at work here.

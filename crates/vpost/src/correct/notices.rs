@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use correction::CorrectionError;
-use diagnostic::Diagnostic;
+use diagnostic::{Code, Diagnostic};
 use machine_model::SolveError;
 use nc_syntax::Block;
 use toolpath::Motion;
@@ -48,6 +48,19 @@ impl Notice {
         }
         self.largest_mm = self.largest_mm.max(later.largest_mm);
     }
+
+    /// What is to be said where it happened; the message is made of how often, and of the largest, um.
+    fn warning(
+        &self,
+        code: Code,
+        message: impl FnOnce(u64, f64) -> String,
+        label: &'static str,
+        help: &'static str,
+    ) -> Option<Warning> {
+        let (first, line) = self.first.clone()?;
+        let message = message(self.count, self.largest_mm * 1e3);
+        Some((Diagnostic::warning(code, message).at(first, label).help(help), line))
+    }
 }
 
 impl Notices {
@@ -59,45 +72,31 @@ impl Notices {
     }
 
     pub(crate) fn warnings(&self) -> Vec<Warning> {
-        let mut all = Vec::new();
-        if let Notice { count, first: Some((first, line)), .. } = &self.clamped {
-            all.push((
-                Diagnostic::warning(
-                    RAPID_OUTSIDE,
-                    format!("{count} rapid motion(s) end outside the calibrated volume"),
-                )
-                .at(first.clone(), "the first; it takes the correction of the volume's nearest point")
-                .help("nothing is cut there; calibrate a larger volume if the place matters"),
-                *line,
-            ));
-        }
-        if let Notice { count, first: Some((first, line)), largest_mm } = &self.leaning {
-            all.push((
-                Diagnostic::warning(
-                    LEANING_CYCLE,
-                    format!("{count} hole(s) are off by up to {:.1} um along their depth", largest_mm * 1e3),
-                )
-                .at(first.clone(), "this cycle is bound to the spindle and cannot be written as moves; its middle was put in place")
-                .help("the machine's drilling axis leans; thread by milling where that matters"), *line));
-        }
-        if let Notice { count, first: Some((first, line)), .. } = &self.compensated {
-            all.push((
-                Diagnostic::warning(COMPENSATED, format!("{count} motion(s) under cutter compensation"))
-                    .at(first.clone(), "the programmed contour was corrected, not the path of the tool's centre")
-                    .help("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters"), *line));
-        }
-        if let Notice { count, first: Some((first, line)), largest_mm } = &self.unknown_side {
-            all.push((
-                Diagnostic::warning(
-                    UNKNOWN_SIDE,
-                    format!("{count} motion(s) with an axis on an unknown side of its play, off by up to {:.1} um", largest_mm * 1e3),
-                )
-                .at(first.clone(), "the first; the middle of the play was taken, since nothing before tells from where the axis came")
-                .help("say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return or `/`, feed the axis to its place from one side first"),
-                *line,
-            ));
-        }
-        all
+        let clamped = self.clamped.warning(
+            RAPID_OUTSIDE,
+            |count, _| format!("{count} rapid motion(s) end outside the calibrated volume"),
+            "the first; it takes the correction of the volume's nearest point",
+            "nothing is cut there; calibrate a larger volume if the place matters",
+        );
+        let leaning = self.leaning.warning(
+            LEANING_CYCLE,
+            |count, um| format!("{count} hole(s) are off by up to {um:.1} um along their depth"),
+            "this cycle is bound to the spindle and cannot be written as moves; its middle was put in place",
+            "the machine's drilling axis leans; thread by milling where that matters",
+        );
+        let compensated = self.compensated.warning(
+            COMPENSATED,
+            |count, _| format!("{count} motion(s) under cutter compensation"),
+            "the programmed contour was corrected, not the path of the tool's centre",
+            "between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters",
+        );
+        let unknown_side = self.unknown_side.warning(
+            UNKNOWN_SIDE,
+            |count, um| format!("{count} motion(s) with an axis on an unknown side of its play, off by up to {um:.1} um"),
+            "the first; the middle of the play was taken, since nothing before tells from where the axis came",
+            "say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return or `/`, feed the axis to its place from one side first",
+        );
+        [clamped, leaning, compensated, unknown_side].into_iter().flatten().collect()
     }
 }
 
