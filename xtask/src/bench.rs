@@ -14,7 +14,7 @@ use clap::Args;
 use nc_syntax::{Block, Reader};
 
 use crate::markdown::table;
-use measure::{Run, own_cpu_s, run};
+use measure::{Run, in_turn, own_cpu_s, run_anew};
 
 /// Options of the benchmark.
 #[derive(Debug, Args)]
@@ -74,24 +74,18 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         ("mixed, 2 threads", &mixed, correct(&mixed, 2)),
         ("dense, large, 2 threads", &large, correct(&large, 2)),
     ];
-    let mut least: [Option<Run>; 6] = [None; 6];
-    // In turn, so that no kind of run has the machine's best minute for itself.
-    for _ in 0..options.repeat.max(1) {
-        for (least, (_, _, command)) in least.iter_mut().zip(&mut kinds) {
-            // Freeing the file of the run before is not what is measured.
-            if output.exists() {
-                std::fs::remove_file(&output)?;
-            }
-            let now = run(command)?;
-            *least = Some(least.map_or(now, |least| least.least(now)));
+    let least = in_turn(options.repeat.max(1), |_| {
+        let mut runs = [Run::default(); 6];
+        for (run, (_, _, command)) in runs.iter_mut().zip(&mut kinds) {
+            *run = run_anew(command, &output)?;
         }
-    }
+        Ok(runs)
+    })?;
     let tokenizer = tokenizer(&small, options.repeat)?;
     let mut rows = Vec::new();
     // MB per second on the clock, and of processor time.
     let mut speeds = [[0.0; 2]; 6];
     for ((speeds, least), (what, path, _)) in speeds.iter_mut().zip(least).zip(&kinds) {
-        let Some(least) = least else { continue };
         let megabytes = path.metadata()?.len() as f64 / 1e6;
         *speeds = [least.wall_s, least.cpu_s].map(|s| megabytes / s);
         let [speed, per_core] = *speeds;

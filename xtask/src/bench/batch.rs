@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::ensure;
 use clap::Args;
 
-use super::measure::{Run, own_cpu_s, run};
+use super::measure::{Run, in_turn, own_cpu_s, run, run_anew};
 use super::programs;
 use crate::markdown::table;
 
@@ -121,8 +121,7 @@ impl Bench<'_> {
         write(&self.path("large.nc"), |out| programs::dense(bytes, out))?;
         let sizes = release.iter().map(|program| program.1);
         write(&self.path("joined.nc"), |out| programs::dense_parts(sizes, out))?;
-        // In turn, so that no kind of run has the machine's best minute for itself.
-        let round = |number: usize| -> anyhow::Result<[Run; 7]> {
+        let runs = in_turn(self.options.repeat, |number| {
             let out = |name: &str| self.path(&format!("{name}{number}"));
             Ok([
                 self.single("large.nc", 1)?,
@@ -133,14 +132,8 @@ impl Bench<'_> {
                 self.batch(2, &out("two"))?,
                 self.batch(1, &out("one"))?,
             ])
-        };
-        let mut best = round(0)?;
-        for number in 1..self.options.repeat {
-            for (best, run) in best.iter_mut().zip(round(number)?) {
-                *best = best.least(run);
-            }
-        }
-        let [one, two, joined, files, batch, batch_two, again] = best;
+        })?;
+        let [one, two, joined, files, batch, batch_two, again] = runs;
         Ok(Size {
             programs: release.len(),
             bytes,
@@ -175,14 +168,11 @@ impl Bench<'_> {
     fn single(&self, name: &str, threads: usize) -> anyhow::Result<Run> {
         let mut command = Command::new(self.vpost);
         let out = self.path("one.out.nc");
-        // Freeing the file of the run before is not what is measured; one file more or less is nothing to ext4.
-        if out.exists() {
-            std::fs::remove_file(&out)?;
-        }
-        command.arg(self.path(name)).arg("-o").arg(out);
+        command.arg(self.path(name)).arg("-o").arg(&out);
         command.env("RAYON_NUM_THREADS", threads.to_string());
         self.shared(&mut command);
-        run(&mut command)
+        // One file less is nothing to ext4.
+        run_anew(&mut command, &out)
     }
 
     fn batch(&self, jobs: usize, out: &Path) -> anyhow::Result<Run> {

@@ -9,7 +9,7 @@ use anyhow::{Context, bail};
 use wait4::Wait4;
 
 /// What one run took.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Run {
     /// Seconds on the clock.
     pub(crate) wall_s: f64,
@@ -70,4 +70,26 @@ impl Run {
             peak_mib: self.peak_mib.max(other.peak_mib),
         }
     }
+}
+
+/// Runs all kinds of run in turn, so that none has the machine's best minute for itself; of each what it took at the least.
+pub(crate) fn in_turn<const KINDS: usize>(
+    rounds: usize,
+    mut round: impl FnMut(usize) -> anyhow::Result<[Run; KINDS]>,
+) -> anyhow::Result<[Run; KINDS]> {
+    let mut least = round(0)?;
+    for number in 1..rounds {
+        for (least, run) in least.iter_mut().zip(round(number)?) {
+            *least = least.least(run);
+        }
+    }
+    Ok(least)
+}
+
+/// Runs a command that writes a file. Freeing that of the run before is not what is measured.
+pub(crate) fn run_anew(command: &mut Command, output: &Path) -> anyhow::Result<Run> {
+    if output.exists() {
+        std::fs::remove_file(output)?;
+    }
+    run(command)
 }
