@@ -87,6 +87,33 @@ fn what_fails_stops_nothing_and_is_listed() {
     assert!(!output.join("a_variable.nc").exists());
 }
 
+/// Names as an old share has them. The two differ, and look alike where they are shown.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_name_that_is_not_utf8_stops_no_other_program() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (input, output) = (folder.path().join("release"), folder.path().join("out"));
+    release(&input, 4, 5);
+    for name in [&b"\xEF\xE0\xE7.nc"[..], b"\xEF\xF0\xF3.nc"] {
+        std::fs::write(input.join(std::ffi::OsStr::from_bytes(name)), program(5, 5)).unwrap();
+    }
+    let lines = folder.path().join("results.jsonl");
+    let ran = batch(&input, &output, &["--results", lines.to_str().unwrap()]);
+    assert_eq!(ran.status.code(), Some(1), "{}", messages(&ran));
+    assert_eq!(messages(&ran).matches("error[VP1004]").count(), 2, "{}", messages(&ran));
+    let results = results(&lines);
+    let refused = results.iter().filter(|line| line["errors"][0]["code"].as_str() == Some("VP1004")).count();
+    assert_eq!((results.len(), refused, tree(&output).len()), (6, 2, 4));
+    assert!(messages(&ran).contains("release/паз.nc"), "{}", messages(&ran));
+    let manifest = folder.path().join("plan.jsonl");
+    let mut plan = vpost();
+    plan.args(["batch", "plan", "-m", PROFILE, "-d", "linuxcnc"]).arg(&input).arg("-O").arg(&output);
+    let planned = plan.arg("--manifest").arg(&manifest).output().expect("the command starts");
+    assert_eq!(planned.status.code(), Some(2), "{}", messages(&planned));
+    assert!(messages(&planned).contains("error[VP1004]") && !manifest.exists(), "{}", messages(&planned));
+}
+
 #[test]
 fn results_and_outputs_do_not_depend_on_the_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();

@@ -29,6 +29,8 @@ pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Re
     let job = Job::load(shared, messages)?;
     let found = inputs::find(&arguments.programs, root)?;
     passed_over(&found, messages);
+    // Other machines know the programs by their names alone.
+    found.items.iter().try_for_each(Item::needs_name)?;
     let text = manifest::text(&found.items, root, &job, shared)?;
     manifest::write(&arguments.manifest, &text)?;
     let megabytes = found.items.iter().map(|item| item.bytes).sum::<u64>() as f64 / 1e6;

@@ -1,8 +1,9 @@
 //! Which programs there are, and where each correction goes.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs::DirEntry;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use diagnostic::{Code, Diagnostic};
 use glob::{MatchOptions, Pattern};
@@ -75,7 +76,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
             search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
-            found.items.push(item(input.clone(), name, data.len())?);
+            found.items.push(item(input.clone(), name, data.len()));
         }
     }
     if found.items.is_empty() {
@@ -124,7 +125,7 @@ impl Search {
                     Ok(_) if folder::is_output(&path) => found.outputs.push(path),
                     Ok(entries) => self.folder(entries, &below, found)?,
                     // As a program that is missing: reading it says why, and the others are corrected.
-                    Err(_) => found.items.push(item(path, &below, 0)?),
+                    Err(_) => found.items.push(item(path, &below, 0)),
                 }
                 continue;
             }
@@ -132,10 +133,10 @@ impl Search {
             let data = if kind.is_symlink() { path.metadata() } else { entry.metadata() };
             match data {
                 Ok(data) if data.is_file() && self.is_program(&below) => {
-                    found.items.push(item(path, &below, data.len())?);
+                    found.items.push(item(path, &below, data.len()));
                 }
                 // A link that leads nowhere is a program that is missing: reading it says so.
-                Err(_) if self.is_program(&below) => found.items.push(item(path, &below, 0)?),
+                Err(_) if self.is_program(&below) => found.items.push(item(path, &below, 0)),
                 Ok(data) if data.is_file() && !self.patterns.is_empty() => {}
                 Ok(data) if data.is_dir() => found.links.push(path),
                 _ => found.others.push(path),
@@ -190,38 +191,43 @@ fn patterns(option: &str, given: &[String]) -> Result<Vec<Pattern>, Failure> {
     given.iter().map(parse).collect()
 }
 
-fn item(input: PathBuf, below: &Path, bytes: u64) -> Result<Item, Failure> {
-    let mut output = String::new();
-    for part in below.components() {
-        let (Component::Normal(part), Some(_)) = (part, input.to_str()) else {
-            return Err(bad_name(&input));
-        };
-        if !output.is_empty() {
-            output.push('/');
-        }
-        output.push_str(part.to_str().ok_or_else(|| bad_name(&input))?);
-    }
-    Ok(Item { input, output, bytes, blake3: None })
+fn item(input: PathBuf, below: &Path, bytes: u64) -> Item {
+    let parts: Vec<_> = below.iter().map(OsStr::to_string_lossy).collect();
+    Item { output: parts.join("/"), input, bytes, blake3: None }
 }
 
-fn bad_name(input: &Path) -> Failure {
-    Failure::usage(
-        Diagnostic::error(NAME, format!("the name {} is not UTF-8", input.display())).help(
-            "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",
-        ),
-    )
+impl Item {
+    /// False where the name is no UTF-8: then `output` only resembles it, and nothing can be written there.
+    fn has_name(&self) -> bool {
+        self.input.to_str().is_some()
+    }
+
+    /// Refuses a program whose name no result could carry.
+    pub(crate) fn needs_name(&self) -> Result<(), Failure> {
+        if self.has_name() {
+            return Ok(());
+        }
+        // Shown as it is, one such name looks like another.
+        let read = file::decoded(self.input.as_os_str().as_encoded_bytes());
+        Err(Failure::usage(
+            Diagnostic::error(NAME, format!("a name is not UTF-8; as Windows-1251 it reads {read}")).help(
+                "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",
+            ),
+        ))
+    }
 }
 
 /// Every output has a place of its own, and none is a program's.
 fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
+    let named = || items.iter().filter(|item| item.has_name());
     // Letters' case counts for nothing on the shares that most controls read.
     let mut places: BTreeMap<String, &Item> = BTreeMap::new();
-    for item in items {
+    for item in named() {
         if let Some(other) = places.insert(item.output.to_lowercase(), item) {
             return Err(collision(other, item, output));
         }
     }
-    for item in items {
+    for item in named() {
         let place = item.output.to_lowercase();
         let mut folders = place.match_indices('/').map(|(at, _)| &place[..at]);
         if let Some(other) = folders.find_map(|folder| places.get(folder)) {
@@ -233,7 +239,7 @@ fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
     }
     let inputs: BTreeMap<_, &Item> =
         items.iter().filter_map(|item| Some((identity(&item.input)?, item))).collect();
-    for item in items {
+    for item in named() {
         let place = output.join(&item.output);
         if let Some(input) = identity(&place).and_then(|place| inputs.get(&place)) {
             return Err(Failure::usage(

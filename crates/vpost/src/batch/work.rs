@@ -186,6 +186,7 @@ impl Batch<'_> {
     }
 
     fn corrected(&self, item: &Item, threads: usize, outcome: &mut Outcome) -> Result<(), Failure> {
+        item.needs_name()?;
         let record = &mut outcome.record;
         // Read once more than a first run needs: only where the hash may save the work, or decide about it.
         let resumes = !self.force && self.earlier.contains_key(&item.output);
