@@ -145,3 +145,24 @@ fn a_wrong_program_is_found_out() {
         assert!(found.contains(finding), "{wrong:?}: {found}");
     }
 }
+
+/// The first differences are listed, the others counted.
+#[test]
+fn no_difference_is_left_uncounted() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let written = |name: &str, aside: &str| {
+        let rows: String =
+            (1..=30).map(|row| format!("X{}. Y{row}0.{aside}\n", 100 + 300 * (row % 2))).collect();
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("G21 G17 G90 G54\nG0 X100. Y0. Z200.\nG1 F500.\n{rows}M30\n"))
+            .expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let (posted, aside) = (written("posted.nc", ""), written("aside.nc", "005"));
+    let ran =
+        run(&["check", &posted, &aside, "-m", "machine-profiles/perfect.toml", "-d", "fanuc", "--json"]);
+    let outcome: serde_json::Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+    let findings = outcome["findings"].as_array().expect("a list");
+    assert_eq!((outcome["feed_motions_out"].as_u64(), findings.len()), (Some(30), 21), "{outcome:#}");
+    assert_eq!(findings[20], "and 10 more of the path");
+}

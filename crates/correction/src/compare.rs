@@ -83,8 +83,10 @@ pub struct Comparison {
     pub before: Deviation,
     /// The corrected path.
     pub after: Deviation,
-    /// The first differences, at most [`MOST_MISMATCHES`].
+    /// The first differences.
     pub mismatches: Vec<Mismatch>,
+    /// How many more there are.
+    pub more_mismatches: usize,
     /// Moves to a corrected start that the correction put in.
     pub approaches: usize,
     /// Every programmed feed motion, in order.
@@ -104,8 +106,8 @@ pub struct Trace {
     pub after_mm: f64,
 }
 
-/// After this many differences the two programs are different programs.
-pub const MOST_MISMATCHES: usize = 20;
+/// So many differences are kept; a program that is off in one place may be off in thousands.
+const MOST_MISMATCHES: usize = 20;
 
 /// Largest distance between samples, mm.
 const SAMPLE_MM: f64 = 0.5;
@@ -512,6 +514,8 @@ impl Matcher<'_> {
     fn mismatch(&mut self, mismatch: Mismatch) {
         if self.result.mismatches.len() < MOST_MISMATCHES {
             self.result.mismatches.push(mismatch);
+        } else {
+            self.result.more_mismatches += 1;
         }
     }
 

@@ -24,7 +24,7 @@ mod short_run;
 #[cfg(test)]
 mod testing;
 
-pub use compare::{Comparison, Deviation, MOST_MISMATCHES, Mismatch, Program, Step, Trace, compare};
+pub use compare::{Comparison, Deviation, Mismatch, Program, Step, Trace, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};

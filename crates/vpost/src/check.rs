@@ -315,8 +315,8 @@ fn findings(comparison: &Comparison, wanted: &[&Event], commanded: &[&Event]) ->
             }
         })
         .collect();
-    if comparison.mismatches.len() >= correction::MOST_MISMATCHES {
-        findings.push("and more; these are two different programs".to_owned());
+    if comparison.more_mismatches > 0 {
+        findings.push(format!("and {} more of the path", comparison.more_mismatches));
     }
     if let Some((a, b)) = different(wanted, commanded) {
         findings.push(format!(
