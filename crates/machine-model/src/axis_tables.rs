@@ -178,15 +178,27 @@ impl AxisTables {
         self
     }
 
-    /// The same functions, the angles (`EA EB EC`) multiplied by a factor.
+    /// The same functions, each multiplied by a factor of its own.
     #[must_use]
-    pub fn with_angles_scaled(mut self, scale: f64) -> Self {
+    pub fn scaled(mut self, factors: &Six) -> Self {
         for coefficients in self.straight.iter_mut().chain(&mut self.curved).flatten() {
-            for angle in &mut coefficients[3..] {
-                *angle *= scale;
+            for (coefficient, factor) in coefficients.iter_mut().zip(factors) {
+                *coefficient *= factor;
             }
         }
         self
+    }
+
+    /// Largest |f| of each function over a range.
+    ///
+    /// Looked for at the ends and at the nodes between: no interpolation of [`Interpolation`](crate::Interpolation)
+    /// leaves the values of its nodes.
+    #[must_use]
+    pub fn largest(&self, range: Range) -> Six {
+        let inside = self.grid.nodes().iter().copied().filter(|&q| range.contains(q));
+        inside.chain([range.low, range.high]).map(|q| self.at(q)).fold([0.0; 6], |largest, six| {
+            std::array::from_fn(|function| f64::max(largest[function], six[function].abs()))
+        })
     }
 
     /// The same constants over the whole of `range`: errors that do not depend on the place.
@@ -423,6 +435,19 @@ mod tests {
         assert_eq!(mean.at(5.0)[0], 1.25);
         assert_eq!(mean.at(10.0)[0], 2.0);
         assert_eq!(mean.shifted(0, 0.5).at(0.0)[0], 1.5);
+    }
+
+    #[test]
+    fn each_function_has_a_factor_and_a_largest_value_of_its_own() {
+        let line = table(&[0.0, 10.0, 20.0], &[3.0, -4.0, 1.0], Interpolation::Monotone);
+        let six = AxisTables::new(&[line.clone(), None, None, None, line, None]).unwrap();
+        let largest = |low, high| six.largest(Range { low, high });
+        assert_eq!(largest(0.0, 20.0), [4.0, 0.0, 0.0, 0.0, 4.0, 0.0]);
+        assert_eq!(largest(0.0, 0.0)[0], 3.0);
+        let scaled = six.clone().scaled(&[2.0, 1.0, 1.0, 1.0, 0.0, 1.0]);
+        for q in [0.0, 3.3, 10.0, 17.0] {
+            assert_eq!(scaled.at(q), [2.0 * six.at(q)[0], 0.0, 0.0, 0.0, 0.0, 0.0]);
+        }
     }
 
     #[test]

@@ -284,8 +284,11 @@ impl RigidBody {
         (back * real, back * (real_shift - ideal_shift))
     }
 
-    /// [`SolveError::OutsideVolume`] for a rotary axis outside its tables or travel.
-    pub(crate) fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
+    /// That every rotary axis stands inside its travel and its tables.
+    ///
+    /// # Errors
+    /// [`SolveError::OutsideRotaryRange`] for the first that does not.
+    pub fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
         for axis in self.description.chain.axes().filter(|axis| !axis.is_linear()) {
             let data = &self.description.rotary[axis.direction()];
             let mut range = data.travel_rad;

@@ -72,6 +72,12 @@ impl WithEffects {
         &self.terms
     }
 
+    /// What the effects depend on besides the command.
+    #[must_use]
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
     /// Where the tool tip really goes; see [`RigidBody::predict`].
     #[must_use]
     pub fn predict(&self, command: &Command) -> Prediction {

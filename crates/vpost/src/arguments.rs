@@ -41,6 +41,8 @@ pub enum Command {
     Diagnose(crate::diagnose::Diagnose),
     /// The volumetric error over the volume, and where to put the zero point and the workpiece.
     Map(crate::map::Map),
+    /// What each deviation of the machine costs, what they may come to together, and what each may be.
+    Budget(crate::budget::Budget),
     /// Check, show or describe machine profiles.
     Profile(Profile),
     /// List or check dialect tables.

@@ -5,6 +5,7 @@
 
 pub mod arguments;
 pub mod batch;
+pub mod budget;
 pub mod calibrate;
 mod check;
 mod conditions;
@@ -63,6 +64,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Calibrate(a)) => calibrate::run(a, &arguments.shared, &messages),
         Some(Command::Diagnose(a)) => diagnose::run(a, &arguments.shared, &messages),
         Some(Command::Map(a)) => map::run(a, &arguments.shared, &messages),
+        Some(Command::Budget(a)) => budget::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Completions(a)) => arguments::completions(a),

@@ -150,6 +150,21 @@ impl EffectTerm {
         self
     }
 
+    /// The same effect, `factor` times as large: it is linear in its coefficients.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        for coefficient in &mut self.coefficients {
+            *coefficient *= factor;
+        }
+        self
+    }
+
+    /// Names, with unit, and values of the coefficients that are not zero.
+    pub fn coefficients(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+        let names = self.kind.coefficient_names().iter().copied();
+        names.zip(self.coefficients.iter().copied()).filter(|(_, value)| *value != 0.0)
+    }
+
     /// Which effect it is.
     #[must_use]
     pub const fn kind(&self) -> EffectKind {
@@ -166,8 +181,7 @@ impl EffectTerm {
         if all.iter().all(|(name, v)| (*name == "from_mm" || *name == "to_mm") && *v == 0.0) {
             all.clear();
         }
-        let names = self.kind.coefficient_names();
-        all.extend(names.iter().zip(&self.coefficients).filter(|(_, v)| **v != 0.0).map(|(n, v)| (*n, *v)));
+        all.extend(self.coefficients());
         all
     }
 

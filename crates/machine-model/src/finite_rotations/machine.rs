@@ -50,7 +50,7 @@ impl Description {
         let mut machine = self.clone();
         for axis in &mut machine.linear {
             for tables in [&mut axis.errors, &mut axis.errors_negative] {
-                *tables = tables.take().map(|t| t.with_angles_scaled(scale));
+                *tables = tables.take().map(|t| t.scaled(&[1.0, 1.0, 1.0, scale, scale, scale]));
             }
         }
         machine

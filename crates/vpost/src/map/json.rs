@@ -135,7 +135,7 @@ fn range_mm(r: Range) -> Value {
     json!([round(r.low, 6), round(r.high, 6)])
 }
 
-fn millimetres(v: &Vector) -> [f64; 3] {
+pub(crate) fn millimetres(v: &Vector) -> [f64; 3] {
     [v.x, v.y, v.z].map(|value| round(value, 6))
 }
 
@@ -144,11 +144,11 @@ fn micrometres(v: &Vector) -> [f64; 3] {
 }
 
 /// Micrometres, to a tenth of a nanometre.
-fn um(mm: f64) -> f64 {
+pub(crate) fn um(mm: f64) -> f64 {
     round(mm * 1e3, 4)
 }
 
 /// Decimals beyond the last that means something would only be rounding noise. Never a negative zero.
-fn round(value: f64, decimals: usize) -> f64 {
+pub(crate) fn round(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse::<f64>().unwrap_or(value) + 0.0
 }

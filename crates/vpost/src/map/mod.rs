@@ -2,18 +2,18 @@
 
 mod drawn;
 mod export;
-mod json;
-mod options;
+pub(crate) mod json;
+pub(crate) mod options;
 mod page;
 mod second_order;
 mod study;
-mod text;
+pub(crate) mod text;
 
 use std::path::PathBuf;
 
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Command, Engine, EngineId, PathModel, Vector};
+use machine_model::{Command, Engine, EngineId, PathModel, Range, Vector, Volume};
 
 use crate::arguments::{Outside, Shared};
 use crate::message::{Failure, Messages, Report};
@@ -75,7 +75,8 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
     let asked = options::read(arguments, shared, &profile, model.volume())?;
-    outside(&asked, model, shared, messages)?;
+    let grid_mm = asked.grid.axes().each_ref().map(|nodes| nodes.range_mm());
+    outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), shared, messages)?;
     let study = study::Study::new(&profile, id, model, &asked)?;
     if let Some(path) = &arguments.csv {
         file::write(path, &export::csv(&study))?;
@@ -125,16 +126,14 @@ fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
     })
 }
 
-/// Nodes outside the calibrated volume: refused, unless the nearest point's error is asked for.
-fn outside(
-    asked: &options::Asked,
-    model: &dyn PathModel,
+/// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.
+pub(crate) fn outside(
+    boxes_mm: impl IntoIterator<Item = [Range; 3]>,
+    volume: Volume,
     shared: &Shared,
     messages: &Messages,
 ) -> Result<(), Failure> {
-    let volume = model.volume();
-    let boxes = asked.part_box_mm.iter().copied().chain([asked.grid.axes().each_ref().map(|n| n.range_mm())]);
-    for ranges in boxes {
+    for ranges in boxes_mm {
         for (axis, range) in ranges.iter().enumerate() {
             let known = volume.0[axis];
             if known.contains(range.low) && known.contains(range.high) {

@@ -38,7 +38,7 @@ pub(super) fn read(
     }
     Ok(Asked {
         grid: grid(&arguments.grid, volume)?,
-        tool_mm: tool(arguments, shared, profile)?,
+        tool_mm: tool(arguments.tool_vector.as_deref(), shared, profile)?,
         rotary_rad: rotary(arguments.rotary.as_deref(), profile)?,
         within_mm: within * 1e-3,
         regions: arguments.region.iter().map(|given| region(given)).collect::<Result<_, _>>()?,
@@ -102,7 +102,7 @@ fn clamp(given: &str) -> Result<Vector, Failure> {
 }
 
 /// `22x22x21` nodes over the volume, or `from:to:step` of each axis.
-fn grid(given: &str, volume: Volume) -> Result<Grid, Failure> {
+pub(crate) fn grid(given: &str, volume: Volume) -> Result<Grid, Failure> {
     let refuse = |why: String| {
         Failure::option(
             format!("`--grid {given}`: {why}"),
@@ -134,8 +134,8 @@ fn grid(given: &str, volume: Volume) -> Result<Grid, Failure> {
 }
 
 /// An H number stands for minus its length vector, as under G43.
-fn tool(arguments: &Map, shared: &Shared, profile: &Profile) -> Result<Vector, Failure> {
-    let Some(given) = arguments.tool_vector.as_deref() else {
+pub(crate) fn tool(given: Option<&str>, shared: &Shared, profile: &Profile) -> Result<Vector, Failure> {
+    let Some(given) = given else {
         return Ok(Vector::from(profile.default_tool_mm));
     };
     if let Some(number) = given.strip_prefix(['H', 'h']).and_then(|digits| digits.parse::<u32>().ok()) {
@@ -154,7 +154,8 @@ fn tool(arguments: &Map, shared: &Shared, profile: &Profile) -> Result<Vector, F
     three(given, number).map(Vector::from).ok_or_else(|| wrong("--tool-vector", given, "0,0,-120"))
 }
 
-fn rotary(given: Option<&str>, profile: &Profile) -> Result<Vector, Failure> {
+/// `A=30,C=90`; axes that are not named stand at 0.
+pub(crate) fn rotary(given: Option<&str>, profile: &Profile) -> Result<Vector, Failure> {
     let mut angles = Vector::zeros();
     let Some(given) = given else { return Ok(angles) };
     for part in given.split(',') {

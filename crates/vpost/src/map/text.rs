@@ -267,15 +267,15 @@ fn percent(share: f64) -> String {
     fixed(share * 100.0, 2)
 }
 
-fn um(mm: f64) -> String {
+pub(crate) fn um(mm: f64) -> String {
     fixed(mm * 1e3, 2)
 }
 
-fn triple(v: &Vector, decimals: usize) -> String {
+pub(crate) fn triple(v: &Vector, decimals: usize) -> String {
     [v.x, v.y, v.z].map(|value| fixed(value, decimals)).join(" ")
 }
 
 /// A name on one line: control characters could act on a terminal.
-pub(super) fn printable(name: &str) -> String {
+pub(crate) fn printable(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -1,0 +1,164 @@
+//! Where the criteria are taken: a grid over the volume, or the points of a file.
+
+use diagnostic::Diagnostic;
+use error_budget::Machine;
+use error_map::Nodes;
+use machine_model::{Command, Engine, PathModel, Vector};
+use machine_profile::Profile;
+
+use super::Budget;
+use crate::arguments::{Outside, Shared};
+use crate::file;
+use crate::map::options::{grid, rotary, tool};
+use crate::map::text::triple;
+use crate::message::{Failure, Messages, OPTION, Report};
+use crate::points::{POINTS, Points};
+use crate::predict::POINT_OUTSIDE;
+
+/// Most control points: with forty deviations they fill a quarter of a gigabyte.
+const MOST: usize = 250_000;
+
+/// The control points.
+pub(super) struct ControlPoints {
+    pub commands: Vec<Command>,
+    /// What they are, in words.
+    pub what: String,
+}
+
+/// From the options.
+pub(super) fn read(
+    arguments: &Budget,
+    shared: &Shared,
+    profile: &Profile,
+    machine: &Machine,
+    messages: &Messages,
+) -> Result<ControlPoints, Failure> {
+    let tool_mm = tool(arguments.tool_vector.as_deref(), shared, profile)?;
+    match &arguments.points {
+        Some(path) => {
+            let (name, bytes) = (file::name(path), file::read(path)?);
+            from_file(&name, &bytes, tool_mm, shared, profile, machine, messages)
+        }
+        None => over_the_volume(arguments, tool_mm, shared, profile, machine, messages),
+    }
+}
+
+fn over_the_volume(
+    arguments: &Budget,
+    tool_mm: Vector,
+    shared: &Shared,
+    profile: &Profile,
+    machine: &Machine,
+    messages: &Messages,
+) -> Result<ControlPoints, Failure> {
+    let volume = machine.model().volume();
+    let grid = grid(&arguments.grid, volume)?;
+    crate::map::outside([grid.axes().each_ref().map(Nodes::range_mm)], volume, shared, messages)?;
+    let rotary_rad = rotary(arguments.rotary.as_deref(), profile)?;
+    // Where lost motion counts, the worst approach of each axis is looked for, too.
+    let directions: Vec<[i8; 3]> = if machine.model().depends_on_direction() {
+        (0..8_u8).map(|bits| [0, 1, 2].map(|axis| if bits >> axis & 1 == 0 { 1 } else { -1 })).collect()
+    } else {
+        vec![[0; 3]]
+    };
+    let count = grid.len().saturating_mul(directions.len());
+    if count > MOST {
+        return Err(too_many(&format!("`--grid {}`", arguments.grid), count, directions.len()));
+    }
+    let command = |(place, direction): (usize, &[i8; 3])| Command {
+        linear_mm: grid.place_mm(place),
+        rotary_rad,
+        tool_mm,
+        direction: *direction,
+    };
+    let commands: Vec<Command> =
+        (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();
+    if let Err(error) = machine.model().base().rotary_inside(&commands[0]) {
+        let help = "give angles inside it: `--rotary A=30`";
+        return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, error.to_string()).help(help)));
+    }
+    let axes = ["X", "Y", "Z"].iter().zip(grid.axes()).map(|(name, nodes)| {
+        let range = nodes.range_mm();
+        format!("{name} {} to {} mm ({})", range.low, range.high, nodes.places_mm().len())
+    });
+    let approach = if directions.len() > 1 { ", each approached from all 8 sides" } else { "" };
+    let what = format!(
+        "{}{approach}\ntool vector {}, rotary axes {}",
+        axes.collect::<Vec<_>>().join(", "),
+        triple(&tool_mm, 3),
+        triple(&rotary_rad.map(f64::to_degrees), 3)
+    );
+    Ok(ControlPoints { commands, what })
+}
+
+fn from_file(
+    name: &str,
+    bytes: &[u8],
+    tool_mm: Vector,
+    shared: &Shared,
+    profile: &Profile,
+    machine: &Machine,
+    messages: &Messages,
+) -> Result<ControlPoints, Failure> {
+    let points = Points::read(name, bytes, tool_mm.into())?;
+    let refuse = |diagnostic: Diagnostic| Failure::refused(name, bytes, vec![diagnostic]);
+    if points.rows.is_empty() {
+        let help = "give a row for each point at which the machine is to be judged";
+        return Err(refuse(Diagnostic::error(POINTS, "the point file has no rows").help(help)));
+    }
+    if points.rows.len() > MOST {
+        return Err(too_many(name, points.rows.len(), 1));
+    }
+    let volume = machine.model().volume();
+    let mut outside = 0;
+    for (row, (_, command)) in points.rows.iter().enumerate() {
+        let turns = |axis: &usize| command.rotary_rad[*axis] != 0.0 && !profile.has_rotary()[*axis];
+        if let Some(axis) = (0..3).find(turns) {
+            let message = format!(
+                "point {} turns {}, which the chain {} lacks",
+                row + 1,
+                ['A', 'B', 'C'][axis],
+                profile.chain()
+            );
+            return Err(refuse(
+                Diagnostic::error(POINTS, message)
+                    .help("leave the column out, or take the machine's profile"),
+            ));
+        }
+        if let Err(error) = machine.model().base().rotary_inside(command) {
+            let message = format!("point {}: {error}", row + 1);
+            return Err(refuse(Diagnostic::error(POINT_OUTSIDE, message).help("leave the point out")));
+        }
+        if volume.contains(&command.linear_mm) {
+            continue;
+        }
+        if shared.outside != Some(Outside::Clamp) {
+            let known = volume.0.map(|range| format!("{} to {}", range.low, range.high));
+            let message = format!(
+                "point {} at {} lies outside the calibrated volume, X {}, Y {}, Z {} mm",
+                row + 1,
+                triple(&command.linear_mm, 3),
+                known[0],
+                known[1],
+                known[2]
+            );
+            let help = "leave it out, or take the nearest point's error with `--outside clamp`";
+            return Err(refuse(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+        }
+        outside += 1;
+    }
+    if outside > 0 {
+        let message = format!("{outside} of {} points lie outside the calibrated volume", points.rows.len());
+        let help = "each has the error of the volume's nearest point";
+        let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
+        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+    }
+    let commands = points.rows.into_iter().map(|(_, command)| command).collect();
+    Ok(ControlPoints { commands, what: format!("from {}", crate::map::text::printable(name)) })
+}
+
+fn too_many(what: &str, count: usize, directions: usize) -> Failure {
+    let each = if directions > 1 { " (each node from 8 sides, for lost motion)" } else { "" };
+    let message = format!("{what}: {count} control points{each} are more than the {MOST} of a budget");
+    Failure::usage(Diagnostic::error(OPTION, message).help("errors are smooth: take a coarser grid"))
+}

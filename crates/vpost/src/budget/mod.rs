@@ -1,0 +1,127 @@
+//! `vpost budget`: what each deviation costs, what they may come to together, and what each may be.
+
+mod control_points;
+mod json;
+mod study;
+mod text;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use diagnostic::{Code, Diagnostic};
+use error_budget::Machine;
+use machine_model::EngineId;
+
+use crate::arguments::Shared;
+use crate::conditions::{conditions, failure};
+use crate::message::{Failure, Messages, Report};
+use crate::settings::{engine_named, machine};
+use crate::{file, profile};
+
+/// A machine without deviations has no budget.
+const NO_DEVIATIONS: Code = Code(917);
+/// Warning: the target cannot be reached while some deviations stay as they are.
+const OUT_OF_REACH: Code = Code(918);
+
+/// `vpost budget`
+#[derive(Debug, Args)]
+pub struct Budget {
+    /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each
+    /// (40:880:40,30:450:20,5:505:25).
+    #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
+    pub grid: String,
+    /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.
+    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["grid", "rotary"])]
+    pub points: Option<PathBuf>,
+    /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
+    #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
+    pub tool_vector: Option<String>,
+    /// Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given.
+    #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
+    pub rotary: Option<String>,
+    /// Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be.
+    #[arg(long, value_name = "UM", allow_hyphen_values = true)]
+    pub target: Option<f64>,
+    /// Deviations that stay as they are while the others are made smaller: EXX,EC0Y (repeatable).
+    #[arg(long, value_name = "NAME,…", requires = "target")]
+    pub keep: Vec<String>,
+    /// Write all figures (JSON).
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// `vpost budget -m PROFILE`
+pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let path = machine(shared)?;
+    let profile = profile::load(path)?.profile;
+    if let Some(name) = &shared.engine
+        && engine_named(name)? != EngineId::RigidBody
+    {
+        return Err(Failure::option(
+            format!("engine `{name}` has no deviations to be scaled one by one"),
+            "leave `--engine` out: a budget is of the rigid-body model",
+        ));
+    }
+    let target_mm = arguments.target.map(target_mm).transpose()?;
+    let model = profile.machine(&conditions(shared)?).map_err(|error| failure(&error))?;
+    let machine = Machine::new(model);
+    if machine.deviations().is_empty() {
+        let message =
+            format!("{}: the rigid-body model of {} has no deviations", file::name(path), profile.name);
+        let traverses = profile.traverses.is_some();
+        return Err(Failure::usage(Diagnostic::error(NO_DEVIATIONS, message).help(if traverses {
+            "[tracker] is for the tracker engine only: give `errors` of the axes and [squareness], as `vpost calibrate` does"
+        } else {
+            "give the profile what was measured: `errors` of the axes, [squareness], [rotary.*] or [[effect]] entries"
+        })));
+    }
+    let keep = keep(arguments, &machine)?;
+    let points = control_points::read(arguments, shared, &profile, &machine, messages)?;
+    let study = study::Study::new(profile.name, machine, points, target_mm.map(|mm| (mm, keep)));
+    if study.moves_nothing() {
+        let message = "no deviation moves any of the control points";
+        let help = "take points away from the machine's zero, or with a tool: angles need an arm";
+        return Err(Failure::usage(Diagnostic::error(NO_DEVIATIONS, message).help(help)));
+    }
+    if let Some(why) = study.target.as_ref().and_then(study::Target::out_of_reach) {
+        let message = format!("{} um cannot be reached: {why}", arguments.target.unwrap_or(0.0));
+        let help = "keep fewer deviations as they are (`--keep`), or raise `--target`";
+        let diagnostic = Diagnostic::warning(OUT_OF_REACH, message).help(help);
+        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
+    }
+    if let Some(path) = &arguments.json {
+        file::write(path, &json::bytes(&study))?;
+    }
+    file::print(text::page(&study).as_bytes())
+}
+
+fn target_mm(target_um: f64) -> Result<f64, Failure> {
+    if target_um > 0.0 && target_um.is_finite() {
+        return Ok(target_um * 1e-3);
+    }
+    Err(Failure::option(
+        format!("`--target {target_um}`: no machine is that good"),
+        "give micrometres above zero: `--target 50`",
+    ))
+}
+
+/// Which deviations stay as they are.
+fn keep(arguments: &Budget, machine: &Machine) -> Result<Vec<bool>, Failure> {
+    let mut keep = vec![false; machine.deviations().len()];
+    for given in arguments.keep.iter().flat_map(|list| list.split(',')).map(str::trim) {
+        let mut known = false;
+        for (deviation, keep) in machine.deviations().iter().zip(&mut keep) {
+            if deviation.name.eq_ignore_ascii_case(given) {
+                (*keep, known) = (true, true);
+            }
+        }
+        if !known {
+            let names: Vec<&str> = machine.deviations().iter().map(|d| d.name.as_str()).collect();
+            return Err(Failure::option(
+                format!("`--keep {given}`: this machine has no such deviation"),
+                format!("one of: {}", names.join(", ")),
+            ));
+        }
+    }
+    Ok(keep)
+}
