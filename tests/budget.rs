@@ -240,6 +240,44 @@ fn five_axes_by_points() {
     assert!(messages(&output).contains("axis A at 45"), "{}", messages(&output));
 }
 
+/// The 60 points and the chain of Serkov 2017: deviations act one to one, or by an arm that the points' file gives.
+#[test]
+fn deviations_act_one_to_one_or_by_an_arm() {
+    let points = "samples/budget/ball_points.csv";
+    let found = budget("arms", &["-m", "samples/budget/ms300_like.toml", "--points", points]);
+    assert_eq!(found.json["control_points"], 60);
+    let text = std::fs::read_to_string(common::root().join(points)).expect("reads");
+    let rows = text.lines().skip(1).map(|line| {
+        let row: Vec<f64> = line.split(',').map(|v| v.parse().expect("a number")).collect();
+        [row[0], row[1], row[2]]
+    });
+    let rows: Vec<[f64; 3]> = rows.collect();
+    let most = |arm: fn(&[f64; 3]) -> f64| rows.iter().map(arm).fold(0.0, f64::max);
+    let [x, y, z] = [most(|p| p[0].abs()), most(|p| p[1].abs()), most(|p| p[2].abs())];
+    let about_z = most(|p| (p[0] * p[0] + p[1] * p[1]).sqrt());
+    let about_x = most(|p| (p[1] * p[1] + p[2] * p[2]).sqrt());
+    // The ball is 130 mm from where B and C meet.
+    assert!(rows.iter().all(|p| (p.iter().map(|v| v * v).sum::<f64>().sqrt() - 130.0).abs() < 1e-5));
+    for (name, um) in [
+        ("EX0B", 12.0),
+        ("EZ0B", 8.0),
+        ("EX0C", 10.0),
+        ("EY0C", 6.0),
+        ("EC0B", 25e-3 * about_z),
+        ("EA0B", 30e-3 * about_x),
+        ("EC0Y", 20e-3 * y),
+        ("EB0Z", 15e-3 * z),
+        ("EA0Z", 10e-3 * z),
+        ("scale.X", 30e-3 * x),
+        ("scale.Y", 25e-3 * y),
+        ("scale.Z", 35e-3 * z),
+    ] {
+        let alone = &deviation(&found.json, name)["alone"];
+        // A tilt turns by an angle whose square, times the arm, is 1e-4 um.
+        assert!((number(&alone["M_um"]) - um).abs() < 1e-3, "{name}: {alone}, {um}");
+    }
+}
+
 #[test]
 fn what_it_takes_to_reach_a_target() {
     let found = budget("target", &["-m", STAN, "--target", "100"]);

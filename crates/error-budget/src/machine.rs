@@ -19,7 +19,8 @@ pub enum Unit {
 /// One primary deviation of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
-    /// ISO 230 symbol: `EYX`, `EC0Y`, `EX0C`; `B(X)` the reversal value of X; or the id of an effect.
+    /// ISO 230 symbol: `EYX`, `EC0Y`, `EX0C`; `B(X)` the reversal value of X; or the id of an effect, with a number
+    /// from the second one of its kind on. No two of a machine are equal.
     pub name: String,
     /// Largest value of a function over the calibrated range, or the absolute value of a number, above 0.
     pub size: f64,
@@ -187,7 +188,10 @@ fn deviations(model: &WithEffects) -> Vec<Deviation> {
             (Some(_), Some(_)) => (1.0, Unit::Whole),
             (None, _) => continue,
         };
-        add(term.kind().to_string(), size, unit, Place::Effect(index));
+        // A machine may be damaged in two places: `local.X`, `local.X#2`.
+        let before = model.terms()[..index].iter().filter(|other| other.kind() == term.kind()).count();
+        let number = if before > 0 { format!("#{}", before + 1) } else { String::new() };
+        add(format!("{}{number}", term.kind()), size, unit, Place::Effect(index));
     }
     found
 }

@@ -2,12 +2,17 @@
 
 use machine_model::{Vector, WithEffects};
 
-use crate::{Criteria, Extreme, Field, Machine, balanced_signs, root_sum_of_squares, worst_case};
+use crate::{Criteria, Extreme, Field, Machine, Unit, balanced_signs, root_sum_of_squares, worst_case};
 
 /// Steps of the search for the influence; each makes the bracket smaller by far more than half.
 const MOST_STEPS: usize = 60;
 /// The influence is found to this part of itself.
 const CLOSE: f64 = 1e-9;
+
+/// No angle gets a larger tolerance, rad: with next to no arm it could be a whole turn, and the model is one of small angles.
+const LARGEST_ANGLE_RAD: f64 = 0.01;
+/// What moves no control point by more than that, mm, moves none: it is rounding.
+const NOTHING_MM: f64 = 1e-9;
 
 /// Which figure keeps the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +42,7 @@ pub struct Tolerances {
 }
 
 /// Equal influence: tolerances by which each deviation may bring the same at the point where it brings most,
-/// and all together the target: equation (57).
+/// and all together the target: equation (57). Angles that would need more than 0.01 rad for that get 0.01 rad.
 ///
 /// * `machine`, `field` – [`Machine::at_its_sizes`] and what its deviations contribute
 /// * `keep` – deviations that stay as they are
@@ -54,17 +59,23 @@ pub fn equal_influence(
     evaluate: impl Fn(&WithEffects, usize) -> Vector,
     evaluate_all: impl Fn(&WithEffects) -> Vec<Vector>,
 ) -> Option<Tolerances> {
-    let largest_mm = field.largest_mm();
-    if !largest_mm.iter().zip(keep).any(|(largest, keep)| !keep && *largest > 0.0) {
+    let shares: Vec<Share> = machine
+        .deviations()
+        .iter()
+        .zip(field.largest_mm())
+        .zip(keep)
+        .map(|((deviation, largest_mm), keep)| match deviation.unit {
+            _ if *keep => Share::Kept,
+            _ if largest_mm <= NOTHING_MM => Share::Nothing,
+            Unit::Angle => Share::Of { largest_mm, limit: LARGEST_ANGLE_RAD / deviation.size },
+            _ => Share::Of { largest_mm, limit: f64::INFINITY },
+        })
+        .collect();
+    if !shares.iter().any(|share| matches!(share, Share::Of { .. })) {
         return None;
     }
     let factors = |influence_mm: f64| -> Vec<f64> {
-        let factor = |(largest, keep): (&f64, &bool)| match (keep, *largest > 0.0) {
-            (true, _) => 1.0,
-            (false, true) => influence_mm / largest,
-            (false, false) => 0.0,
-        };
-        largest_mm.iter().zip(keep).map(factor).collect()
+        shares.iter().map(|share| share.factor(influence_mm).unwrap_or(0.0)).collect()
     };
     let figure_of = |influence_mm: f64| {
         let scaled = field.scaled(&factors(influence_mm));
@@ -94,7 +105,8 @@ pub fn equal_influence(
     };
     let mut aim_mm = target_mm;
     loop {
-        let influence_mm = influence(|c| figure_of(c).0, keep.contains(&true), aim_mm)?;
+        let proportional = shares.iter().all(|share| share.is_proportional_to(aim_mm));
+        let influence_mm = influence(|c| figure_of(c).0, proportional, aim_mm)?;
         let (figure_mm, at) = figure_of(influence_mm);
         let worst = worst_case(&field.scaled(&factors(influence_mm)));
         let whole_model_mm = whole_model(influence_mm, at, &worst);
@@ -102,21 +114,49 @@ pub fn equal_influence(
             aim_mm -= (whole_model_mm - target_mm).max(CLOSE * target_mm);
             continue;
         }
-        let moves = |(factor, largest): (f64, &f64)| (*largest > 0.0).then_some(factor);
-        let factors = factors(influence_mm).into_iter().zip(&largest_mm).map(moves).collect();
+        let factors = shares.iter().map(|share| share.factor(influence_mm)).collect();
         return Some(Tolerances { factors, influence_mm, figure_mm, at, whole_model_mm, worst });
     }
 }
 
-/// The influence whose figure is the aim, not above it. The figure grows with the influence, by convexity, and is at least the
-/// influence; without anything kept it is proportional to it.
-fn influence(figure_mm: impl Fn(f64) -> f64, something_kept: bool, aim_mm: f64) -> Option<f64> {
+/// What a deviation gets.
+enum Share {
+    /// It is as it is.
+    Kept,
+    /// It moves no control point.
+    Nothing,
+    /// The influence over what it brings at its size, up to a limit.
+    Of { largest_mm: f64, limit: f64 },
+}
+
+impl Share {
+    fn factor(&self, influence_mm: f64) -> Option<f64> {
+        match self {
+            Self::Kept => Some(1.0),
+            Self::Nothing => None,
+            Self::Of { largest_mm, limit } => Some((influence_mm / largest_mm).min(*limit)),
+        }
+    }
+
+    /// Its factor is proportional to all influences up to this one.
+    fn is_proportional_to(&self, influence_mm: f64) -> bool {
+        match self {
+            Self::Kept => false,
+            Self::Nothing => true,
+            Self::Of { largest_mm, limit } => influence_mm / largest_mm <= *limit,
+        }
+    }
+}
+
+/// The influence whose figure is the aim, not above it. The figure grows with the influence, since a length is convex, and is at
+/// least the influence, unless all factors are at their limits.
+fn influence(figure_mm: impl Fn(f64) -> f64, proportional: bool, aim_mm: f64) -> Option<f64> {
     if aim_mm <= 0.0 {
         return None;
     }
     // Below the aim by what rounding may add.
     let aim_mm = aim_mm * (1.0 - 1e-12);
-    if !something_kept {
+    if proportional {
         return Some(aim_mm * (aim_mm / figure_mm(aim_mm)));
     }
     let (mut low, mut high) = (0.0, aim_mm);
@@ -124,10 +164,13 @@ fn influence(figure_mm: impl Fn(f64) -> f64, something_kept: bool, aim_mm: f64) 
     if below > 0.0 {
         return None;
     }
+    if above <= 0.0 {
+        return Some(high);
+    }
     // False position; an end that stays twice counts half (Illinois).
     let mut stayed = 0;
     for _ in 0..MOST_STEPS {
-        if high - low <= CLOSE * high || above <= 0.0 {
+        if high - low <= CLOSE * high {
             break;
         }
         let middle = (high - (high - low) * above / (above - below)).clamp(low, high);

@@ -260,6 +260,26 @@ fn five_axes_add_up_to_second_order() {
     }
 }
 
+/// Tables of both directions are one function: its size is the larger one, its coefficient multiplies both.
+#[test]
+fn both_directions_belong_to_one_function() {
+    let mut description = perfect("[w X Y b Z t]");
+    description.linear[1].errors = Some(line(1, 2e-3, 6e-3));
+    description.linear[1].errors_negative = Some(line(1, -9e-3, 4e-3));
+    let local: &[(&str, f64)] = &[("centre_mm", 5.0), ("width_mm", 2.0), ("x_um", 2.0), ("y_um", 1.0)];
+    let machine = machine(description, &[("local.X", local), ("local.X", local)]);
+    assert_eq!(names(&machine), ["EYY", "local.X", "local.X#2"]);
+    assert_eq!(machine.deviations()[0].size, 9e-3);
+    assert_eq!(machine.deviations()[1].unit, Unit::Whole);
+    let from =
+        |direction: i8| Command { direction: [0, direction, 0], ..at(300.0, -400.0, 0.0, Vector::zeros()) };
+    let commands = [from(1), from(-1)];
+    let twice = evaluate(&commands)(&machine.scaled(&[2.0, 0.0, 0.0]));
+    assert!((twice[0].y - 4e-3).abs() < 1e-15 && (twice[1].y + 18e-3).abs() < 1e-15, "{twice:?}");
+    let sized = evaluate(&commands)(&machine.at_its_sizes().scaled(&[1.0, 0.0, 0.0]));
+    assert!(sized.iter().all(|d| (d.y - 9e-3).abs() < 1e-15), "{sized:?}");
+}
+
 #[test]
 fn a_displaced_table_axis_displaces_as_much_at_every_angle() {
     let mut description = perfect("[w C X Y b Z t]");
@@ -370,6 +390,33 @@ fn tolerances_hold_the_target_and_bring_as_much_each() {
         assert!(found.whole_model_mm <= 0.050 && found.figure_mm > 0.999 * 0.050, "{found:?}");
         assert!(set(&keep, 0.001, figure).is_none(), "what is kept is more than that");
     }
+}
+
+/// An angle with next to no arm would need a turn to bring its share: it gets 0.01 rad and no more.
+#[test]
+fn angles_without_an_arm_stay_small() {
+    let mut description = perfect("[w X Y b Z t]");
+    description.linear[0].errors = Some(line(4, -50e-6, 20e-6));
+    description.squareness.ec0y_rad = 10e-6;
+    let machine = machine(description, &[]);
+    let budget_of = |arm: f64| {
+        let commands = [at(100.0, 400.0, 0.0, Vector::new(0.0, 0.0, -arm))];
+        let (sized, field) = sized(&machine, &commands);
+        let one = |model: &WithEffects, point: usize| model.error_mm(&commands[point]);
+        let keep = [false, false];
+        equal_influence(&sized, &field, &keep, 0.020, Figure::WorstCase, one, evaluate(&commands)).unwrap()
+    };
+    // An arm of 100 mm: half of 20 µm each, 100 µrad of EBX and 25 µrad over 400 mm.
+    let found = budget_of(100.0);
+    assert!((found.factors[0].unwrap() * 50.0 - 100.0).abs() < 1e-3, "{found:?}");
+    assert!((found.factors[1].unwrap() * 10.0 - 25.0).abs() < 1e-3, "{found:?}");
+    // A micrometre: 0.01 rad bring a hundredth of one, and squareness gets the rest.
+    let found = budget_of(1e-3);
+    assert!((found.factors[0].unwrap() * 50e-6 - 0.01).abs() < 1e-12, "{found:?}");
+    assert!((found.factors[1].unwrap() * 10.0 - (0.020 - 1e-5) / 400.0 * 1e6).abs() < 1e-3, "{found:?}");
+    assert!(found.whole_model_mm <= 0.020);
+    // Less than a picometre: any.
+    assert_eq!(budget_of(1e-6).factors[0], None);
 }
 
 proptest! {
