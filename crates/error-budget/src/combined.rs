@@ -116,6 +116,14 @@ mod tests {
         let sum: Vector = field.at(worst.at).iter().zip(&worst.signs).map(|(d, s)| d * *s).sum();
         assert!((sum.norm() - worst.mm).abs() < 1e-14);
         assert!((worst_case(&field.scaled(&[2.0; 3])).mm - 2.0 * worst.mm).abs() < 1e-14);
+        // At the first point the bound says 2.83 and the figure is 2; at the second both are 2.1.
+        let field = Field {
+            contributions_mm: vec![
+                vec![Vector::new(1.0, 1.0, 0.0), Vector::new(2.1, 0.0, 0.0)],
+                vec![Vector::new(1.0, -1.0, 0.0), Vector::zeros()],
+            ],
+        };
+        assert_eq!((worst_case(&field).mm, worst_case(&field).at), (2.1, 1));
     }
 
     #[test]

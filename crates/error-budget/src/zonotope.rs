@@ -20,10 +20,10 @@ pub struct Farthest {
 /// signs only; a length is convex, so it is largest at a vertex. A vertex that is farthest in direction
 /// u has `s_i = sign(g_i·u)`: vertices are the cells into which the planes `g_i·u = 0` cut the sphere of
 /// directions. Every cell has a corner, where two of the planes meet: `u = g_i × g_j`. At the corner the
-/// signs of all other vectors are known; those in the plane of the two are settled on one of the edges that
-/// end there, `v = ± u × g_l`, and the last one is either. So `4n(n-1)` sign patterns hold the answer
-/// (equation (54); Ferrez, Fukuda and Liebling 2005). Parallel vectors are added up before: on a
-/// machine most are.
+/// signs of all other vectors are known; those in the plane of the two are settled on an edge that ends there,
+/// `v = ± u × g_i`, and `s_i` is either. Of the two edges of a cell at its corner the one of the smaller index will
+/// do: `2n(n-1)` sign patterns, i < j, hold the answer (equation (54); Ferrez, Fukuda and Liebling 2005).
+/// Parallel vectors are added up before: on a machine most are.
 #[must_use]
 pub fn farthest(vectors: &[Vector]) -> Farthest {
     let (generators, member_of) = merged(vectors);
@@ -47,15 +47,13 @@ pub fn farthest(vectors: &[Vector]) -> Farthest {
             let side = |k: usize| Some(generators[k].dot(&corner)).filter(|d| d.abs() > zero * lengths[k]);
             let sides: Vec<Option<f64>> =
                 (0..n).map(|k| if k == i || k == j { None } else { side(k) }).collect();
-            for last in [i, j] {
-                let edge = corner.cross(&generators[last]);
-                for (along, own) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-                    try_pattern(&|k| match sides[k] {
-                        _ if k == last => own,
-                        Some(side) => side.signum(),
-                        None => (generators[k].dot(&edge) * along).signum(),
-                    });
-                }
+            let edge = corner.cross(&generators[i]);
+            for (along, own) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                try_pattern(&|k| match sides[k] {
+                    _ if k == i => own,
+                    Some(side) => side.signum(),
+                    None => (generators[k].dot(&edge) * along).signum(),
+                });
             }
         }
     }
@@ -137,6 +135,13 @@ mod tests {
         #[test]
         fn as_by_force(vectors in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..11)) {
             agrees(&vectors.into_iter().map(Vector::from).collect::<Vec<_>>());
+        }
+
+        /// All in one plane, which no coordinate knows of: the corners are two, and hold every cell.
+        #[test]
+        fn as_by_force_in_a_plane(vectors in prop::collection::vec(prop::array::uniform2(-5..6_i32), 1..12)) {
+            let [a, b] = [Vector::new(1.0, 2.0, -1.0), Vector::new(2.0, -1.0, 3.0)];
+            agrees(&vectors.into_iter().map(|[u, v]| a * f64::from(u) + b * f64::from(v)).collect::<Vec<_>>());
         }
 
         /// Whole numbers: many parallel, many in one plane.

@@ -158,6 +158,18 @@ fn derivatives_of_a_maximum_have_two_sides() {
     let ec0y = budget.items.iter().find(|item| item.deviation == 1).unwrap();
     assert!((ec0y.largest_slope_mm.left - 4e-3).abs() < 1e-15);
     assert_eq!(ec0y.largest_slope_mm.left, ec0y.largest_slope_mm.right);
+    // Where the smallest |d| is 0 it grows to both sides: 20 µm at one end, none at the other, and all of EXX moves both.
+    let mut description = perfect("[w X Y b Z t]");
+    description.linear[0].errors = Some(line(0, 10e-3, 10e-3));
+    description.squareness.ec0y_rad = 25e-6;
+    let machine = self::machine(description, &[]);
+    let ends = [-400.0, 400.0].map(|y| at(0.0, y, 0.0, Vector::zeros()));
+    let budget = Budget::new(&machine, evaluate(&ends)).unwrap();
+    let exx = budget.items.iter().find(|item| item.deviation == 0).unwrap();
+    assert!((budget.measured.spread_mm() - 20e-3).abs() < 1e-15);
+    assert!((exx.largest_slope_mm.left - 10e-3).abs() < 1e-15);
+    assert!((exx.spread_slope_mm.left - 20e-3).abs() < 1e-15, "{exx:?}");
+    assert!(exx.spread_slope_mm.right.abs() < 1e-15, "{exx:?}");
     // Squareness alone has its maximum at both ends; of a straightness added, one end grows and one shrinks.
     let mut description = perfect("[w X Y b Z t]");
     description.squareness.ec0y_rad = -10e-6;
