@@ -161,6 +161,17 @@ fn the_worst_signs_are_those_of_a_machine() {
     assert_eq!(found.json["control_points"], 8 * 125);
     assert!(found.text.contains("from all 8 sides"), "{}", found.text);
     assert!(number(&deviation(&found.json, "B(X)")["alone"]["M_um"]) == 3.0, "half of 6 um to each side");
+    // Points say where they are approached from, or it is said that they do not.
+    let points = |name: &str, text: &str| {
+        let file = written(name, text);
+        budget("vmc_points", &["-m", VMC, "--points", &file])
+    };
+    let mean = points("mean.csv", "x_mm,y_mm,z_mm\n-100,-100,-100\n");
+    assert!(mean.text.contains("the mean of both directions"), "{}", mean.text);
+    assert_eq!(number(&deviation(&mean.json, "B(X)")["alone"]["M_um"]), 0.0);
+    let said = points("said.csv", "x_mm,y_mm,z_mm,dir_x,dir_y,dir_z\n-100,-100,-100,1,-1,1\n");
+    assert!(!said.text.contains("the mean of both directions"), "{}", said.text);
+    assert_eq!(number(&deviation(&said.json, "B(X)")["alone"]["M_um"]), 3.0);
     let signs = &found.json["signs_free"]["worst_case"]["signs"];
     let sign = |name: &str| number(&signs[name]);
     let text = std::fs::read_to_string(common::root().join(VMC)).expect("reads");

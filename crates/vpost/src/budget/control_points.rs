@@ -10,7 +10,7 @@ use super::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::file;
 use crate::map::options::{grid, rotary, tool};
-use crate::map::text::triple;
+use crate::map::text::{printable, triple};
 use crate::message::{Failure, Messages, OPTION, Report};
 use crate::points::{POINTS, Points};
 use crate::predict::POINT_OUTSIDE;
@@ -153,8 +153,13 @@ fn from_file(
         let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
-    let commands = points.rows.into_iter().map(|(_, command)| command).collect();
-    Ok(ControlPoints { commands, what: format!("from {}", crate::map::text::printable(name)) })
+    let commands: Vec<Command> = points.rows.into_iter().map(|(_, command)| command).collect();
+    let mut what = format!("from {}", printable(name));
+    // Half of every reversal value would go unseen, and nobody would know.
+    if machine.model().depends_on_direction() && commands.iter().any(|c| c.direction.contains(&0)) {
+        what += ", where dir_x, dir_y, dir_z do not say: the mean of both directions, without lost motion";
+    }
+    Ok(ControlPoints { commands, what })
 }
 
 fn too_many(what: &str, count: usize, directions: usize) -> Failure {

@@ -7,6 +7,7 @@ use error_budget::mending::Mending;
 use error_budget::tolerances::Tolerances;
 
 use super::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
+use crate::map::json::round;
 use crate::map::text::{printable, triple, um};
 use crate::points::fixed;
 
@@ -107,7 +108,7 @@ fn together(study: &Study, out: &mut String) {
 }
 
 fn mending(study: &Study, target: &Target, out: &mut String) {
-    let wanted = um(target.mm);
+    let wanted = round(target.mm * 1e3, 6);
     let _ = writeln!(out, "\ntarget: M at most {wanted} um{}", kept(study, target));
     match &target.mending {
         _ if target.met => {
