@@ -133,7 +133,21 @@ fn a_wrong_program_is_found_out() {
         ("G1 Z0.\nG0 Z5.\nM30", "G0 Z0.\nG0 Z5.\nM30", "the motion of line 10 is missing"),
         // Cut twice; cut where nothing is programmed.
         ("G1 Z0.\nG0 Z5.\nM30", "G1 Z0.\nG0 Z5.\nG1 Z0.\nG0 Z5.\nM30", "line 12 of the corrected program"),
-        ("X10. Y10.\n", "G1 X10. Y10.\n", "of the corrected program is"),
+        ("X10. Y10.\n", "G1 X10. Y10.\n", "line 9 of the corrected program belongs to no programmed motion"),
+        // A retract left out, too late, or downwards; a place passed over; a rapid where none is programmed.
+        ("G0 Z5.\nX10.", "G0 X10.", "line 8 of the corrected program positions the tool where"),
+        (
+            "G0 Z5.\nX10. Y10.\n",
+            "G0 X10. Y10.\nZ5.\n",
+            "line 8 of the corrected program positions the tool where",
+        ),
+        ("\nG1 Z0.\nG0 Z5.\nM30", "\nG1 Z0.\nG0 Z-5.\nM30", "line 11 of the corrected program positions"),
+        ("\nG1 Z0.\nG0 Z5.\nM30", "\nG1 Z0.\nM30", "the positioning of line 11 is missing"),
+        (
+            "X10. Y10.\nG1 Z0.\n",
+            "X10. Y10.\nZ-3.\nZ5.\nG1 Z0.\n",
+            "line 10 of the corrected program positions",
+        ),
         // Something else than motion.
         ("M30", "M8\nM30", "besides motion"),
         ("G54", "G55", "besides motion"),

@@ -313,6 +313,15 @@ fn findings(comparison: &Comparison, wanted: &[&Event], commanded: &[&Event]) ->
             Mismatch::Extra { commanded_line } => {
                 format!("line {commanded_line} of the corrected program belongs to no programmed motion")
             }
+            Mismatch::Turned { wanted_line, commanded_line } => {
+                format!("the rotary axes stand elsewhere in line {commanded_line} of the corrected program than in line {wanted_line}")
+            }
+            Mismatch::NotPositioned { wanted_line } => {
+                format!("the positioning of line {wanted_line} is missing from the corrected program")
+            }
+            Mismatch::PositionedElsewhere { commanded_line } => {
+                format!("line {commanded_line} of the corrected program positions the tool where the program does not")
+            }
         })
         .collect();
     if comparison.more_mismatches > 0 {
