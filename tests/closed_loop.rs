@@ -160,6 +160,61 @@ fn a_wrong_program_is_found_out() {
     }
 }
 
+/// Rapids of a cycle written as moves, and turns of a rotary axis, each with one mistake.
+#[test]
+fn rapids_of_pecks_and_turns_are_judged() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let written = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let judged = |posted: &str, corrected: &str, profile: &str| {
+        let (posted, corrected) = (written("posted.nc", posted), written("out.nc", corrected));
+        let ran = run(&["check", &posted, &corrected, "-m", profile, "-d", "fanuc", "--json"]);
+        let outcome: serde_json::Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+        outcome["findings"].to_string()
+    };
+    let posted = "G21 G17 G90 G54\nG43 H1\nG0 X50. Y80. Z50.\nG98 G83 X60. Y80. Z-20. R5. Q10. F200.\nX90.\nG80\nG0 Z80.\nM30\n";
+    let program = written("program.nc", posted);
+    let ran = run(&[&program, "-m", SQUARE, "-d", "fanuc", "-q"]);
+    let right = String::from_utf8(ran.stdout).expect("text");
+    assert_eq!(judged(posted, &right, SQUARE), "[]");
+    // From the peck at -5 back to R and to 0.25 mm above it: a millimetre deeper, or aside; straight down to the next hole.
+    for (good, wrong) in [
+        ("Z-4.757", "Z-5.757"),
+        ("X90.188 Y79.928 Z4.99", "X91.188 Y79.928 Z4.99"),
+        ("X90.185 Y79.932 Z49.989", "X90.185 Y79.932 Z3.989"),
+    ] {
+        let text = right.replacen(good, wrong, 1);
+        assert_ne!(text, right, "{good}:\n{right}");
+        let found = judged(posted, &text, SQUARE);
+        println!("{wrong:?}: {found}");
+        assert!(found.contains("positions the tool where the program does not"), "{wrong:?}: {found}");
+    }
+    let axes: String =
+        ["X", "Y", "Z"].map(|axis| format!("[axis.{axis}]\ntravel_mm = [-500, 500]\n")).concat();
+    let machine = format!(
+        "format = 1\nname = \"TILTING\"\ncontrol = \"fanuc\"\nchain = \"[w A X Y b Z t]\"\n{axes}[rotary.A]\nEB0A_urad = 100.0\n[work_offsets_mm]\nG54 = [0, 0, 0]\n"
+    );
+    let machine = written("tilting.toml", &machine);
+    let posted = "G21 G17 G90 G54\nG0 X0. Y0. Z100. A0.\nG0 A90.\nG1 X50. F200.\nG0 Z200.\nA0.\nM30\n";
+    let ran = run(&[&written("program.nc", posted), "-m", &machine, "-d", "fanuc", "-q"]);
+    let right = String::from_utf8(ran.stdout).expect("text");
+    assert_eq!(judged(posted, &right, &machine), "[]", "{right}");
+    for (good, wrong, finding) in [
+        ("G0 A90.", "G0 A80.", "the rotary axes stand elsewhere in line"),
+        ("G0 A90.\n", "", "the positioning of line 3 is missing"),
+        ("\nA0.", "", "the positioning of line 6 is missing"),
+    ] {
+        let text = right.replacen(good, wrong, 1);
+        assert_ne!(text, right, "{good}:\n{right}");
+        let found = judged(posted, &text, &machine);
+        println!("{wrong:?}: {found}");
+        assert!(found.contains(finding), "{wrong:?}: {found}");
+    }
+}
+
 /// The first differences are listed, the others counted.
 #[test]
 fn no_difference_is_left_uncounted() {
