@@ -12,17 +12,21 @@ impl Matcher<'_> {
         let next = (self.at..self.wanted.len()).find(|at| !self.may_be_passed_over(*at));
         let next = next.unwrap_or(self.wanted.len());
         let due = self.positionings.iter().take_while(|w| w.before <= next).count();
-        if let Some(passed_over) = self.positionings[..due].iter().position(|w| self.ends_alike(w, made)) {
-            self.positioned(passed_over);
+        let found =
+            |from: usize, to: usize| (from..to).find(|k| self.ends_alike(&self.positionings[*k], made));
+        // First the next that moves an axis: what comes later may end at the same place, and so may a rapid in a hole.
+        let idle = self.positionings[..due].iter().take_while(|w| w.stays()).count();
+        if let Some(next) = found(0, due.min(idle + 1)) {
+            self.positioned(next);
             return;
         }
         if made.stays() || self.belongs_to_a_hole(made) {
             return;
         }
         // What comes behind the next feed: then that feed is not made, or not to its end.
-        let behind = self.positionings[due..].iter().take_while(|w| w.before == next + 1);
-        if let Some(passed_over) = behind.clone().position(|w| self.ends_alike(w, made)) {
-            self.positioned(due + passed_over);
+        let behind = self.positionings[due..].iter().take_while(|w| w.before == next + 1).count();
+        if let Some(later) = found(idle, due + behind) {
+            self.positioned(later);
             return;
         }
         // Go on as if it had been meant for the next one, so that one bad block is one mismatch.
