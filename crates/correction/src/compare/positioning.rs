@@ -6,6 +6,9 @@ use super::Mismatch;
 use super::matcher::{Matcher, SHORT_LIMITS};
 use super::path::Positioning;
 
+/// A cycle goes straight where the machine's axis leans, by no more than that, rad; what is written as moves does not.
+const MOST_LEAN: f64 = 5e-3;
+
 impl Matcher<'_> {
     /// Takes a positioning move of the corrected program.
     pub(super) fn position(&mut self, made: &Positioning) {
@@ -89,7 +92,8 @@ impl Matcher<'_> {
             let (top, down) = (w.curve.at(0.0), w.curve.tangent(0.0));
             let depth_mm = (end - top).dot(&down);
             let aside_mm = (end - top - down * depth_mm).norm();
-            let straight_out = moved.dot(&down) < 0.0 && moved.cross(&down).norm() <= near_mm;
+            let straight_out =
+                moved.dot(&down) < 0.0 && moved.cross(&down).norm() <= near_mm + MOST_LEAN * moved.norm();
             straight_out || (aside_mm <= near_mm && depth_mm <= drilled * w.length_mm + near_mm)
         })
     }
