@@ -13,6 +13,7 @@ pub mod correct;
 pub mod diagnose;
 mod expand;
 pub mod export;
+mod figures;
 mod file;
 mod grammar;
 mod growing;

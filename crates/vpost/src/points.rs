@@ -172,13 +172,3 @@ fn field_span(bytes: &[u8], position: Option<&csv::Position>, field: usize) -> O
         bytes[at..].iter().position(|byte| matches!(byte, b',' | b'\n' | b'\r')).unwrap_or(bytes.len() - at);
     Some(at as u64..(at + length) as u64)
 }
-
-/// A number with fixed decimals, never a negative zero.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    if text.starts_with('-') && text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
-        text[1..].to_owned()
-    } else {
-        text
-    }
-}

@@ -5,8 +5,9 @@ use machine_model::{Engine, EngineId, Vector};
 
 use crate::arguments::{Outside, Predict, Shared};
 use crate::conditions::{conditions, failure};
+use crate::figures::fixed;
 use crate::message::{Failure, Messages, Report};
-use crate::points::{Points, fixed};
+use crate::points::Points;
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{file, profile};
 

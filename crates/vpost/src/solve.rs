@@ -4,8 +4,9 @@ use diagnostic::Diagnostic;
 
 use crate::arguments::{Shared, Solve};
 use crate::correct::OUTSIDE;
+use crate::figures::fixed;
 use crate::message::{Failure, Messages};
-use crate::points::{Points, fixed};
+use crate::points::Points;
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{conditions, file, profile};
 

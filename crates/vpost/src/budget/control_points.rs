@@ -8,9 +8,9 @@ use machine_profile::Profile;
 
 use super::Budget;
 use crate::arguments::{Outside, Shared};
+use crate::figures::{printable, triple};
 use crate::file;
 use crate::map::options::{grid, rotary, tool};
-use crate::map::text::{printable, triple};
 use crate::message::{Failure, Messages, OPTION, Report};
 use crate::points::{POINTS, Points};
 use crate::predict::POINT_OUTSIDE;

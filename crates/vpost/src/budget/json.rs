@@ -5,7 +5,7 @@ use error_budget::{Criteria, OneSided};
 use serde_json::{Value, json};
 
 use super::study::{Combined, Study, Target};
-use crate::map::json::{millimetres, round, um};
+use crate::figures::{millimetres, round, rounded_um as um};
 
 /// The file's bytes.
 pub(super) fn bytes(study: &Study) -> Vec<u8> {

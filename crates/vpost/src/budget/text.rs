@@ -7,9 +7,7 @@ use error_budget::mending::Mending;
 use error_budget::tolerances::Tolerances;
 
 use super::study::{Combined, MENDING_OUT_OF_REACH, Study, Target};
-use crate::map::json::round;
-use crate::map::text::{printable, triple, um};
-use crate::points::fixed;
+use crate::figures::{fixed, printable, round, triple, um};
 
 /// The page.
 pub(super) fn page(study: &Study) -> String {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::study::{Kind, Study};
-use crate::points::fixed;
+use crate::figures::fixed;
 
 /// Decimals of a micrometre.
 const DECIMALS: usize = 6;

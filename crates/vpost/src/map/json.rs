@@ -8,6 +8,7 @@ use super::drawn::classes;
 use super::second_order::SecondOrder;
 use super::study::{Part, Proof, Study, ZeroPoint};
 use super::text::freedom_name;
+use crate::figures::{millimetres, round, rounded_um as um};
 
 /// The file's bytes.
 pub(super) fn bytes(study: &Study) -> Vec<u8> {
@@ -135,20 +136,6 @@ fn range_mm(r: Range) -> Value {
     json!([round(r.low, 6), round(r.high, 6)])
 }
 
-pub(crate) fn millimetres(v: &Vector) -> [f64; 3] {
-    [v.x, v.y, v.z].map(|value| round(value, 6))
-}
-
 fn micrometres(v: &Vector) -> [f64; 3] {
     [v.x, v.y, v.z].map(um)
-}
-
-/// Micrometres, to a tenth of a nanometre.
-pub(crate) fn um(mm: f64) -> f64 {
-    round(mm * 1e3, 4)
-}
-
-/// Decimals beyond the last that means something would only be rounding noise. Never a negative zero.
-pub(crate) fn round(value: f64, decimals: usize) -> f64 {
-    format!("{value:.decimals$}").parse::<f64>().unwrap_or(value) + 0.0
 }

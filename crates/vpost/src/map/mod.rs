@@ -2,12 +2,12 @@
 
 mod drawn;
 mod export;
-pub(crate) mod json;
+mod json;
 pub(crate) mod options;
 mod page;
 mod second_order;
 mod study;
-pub(crate) mod text;
+mod text;
 
 use std::path::PathBuf;
 

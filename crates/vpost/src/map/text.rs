@@ -8,7 +8,7 @@ use machine_model::Vector;
 
 use super::second_order::SecondOrder;
 use super::study::{Kind, Part, Proof, Study, ZeroPoint};
-use crate::points::fixed;
+use crate::figures::{fixed, printable, triple, um};
 
 /// The page.
 pub(super) fn page(study: &Study) -> String {
@@ -265,17 +265,4 @@ fn row(figures: &Statistics) -> String {
 
 fn percent(share: f64) -> String {
     fixed(share * 100.0, 2)
-}
-
-pub(crate) fn um(mm: f64) -> String {
-    fixed(mm * 1e3, 2)
-}
-
-pub(crate) fn triple(v: &Vector, decimals: usize) -> String {
-    [v.x, v.y, v.z].map(|value| fixed(value, decimals)).join(" ")
-}
-
-/// A name on one line: control characters could act on a terminal.
-pub(crate) fn printable(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
