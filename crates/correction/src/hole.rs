@@ -163,7 +163,9 @@ impl<'m> Corrector<'m> {
                 Verdict::Beyond { .. } => self.expanding = true,
             }
         }
+        // What was tried has moved no axis, nor turned one.
         (self.standing, self.remembered) = before;
+        self.direction = came;
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
         self.direction[normal] = out;
