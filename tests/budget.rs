@@ -382,6 +382,10 @@ fn what_has_no_budget_is_refused_with_what_to_type() {
     refused(&["--target", "-3"], &["VP0002", "--target -3"]);
     refused(&["--target", "nan"], &["VP0002", "--target NaN"]);
     refused(&["--keep", "EXX"], &["--target"]);
+    for command in ["budget", "map"] {
+        let turned = run(&[command, "-m", "samples/budget/ms300_like.toml", "--rotary", "B=200"]);
+        said(2, &turned, &["VP0002", "axis B at 200.0000\u{b0} lies outside its range"]);
+    }
     refused(&["--target", "50", "--keep", "EXQ"], &["VP0002", "no such deviation", "EXX, EYX"]);
     refused(&["--grid", "22x22"], &["VP0002", "--grid 22x22x21"]);
     refused(&["--grid", "100x100x100"], &["VP0002", "1000000 control points", "a coarser grid"]);
@@ -417,7 +421,11 @@ fn what_has_no_budget_is_refused_with_what_to_type() {
     );
     said(1, &points("bad.csv", "x_mm,y_mm\n1,2\n", &[]), &["VP0901", "`z_mm` is missing"]);
     said(1, &points("none.csv", "x_mm,y_mm,z_mm\n", &[]), &["VP0901", "no rows"]);
-    said(1, &points("turned.csv", "x_mm,y_mm,z_mm,c_deg\n1,2,3,90\n", &[]), &["VP0901", "point 1 turns C"]);
+    said(
+        1,
+        &points("turned.csv", "x_mm,y_mm,z_mm,c_deg\n1,2,3,90\n", &[]),
+        &["VP0901", "the machine has no axis C"],
+    );
     // Outside with the nearest point's error: done, and said; -q says nothing.
     let output = points("outside.csv", outside, &["--outside", "clamp"]);
     assert!(output.status.success());

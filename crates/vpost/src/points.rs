@@ -2,6 +2,7 @@
 
 use diagnostic::{Code, Diagnostic};
 use machine_model::{Command, Vector};
+use machine_profile::Profile;
 
 use crate::message::Failure;
 
@@ -37,7 +38,12 @@ impl Points {
     /// Reads points.
     ///
     /// `tool_mm`: the tool vector of rows that give none.
-    pub(crate) fn read(name: &str, bytes: &[u8], tool_mm: [f64; 3]) -> Result<Self, Failure> {
+    pub(crate) fn read(
+        name: &str,
+        bytes: &[u8],
+        tool_mm: [f64; 3],
+        profile: &Profile,
+    ) -> Result<Self, Failure> {
         let refuse = |span: Option<std::ops::Range<u64>>, message: String, label: &str, help: String| {
             let mut diagnostic = Diagnostic::error(POINTS, message).help(help);
             if let Some(span) = span {
@@ -137,6 +143,15 @@ impl Points {
                         ));
                     }
                 }
+            }
+            let lacks = |axis: &usize| values[3 + axis] != 0.0 && !profile.has_rotary()[*axis];
+            if let Some((axis, at)) = (0..3).find(lacks).and_then(|axis| Some((axis, place[3 + axis]?))) {
+                return Err(refuse(
+                    field_span(bytes, record.position(), at),
+                    format!("the machine has no axis {}", ['A', 'B', 'C'][axis]),
+                    &format!("the profile's chain is {}", profile.chain()),
+                    "leave the column out, or give the profile of the machine that turns".to_owned(),
+                ));
             }
             let direction = [values[9], values[10], values[11]].map(|d| {
                 if d > 0.0 {

@@ -19,7 +19,7 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let profile = profile::load(machine(shared)?)?.profile;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
-    let points = Points::read(&name, &bytes, setup_tool(&profile))?;
+    let points = Points::read(&name, &bytes, setup_tool(&profile), &profile)?;
     let conditions = conditions(shared)?;
     let machine = if arguments.include_setup {
         profile.measured_machine(&conditions)
@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let mut out = points.columns.join(",");
     out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um\n");
     for (row, (fields, command)) in points.rows.iter().enumerate() {
-        if !volume.contains(&command.linear_mm) {
+        if !volume.contains(&command.linear_mm) || machine.base().rotary_inside(command).is_err() {
             outside = Some(outside.map_or((row, 1), |(first, count)| (first, count + 1)));
         }
         let (mut position, mut error) = match other {

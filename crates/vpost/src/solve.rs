@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
     let engine = conditions::engine(&profile, id, shared)?;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
-    let points = Points::read(&name, &bytes, setup_tool(&profile))?;
+    let points = Points::read(&name, &bytes, setup_tool(&profile), &profile)?;
     let mut out = points.columns.join(",");
     out.push_str(",qx_mm,qy_mm,qz_mm");
     for (axis, has) in ["qa_deg", "qb_deg", "qc_deg"].iter().zip(points.rotary) {

@@ -73,10 +73,6 @@ fn over_the_volume(
     };
     let commands: Vec<Command> =
         (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();
-    if let Err(error) = machine.model().base().rotary_inside(&commands[0]) {
-        let help = "give angles inside it: `--rotary A=30`";
-        return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, error.to_string()).help(help)));
-    }
     let axes = ["X", "Y", "Z"].iter().zip(grid.axes()).map(|(name, nodes)| {
         let range = nodes.range_mm();
         format!("{name} {} to {} mm ({})", range.low, range.high, nodes.places_mm().len())
@@ -100,7 +96,7 @@ fn from_file(
     machine: &Machine,
     messages: &Messages,
 ) -> Result<ControlPoints, Failure> {
-    let points = Points::read(name, bytes, tool_mm.into())?;
+    let points = Points::read(name, bytes, tool_mm.into(), profile)?;
     let refuse = |diagnostic: Diagnostic| Failure::refused(name, bytes, vec![diagnostic]);
     if points.rows.is_empty() {
         let help = "give a row for each point at which the machine is to be judged";
@@ -112,19 +108,6 @@ fn from_file(
     let volume = machine.model().volume();
     let mut outside = 0;
     for (row, (_, command)) in points.rows.iter().enumerate() {
-        let turns = |axis: &usize| command.rotary_rad[*axis] != 0.0 && !profile.has_rotary()[*axis];
-        if let Some(axis) = (0..3).find(turns) {
-            let message = format!(
-                "point {} turns {}, which the chain {} lacks",
-                row + 1,
-                ['A', 'B', 'C'][axis],
-                profile.chain()
-            );
-            return Err(refuse(
-                Diagnostic::error(POINTS, message)
-                    .help("leave the column out, or take the machine's profile"),
-            ));
-        }
         if let Err(error) = machine.model().base().rotary_inside(command) {
             let message = format!("point {}: {error}", row + 1);
             return Err(refuse(Diagnostic::error(POINT_OUTSIDE, message).help("leave the point out")));

@@ -1,7 +1,7 @@
 //! What the options of `vpost map` mean.
 
 use error_map::{Grid, Nodes, Plane};
-use machine_model::{Range, Vector, Volume};
+use machine_model::{Command, Range, Vector, Volume};
 use machine_profile::Profile;
 
 use super::Map;
@@ -170,5 +170,14 @@ pub(crate) fn rotary(given: Option<&str>, profile: &Profile) -> Result<Vector, F
         }
         angles[axis] = number(value).ok_or_else(|| refuse("that is no number"))?.to_radians();
     }
+    let turned = Command {
+        linear_mm: Vector::zeros(),
+        rotary_rad: angles,
+        tool_mm: Vector::zeros(),
+        direction: [0; 3],
+    };
+    profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
+        Failure::option(format!("`--rotary {given}`: {error}"), "give angles inside its travel and its table")
+    })?;
     Ok(angles)
 }
