@@ -1,5 +1,7 @@
 //! Corrected positioning moves to programmed ones, in order.
 
+use std::cmp::Ordering;
+
 use machine_model::Vector;
 
 use super::Mismatch;
@@ -23,7 +25,7 @@ impl Matcher<'_> {
             self.positioned(next);
             return;
         }
-        if made.stays() || self.belongs_to_a_hole(made) {
+        if made.stays() || self.belongs_to_a_hole(made, next) {
             return;
         }
         // What comes behind the next feed: then that feed is not made, or not to its end.
@@ -81,13 +83,18 @@ impl Matcher<'_> {
     }
 
     /// A rapid of a cycle that is written as moves: straight out, or on the hole's line no deeper than it is drilled.
-    fn belongs_to_a_hole(&self, made: &Positioning) -> bool {
+    fn belongs_to_a_hole(&self, made: &Positioning, next: usize) -> bool {
         let near_mm = SHORT_LIMITS * self.limit_mm;
         let [start, end] = [&made.start, &made.end].map(|place| made.tip(self.model, place));
         let (Some(start), Some(end)) = (start, end) else { return false };
         let moved = end - start;
-        let last = self.at.checked_sub(1).map(|last| (last, 1.0));
-        last.into_iter().chain([(self.at, self.s)]).any(|(at, drilled)| {
+        // The last, the one under way, the next; holes of no depth in between need no move.
+        (self.at.saturating_sub(1)..=next).any(|at| {
+            let drilled = match at.cmp(&self.at) {
+                Ordering::Less => 1.0,
+                Ordering::Equal => self.s,
+                Ordering::Greater => 0.0,
+            };
             let Some(w) = self.wanted.get(at).filter(|w| w.hole && made.rapid) else { return false };
             let (top, down) = (w.curve.at(0.0), w.curve.tangent(0.0));
             let depth_mm = (end - top).dot(&down);
