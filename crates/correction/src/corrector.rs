@@ -601,6 +601,8 @@ impl<'m> Corrector<'m> {
             // The axes that need not turn do not creep back meanwhile.
             let _ = self.approachable(&mut from_behind, state.direction, block);
             self.approach_to(from_behind, start, block, came, corrected);
+            // Nor do they behind that, from where it has brought them.
+            let _ = self.approachable(&mut wanted, machine.state.direction, block);
         }
         self.approach_to(wanted, start, block, came, corrected);
         Ok(())
