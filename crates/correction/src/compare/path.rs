@@ -102,7 +102,7 @@ impl Path {
                 direction,
             };
             let feed = |curve: Curve, state: Command, hole: bool| {
-                let (length_mm, reach_mm) = (curve.length_mm(), reach_mm(&curve));
+                let (length_mm, reach_mm) = (length_mm(&curve), reach_mm(&curve));
                 Feeding { curve, length_mm, reach_mm, state, line: step.line, hole }
             };
             let before = path.feeds.len();
@@ -151,10 +151,15 @@ impl Path {
     }
 }
 
+/// The length; of an arc whose radius changes by more than it turns, that of its chord.
+fn length_mm(curve: &Curve) -> f64 {
+    curve.length_mm().max((curve.at(1.0) - curve.at(0.0)).norm())
+}
+
 /// The largest distance from the start: sampled where it may matter, else the length, which bounds it.
 fn reach_mm(curve: &Curve) -> f64 {
     const SHORT_MM: f64 = 0.2;
-    let length_mm = curve.length_mm();
+    let length_mm = length_mm(curve);
     if length_mm > SHORT_MM {
         return length_mm;
     }
@@ -175,12 +180,15 @@ pub(super) fn for_samples(curve: &Curve, mut f: impl FnMut(f64)) {
 
 /// Nearest s of a curve to a place, continuing from a known s; not limited to 0..=1.
 pub(super) fn project(curve: &Curve, place: &Vector, near: f64) -> f64 {
+    let along = |a: &Vector, b: &Vector| {
+        let step = b - a;
+        let square = step.norm_squared();
+        if square > 0.0 { (place - a).dot(&step) / square } else { 1.0 }
+    };
     match curve {
-        Curve::Line(a, b) => {
-            let step = b - a;
-            let square = step.norm_squared();
-            if square > 0.0 { (place - a).dot(&step) / square } else { 1.0 }
-        }
+        Curve::Line(a, b) => along(a, b),
+        // Rounding of the program has made its radius change by more than it turns: its angle says nothing.
+        Curve::Arc { ends: [a, b], .. } if (b - a).norm() > curve.length_mm() => along(a, b),
         Curve::Arc { axes: [u, v, n], centre, angle, sweep, radius, ends: [start, end] } => {
             let here = units::math::atan2(place[*v] - centre[1], place[*u] - centre[0]);
             let expected = angle + sweep * near;

@@ -74,11 +74,16 @@ impl Matcher<'_> {
         if let (true, Some(end), Some(tip)) = (w.rapid, w.end.complete(), made.tip(self.model, &made.end)) {
             return (tip - Vector::from(end.linear_mm)).norm() <= near_mm;
         }
-        // Uncorrected: what the block moves ends as written, and the other axes stay where the correction brought them.
-        let moves = |p: &Positioning, axis: usize| p.start.linear_mm[axis] != p.end.linear_mm[axis];
-        (0..3).all(|axis| match (w.end.linear_mm[axis], made.end.linear_mm[axis]) {
-            (Some(a), Some(b)) if moves(w, axis) || moves(made, axis) => (a - b).abs() <= near_mm,
-            _ => true,
+        // Uncorrected: what the block moves ends as written or goes as far as written, and the other axes stay where the
+        // correction brought them.
+        (0..3).all(|axis| {
+            let [(w_from, w_to), (from, to)] =
+                [w, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
+            let (Some(w_to), Some(to)) = (w_to, to) else { return true };
+            let by_as_much = w_from
+                .zip(from)
+                .is_some_and(|(w_from, from)| ((w_to - w_from) - (to - from)).abs() <= near_mm);
+            by_as_much || (w_to - to).abs() <= near_mm
         })
     }
 
