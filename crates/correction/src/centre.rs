@@ -32,7 +32,7 @@ impl Candidate {
         if search.own_words && search.block.letters.contains(b'P') {
             // The block's own P counts the whole turns before the last one; it never makes one of a
             // last turn that came out as nothing.
-            *turned += sweep.signum() * ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) * TAU;
+            *turned += sweep.signum() * whole_turns(sweep) * TAU;
         }
         // Where both rays all but meet, the last bit says whether that is a whole turn or none. The block's own words between
         // its own ends are what the program made of them.
@@ -41,6 +41,11 @@ impl Candidate {
         }
         ((*turned - sweep).abs() < 0.5 * sweep.abs().min(1.0)).then_some(curve)
     }
+}
+
+/// How many whole turns an arc makes before its last one.
+fn whole_turns(sweep: f64) -> f64 {
+    ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0)
 }
 
 /// The block's own words serve.
@@ -283,7 +288,7 @@ impl Search<'_> {
         if length < SAME_PLACE_MM {
             return;
         }
-        let major = sweep.abs() > TAU / 2.0;
+        let major = sweep.abs() - whole_turns(sweep) * TAU > TAU / 2.0;
         let centre_of = |radius: f64| {
             // Half a turn: the programmed radius and half the chord are the same number but for its last bits.
             let height2 = radius * radius - 0.25 * length * length;

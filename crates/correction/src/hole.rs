@@ -166,6 +166,9 @@ impl<'m> Corrector<'m> {
         // What was tried has moved no axis, nor turned one.
         (self.standing, self.remembered) = before;
         self.direction = came;
+        if let Some(remembered) = &mut self.remembered {
+            remembered.as_programmed = false;
+        }
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
         self.direction[normal] = out;
@@ -209,10 +212,10 @@ impl<'m> Corrector<'m> {
         let (r_origin, own_r_origin) =
             if block.incremental { (level(began_mm), level(hole.began_mm)) } else { (0.0, 0.0) };
         // What the control remembers of R and bottom: what the program told it while nothing was rewritten;
-        // else what this output told it last, in the same of G90 and G91.
+        // else what this output told it last, in the same of G90 and G91. Of holes written as moves it knows nothing.
         let last = self.remembered;
         let remembered = |own: f64, told: fn(&Remembered) -> f64| match &last {
-            None => Some(own),
+            None => Some(own).filter(|_| !self.expanding),
             Some(last) if last.as_programmed => Some(own),
             Some(last) if !last.incremental && !block.incremental => Some(told(last)),
             Some(_) => None,

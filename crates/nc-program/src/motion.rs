@@ -146,6 +146,8 @@ fn by_mode(
                     "does it hold for the next one? controls differ",
                 )
                 .help("write Q in a block that drills"));
+        } else if words.has(Letters::of(b"IJ")) {
+            return Err(stray(words, "no arc is in force, and nothing is drilled here"));
         }
         return Ok(());
     }

@@ -102,6 +102,13 @@ impl Matcher<'_> {
             };
             let Some(w) = self.wanted.get(at).filter(|w| w.hole && made.rapid) else { return false };
             let (top, down) = (w.curve.at(0.0), w.curve.tangent(0.0));
+            if w.length_mm == 0.0 {
+                // Without a depth it does not say along which axis it would go: to its level, or on its line.
+                let far = |v: &Vector, mm: f64| (0..3).filter(|axis| v[*axis].abs() > mm).collect::<Vec<_>>();
+                let (aside, ways) =
+                    (far(&(end - top), near_mm), far(&moved, near_mm + MOST_LEAN * moved.norm()));
+                return aside.len() <= 1 || (ways.len() == 1 && !aside.contains(&ways[0]));
+            }
             let depth_mm = (end - top).dot(&down);
             let aside_mm = (end - top - down * depth_mm).norm();
             let straight_out =
