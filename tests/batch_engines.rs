@@ -175,7 +175,8 @@ fn hyperqueue_loses_a_worker_and_nothing_else() {
         );
         return;
     }
-    let work = Work::new(36, 2500);
+    // Long enough that a task is seen between its first output and its last.
+    let work = Work::new(36, 20_000);
     let mut command = work.command(Path::new(&python));
     command.arg(root().join("tests/cluster/hyperqueue_loses_a_worker.py")).arg(env!("CARGO_BIN_EXE_vpost"));
     command.arg(work.path("plan.jsonl")).arg("9").arg(work.path("out")).env("PYTHONDONTWRITEBYTECODE", "1");

@@ -192,7 +192,8 @@ fn a_machine_with_backlash_follows_every_sample() {
 fn a_machine_with_several_effects_follows_every_sample() {
     let folder = Folder::new();
     let machine = folder.machine(SEVERAL);
-    corrected_and_checked(&machine, &AT);
+    // Where X turns it moves the tool 2 µm sideways: half of that is left at best, all of it where Y would have to go into its play.
+    corrected_and_checked(&machine, &[&AT[..], &["--tolerance", "3"]].concat());
 }
 
 /// Play: no feed of a corrected program ends on the way of an axis that turns, before its play is taken up.

@@ -177,3 +177,27 @@ fn another_temperature_than_that_of_the_calibration_is_said() {
     let same = messages(&run(&[program, "-m", MILL, "--at", "temp_c=20.05"]));
     assert!(!same.contains("VP1111"), "{same}");
 }
+
+/// No form but the profile holds what a turning axis does; none of them says nothing about it.
+#[test]
+fn errors_of_rotary_axes_are_never_lost_without_a_word() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let profile = folder.path().join("trunnion.toml");
+    let text = "format = 1\nname = \"trunnion\"\ncontrol = \"linuxcnc\"\nchain = \"[w C A X Y b Z t]\"\n\
+         [axis.X]\ntravel_mm = [0, 100]\nresolution_mm = 0.001\n[axis.Y]\ntravel_mm = [0, 100]\nresolution_mm = 0.001\n\
+         [axis.Z]\ntravel_mm = [0, 100]\nresolution_mm = 0.001\n\
+         [rotary.A]\ncentre_mm = [0, 0, 0]\nEY0A_um = 12.0\n[rotary.C]\ncentre_mm = [0, 0, 0]\n";
+    std::fs::write(&profile, text).expect("written");
+    for (format, words) in [
+        ("linuxcnc", "the errors of A"),
+        ("isg", "the errors of A"),
+        ("csv", "the errors of A"),
+        ("lattice", "the errors of A at any angle but 0"),
+    ] {
+        let (profile, folder) = (profile.to_str().expect("plain"), folder.path().join(format));
+        let output =
+            run(&["profile", "export", profile, "--format", format, "-O", folder.to_str().expect("plain")]);
+        assert!(output.status.success(), "{}", messages(&output));
+        assert!(messages(&output).contains(words), "{format}: {}", messages(&output));
+    }
+}

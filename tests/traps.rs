@@ -185,9 +185,8 @@ fn ten_thousand_increments_do_not_drift() {
 fn rapids_are_never_split() {
     for dialect in DIALECTS {
         let head = HEAD.replace("G21 G40 G49", "G40").replace(" G80", "");
-        let out =
-            corrected(dialect, &format!("{head}G0 X1500. Y-1400. Z-300.\nX10. Y10.\nG1 X20. F200.\nM30\n"));
-        assert_eq!(body(&out).len(), 4, "{dialect}:\n{out}");
+        let out = corrected(dialect, &format!("{head}G0 X1500. Y-1400. Z-300.\nX10. Y10.\nM30\n"));
+        assert_eq!(body(&out).len(), 3, "{dialect}:\n{out}");
     }
 }
 

@@ -48,14 +48,14 @@ def main():
             client = cluster.client()
             job = on_hyperqueue.submit(client, manifest, int(shards), vpost)
             # The first worker that is seen with a task, once some output stands.
-            victim = None
+            victim, tasks = None, []
             deadline = time.monotonic() + 120
             while victim is None and time.monotonic() < deadline:
                 if any(output.rglob("*.nc")):
-                    victim = next((one for one in workers if children(one)), None)
+                    # Asked once: a task may end while its worker is looked at again.
+                    seen = ((one, children(one)) for one in workers)
+                    victim, tasks = next(((one, found) for one, found in seen if found), (None, []))
                 time.sleep(0.002)
-            stood = len(list(output.rglob("*.nc")))
-            tasks = children(victim) if victim else []
             if victim:
                 # The machine is gone: its tasks with it.
                 for process in [victim, *tasks]:
@@ -64,6 +64,7 @@ def main():
                     except ProcessLookupError:
                         pass
                 os.waitpid(victim, 0)
+            stood = len(list(output.rglob("*.nc")))
             done = client.wait_for_jobs([job], raise_on_error=False)
         finally:
             for process in workers:

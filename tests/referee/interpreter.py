@@ -26,7 +26,7 @@ class Unreadable(Exception):
 class Move:
     """One canonical motion; positions in machine coordinates, the tool's length not included."""
 
-    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "named", "known", "start_known")
+    __slots__ = ("rapid", "line", "start", "end", "arc", "feed", "tool", "exempt", "named", "own", "known", "start_known")
 
     def __init__(self, rapid, line, start, end, arc, feed):
         self.rapid, self.line, self.start, self.end, self.arc, self.feed = rapid, line, start, end, arc, feed
@@ -101,6 +101,8 @@ class Text:
         # Axes that may stand anywhere after a line: reference returns, tool changes.
         self.lost = {}
         percent, executable, tool = 0, False, None
+        # G43 H0 is the tool in the spindle: the last T when M6 came.
+        selected, loaded = None, None
         for number_, line in enumerate(lines, 1):
             bare = strip_comments(line).strip().upper().lstrip("/")
             if bare.startswith("%"):
@@ -121,8 +123,13 @@ class Text:
             letters = set()
             words = [(letter, number(value), value) for letter, value in WORD.findall(bare)]
             codes = [f"G{value:g}" for letter, value, _ in words if letter == "G"]
+            selected = next((value for letter, value, _ in words if letter == "T"), selected)
+            if ("M", 6.0) in ((letter, value) for letter, value, _ in words):
+                loaded = selected
             if "G43" in codes:
                 tool = next((f"H{value:g}" for letter, value, _ in words if letter == "H"), tool)
+                if tool == "H0" and loaded:
+                    tool = f"H{loaded:g}"
                 if tool is None:
                     raise Unreadable(f"line {number_}: G43 without H")
             if "G49" in codes or tool == "H0":
@@ -280,6 +287,9 @@ def interpret(raw, offsets, least_increment=None):
         move.exempt = move.line in text.exempt
         # What such a line does not name stays where it was: where the correction has put it.
         move.named = text.lost.get(move.line) or set("XYZ")
+        # Of a block without such words (a cycle's repetition, say) all axes count.
+        bare = re.sub(r"\([^)]*\)|;.*", "", text.lines[move.line - 1]).upper() if move.line <= len(text.lines) else ""
+        move.own = [axis for axis, letter in enumerate("XYZ") if re.search(letter + r"\s*[-+.\d#\[]", bare)] or [0, 1, 2]
     events, index = [], 0
     for line in sorted(text.events):
         while index < len(canon.moves) and canon.moves[index].line < line:

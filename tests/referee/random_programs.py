@@ -236,7 +236,7 @@ def main():
                 failures = [f"exit status {done.returncode}"]
             else:
                 try:
-                    resolution_um = 0.1 * INCH if program.inch else 1.0
+                    resolution_um = 0.001 * INCH if program.inch else 1.0
                     failures = judge(program.text.encode(), done.stdout, machine, 1.0, resolution_um)["failures"]
                 except (Unreadable, OutsideVolume) as error:
                     failures = [f"{type(error).__name__}: {error}"]

@@ -24,6 +24,10 @@ SLACK_MM = 0.7
 ORDER_WEIGHT = 1e-5
 # Share by which the time of a stretch of feed moves may change, and what a correction may add per move.
 TIME_SHARE, TIME_PER_MOVE_MM = 0.005, 0.02
+# The longest approach to a corrected start.
+APPROACH_MM = 1.0
+# An axis that stands differs by no more between start and end of a move.
+LAST_BITS_MM = 1e-6
 # A cycle goes to its hole at the level above it with the correction of the hole itself; the end of a rapid that
 # another rapid follows may be off by what the machine leans over that height (30 mm at 1 mrad).
 ON_THE_WAY_UM = 30.0
@@ -178,14 +182,14 @@ class Judge:
         c, t = self.command(move, program), self.machine.tool_vector(move.tool)
         return (c[0] + t[0], c[1] + t[1], c[2] + t[2])
 
-    def point_deviation(self, move, asked, written):
-        """How far the tool is from the point asked for; beyond the volume the nearest point's correction is right."""
+    def point_deviation(self, move, asked, written, axes=range(3)):
+        """How far the tool is, along some axes, from the point asked for; beyond the volume the nearest point's correction is right."""
         command = self.command(move, asked)
         shift = tuple(w - a for w, a in zip(written, asked))
         inside = self.machine.clamp(command)
         tool = self.machine.tool_vector(move.tool)
         tip = self.machine.forward(tuple(c + s for c, s in zip(inside, shift)), tool)
-        return distance(tip, tuple(c + t for c, t in zip(inside, tool)))
+        return math.sqrt(sum((tip[k] - inside[k] - tool[k]) ** 2 for k in axes))
 
     def trace(self, moves):
         """Samples of a stretch through the machine: (tool position, way since the last one, move)."""
@@ -198,6 +202,14 @@ class Judge:
             for k in range(1, count + 1):
                 self.samples += 1
                 yield self.tip(move, point(move, k / count)), span / count, move
+
+    def without_approach(self, wanted, taken):
+        """Rapids bring their own axes only: short moves to the start bring the others, before anything is cut."""
+        start = self.nominal(wanted[0], wanted[0].start)
+        away = lambda move: distance(self.tip(move, move.start), start)
+        while len(taken) > 1 and length(taken[0]) < APPROACH_MM and away(taken[1]) < away(taken[0]):
+            taken = taken[1:]
+        return taken
 
     def feed(self, wanted, taken, worst, reached):
         """Compares one stretch: the path both ways."""
@@ -260,14 +272,19 @@ class Judge:
                         rapids.see(distance(one.end, two.end), two.line)
             elif kind == "rapid":
                 for one, two in zip(wanted, taken):
-                    if one.known:
-                        rapids.see(self.point_deviation(one, one.end, two.end), two.line)
-                    else:
+                    if not one.known:
                         skipped += 1
+                        continue
+                    # A positioning block brings its own axes to their place, and leaves the others where they are.
+                    own = range(3) if in_cycle else one.own
+                    rapids.see(self.point_deviation(one, one.end, two.end, own), two.line)
+                    if any(abs(two.end[k] - two.start[k]) > LAST_BITS_MM for k in range(3) if k not in own):
+                        self.failures.append(f"line {two.line}: a rapid moves an axis that the original does not name")
             else:
                 if any(move.tool != wanted[0].tool for move in wanted + taken):
                     self.failures.append(f"line {wanted[0].line}: the tool changes between feed moves")
                 self.feed(wanted, wanted, before, None)
+                taken = self.without_approach(wanted, taken)
                 self.feed(wanted, taken, after, reached)
                 self.check_time(wanted, taken)
         self.check_events(events_in, events_out, moves_in, moves_out, cycle_lines, event_place)
@@ -334,7 +351,7 @@ class Judge:
                 continue
             one, two = moves_in[k - 1], moves_out[m - 1]
             if one.known and not one.exempt and one.line not in cycle_lines:
-                worst.see(self.point_deviation(one, one.end, two.end), line)
+                worst.see(self.point_deviation(one, one.end, two.end, one.own if one.rapid else range(3)), line)
 
 
 def to_segment(a, b, p):

@@ -87,21 +87,31 @@ def correct(text, machine, piece_mm=4.0):
         name = name.replace("dwell ", "G4 P")
         (after if name in AFTER_MOTION else before).setdefault(line, []).append(name)
     lines = {move.line for move in moves} | set(before) | set(after)
+    cycles = {move.line for move in moves if move.rapid} & {move.line for move in moves if not move.rapid}
     lines |= {number for number, line in enumerate(text.splitlines(), 1) if "G43" in line}
-    offset, out = machine.offsets["G54"], ["G21 G17 G90 G54"]
+    offset, out, standing = machine.offsets["G54"], ["G21 G17 G90 G54"], {}
     for line in sorted(lines):
         if "G43" in text.splitlines()[line - 1]:
             out.append("G43 H1")
         out += before.get(line, [])
         for move in (one for one in moves if one.line == line):
-            count = 1
-            if not move.rapid:
-                count = max(1, math.ceil(length(move) / (0.1 if move.arc else piece_mm)))
-            for k in range(1, count + 1):
-                wanted = point(move, k / count)
+            def say(wanted, axes):
+                """Words of some axes for a place, and whether they all stand there."""
                 q = solve(machine, move, wanted) if move.known else wanted
-                words = " ".join(f"{name}{round(v - o, 3) + 0.0:.3f}" for name, v, o in zip(AXES, q, offset))
-                out.append(f"G0 {words}" if move.rapid else f"G1 {words} F{move.feed:.3f}")
+                said = {k: f"{AXES[k]}{round(q[k] - offset[k], 3) + 0.0:.3f}" for k in axes}
+                stands = all(standing.get(k) == word for k, word in said.items())
+                standing.update(said)
+                return " ".join(said.values()), stands
+
+            if move.rapid:
+                out.append(f"G0 {say(move.end, range(3) if line in cycles else move.own)[0]}")
+                continue
+            # Rapids carry their own axes only: the feed brings the correction of the others.
+            approach, stands = say(move.start, range(3))
+            out += [] if stands else [f"G1 {approach} F{move.feed:.3f}"]
+            count = max(1, math.ceil(length(move) / (0.1 if move.arc else piece_mm)))
+            for k in range(1, count + 1):
+                out.append(f"G1 {say(point(move, k / count), range(3))[0]} F{move.feed:.3f}")
         out += after.get(line, [])
     return "\n".join(out) + "\n"
 
@@ -204,7 +214,8 @@ def run():
         for letter, by in (("X", 0.02), ("Y", -0.02), ("Z", 0.02)):
             must_fail(f"line {at}: {letter}{by:+} at the end of a stretch", "(path|corner): ", spoil(lines, at, shift(letter, by)))
     for at in rapids[2:]:
-        must_fail(f"line {at}: a rapid 50 um off", "rapid", spoil(lines, at, shift("X", 0.05)))
+        own = next(letter for letter in AXES if letter in lines[at])
+        must_fail(f"line {at}: a rapid 50 um off", "rapid", spoil(lines, at, shift(own, 0.05)))
         # Cycles repeat rapids to where the tool is already.
         if lines[at] != lines[at - 1]:
             must_fail(f"line {at}: a rapid is missing", "rapid", spoil(lines, at, lambda line: None))

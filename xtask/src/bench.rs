@@ -165,6 +165,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
         start_mm: None,
+        ..Default::default()
     };
     let job = vpost::correct::Job {
         dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,

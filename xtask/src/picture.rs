@@ -86,6 +86,7 @@ pub(crate) fn picture() -> anyhow::Result<String> {
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
         start_mm: None,
+        ..Default::default()
     };
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;
     let model = engine.path_model().context("the profile's engine corrects paths")?;

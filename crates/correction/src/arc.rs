@@ -8,7 +8,7 @@ use crate::centre::{PLACES, Search, in_plane};
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::deviation::{Enclosed, Machine, Pair, Solved, Verdict};
-use crate::play::Tried;
+use crate::play::{Creep, Tried};
 use crate::{Piece, PieceKind};
 
 /// Below this chord, in output steps, rounding decides where an arc's centre lies: lines serve better.
@@ -32,8 +32,9 @@ impl<'m> Corrector<'m> {
         let Tried::Beyond { distance_mm, s } = self.with_play(follow, part, Self::one_arc)? else {
             return Ok(());
         };
+        self.require_named(follow, part, self.limit_mm(follow.block))?;
         if !follow.may_split {
-            return Err(CorrectionError::MustNotSplit { distance_um: distance_mm * 1e3 });
+            return Err(self.not_to_be_split(follow, distance_mm));
         }
         follow.alone = false;
         let step = follow.block.step_mm(u).max(follow.block.step_mm(v));
@@ -59,7 +60,7 @@ impl<'m> Corrector<'m> {
         &mut self,
         follow: &mut Follow<'_, 'm>,
         part: &Curve,
-        hold: [bool; 3],
+        creep: Creep,
     ) -> Result<Tried, CorrectionError> {
         let Curve::Arc { axes: [u, v, _], sweep, .. } = *part else {
             return Ok(Tried::Beyond { distance_mm: f64::INFINITY, s: 0.5 });
@@ -78,8 +79,10 @@ impl<'m> Corrector<'m> {
         let before = self.standing;
         let from: Vector = before.map(|x| x.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
-        if let Some(against) = self.against(before, self.standing, follow.came, direction, follow.block) {
+        let axes = self.go(follow.block, &own_end, &wanted, &follow.wording(creep.held()));
+        if !matches!(creep, Creep::Counted)
+            && let Some(against) = self.against(&follow.machine.state, before, self.standing, follow.block)
+        {
             self.standing = before;
             return Ok(Tried::Against(against));
         }
@@ -116,13 +119,20 @@ impl<'m> Corrector<'m> {
         let mut candidates = search.candidates();
         while let Some(candidate) = candidates.take_best() {
             let Some(curve) = candidate.arc(&search) else { continue };
-            let pair = Pair { wanted: part, commanded: &curve, in_step: follow.in_step };
-            match pair.verdict_by(&follow.machine, sieved.as_ref(), follow.enclosed.as_ref(), limit_mm) {
+            let pair = Pair {
+                wanted: part,
+                commanded: &curve,
+                in_step: follow.whole.in_step,
+                begun: self.begun(follow, part),
+            };
+            let verdict =
+                pair.verdict_by(&follow.machine, sieved.as_ref(), follow.enclosed.as_ref(), limit_mm);
+            match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece { kind, axes, share: follow.share(part) };
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
-                    follow.came = direction;
+                    self.gone_along(&follow.machine.state, &curve);
                     self.note_end(&follow.machine.state, nominal_end, wanted);
                     return Ok(Tried::Done);
                 }

@@ -11,6 +11,10 @@ use crate::Centre;
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::grid::{AxisWord, Block};
 
+/// Output steps below are finer than any arc has to be round, mm.
+const FINE_STEP_MM: f64 = 0.000_9;
+/// The radii of such an arc may differ by as much as two steps of 0.0001 inch make, mm.
+const FINE_ROOM_MM: f64 = 0.005;
 /// Where the corrected path is asked for: a centre is fitted to it there, and what misses it there is not tried.
 pub(crate) const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
@@ -183,8 +187,9 @@ impl Search<'_> {
         let step = scale * block.step_mm(u).max(block.step_mm(v));
         // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
         // words may bring more of their own.
-        let allowed = (2.0 * step + (radius[1] - radius[0]).abs())
-            .min((scale * block.arc_radius_tolerance_mm).max(2.0 * step));
+        let programmed = (radius[1] - radius[0]).abs();
+        let room = if step < FINE_STEP_MM { FINE_ROOM_MM } else { 2.0 * step };
+        let allowed = (room + programmed).min((scale * block.arc_radius_tolerance_mm).max(programmed));
         let fitted = self.fitted();
         let near = self.near(fitted);
         let mut push = |words: Centre, centre: [f64; 2]| {

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use machine_model::{Command, Everywhere, LANES, PathModel, SolveError, Vector};
+use machine_model::{Command, Everywhere, LANES, PathModel, Play, SolveError, Vector};
 use smallvec::SmallVec;
 use toolpath::{Feed, Motion, Partial, Shape};
 
+use crate::approach::Whole;
 use crate::curve::Curve;
 use crate::deviation::{Enclosed, Machine, Solved};
 use crate::grid::{AxisWord, Block};
-use crate::play::{heading, side};
+use crate::play::heading;
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -44,9 +45,43 @@ pub enum CorrectionError {
         /// What one block would miss by, µm.
         distance_um: f64,
     },
+    /// A hole that would be written as more moves than anybody drills.
+    #[error("a hole of {pecks:.0} pecks, which would have to be written as moves")]
+    TooManyPecks {
+        /// Its depth by Q.
+        pecks: f64,
+    },
     /// Lost motion in a turned frame, where every word moves several axes, this way and that by its rounding.
-    #[error("motion in a rotated frame on a machine with lost motion")]
-    TurnedFrame,
+    #[error(
+        "in this rotated frame an axis with lost motion would go back and forth: {distance_um:.2} um off, the tolerance is {tolerance_um} um"
+    )]
+    TurnedFrame {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+    /// What lies across an axis changes when it turns, and that is too much to be hidden.
+    #[error(
+        "where an axis turns its lost motion moves the tool sideways: {distance_um:.2} um off however it is commanded, the tolerance is {tolerance_um} um"
+    )]
+    Sideways {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+    /// An axis that must not get a word would have to have one.
+    #[error(
+        "the tool would be {distance_um:.2} um off without a further word for {}, which the program has not named",
+        toolpath::AXIS_NAMES[*axis]
+    )]
+    Unnamed {
+        /// X, Y or Z by index.
+        axis: usize,
+        /// How far it is from where it should be, µm.
+        distance_um: f64,
+    },
     /// Splitting does not help: a jump of the model, or the shortest piece allowed.
     #[error(
         "the path would be {distance_um:.2} um off however short its pieces; the tolerance is {tolerance_um} um"
@@ -103,8 +138,12 @@ pub struct Corrector<'m> {
     pub(crate) options: Options,
     /// Where the axes really are commanded to be in the output, mm.
     pub(crate) standing: [Option<f64>; 3],
-    /// Direction of each axis' last motion.
+    /// Direction of each axis' last motion: the side of its play for which the next one is computed.
     pub(crate) direction: [i8; 3],
+    /// Where the axes really stand in their play; nothing is known of it where the model has none.
+    pub(crate) play: Play,
+    /// Where the last approach of the motion led.
+    pub(crate) approached: Option<Vector>,
     /// The last end point solved: nominal command, state and answer. The next motion starts there.
     pub(crate) last: Option<(Command, Vector)>,
     /// Places that were solved together, in which state, and their answers.
@@ -117,6 +156,33 @@ pub struct Corrector<'m> {
     pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Arc<Everywhere>>)>,
     /// The largest bounds that any motion so far was told with: before and after, mm.
     pub(crate) told_mm: [f64; 2],
+}
+
+/// Which axes a block of output may have words for, and how.
+pub(crate) struct Wording {
+    /// Those that may have one; the others stay where they stand.
+    may: [bool; 3],
+    /// Those that stay where they stand all the same.
+    hold: [bool; 3],
+    /// The block's own words may stay where they serve.
+    may_keep: bool,
+}
+
+impl Wording {
+    /// New words for axes.
+    pub(crate) fn of(may: [bool; 3]) -> Self {
+        Self { may, hold: [false; 3], may_keep: false }
+    }
+
+    /// The block's own words may stay where they serve.
+    pub(crate) fn keeping(self, may_keep: bool) -> Self {
+        Self { may_keep, ..self }
+    }
+
+    /// Axes that stay where they stand (frames that are shifts only).
+    pub(crate) fn holding(self, hold: [bool; 3]) -> Self {
+        Self { hold, ..self }
+    }
 }
 
 /// How often a rapid's directions are decided anew: each axis turns once where it has play.
@@ -135,6 +201,8 @@ impl<'m> Corrector<'m> {
             options,
             standing: [None; 3],
             direction: [0; 3],
+            play: Play::unknown(),
+            approached: None,
             last: None,
             known: None,
             expanding: false,
@@ -148,6 +216,7 @@ impl<'m> Corrector<'m> {
     #[must_use]
     pub fn standing_at(mut self, start_mm: [f64; 3]) -> Self {
         self.standing = start_mm.map(Some);
+        (0..3).for_each(|axis| self.play.forget(axis, Some(start_mm[axis])));
         self
     }
 
@@ -160,21 +229,28 @@ impl<'m> Corrector<'m> {
             self.expanding = false;
             self.remembered = None;
         }
-        if matches!(motion, Motion::Feed(_) | Motion::Hole(_))
-            && !block.frame.is_axial()
-            && self.model.depends_on_direction()
-        {
-            return Err(CorrectionError::TurnedFrame);
-        }
         match motion {
             Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
             Motion::Feed(feed) => self.heed(block, feed.end.rotary_deg),
             Motion::Hole(hole) => self.heed(block, hole.at_r.rotary_deg),
             Motion::Uncorrected { .. } => {}
         }
-        let corrected = self.correct_in_state(motion, block)?;
+        self.approached = None;
+        let corrected = self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))?;
         self.tell(&corrected.correction);
         Ok(corrected)
+    }
+
+    /// What is not to be had in a turned frame on a machine with lost motion is so for that.
+    fn as_turned(&self, error: CorrectionError, block: &Block) -> CorrectionError {
+        match error {
+            CorrectionError::NotWithinTolerance { distance_um, tolerance_um }
+                if !block.frame.is_axial() && self.model.depends_on_direction() =>
+            {
+                CorrectionError::TurnedFrame { distance_um, tolerance_um }
+            }
+            other => other,
+        }
     }
 
     pub(crate) fn tell(&mut self, correction: &Correction) {
@@ -196,8 +272,9 @@ impl<'m> Corrector<'m> {
         match motion {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
             Motion::Feed(feed) => {
+                let before_mm = self.unknown_side_mm(block, &feed.start);
                 let mut corrected = self.feed(feed, block)?;
-                corrected.correction.unknown_side_mm = self.unknown_side_mm(block, &feed.end);
+                corrected.correction.unknown_side_mm = before_mm.max(self.unknown_side_mm(block, &feed.end));
                 Ok(corrected)
             }
             Motion::Hole(hole) => {
@@ -212,6 +289,7 @@ impl<'m> Corrector<'m> {
                     {
                         self.standing[axis] = end.linear_mm[axis];
                         self.direction[axis] = 0;
+                        self.play.forget(axis, end.linear_mm[axis]);
                     }
                 }
                 self.last = None;
@@ -251,27 +329,6 @@ impl<'m> Corrector<'m> {
     /// An axis with play whose last direction nobody knows.
     pub(crate) fn is_side_unknown(&self) -> bool {
         self.direction.contains(&0) && self.model.depends_on_direction()
-    }
-
-    /// By how much the tool may be off at the end of a motion, mm, for axes that stand on an unknown side of their play.
-    ///
-    /// Such an axis takes the middle of its play: the error of either side is half of their difference away.
-    fn unknown_side_mm(&self, block: &Block, end: &toolpath::Position) -> f64 {
-        if !self.is_side_unknown() {
-            return 0.0;
-        }
-        let state = Command { linear_mm: end.linear_mm.into(), ..self.state(block, end.rotary_deg) };
-        let unknown = (0..3).filter(|axis| self.direction[*axis] == 0);
-        unknown
-            .map(|axis| {
-                let [up, down] = [1, -1].map(|side| {
-                    let mut state = state;
-                    state.direction[axis] = side;
-                    self.model.error_mm(&state)
-                });
-                0.5 * (up - down).norm()
-            })
-            .sum()
     }
 
     /// What [`Self::solve`] answers, where it was found before.
@@ -344,21 +401,34 @@ impl<'m> Corrector<'m> {
             if start.linear_mm[i].is_none() && end.linear_mm[i].is_some() {
                 // From wherever, as after a block that may have been skipped: nothing of the axis holds any more.
                 (self.standing[i], self.direction[i]) = (None, 0);
+                self.play.forget(i, None);
             }
         }
         let Some(nominal) = end.complete() else {
             // Some axis is not known yet, so the error is not: the words stay, and the first motion
             // whose end is known in all axes brings the correction.
-            let known = |i: usize| self.standing[i].zip(end.linear_mm[i]).unwrap_or((0.0, 0.0));
+            let stood = self.standing;
+            for i in 0..3 {
+                // An axis that the block does not name stays where the output has brought it; in a turned frame every word
+                // moves several axes.
+                let moves = block.has_axis(i) || !block.frame.is_shift();
+                if moves || end.linear_mm[i].is_none() || stood[i].is_none() {
+                    let step = end.linear_mm[i].zip(start.linear_mm[i]).map(|(end, start)| end - start);
+                    self.standing[i] = match (block.incremental, stood[i], step) {
+                        (true, Some(stood), Some(step)) => Some(stood + step),
+                        _ => end.linear_mm[i],
+                    };
+                }
+            }
+            let known = |i: usize| stood[i].zip(self.standing[i]).unwrap_or((0.0, 0.0));
             let [x, y, z] = [known(0), known(1), known(2)];
             self.turn_towards(&Vector::new(x.0, y.0, z.0), &Vector::new(x.1, y.1, z.1));
-            self.standing = end.linear_mm;
+            self.gone(&self.state(block, end.rotary_deg));
             self.last = None;
             return Ok(Corrected { pieces: SmallVec::new(), correction });
         };
         let end_mm = Vector::from(nominal.linear_mm);
         let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
-        let came = self.direction;
         self.turn_towards(&from, &end_mm);
         let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
         let before = self.standing;
@@ -372,9 +442,11 @@ impl<'m> Corrector<'m> {
                 }
                 other => other?,
             };
-            let axes = self.go(block, &own_end, &wanted, true);
+            // Positioning moves what the block names and nothing else: the other axes take their correction from the
+            // next feed.
+            let axes = self.go(block, &own_end, &wanted, &Wording::of(block.own_axes()).keeping(true));
             // An axis comes from where the output sends it, and where it does not from where it came before.
-            let Some(against) = self.against(before, self.standing, came, self.direction, block) else {
+            let Some(against) = self.against(&state, before, self.standing, block) else {
                 break (state, wanted, axes);
             };
             self.turn(against);
@@ -384,9 +456,8 @@ impl<'m> Corrector<'m> {
             }
             self.standing = before;
         };
-        if !block.frame.is_axial() {
-            self.turn_as_moved(before);
-        }
+        self.gone(&state);
+        self.settle(&state, block);
         correction.largest_mm = (wanted - end_mm).norm();
         // The nearest point's correction is no answer for a feed motion that starts here.
         self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..state }, wanted));
@@ -394,26 +465,12 @@ impl<'m> Corrector<'m> {
     }
 
     /// Chooses the words that bring the axes to `wanted` and takes note of where they then stand.
-    ///
-    /// `may_keep`: the block's own words may stay where they serve.
     pub(crate) fn go(
         &mut self,
         block: &Block,
         nominal: &Vector,
         wanted: &Vector,
-        may_keep: bool,
-    ) -> [AxisWord; 3] {
-        self.go_holding(block, nominal, wanted, may_keep, [false; 3])
-    }
-
-    /// The same; the axes marked in `hold` stay where they stand (frames that are shifts only).
-    pub(crate) fn go_holding(
-        &mut self,
-        block: &Block,
-        nominal: &Vector,
-        wanted: &Vector,
-        may_keep: bool,
-        hold: [bool; 3],
+        wording: &Wording,
     ) -> [AxisWord; 3] {
         let standing = self.standing_program(block);
         let wanted = block.program(wanted);
@@ -421,19 +478,15 @@ impl<'m> Corrector<'m> {
         let mut words = [AxisWord::Omit; 3];
         let mut reached = [0.0; 3];
         for i in 0..3 {
-            if let (true, Some(stands)) = (hold[i], standing[i]) {
-                (words[i], reached[i]) = if block.has_axis(i) && may_keep {
-                    block.write(i, stands, standing[i])
-                } else {
-                    (AxisWord::Omit, stands)
-                };
-                continue;
-            }
-            let own = block.has_axis(i) && may_keep;
-            // Under G91 the block's own word adds to where the output stands, not to where the program
-            // believes to be: the caller gives the nominal end relative to that.
-            let programmed = own.then_some(nominal[i]);
-            (words[i], reached[i]) = block.choose(i, wanted[i], programmed, standing[i]);
+            let own = block.has_axis(i) && wording.may_keep;
+            (words[i], reached[i]) = match standing[i] {
+                _ if !wording.may[i] => (AxisWord::Omit, standing[i].unwrap_or(nominal[i])),
+                Some(stands) if wording.hold[i] && own => block.write(i, stands, standing[i]),
+                Some(stands) if wording.hold[i] => (AxisWord::Omit, stands),
+                // Under G91 the block's own word adds to where the output stands, not to where the program
+                // believes to be: the caller gives the nominal end relative to that.
+                _ => block.choose(i, wanted[i], own.then_some(nominal[i]), standing[i]),
+            };
         }
         block.complete(&mut words, &mut reached, standing);
         self.standing = Into::<[f64; 3]>::into(block.machine(reached)).map(Some);
@@ -456,6 +509,7 @@ impl<'m> Corrector<'m> {
     pub fn continues_as(&self, other: &Self) -> bool {
         self.standing == other.standing
             && self.direction == other.direction
+            && self.play == other.play
             && self.last == other.last
             && self.expanding == other.expanding
             && self.remembered == other.remembered
@@ -482,23 +536,25 @@ impl<'m> Corrector<'m> {
         }
         let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
+        let motion = Whole {
+            start: whole.at(0.0),
+            length_mm: whole.length_mm(),
+            in_step: feed.start.rotary_deg != feed.end.rotary_deg,
+        };
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
         let (mut own_words, mut at_quarters_mm) = (true, None);
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
-            let mut came = self.direction;
             self.turn_towards(&part.at(0.0), &part.at(1.0));
             let mut machine = self.machine(block, feed.end.rotary_deg);
-            self.approach(&mut machine, &part, block, &mut came, &mut corrected)?;
+            self.approach(&mut machine, &part, block, &motion, &mut corrected)?;
             let mut follow = Follow {
                 machine,
-                came,
                 block,
                 alone: alone && corrected.pieces.is_empty(),
-                may_split: feed.may_split,
-                in_step: feed.start.rotary_deg != feed.end.rotary_deg,
-                length_mm: whole.length_mm(),
+                may_split: feed.may_split && self.guessed_own(block).is_none(),
+                whole: motion,
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
                 solved: None,
                 enclosed: None,
@@ -517,10 +573,12 @@ impl<'m> Corrector<'m> {
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
             own_words &= follow.alone;
+            let state = follow.machine.state;
+            self.settle(&state, block);
         }
         if corrected.pieces.is_empty() && !own_words {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
-            corrected.pieces.push(self.standstill(block));
+            corrected.pieces.push(self.standstill(block)?);
         }
         let (rotary_deg, largest_mm) = (feed.end.rotary_deg, corrected.correction.largest_mm);
         corrected.correction.before_mm = match at_quarters_mm {
@@ -530,110 +588,107 @@ impl<'m> Corrector<'m> {
         Ok(corrected)
     }
 
-    /// A line to where the axes stand, with a word for each axis that the block names, or for the first.
-    fn standstill(&self, block: &Block) -> Piece {
+    /// A line to where the axes stand, with a word for each axis that the block names, or for the first that may have one.
+    fn standstill(&self, block: &Block) -> Result<Piece, CorrectionError> {
         let standing = self.standing_program(block);
-        let named = |i: usize| block.has_axis(i) || (i == 0 && !(0..3).any(|axis| block.has_axis(axis)));
+        let mut named = block.own_axes();
+        if named == [false; 3] {
+            let Some(first) = block.named.iter().position(|named| *named) else {
+                return Err(CorrectionError::Unnamed { axis: 0, distance_um: 0.0 });
+            };
+            named[first] = true;
+        }
         let axes = [0, 1, 2].map(|i| match standing[i] {
-            Some(mm) if named(i) => block.write(i, mm, standing[i]).0,
+            Some(mm) if named[i] => block.write(i, mm, standing[i]).0,
             _ => AxisWord::Omit,
         });
-        Piece { kind: PieceKind::Line, axes, share: 1.0 }
+        Ok(Piece { kind: PieceKind::Line, axes, share: 1.0 })
     }
 
     /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every
     /// axis one way only.
     fn monotone_parts(&self, whole: &Curve) -> SmallVec<[(f64, f64); 2]> {
         let mut parts = SmallVec::new();
-        if let (Curve::Arc { angle, sweep, .. }, true) = (whole, self.model.depends_on_direction()) {
-            let quarter = std::f64::consts::FRAC_PI_2;
-            let (from, to) = (angle / quarter, (angle + sweep) / quarter);
-            let (low, high) = (from.min(to), from.max(to));
-            let mut cuts: SmallVec<[f64; 8]> = SmallVec::new();
-            let mut k = low.ceil();
-            while k <= high {
-                let s = (k - from) / (to - from);
-                // A quadrant nearer to an end than 1e-9 of the sweep is that end.
-                if s > 1e-9 && s < 1.0 - 1e-9 {
-                    cuts.push(s);
-                }
-                k += 1.0;
-            }
-            if to < from {
-                cuts.reverse();
-            }
-            let mut s0 = 0.0;
-            for s1 in cuts.into_iter().chain([1.0]) {
+        let mut s0 = 0.0;
+        if self.model.depends_on_direction() {
+            // A quadrant nearer to an end than 1e-9 of the sweep is that end.
+            for s1 in whole.turns().into_iter().filter(|s| (1e-9..=1.0 - 1e-9).contains(s)) {
                 parts.push((s0, s1));
                 s0 = s1;
             }
-        } else {
-            parts.push((0.0, 1.0));
         }
+        parts.push((s0, 1.0));
         parts
     }
 
-    /// Brings the axes to the corrected start where they do not stand there: after a reversal of an
-    /// axis with lost motion, after motion that is never corrected, after a change of tool length.
-    ///
-    /// `came`: the sides of their play on which the axes are, by the direction that leads there.
-    pub(crate) fn approach(
-        &mut self,
-        machine: &mut Machine<'_>,
-        part: &Curve,
-        block: &Block,
-        came: &mut [i8; 3],
-        corrected: &mut Corrected,
-    ) -> Result<(), CorrectionError> {
-        let start = part.at(0.0);
-        let mut wanted = self.solve(&machine.state, start)?;
-        if let Some(first) = self.first_moves(&wanted, machine.state.direction, block) {
-            self.direction = first;
-            machine.state.direction = first;
-            wanted = self.solve(&machine.state, start)?;
-        }
-        if let Some(turned) = self.approachable(&mut wanted, machine.state.direction, block) {
-            let mut state = machine.state;
-            for (direction, new) in state.direction.iter_mut().zip(turned) {
-                *direction = if new == 0 { *direction } else { new };
-            }
-            let mut from_behind = self.solve(&state, start)?;
-            // The axes that need not turn do not creep back meanwhile.
-            let _ = self.approachable(&mut from_behind, state.direction, block);
-            self.approach_to(from_behind, start, block, came, corrected);
-            // Nor do they behind that, from where it has brought them.
-            let _ = self.approachable(&mut wanted, machine.state.direction, block);
-        }
-        self.approach_to(wanted, start, block, came, corrected);
-        Ok(())
-    }
-
-    /// A line to a corrected start, where the axes do not stand there.
-    fn approach_to(
-        &mut self,
-        wanted: Vector,
+    /// The corrected start, as far as axes lead there that the program has named before.
+    pub(crate) fn start_within_reach(
+        &self,
+        machine: &Machine<'_>,
         start: Vector,
         block: &Block,
-        came: &mut [i8; 3],
-        corrected: &mut Corrected,
-    ) {
+    ) -> Result<Vector, CorrectionError> {
+        let mut wanted = self.solve(&machine.state, start)?;
+        self.leave(&mut wanted, block, block.named);
+        Ok(wanted)
+    }
+
+    /// Leaves the axes that must not have a word where they stand.
+    pub(crate) fn leave(&self, wanted: &mut Vector, block: &Block, may: [bool; 3]) {
+        if may == [true; 3] {
+            return;
+        }
         let standing = self.standing_program(block);
-        let to = block.program(&wanted);
-        // Standing within rounding of the corrected start is standing there; the last block chose so.
-        let away = (0..3).any(|i| standing[i].is_none_or(|v| (v - to[i]).abs() > 0.51 * block.step_mm(i)));
-        corrected.correction.largest_mm = corrected.correction.largest_mm.max((wanted - start).norm());
-        if away {
-            let before = self.standing;
-            let axes = self.go(block, &start, &wanted, false);
-            for (i, came) in came.iter_mut().enumerate() {
-                if let (Some(from), Some(to)) = (before[i], self.standing[i]) {
-                    *came = side(from, to, *came);
-                }
+        let mut program = block.program(wanted);
+        for i in (0..3).filter(|i| !may[*i]) {
+            program[i] = standing[i].unwrap_or(program[i]);
+        }
+        *wanted = block.machine(program);
+    }
+
+    /// The axis that is furthest from where it should be at the end of a part, of those that must not have a word, or at its
+    /// start, of those that must not have had one before it; mm.
+    fn furthest_unnamed(&self, follow: &Follow<'_, '_>, part: &Curve) -> Option<(usize, f64)> {
+        let block = follow.block;
+        if block.named == [true; 3] {
+            return None;
+        }
+        let standing = self.standing_program(block);
+        let ends = [(0.0, block.named), (1.0, block.may_have_words())];
+        let off = ends.into_iter().filter_map(|(s, may)| {
+            let wanted = block.program(&self.solve(&follow.machine.state, part.at(s)).ok()?);
+            let off = |i: usize| (wanted[i] - standing[i].unwrap_or(wanted[i])).abs();
+            (0..3).filter(|i| !may[*i]).map(|i| (i, off(i))).max_by(|a, b| a.1.total_cmp(&b.1))
+        });
+        off.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// An axis that the block names first: where on its way it is at a place in between, no block has said.
+    fn guessed_own(&self, block: &Block) -> Option<usize> {
+        (0..3).find(|axis| !block.incremental && block.has_axis(*axis) && !block.named[*axis])
+    }
+
+    /// Why a part that is off its path must not be split.
+    pub(crate) fn not_to_be_split(&self, follow: &Follow<'_, '_>, distance_mm: f64) -> CorrectionError {
+        let distance_um = distance_mm * 1e3;
+        match self.guessed_own(follow.block) {
+            Some(axis) => CorrectionError::Unnamed { axis, distance_um },
+            None => CorrectionError::MustNotSplit { distance_um },
+        }
+    }
+
+    /// Refuses a part where what keeps it off its path by more than `least_mm` is an axis that must not have a word.
+    pub(crate) fn require_named(
+        &self,
+        follow: &Follow<'_, '_>,
+        part: &Curve,
+        least_mm: f64,
+    ) -> Result<(), CorrectionError> {
+        match self.furthest_unnamed(follow, part) {
+            Some((axis, mm)) if mm > least_mm => {
+                Err(CorrectionError::Unnamed { axis, distance_um: mm * 1e3 })
             }
-            if axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing {
-                corrected.pieces.push(Piece { kind: PieceKind::Line, axes, share: 0.0 });
-                corrected.correction.approach = true;
-            }
+            _ => Ok(()),
         }
     }
 
@@ -645,16 +700,12 @@ impl<'m> Corrector<'m> {
 /// What following a curve needs besides the corrector.
 pub(crate) struct Follow<'a, 'm> {
     pub(crate) machine: Machine<'m>,
-    /// The sides of their play on which the axes are, by the direction that leads there.
-    pub(crate) came: [i8; 3],
     pub(crate) block: &'a Block,
     /// The part is the whole motion, and nothing was put before it: the block's own words may stay.
     pub(crate) alone: bool,
     pub(crate) may_split: bool,
-    /// Rotary axes turn on the way.
-    pub(crate) in_step: bool,
-    /// Length of the whole motion, mm: shares are parts of it.
-    pub(crate) length_mm: f64,
+    /// The whole motion: shares are parts of its length.
+    pub(crate) whole: Whole,
     /// Nominal end minus nominal start of the whole motion, mm.
     pub(crate) nominal_step: Vector,
     /// What is known of the part that an arc is tried for next.
@@ -674,8 +725,13 @@ impl Follow<'_, '_> {
         if self.block.incremental { standing + self.nominal_step } else { part.at(1.0) }
     }
 
+    /// The words of a piece: the block's own may stay where it stands for the block.
+    pub(crate) fn wording(&self, hold: [bool; 3]) -> Wording {
+        Wording::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
+    }
+
     pub(crate) fn share(&self, part: &Curve) -> f64 {
-        if self.length_mm > 0.0 { part.length_mm() / self.length_mm } else { 1.0 }
+        if self.whole.length_mm > 0.0 { part.length_mm() / self.whole.length_mm } else { 1.0 }
     }
 }
 

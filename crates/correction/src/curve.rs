@@ -3,11 +3,21 @@
 use std::f64::consts::TAU;
 
 use machine_model::{Range, Vector, Volume};
+use smallvec::SmallVec;
 use toolpath::Shape;
 use units::math::{atan2, sin_cos};
 
-/// Commands nearer than this are one place: far below every output step, far above rounding of `f64`.
-pub(crate) const SAME_PLACE_MM: f64 = 1e-9;
+pub(crate) use machine_model::SAME_PLACE_MM;
+
+/// What a spiral turns and bends more than the circle it is near: a tangent that leans by k = r'/r turns by `1 + k²/(1 + k²)` per
+/// radian, and the curvature times r is at most `1 + k²/2`.
+const SPIRAL: f64 = 1.01;
+
+/// So often the angle by which a spiral's tangent leans is worked out anew: each time what is left is its square, of 0.1 at most.
+const LEANS: u32 = 5;
+
+/// The largest k for which both hold.
+const STEEPEST: f64 = 0.1;
 
 /// A line, or an arc whose radius and normal axis run linearly with the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,21 +250,89 @@ impl Curve {
         }
     }
 
-    /// How far the tangent turns in all, rad (an upper bound).
+    /// How far the tangent turns in all, rad: an upper bound but for a steep spiral.
     pub fn turning_rad(&self) -> f64 {
         match self {
             Self::Line(..) => 0.0,
-            // A spiral's tangent leans by (dr/ds)/r, which changes by less than its square per radian.
-            Self::Arc { sweep, .. } => sweep.abs() * 1.01,
+            Self::Arc { sweep, .. } => sweep.abs() * SPIRAL,
         }
     }
 
-    /// Largest radius of curvature's inverse, 1/mm; zero for a line.
+    /// Largest radius of curvature's inverse, 1/mm; zero for a line. An upper bound but for a
+    /// steep spiral.
     pub fn curvature(&self) -> f64 {
         match self {
             Self::Line(..) => 0.0,
-            Self::Arc { radius, .. } => 1.01 / radius[0].min(radius[1]).max(1e-9),
+            Self::Arc { radius, .. } => SPIRAL / radius[0].min(radius[1]).max(1e-9),
         }
+    }
+
+    /// True where an arc's radius grows by more than [`STEEPEST`] of itself per radian: its tangent and its curvature are not
+    /// those of a circle.
+    pub(crate) fn is_steep_spiral(&self) -> bool {
+        match self {
+            Self::Line(..) => false,
+            Self::Arc { sweep, radius, .. } => {
+                (radius[1] - radius[0]).abs() > STEEPEST * sweep.abs() * radius[0].min(radius[1])
+            }
+        }
+    }
+
+    /// Where, of the motion, an axis turns, in order. Of a [steep spiral](Self::is_steep_spiral) not all such places.
+    pub(crate) fn turns(&self) -> SmallVec<[f64; 4]> {
+        let Self::Arc { angle, sweep, radius, .. } = self else { return SmallVec::new() };
+        if *sweep == 0.0 {
+            return SmallVec::new();
+        }
+        let quarter = TAU / 4.0;
+        // A circle's axes turn at its quadrants, a spiral's where the tangent leans to: by atan(r'/r) further.
+        let growth = (radius[1] - radius[0]) / sweep;
+        let ahead = |at: f64| {
+            let mut lean = 0.0;
+            for _ in 0..LEANS {
+                let radius = radius[0] + (at + lean - angle) * growth;
+                lean = atan2(growth, radius.max(SAME_PLACE_MM));
+            }
+            lean
+        };
+        let (low, high) = (angle.min(angle + sweep), angle.max(angle + sweep));
+        let mut turns: SmallVec<[f64; 4]> = SmallVec::new();
+        let mut k = (low / quarter).floor() - 1.0;
+        while k <= high / quarter + 1.0 {
+            let s = (k * quarter + ahead(k * quarter) - angle) / sweep;
+            if s > 0.0 && s < 1.0 {
+                turns.push(s);
+            }
+            k += 1.0;
+        }
+        if *sweep < 0.0 {
+            turns.reverse();
+        }
+        turns
+    }
+
+    /// The most that an axis goes back against a direction, wherever on the way, mm; 0 for no direction.
+    pub(crate) fn goes_back_mm(&self, direction: [i8; 3]) -> [f64; 3] {
+        let mut places: SmallVec<[Vector; 6]> = SmallVec::from_slice(&[self.at(0.0)]);
+        places.extend(self.turns().into_iter().map(|s| self.at(s)));
+        places.push(self.at(1.0));
+        let steep = self.is_steep_spiral().then(|| self.extent(0.0, 1.0));
+        std::array::from_fn(|axis| {
+            let heading = f64::from(direction[axis]);
+            let (mut furthest, mut back) = (f64::NEG_INFINITY, 0.0_f64);
+            for place in &places {
+                let along = place[axis] * heading;
+                furthest = furthest.max(along);
+                back = back.max(furthest - along);
+            }
+            match &steep {
+                // Nothing is known but the box.
+                Some(extent) if heading != 0.0 && extent.acceleration[axis] > 0.0 => {
+                    extent.range[axis].high - extent.range[axis].low
+                }
+                _ => back,
+            }
+        })
     }
 
     /// Box of the part from s0 to s1, and upper bounds of first and second derivative per axis on it,
@@ -369,11 +447,16 @@ impl Curve {
                 Self::Arc { angle: a0, sweep: w, radius: r, axes, .. },
                 Self::Arc { angle: b0, sweep: v, radius: q, axes: other_axes, .. },
             ) if axes == other_axes => {
-                // r e(θ)·w² against q e(φ)·v², plus the radial growth terms.
-                let apart = wrapped((a0 - b0).abs()).max(wrapped((a0 + w - b0 - v).abs()));
+                // r e(θ)·w² against q e(φ)·v², plus the radial growth terms. Each radius is up to its spread below its largest.
+                let apart = if (w - v).abs() < TAU / 2.0 {
+                    wrapped((a0 - b0).abs()).max(wrapped((a0 + w - b0 - v).abs()))
+                } else {
+                    // Once around each other they are as far apart as unit vectors can be.
+                    2.0
+                };
                 let (rm, qm) = (r[0].max(r[1]), q[0].max(q[1]));
                 let spread = (r[1] - r[0]).abs().max((q[1] - q[0]).abs());
-                let size = (rm * w * w - qm * v * v).abs() + spread * w * w;
+                let size = (rm * w * w - qm * v * v).abs() + spread * (w * w).max(v * v);
                 h2 / 8.0
                     * (size
                         + rm * w * w * apart

@@ -39,7 +39,7 @@ impl Machine<'_> {
     }
 
     /// Upper bound of how far the error leaves its chord on a stretch, mm.
-    fn leaves_chord_mm(&self, extent: &Extent, passes: u8) -> f64 {
+    pub(crate) fn leaves_chord_mm(&self, extent: &Extent, passes: u8) -> f64 {
         self.model.chord_bound_mm(&Move {
             range_mm: extent.range,
             speed_mm: extent.speed,
@@ -59,6 +59,17 @@ impl Machine<'_> {
     }
 }
 
+/// Whether the programmed path's start has been come to before.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Begun {
+    /// This motion has to come to it.
+    No,
+    /// The tool was there; where it now stands further on along the path, it is early and not off.
+    Reached,
+    /// It lies inside a smooth motion: there the tool may be late too.
+    Inside,
+}
+
 /// A motion as programmed and a motion that shall stand for it.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<'c> {
@@ -69,7 +80,15 @@ pub(crate) struct Pair<'c> {
     /// Rotary axes turn on the way: the tip's path is not this curve but turns with the workpiece, so being
     /// early or late counts in full.
     pub(crate) in_step: bool,
+    pub(crate) begun: Begun,
 }
+
+/// A stretch that turns by less than half a turn passes a place of an axis twice at most: so much is asked about at once, rad.
+const MOST_TURN_RAD: f64 = 3.0;
+
+/// Of the radius of the programmed path, what the tool may be away from it for (P2) to look along the tangent: what that leaves out is of
+/// third order, `d·t²/2r²`, a hundredth of the difference at most.
+const MOST_OF_RADIUS: f64 = 0.1;
 
 /// Result of comparing two motions on the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,15 +231,29 @@ impl Pair<'_> {
         self.place_of(s, commanded - wanted + machine.error(commanded), tangent)
     }
 
+    /// Being early or late by so many mm is no deviation: (P2) looks along a tangent, which says nothing of the path where that turns
+    /// with the workpiece, is a steep spiral, or bends away over the difference itself.
+    fn may_be_late(&self, by_mm: f64) -> bool {
+        !self.in_step && !self.wanted.is_steep_spiral() && by_mm * self.wanted.curvature() <= MOST_OF_RADIUS
+    }
+
     /// The place at s where real and programmed tip differ so, seen along a tangent.
     fn place_of(&self, s: f64, difference: Vector, tangent: Vector) -> Place {
-        let tangent = if self.in_step { Vector::zeros() } else { tangent };
+        let size = difference.norm();
+        let tangent = if self.may_be_late(size) { tangent } else { Vector::zeros() };
         let along = difference.dot(&tangent);
         let square = (difference - tangent * along).norm();
         // An end has to be reached, not only its neighbourhood: there all of the difference counts.
-        let size = difference.norm();
-        let distance =
-            if s <= 0.0 || s >= 1.0 { size } else { square + 0.5 * along * along * self.wanted.curvature() };
+        let to_be_reached = match self.begun {
+            Begun::No => s <= 0.0,
+            Begun::Reached => s <= 0.0 && along < 0.0,
+            Begun::Inside => false,
+        };
+        let distance = if to_be_reached || s >= 1.0 {
+            size
+        } else {
+            square + 0.5 * along * along * self.wanted.curvature()
+        };
         Place { s, difference, size, square, distance }
     }
 
@@ -235,6 +268,7 @@ impl Pair<'_> {
         if let Some(everywhere) = &machine.everywhere
             && let Some((speed_mm, acceleration_mm)) = self.commanded.fastest(a.s, b.s)
             && self.commanded.lies_inside(&everywhere.volume)
+            && !self.commanded.is_steep_spiral()
         {
             let cheap = self.between(a, b, everywhere.chord_bound_of_curve_mm(speed_mm, acceleration_mm));
             if cheap <= machine.told_mm {
@@ -242,8 +276,31 @@ impl Pair<'_> {
             }
         }
         let extent = self.commanded.extent(a.s, b.s);
-        let passes = if matches!(self.commanded, Curve::Arc { .. }) { 2 } else { 1 };
-        self.between(a, b, machine.leaves_chord_mm(&extent, passes))
+        self.between(a, b, machine.leaves_chord_mm(&extent, self.passes()))
+    }
+
+    /// How often the commanded motion passes a place of an axis while it turns by less than half a turn.
+    fn passes(&self) -> u8 {
+        match self.commanded {
+            Curve::Line(..) => 1,
+            // A spiral that grows fast may turn twice within less.
+            Curve::Arc { .. } if self.commanded.is_steep_spiral() => 3,
+            Curve::Arc { .. } => 2,
+        }
+    }
+
+    /// Real tip less programmed tip at both ends, mm.
+    pub(crate) fn differences(&self, machine: &Machine<'_>) -> [Vector; 2] {
+        [0.0, 1.0].map(|s| self.place(machine, s).difference)
+    }
+
+    /// Upper bound of how far that leaves its chord from the start to s, mm.
+    pub(crate) fn leaves_chord_mm(&self, machine: &Machine<'_>, s: f64) -> f64 {
+        if self.commanded.turning_rad() * s > MOST_TURN_RAD {
+            return f64::INFINITY;
+        }
+        let of_model = machine.leaves_chord_mm(&self.commanded.extent(0.0, s), self.passes());
+        of_model + self.commanded.difference_bound(self.wanted, 0.0, s)
     }
 
     /// Equation (P4), the error leaving its chord by at most `error_mm`.
@@ -263,6 +320,9 @@ impl Pair<'_> {
         let largest = a.size.max(b.size);
         let turned = turning * (4.0 * turning * largest + 2.0 * (b.difference - a.difference).norm()) / 8.0;
         let along = largest + leaves_chord;
+        if !self.may_be_late(along) {
+            return along;
+        }
         let between =
             a.square.max(b.square) + leaves_chord + turned + 0.5 * along * along * self.wanted.curvature();
         between.max(a.distance).max(b.distance)
@@ -324,7 +384,8 @@ impl Pair<'_> {
             unsure = unsure.max(own);
         }
         // More than one turn is not for four places.
-        if self.commanded.turning_rad() * STRETCH > 1.6 || !self.commanded.lies_inside(&everywhere.volume) {
+        let turns = self.commanded.turning_rad() * STRETCH > 1.6 || self.commanded.is_steep_spiral();
+        if turns || !self.commanded.lies_inside(&everywhere.volume) {
             return ByCommands::Open;
         }
         // Of a stretch that runs through all of the motion's box: it holds for those that run through a part of it.
@@ -396,7 +457,11 @@ impl Pair<'_> {
         let more = (PLACES_PER_TURN * turning / std::f64::consts::TAU).min(MOST_PLACES_OF_TURNS);
         let most_places = MOST_PLACES + more as usize;
         let bound = |a: &Place, b: &Place| {
-            if turning * (b.s - a.s) > 3.0 { f64::INFINITY } else { self.bound(machine, a, b, limit_mm) }
+            if turning * (b.s - a.s) > MOST_TURN_RAD {
+                f64::INFINITY
+            } else {
+                self.bound(machine, a, b, limit_mm)
+            }
         };
         let whole = bound(&first, &last);
         if whole <= limit_mm {
@@ -535,7 +600,7 @@ mod tests {
             let commanded = Curve::from_centre(from, to, axes, centre, sweep < 0.0);
             let Curve::Arc { sweep: turned, .. } = commanded else { panic!() };
             prop_assume!((turned - sweep).abs() < 0.1);
-            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false };
+            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false, begun: Begun::No };
             let limit_mm = limit_um * 1e-3;
             let told = |enclosed: Option<&Enclosed>| match pair.by_commands(&machine, &solved, enclosed, limit_mm) {
                 ByCommands::Within(bound) => {
@@ -590,7 +655,7 @@ mod tests {
             let commanded = Curve::Line(
                 start + Vector::new(rounded[0], rounded[1], rounded[2]), last + Vector::new(rounded[3], rounded[4], rounded[5]),
             );
-            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false };
+            let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false, begun: Begun::No };
             let bound = pair.line_by_commands(&machine, &[start, middle, last]).unwrap();
             let found = furthest(&pair, &machine, 257);
             prop_assert!(found <= bound + 1e-12, "{found} > {bound}");

@@ -59,6 +59,9 @@ pub struct Block {
     /// Axes that stand in the words of a block together or not at all: the frame was just turned, scaled or mirrored,
     /// and controls differ in where a left-out axis then stands.
     pub whole: [bool; 3],
+    /// Axes that the program has named in the frame in force before this block: a word for one of them moves it by the
+    /// correction and nothing else. None is ever added for another axis.
+    pub named: [bool; 3],
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
     /// The dialect writes arcs by centre words; else by R.
@@ -98,9 +101,18 @@ impl Block {
         if self.unit_mm == 1.0 { STEPS[decimals] } else { self.unit_mm / POWERS_OF_TEN[decimals] }
     }
 
-    /// What an output step of a program axis moves its machine axis by, mm (axial frames).
+    /// What an output step moves a machine axis by, mm: of its own word, or in a turned frame of any.
     pub fn axis_step_mm(&self, axis: usize) -> f64 {
-        self.frame.matrix()[axis][axis].abs() * self.step_mm(axis)
+        if self.frame.is_axial() {
+            self.frame.matrix()[axis][axis].abs() * self.step_mm(axis)
+        } else {
+            self.largest_step_mm()
+        }
+    }
+
+    /// The most that an output step of any word moves an axis by, mm.
+    pub(crate) fn largest_step_mm(&self) -> f64 {
+        self.frame.largest_scale() * (0..3).map(|axis| self.step_mm(axis)).fold(0.0, f64::max)
     }
 
     /// Length of the vector of half output steps, mm: the rounding that the path promise allows.
@@ -205,6 +217,18 @@ impl Block {
     #[inline]
     pub fn has_axis(&self, axis: usize) -> bool {
         self.letters.contains(AXES[axis])
+    }
+
+    /// Axes that the block itself has words for.
+    #[must_use]
+    pub fn own_axes(&self) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.has_axis(axis))
+    }
+
+    /// Axes that may have a word in what stands for a feed block: its own, and those that the program has named.
+    #[must_use]
+    pub fn may_have_words(&self) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.named[axis] || self.has_axis(axis))
     }
 
     /// Program coordinates of an axis command.

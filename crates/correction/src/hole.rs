@@ -4,9 +4,10 @@ use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Hole};
 
-use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS};
+use crate::approach::Whole;
+use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS, Wording};
 use crate::curve::Curve;
-use crate::deviation::{Machine, Pair, Verdict};
+use crate::deviation::{Begun, Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block, Letters};
 use crate::play::heading;
 use crate::{Piece, PieceKind};
@@ -41,9 +42,10 @@ impl Kept {
     /// How far its hole is from the programmed one.
     fn verdict(&self, machine: &Machine<'_>, limit_mm: f64) -> Verdict {
         let Self { wanted, commanded, .. } = self;
-        let verdict = Pair { wanted, commanded, in_step: false }.verdict(machine, limit_mm);
+        let verdict = Pair { wanted, commanded, in_step: false, begun: Begun::No }.verdict(machine, limit_mm);
         if let (Verdict::Within(_), Some(pecks)) = (verdict, &self.pecks) {
-            let counted = Pair { wanted, commanded: pecks, in_step: true }.verdict(machine, limit_mm);
+            let counted =
+                Pair { wanted, commanded: pecks, in_step: true, begun: Begun::No }.verdict(machine, limit_mm);
             if matches!(counted, Verdict::Beyond { .. }) {
                 return counted;
             }
@@ -55,6 +57,9 @@ impl Kept {
         Corrected::block(self.piece, self.untouched, correction)
     }
 }
+
+/// More pecks than this in one hole are a mistake, and would be millions of blocks: a metre deep in steps of a tenth.
+const MOST_PECKS: f64 = 10_000.0;
 
 /// A place on a hole's line, axis command.
 fn on_hole(hole: &Hole, mm: f64) -> Vector {
@@ -117,6 +122,7 @@ impl<'m> Corrector<'m> {
             machine.state.direction[normal] = heading(at_r[normal], hole.bottom_mm, self.direction[normal]);
             self.foresee_places(&machine, places);
             let (top, bottom) = (self.solve(&machine.state, at_r)?, self.solve(&machine.state, at_bottom)?);
+            self.require_reachable(hole, block, &(0.5 * (top + bottom)))?;
             if by_moves {
                 break (machine, [top, bottom], None);
             }
@@ -125,7 +131,7 @@ impl<'m> Corrector<'m> {
             let mut reached = self.standing;
             reached[normal] = flat.then_some(kept.r_mm);
             turns += 1;
-            match self.against(before.0, reached, came, machine.state.direction, block) {
+            match self.against(&machine.state, before.0, reached, block) {
                 Some(against) if turns < MOST_TURNS => {
                     self.turn(against);
                     (self.standing, self.remembered) = before;
@@ -150,18 +156,27 @@ impl<'m> Corrector<'m> {
         if let Some(kept) = kept
             && !(self.expanding && expandable)
         {
-            match kept.verdict(&machine, self.limit_mm(block)) {
-                Verdict::Within(bound) => {
-                    correction.after_mm = bound;
-                    return Ok(kept.with(correction));
-                }
-                Verdict::Beyond { distance_mm, .. } if !expandable => {
+            let (stood, limit_mm) = (self.play, self.limit_mm(block));
+            self.over_the_hole(&machine.state, kept.commanded.at(0.0), (!flat).then_some(normal));
+            let pair =
+                Pair { wanted: &kept.wanted, commanded: &kept.commanded, in_step: false, begun: Begun::No };
+            let verdict = kept.verdict(&machine, limit_mm);
+            match self.verdict_with_play(&machine, &pair, verdict, limit_mm) {
+                Verdict::Within(bound) => correction.after_mm = bound,
+                Verdict::Beyond { distance_mm, .. } => {
                     correction.after_mm = distance_mm;
                     correction.leaning_mm = Some(distance_mm);
-                    return Ok(kept.with(correction));
                 }
-                Verdict::Beyond { .. } => self.expanding = true,
             }
+            if correction.leaning_mm.is_none() || !expandable {
+                self.gone_along(&machine.state, &kept.commanded);
+                self.gone(&machine.state);
+                self.settle(&machine.state, block);
+                return Ok(kept.with(correction));
+            }
+            (correction.after_mm, correction.leaning_mm) = (0.0, None);
+            self.play = stood;
+            self.expanding = true;
         }
         // What was tried has moved no axis, nor turned one.
         (self.standing, self.remembered) = before;
@@ -169,10 +184,45 @@ impl<'m> Corrector<'m> {
         if let Some(remembered) = &mut self.remembered {
             remembered.as_programmed = false;
         }
+        if !block.named[normal] {
+            // Whether the tool stands above R, and to where it returns, no block has said in this frame.
+            let distance_um = correction.largest_mm * 1e3;
+            return Err(CorrectionError::Unnamed { axis: normal, distance_um });
+        }
         let mut corrected = Corrected { pieces: SmallVec::new(), correction };
         self.expand(hole, block, &machine, &mut corrected)?;
         self.direction[normal] = out;
+        self.settle(&machine.state, block);
         Ok(corrected)
+    }
+
+    /// Refuses a hole that is out of its place by an axis that must not get a word.
+    fn require_reachable(&self, hole: &Hole, block: &Block, middle: &Vector) -> Result<(), CorrectionError> {
+        let may = block.may_have_words();
+        if may == [true; 3] {
+            return Ok(());
+        }
+        let [first, second, _] = hole.plane.axes();
+        let (standing, wanted) = (self.standing_program(block), block.program(middle));
+        for axis in [first, second].into_iter().filter(|axis| !may[*axis]) {
+            let off_mm = standing[axis].map_or(0.0, |standing| (wanted[axis] - standing).abs());
+            if off_mm > self.limit_mm(block) {
+                return Err(CorrectionError::Unnamed { axis, distance_um: off_mm * 1e3 });
+            }
+        }
+        Ok(())
+    }
+
+    /// The axes have come to a hole. That the play along it is taken up on its first micrometres is no deviation from it: the
+    /// tool is late there, in the air or where it has drilled before. Without a depth (`along`: none) nothing takes it up.
+    fn over_the_hole(&mut self, state: &Command, at_mm: Vector, along: Option<usize>) {
+        if self.model.depends_on_direction() {
+            let at = Command { linear_mm: at_mm, ..*state };
+            self.play.go(self.model, &at);
+            if let Some(normal) = along {
+                self.play.rest(self.model, &at, normal, state.direction[normal]);
+            }
+        }
     }
 
     /// The state in which the machine drills: in the plane the axes come from where they came from last.
@@ -199,7 +249,8 @@ impl<'m> Corrector<'m> {
         let own = block.program(&if block.incremental { standing + step } else { at_r });
         let mut axes = [AxisWord::Omit; 3];
         let mut reached = block.program(&standing);
-        for i in [first, second] {
+        let may = block.may_have_words();
+        for i in [first, second].into_iter().filter(|i| may[*i]) {
             let programmed = block.has_axis(i).then_some(own[i]);
             (axes[i], reached[i]) = block.choose(i, middle[i], programmed, standing_program[i]);
         }
@@ -310,31 +361,36 @@ impl<'m> Corrector<'m> {
         let place = |mm: f64| on_hole(hole, mm);
         let (r_mm, bottom_mm) = (hole.at_r.linear_mm[normal], hole.bottom_mm);
         let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
-        let rapid =
-            |corrector: &mut Self, to: Vector, corrected: &mut Corrected| -> Result<(), CorrectionError> {
-                let (before, came) = (corrector.standing, corrector.direction);
-                let mut turns = 0;
-                let (state, wanted, axes) = loop {
-                    let state = corrector.drilling(&machine.state, normal);
-                    let wanted = corrector.solve(&state, to)?;
-                    let axes = corrector.go(block, &to, &wanted, false);
-                    let mut reached = corrector.standing;
-                    reached[normal] = None;
-                    turns += 1;
-                    match corrector.against(before, reached, came, state.direction, block) {
-                        Some(against) if turns < MOST_TURNS => {
-                            corrector.turn(against);
-                            corrector.standing = before;
-                        }
-                        _ => break (state, wanted, axes),
+        let may = block.may_have_words();
+        let rapid = |corrector: &mut Self,
+                     to: Vector,
+                     may: [bool; 3],
+                     corrected: &mut Corrected|
+         -> Result<(), CorrectionError> {
+            let before = corrector.standing;
+            let mut turns = 0;
+            let (state, wanted, axes) = loop {
+                let state = corrector.drilling(&machine.state, normal);
+                let wanted = corrector.solve(&state, to)?;
+                let axes = corrector.go(block, &to, &wanted, &Wording::of(may));
+                let mut reached = corrector.standing;
+                reached[normal] = None;
+                turns += 1;
+                match corrector.against(&state, before, reached, block) {
+                    Some(against) if turns < MOST_TURNS => {
+                        corrector.turn(against);
+                        corrector.standing = before;
                     }
-                };
-                if axes.iter().any(|word| *word != AxisWord::Omit) {
-                    corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
+                    _ => break (state, wanted, axes),
                 }
-                corrector.note_end(&state, to, wanted);
-                Ok(())
             };
+            if axes.iter().any(|word| *word != AxisWord::Omit) {
+                corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
+            }
+            corrector.gone(&state);
+            corrector.note_end(&state, to, wanted);
+            Ok(())
+        };
         let feed = |corrector: &mut Self,
                     from: f64,
                     to: f64,
@@ -342,14 +398,17 @@ impl<'m> Corrector<'m> {
          -> Result<(), CorrectionError> {
             let part = Curve::Line(place(from), place(to));
             let machine = Machine { state: corrector.drilling(&machine.state, normal), ..machine.clone() };
+            corrector.over_the_hole(
+                &machine.state,
+                corrector.standing_or(&place(from)),
+                (from != to).then_some(normal),
+            );
             let mut follow = Follow {
-                came: machine.state.direction,
                 machine,
                 block,
                 alone: false,
                 may_split: true,
-                in_step: false,
-                length_mm: (bottom_mm - r_mm).abs(),
+                whole: Whole { start: place(from), length_mm: (bottom_mm - r_mm).abs(), in_step: false },
                 nominal_step: Vector::zeros(),
                 solved: None,
                 enclosed: None,
@@ -363,12 +422,17 @@ impl<'m> Corrector<'m> {
         if above != start[normal] {
             let mut rise = start;
             rise[normal] = above;
-            rapid(self, rise, corrected)?;
+            // It leaves the axes of the plane where they are: their words say where the hole is.
+            rapid(self, rise, block.named, corrected)?;
         }
-        rapid(self, place(above), corrected)?;
-        rapid(self, place(r_mm), corrected)?;
+        rapid(self, place(above), may, corrected)?;
+        rapid(self, place(r_mm), may, corrected)?;
         match (hole.cycle.kind, hole.cycle.peck_mm) {
             (CycleKind::PeckFull | CycleKind::PeckChip, Some(peck)) if peck > 0.0 => {
+                let pecks = (bottom_mm - r_mm).abs() / peck;
+                if pecks > MOST_PECKS {
+                    return Err(CorrectionError::TooManyPecks { pecks });
+                }
                 let mut depth = r_mm;
                 let mut from = r_mm;
                 while (bottom_mm - depth) * down > 1e-9 {
@@ -383,23 +447,23 @@ impl<'m> Corrector<'m> {
                         break;
                     }
                     if hole.cycle.kind == CycleKind::PeckFull {
-                        rapid(self, place(r_mm), corrected)?;
+                        rapid(self, place(r_mm), may, corrected)?;
                         from = depth - down * block.peck_clearance_mm.min((depth - r_mm).abs());
                     } else {
                         from = depth - down * block.chip_retreat_mm.min((depth - r_mm).abs());
                     }
-                    rapid(self, place(from), corrected)?;
+                    rapid(self, place(from), may, corrected)?;
                 }
             }
             _ => feed(self, r_mm, bottom_mm, corrected)?,
         }
-        if hole.cycle.dwell {
+        if hole.cycle.dwell.is_some() {
             corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
         }
         if hole.cycle.kind == CycleKind::Bore {
             feed(self, bottom_mm, r_mm, corrected)?;
         }
-        rapid(self, place(after(hole)), corrected)?;
+        rapid(self, place(after(hole)), may, corrected)?;
         Ok(())
     }
 }

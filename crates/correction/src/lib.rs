@@ -8,10 +8,10 @@
 //! bounds how far it can leave the chord ([`machine_model::PathModel::chord_bound_mm`]); a stretch that
 //! is not proven is halved until it is, or split. See `docs/path-promise.md`.
 
+mod approach;
 mod arc;
 mod before;
 mod centre;
-mod compare;
 mod corrector;
 mod curve;
 mod deviation;
@@ -24,7 +24,6 @@ mod short_run;
 #[cfg(test)]
 mod testing;
 
-pub use compare::{Comparison, Deviation, Mismatch, Program, Step, Trace, compare};
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};

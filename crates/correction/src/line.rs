@@ -6,7 +6,7 @@ use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
 use crate::grid::AxisWord;
-use crate::play::Tried;
+use crate::play::{Creep, Tried};
 use crate::{Centre, Piece, PieceKind};
 
 /// A piece shorter than this many output steps cannot be split further to any use.
@@ -24,10 +24,14 @@ impl<'m> Corrector<'m> {
         };
         let step = (0..3).map(|i| follow.block.step_mm(i)).fold(0.0, f64::max);
         let length = part.length_mm();
+        // No split helps an axis that must stay where it is.
+        self.require_named(follow, part, self.limit_mm(follow.block))?;
         if !follow.may_split {
-            return Err(CorrectionError::MustNotSplit { distance_um: distance_mm * 1e3 });
+            self.require_named(follow, part, 0.5 * step)?;
+            return Err(self.not_to_be_split(follow, distance_mm));
         }
         if length < SHORTEST_STEPS * step || length < 2.0 * self.options.minimum_segment_mm {
+            self.require_named(follow, part, 0.5 * step)?;
             return Err(CorrectionError::NotWithinTolerance {
                 distance_um: distance_mm * 1e3,
                 tolerance_um: self.options.tolerance_mm * 1e3,
@@ -45,32 +49,40 @@ impl<'m> Corrector<'m> {
         &mut self,
         follow: &mut Follow<'_, 'm>,
         part: &Curve,
-        hold: [bool; 3],
+        creep: Creep,
     ) -> Result<Tried, CorrectionError> {
         let nominal_end = part.at(1.0);
         let wanted = self.solve(&follow.machine.state, nominal_end)?;
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go_holding(follow.block, &own_end, &wanted, follow.alone, hold);
-        let direction = follow.machine.state.direction;
-        if let Some(against) = self.against(before, self.standing, follow.came, direction, follow.block) {
+        let axes = self.go(follow.block, &own_end, &wanted, &follow.wording(creep.held()));
+        if !matches!(creep, Creep::Counted)
+            && let Some(against) = self.against(&follow.machine.state, before, self.standing, follow.block)
+        {
             self.standing = before;
             return Ok(Tried::Against(against));
         }
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
         let commanded = Curve::Line(from, to);
-        let pair = Pair { wanted: part, commanded: &commanded, in_step: follow.in_step };
+        let pair = Pair {
+            wanted: part,
+            commanded: &commanded,
+            in_step: follow.whole.in_step,
+            begun: self.begun(follow, part),
+        };
         let solved =
             if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
-        match pair.line_verdict_by(&follow.machine, solved.as_ref(), self.limit_mm(follow.block)) {
+        let limit_mm = self.limit_mm(follow.block);
+        let verdict = pair.line_verdict_by(&follow.machine, solved.as_ref(), limit_mm);
+        match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
             Verdict::Within(bound) => {
                 follow.finish(
                     Piece { kind: PieceKind::Line, axes, share: follow.share(part) },
                     bound,
                     (wanted - nominal_end).norm(),
                 );
-                follow.came = direction;
+                self.gone_along(&follow.machine.state, &commanded);
                 self.note_end(&follow.machine.state, nominal_end, wanted);
                 Ok(Tried::Done)
             }

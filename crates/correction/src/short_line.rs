@@ -12,7 +12,7 @@ use machine_model::{Command, Everywhere, LANES, Vector};
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
-use crate::deviation::{Machine, Pair, Verdict};
+use crate::deviation::{Begun, Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
 
@@ -80,7 +80,10 @@ impl Corrector<'_> {
     #[inline]
     pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
         self.heed(block, rotary_deg);
-        let ordinary = !block.incremental && block.frame.is_shift() && block.whole == [false; 3];
+        let ordinary = !block.incremental
+            && block.frame.is_shift()
+            && block.whole == [false; 3]
+            && block.named == [true; 3];
         if !ordinary || self.is_side_unknown() || !matches!(self.everywhere, Some((_, _, Some(_)))) {
             return None;
         }
@@ -201,7 +204,7 @@ impl Corrector<'_> {
         let mut correction = Correction { largest_mm: largest, ..Correction::default() };
         if after_mm > self.told_mm[1] {
             let (nominal, commanded) = (Curve::Line(start, end), Curve::Line(from, to));
-            let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false };
+            let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false, begun: Begun::No };
             let state = Command { direction, ..state };
             let Verdict::Within(bound) =
                 pair.verdict(&Machine { state, ..self.machine(block, lines.rotary_deg) }, limit_mm)
@@ -213,9 +216,15 @@ impl Corrector<'_> {
         let (stood, came) = (self.standing, self.direction);
         self.standing = [Some(to.x), Some(to.y), Some(to.z)];
         self.direction = direction;
-        if depends && self.against(stood, self.standing, direction, direction, block).is_some() {
-            (self.standing, self.direction) = (stood, came);
-            return None;
+        if depends {
+            let (state, commanded) = (Command { direction, ..state }, Curve::Line(from, to));
+            if self.against(&state, stood, self.standing, block).is_some()
+                || self.is_astray(&state, &commanded)
+            {
+                (self.standing, self.direction) = (stood, came);
+                return None;
+            }
+            self.gone(&state);
         }
         if before_mm > self.told_mm[0] {
             correction.before_mm = self.before_mm(&Curve::Line(start, end), block, lines.rotary_deg, largest);

@@ -36,6 +36,9 @@ impl PathModel for Bare {
     fn depends_on_direction(&self) -> bool {
         self.0.depends_on_direction()
     }
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        self.0.reversal_mm(axis, command)
+    }
 }
 
 fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> RigidBody {
@@ -69,6 +72,7 @@ fn block() -> Block {
         arc_centres_absolute: false,
         letters: Letters::axes([true; 3]),
         whole: [false; 3],
+        named: [true; 3],
         tool_mm: [1.0, -2.0, -40.0],
         centre_words: true,
         arc_radius_tolerance_mm: 0.02,

@@ -26,6 +26,8 @@ impl fmt::Display for Code {
 pub enum Severity {
     /// The work goes on.
     Warning,
+    /// A warning that the program itself is doubtful: who wants certainty refuses it (`--strict`).
+    Doubt,
     /// Nothing is written.
     Error,
 }
@@ -64,6 +66,11 @@ impl Diagnostic {
     #[must_use]
     pub fn warning(code: Code, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
+    }
+    /// A warning that the program itself is doubtful.
+    #[must_use]
+    pub fn doubt(code: Code, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Doubt, ..Self::error(code, message) }
     }
     /// Says where.
     #[must_use]

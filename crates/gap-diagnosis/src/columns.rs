@@ -3,7 +3,7 @@
 //! Most columns are functions of where one axis stands and from which side it came there. An axis stands at far fewer
 //! places than there are rows, so such a column is evaluated once per place and looked up from then on.
 
-use machine_model::Vector;
+use machine_model::{Command, Vector};
 
 use crate::gram::Source;
 use crate::observation::Row;
@@ -50,7 +50,7 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Rows by the place and the direction of approach of each axis.
+/// Rows by the place and the direction of approach of each axis, and the angles of the rotary axes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
     axes: [AxisPlaces; 3],
@@ -74,7 +74,11 @@ impl Places {
 
 impl AxisPlaces {
     fn new(rows: &[Row], axis: usize) -> Self {
-        let key = |row: &Row| (row.command.linear_mm[axis].to_bits(), row.command.direction[axis]);
+        // What an axis displaces is seen turned where a table turns the workpiece.
+        let key = |row: &Row| {
+            let Command { linear_mm, rotary_rad, direction, .. } = &row.command;
+            (linear_mm[axis].to_bits(), direction[axis], <[f64; 3]>::from(*rotary_rad).map(f64::to_bits))
+        };
         let mut order: Vec<usize> = (0..rows.len()).collect();
         order.sort_by_key(|i| (key(&rows[*i]), *i));
         let mut found = Self { examples: Vec::new(), of_row: vec![0; rows.len()] };

@@ -100,7 +100,7 @@ impl Gram {
             let equations: Vec<usize> =
                 (0..source.scalars.len()).filter(|i| source.scalars[*i].class == class).collect();
             // Columns that can be anything but zero in this class, the gap last.
-            let seen = |i: &usize| class == 3 || self.terms[*i].touches(class);
+            let seen = |i: &usize| class == 3 || self.terms[*i].touches(class, source.geometry);
             let shown: Vec<usize> = (0..size - 1).filter(seen).collect();
             let first = shown.partition_point(|i| *i < first_new);
             if equations.is_empty() || first == shown.len() {

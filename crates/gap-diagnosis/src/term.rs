@@ -55,14 +55,14 @@ impl Term {
         if let Self::BarLength = self {
             return if matches!(row.reading, Reading::Length { .. }) { 1.0 } else { 0.0 };
         }
-        if scalar.class < 3 && !self.touches(scalar.class) {
+        if scalar.class < 3 && !self.touches(scalar.class, geometry) {
             return 0.0;
         }
         scalar.along.dot(&self.displacement_um(row, geometry))
     }
 
-    /// The axis on whose position and direction of approach alone the displacement depends; `None` where it depends on
-    /// more.
+    /// The axis on whose position and direction of approach, and the rotary axes, alone the displacement depends; `None`
+    /// where it depends on more.
     #[must_use]
     pub(crate) fn axis(&self) -> Option<usize> {
         let Self::Effect { kind, index, .. } = *self else { return None };
@@ -82,8 +82,10 @@ impl Term {
 
     /// False where the component is zero for every row, known without looking.
     #[must_use]
-    pub(crate) fn touches(&self, component: usize) -> bool {
+    pub(crate) fn touches(&self, component: usize, geometry: &EffectGeometry) -> bool {
         match *self {
+            // Turned with the table it is seen in any.
+            Self::Effect { .. } if geometry.has_table() => true,
             Self::SetupShift(axis) | Self::UnknownApproach(axis) => axis == component,
             Self::SetupRotation(axis) => axis != component,
             Self::BarLength => false,

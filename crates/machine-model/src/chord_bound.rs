@@ -62,6 +62,15 @@ impl<S: Simd<f64s = f64x4>> Growth<S> {
     }
 }
 
+/// What speeds and ranges of a stretch say together.
+#[derive(Clone, Copy, PartialEq)]
+enum Course {
+    /// One motion: an axis without acceleration that is as fast as its range is long runs evenly from end to end.
+    Own,
+    /// Every motion that is no faster, anywhere in the ranges: how long they are says nothing of how an axis runs.
+    Any,
+}
+
 /// How one axis moves over the stretch.
 #[derive(Clone, Copy)]
 struct Run {
@@ -180,7 +189,7 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
         let tables = link.tables(stretch.state.direction[link.axis]);
         tables.map(|tables| tables.bounds_into(range, bounds)).is_some()
     };
-    let bounded = together(Along { model, stretch, bounds: own });
+    let bounded = together(Along { model, stretch, course: Course::Own, bounds: own });
     bounded.leaves_chord_mm + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
 }
 
@@ -192,7 +201,8 @@ fn norm(v: &[f64; 3]) -> f64 {
 /// What holds for every straight stretch inside the volume; `None` where the model has no such bounds.
 ///
 /// The bounds of [`chord_bound_mm`] grow with everything they are made of, so that those of the whole volume, of
-/// all directions, and of the worst place for a kink hold for each stretch: equation (12).
+/// all directions, and of the worst place for a kink hold for each stretch: equation (12). That one axis runs evenly is
+/// nothing that a volume says, be it as long as a class of speeds.
 pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
     let volume = crate::Engine::volume(model);
     let stretch = |speed: f64, passes: u8| Move {
@@ -207,7 +217,7 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
         let worst = |link: &Link, _: Range, bounds: &mut SixBounds| {
             worst[link.axis].as_ref().map(|worst| *bounds = worst[class]).is_some()
         };
-        together(Along { model, stretch: &stretch(speed, passes), bounds: worst })
+        together(Along { model, stretch: &stretch(speed, passes), course: Course::Any, bounds: worst })
     };
     // Along any unit direction no axis is faster than 1.
     let gradient = bounded(0, 1.0, 1).gradient;
@@ -227,6 +237,7 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
 struct Along<'a, F> {
     model: &'a RigidBody,
     stretch: &'a Move,
+    course: Course,
     bounds: F,
 }
 
@@ -243,7 +254,7 @@ impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
 
     #[inline(always)]
     fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Bounded {
-        let Self { model, stretch, bounds } = self;
+        let Self { model, stretch, course, bounds } = self;
         let volume = crate::Engine::volume(model);
         let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
         let vector = Components::vector;
@@ -270,7 +281,8 @@ impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
                 beyond.growth.value = beyond.low.abs().max(beyond.high.abs());
                 beyond.growth.first = beyond.growth.first + nominal_speed;
                 beyond.growth.either(nominal_acceleration);
-                let even = acceleration == 0.0 && (range.high - range.low - speed).abs() <= 1e-9 * speed;
+                let as_fast_as_long = (range.high - range.low - speed).abs() <= 1e-9 * speed;
+                let even = course == Course::Own && acceleration == 0.0 && as_fast_as_long;
                 let run = Run { speed, acceleration, passes, even };
                 let angle = along(simd, &tables, 3, run);
                 error.add(&along(simd, &tables, 0, run));

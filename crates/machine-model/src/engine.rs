@@ -219,4 +219,12 @@ pub trait PathModel: Engine {
     fn depends_on_direction(&self) -> bool {
         false
     }
+
+    /// Reversal value of an axis (0..=2: X, Y, Z) at a command, mm, along that axis: its error coming from above less its error
+    /// coming from below, ISO 230-2. The width of its play: [`crate::Play`].
+    ///
+    /// The command's direction is not used. Zero for an axis that is the same from both sides; a negative one is no play.
+    fn reversal_mm(&self, _axis: usize, _command: &Command) -> f64 {
+        0.0
+    }
 }

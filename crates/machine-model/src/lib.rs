@@ -15,6 +15,7 @@ pub mod finite_rotations;
 mod first_order;
 mod lanes;
 mod newton;
+mod play;
 mod rigid_body;
 pub mod rotation;
 mod solve;
@@ -29,6 +30,7 @@ pub use engine::{Command, Engine, EngineId, Move, PathModel, Range, Solution, So
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
 pub use lanes::LANES;
+pub use play::{Play, SAME_PLACE_MM};
 pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};
 pub use table::{Bounds, Interpolation, Table, TableError};

@@ -452,4 +452,16 @@ impl PathModel for RigidBody {
     fn depends_on_direction(&self) -> bool {
         self.depends_on_direction
     }
+
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        let link = &self.links[self.place_of[axis]];
+        match link.by_direction.as_slice() {
+            [negative, _, positive] => {
+                let range = self.volume.0[axis];
+                let at = command.linear_mm[axis].clamp(range.low, range.high);
+                negative.at(at)[axis] - positive.at(at)[axis]
+            }
+            _ => 0.0,
+        }
+    }
 }

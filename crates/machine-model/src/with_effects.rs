@@ -1,7 +1,5 @@
 //! The rigid-body model with effects beyond its tables: equation (23) of `docs/equations.md`.
 
-use nalgebra::Matrix3;
-
 use crate::effects::{Conditions, EffectKind, EffectTerm, MissingCondition};
 use crate::solve::solve;
 use crate::{
@@ -82,8 +80,7 @@ impl WithEffects {
     #[must_use]
     pub fn predict(&self, command: &Command) -> Prediction {
         let Prediction { position_mm, error_mm } = self.base.predict(command);
-        let turn = self.base.table_turn(command);
-        let more = turn * self.displacement(&self.inside(command), &turn);
+        let more = self.displacement(&self.inside(command));
         Prediction { position_mm: position_mm + more, error_mm: error_mm + more }
     }
 
@@ -92,15 +89,12 @@ impl WithEffects {
         Command { linear_mm: self.base.volume().nearest(&command.linear_mm), ..*command }
     }
 
-    /// Sum of the effects, in the directions of the linear axes; `turn`: from there to the workpiece.
-    fn displacement(&self, command: &Command, turn: &Matrix3<f64>) -> Vector {
+    /// Sum of the effects, as the workpiece sees it.
+    fn displacement(&self, command: &Command) -> Vector {
         self.terms.iter().fold(Vector::zeros(), |sum, term| {
-            let by = term
+            sum + term
                 .displacement_mm(command, &self.conditions)
-                .expect("conditions were complete when the model was made, and stay what they were");
-            // Effects of rotary axes come as the workpiece sees them, all others along the linear axes.
-            let rotary = matches!(term.kind(), EffectKind::Rotary { .. } | EffectKind::Eccentricity(_));
-            sum + if rotary { turn.tr_mul(&by) } else { by }
+                .expect("conditions were complete when the model was made, and stay what they were")
         })
     }
 }
@@ -129,7 +123,8 @@ impl Engine for WithEffects {
 impl PathModel for WithEffects {
     fn error_mm(&self, command: &Command) -> Vector {
         let command = self.inside(command);
-        self.base.error_mm(&command) + self.displacement(&command, &self.base.table_turn(&command))
+        // Where the linear axes have to undo it.
+        self.base.error_mm(&command) + self.base.table_turn(&command).tr_mul(&self.displacement(&command))
     }
 
     /// A sum leaves its chord by no more than its parts do.
@@ -141,5 +136,17 @@ impl PathModel for WithEffects {
 
     fn depends_on_direction(&self) -> bool {
         self.depends_on_direction
+    }
+
+    /// That of the tables and of every lost motion along the axis. What a servo lags by changes with the direction too,
+    /// but with no way in between.
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        let inside = self.inside(command);
+        let along = |term: &EffectTerm, side: i8| {
+            let from = Command { direction: [side; 3], ..inside };
+            term.displacement_mm(&from, &self.conditions).map_or(0.0, |by| by[axis])
+        };
+        let plays = self.terms.iter().filter(|term| term.kind() == EffectKind::Backlash(axis));
+        plays.fold(self.base.reversal_mm(axis, &inside), |sum, term| sum + along(term, -1) - along(term, 1))
     }
 }

@@ -5,10 +5,10 @@
 mod machines;
 
 use machine_model::{
-    Command, Engine, LANES, Move, PathModel, Range, RigidBody, RotaryAxis, SolveError, Vector,
-    first_order_error_mm,
+    AxisTables, Command, Engine, Interpolation, LANES, Move, PathModel, Range, RigidBody, RotaryAxis,
+    SolveError, Table, Vector, first_order_error_mm,
 };
-use machines::{Random, command, machine, perfect};
+use machines::{Random, command, machine, machine_over, perfect, perfect_over};
 use proptest::prelude::*;
 use units::math;
 
@@ -355,6 +355,84 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
     }
     // What does not settle in a few steps is solved by the long way, alone.
     assert!(together_too > 60 * 60 * LANES * 95 / 100, "{together_too}");
+}
+
+/// X bends to one side in Y, and Y along itself to the other: where both run evenly through all of the volume this cancels, and
+/// only there.
+fn opposed(travel_mm: [f64; 3], monotone: bool) -> RigidBody {
+    let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
+    let mut described = perfect_over("[w X Y b Z t]", travel_mm);
+    let table = |high: f64, sign: f64| {
+        let nodes: Vec<f64> = (0..=8).map(|k| high / 8.0 * f64::from(k)).collect();
+        // So steep that the slopes of (3) are all but those of a parabola.
+        let values = nodes.iter().map(|q| sign * (0.02 * q + 6.4e-5 * q * q)).collect();
+        Table::new(nodes, values, interpolation).ok()
+    };
+    described.linear[0].errors = AxisTables::new(&[None, table(travel_mm[0], 1.0), None, None, None, None]);
+    described.linear[1].errors = AxisTables::new(&[None, table(travel_mm[1], -1.0), None, None, None, None]);
+    RigidBody::new(described).unwrap()
+}
+
+/// A referee's find: X and Y of 32 mm, the volume itself taken for an even run; 2.98 µm were proven where 16.45 are true.
+#[test]
+fn a_volume_as_long_as_a_class_of_speeds_is_no_even_run() {
+    let model = opposed([32.0, 32.0, 100.0], true);
+    let state = command([0.0; 3], [0.0; 3]);
+    let everywhere = model.everywhere(&state).unwrap();
+    let at = |x: f64| model.error_mm(&Command { linear_mm: Vector::new(x, 16.0, 50.0), ..state });
+    let bow = (at(16.0) - 0.5 * (at(0.05) + at(31.95))).norm();
+    let bound = everywhere.chord_bound_mm(31.9);
+    assert!(bow > 0.0155 && bow <= bound, "{bow} {bound}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+
+    /// What is looked up dominates what is worked out for the stretch, and what is found on it, in volumes of any size and in those
+    /// as long as a class.
+    #[test]
+    fn everywhere_dominates_every_stretch(
+        seed: u64, chain in 0usize..4, monotone: bool, dyadic in prop::array::uniform3(4i32..9), odd in prop::array::uniform3(10.0f64..300.0),
+        as_long: bool, opposite: bool, from in prop::array::uniform3(0.0f64..1.0), to in prop::array::uniform3(0.0f64..1.0), class in -4i32..6,
+        along in 0usize..4, tool in prop::array::uniform3(-150.0f64..150.0), direction in prop::array::uniform3(-1i8..2),
+    ) {
+        let travel_mm = std::array::from_fn(|i| if as_long { 2f64.powi(dyadic[i]) } else { odd[i] });
+        let random = || RigidBody::new(machine_over(seed, CHAINS[chain], monotone, 1.0, travel_mm)).unwrap();
+        let model = if opposite { opposed(travel_mm, monotone) } else { random() };
+        let state = Command { direction, ..command([0.0; 3], tool) };
+        let everywhere = model.everywhere(&state).unwrap();
+        // Some as long as a class, or as the volume; some along one axis only.
+        let longest = 2f64.powi(class);
+        let q0: [f64; 3] = std::array::from_fn(|i| from[i] * travel_mm[i]);
+        let q1: [f64; 3] = std::array::from_fn(|i| {
+            let still = along < 3 && along != i;
+            let by = ((to[i] - from[i]) * travel_mm[i]).clamp(-longest, longest);
+            if still { q0[i] } else { (q0[i] + by).clamp(0.0, travel_mm[i]) }
+        });
+        let by: [f64; 3] = std::array::from_fn(|i| q1[i] - q0[i]);
+        let speed = by.into_iter().fold(0.0, |most: f64, by| most.max(by.abs()));
+        let range_mm = std::array::from_fn(|i| Range { low: q0[i].min(q1[i]), high: q0[i].max(q1[i]) });
+        let own = |passes: u8, acceleration: f64| {
+            let speed_mm = if acceleration > 0.0 { [speed; 3] } else { by.map(f64::abs) };
+            model.chord_bound_mm(&Move { range_mm, speed_mm, acceleration_mm: [acceleration; 3], passes, state })
+        };
+        let near = 1.0 + 1e-12;
+        prop_assert!(own(1, 0.0) <= everywhere.chord_bound_mm(speed) * near);
+        prop_assert!(own(4, 0.0) <= everywhere.chord_bound_of_four_passes_mm(speed) * near);
+        prop_assert!(own(2, speed) <= everywhere.chord_bound_of_curve_mm(speed, speed * 3f64.sqrt()) * near);
+        prop_assert!(own(4, speed) <= everywhere.chord_bound_of_circle_mm(speed, speed * 3f64.sqrt()) * near);
+        let at = |s: f64| {
+            let linear_mm = Vector::from_fn(|i, _| q0[i] + by[i] * s);
+            model.error_mm(&Command { linear_mm, ..state })
+        };
+        let (e0, e1) = (at(0.0), at(1.0));
+        prop_assert!((e1 - e0).norm() <= everywhere.gradient * Vector::from(by).norm() * near + 1e-15);
+        for k in 0..=200 {
+            let s = f64::from(k) / 200.0;
+            let leaves = (at(s) - e0 * (1.0 - s) - e1 * s).norm();
+            prop_assert!(leaves <= everywhere.chord_bound_mm(speed) + 1e-12, "{}", leaves);
+        }
+    }
 }
 
 /// How much larger the bound is than what dense sampling finds, over many random short stretches.

@@ -1,5 +1,7 @@
 //! Tables as CSV files: named columns of finite numbers, every cell with its place.
 
+use std::collections::BTreeSet;
+
 use diagnostic::Diagnostic;
 
 use crate::error::{CELL, COLUMN, FILE, ProfileError, ROWS, closest, span};
@@ -66,8 +68,9 @@ impl<'f> Columns<'f> {
         if header.is_empty() {
             return Err(fail(Diagnostic::error(ROWS, "the table is empty: expected a header line and rows")));
         }
-        for (k, (name, place)) in header.iter().enumerate() {
-            if header[..k].iter().any(|(earlier, _)| earlier == name) {
+        let mut earlier = BTreeSet::new();
+        for (name, place) in &header {
+            if !earlier.insert(name) {
                 return Err(fail(
                     Diagnostic::error(COLUMN, format!("column {name} stands there twice"))
                         .at(span(place), "again here"),

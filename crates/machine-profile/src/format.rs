@@ -73,6 +73,12 @@ pub(crate) struct Document {
     /// How programs are corrected.
     #[serde(default)]
     pub(crate) correction: Correction,
+    /// How the machine's programs are to be read, where its control's dialect leaves that open.
+    #[serde(default)]
+    pub(crate) program: Program,
+    /// M codes of this machine.
+    #[serde(default)]
+    pub(crate) m_codes: MCodes,
     /// Effects beyond the tables: `id` and numeric parameters.
     #[serde(default)]
     #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
@@ -262,6 +268,71 @@ pub(crate) struct Correction {
     /// No piece is made shorter than this; 0 for no limit.
     #[schemars(with = "Option<f64>")]
     pub(crate) minimum_segment_mm: Option<Spanned<Finite>>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Program {
+    /// A length without a point: "increments" (Z10 is ten steps) or "millimetres" (Z10 is Z10.; inches under G20).
+    pub(crate) decimal: Option<DecimalName>,
+    /// Where a tool change (M6) leaves X, Y and Z; anywhere where left out.
+    #[schemars(with = "Option<ToolChange>")]
+    pub(crate) tool_change: Option<Spanned<ToolChange>>,
+    /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum DecimalName {
+    Increments,
+    Millimetres,
+}
+
+/// Machine coordinates [x, y, z] in mm, or by axis.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "expected { keeps = \"XYZ\" }, { keeps = \"XY\", position_mm = { Z = 350.0 } } or a position [x, y, z]"
+)]
+pub(crate) enum ToolChange {
+    At(Triple),
+    By(ChangeRules),
+}
+
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ChangeRules {
+    /// Axes that stay where they were, like "XYZ".
+    pub(crate) keeps: Option<String>,
+    /// Machine coordinates where the others stand afterwards: [x, y, z], or { Z = 350.0 } for some of them.
+    pub(crate) position_mm: Option<ChangePlace>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected three numbers [x, y, z] in mm, or some of them like { Z = 350.0 }")]
+pub(crate) enum ChangePlace {
+    All(Triple),
+    Some(ChangeAxes),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case, reason = "the standard's letters")]
+pub(crate) struct ChangeAxes {
+    pub(crate) X: Option<Finite>,
+    pub(crate) Y: Option<Finite>,
+    pub(crate) Z: Option<Finite>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MCodes {
+    /// Codes that move neither an axis nor the frame on this machine, like ["M777"].
+    #[serde(default)]
+    #[schemars(with = "Vec<String>")]
+    pub(crate) harmless: Vec<Spanned<String>>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]

@@ -17,7 +17,10 @@ mod write;
 pub use effects::EngineError;
 pub use error::ProfileError;
 pub use load::{Read, load};
-pub use profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
+pub use profile::{
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile,
+    ProgramRules,
+};
 pub use show::schema;
 pub use tables::ErrorRows;
 pub use write::ProfileText;

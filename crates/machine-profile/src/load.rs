@@ -1,5 +1,7 @@
 //! From TOML text to a checked [`Profile`].
 
+use std::collections::BTreeSet;
+
 use diagnostic::Diagnostic;
 use machine_model::effects::EffectTerm;
 use machine_model::{
@@ -10,8 +12,13 @@ use toml::Spanned;
 use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, closest, span};
-use crate::format::{self, Document, Finite, InterpolationName, OutsideName};
-use crate::profile::{Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile};
+use crate::format::{
+    self, ChangePlace, DecimalName, Document, Finite, InterpolationName, OutsideName, ToolChange,
+};
+use crate::profile::{
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile,
+    ProgramRules,
+};
 use crate::tables::{ErrorRows, error_rows, traverse};
 use crate::toml_error;
 
@@ -46,6 +53,11 @@ fn triple(values: Option<[Finite; 3]>) -> [f64; 3] {
 fn vector(values: Option<[Finite; 3]>) -> Vector {
     triple(values).into()
 }
+
+/// Arcs whose radii differ by more are none on any control, mm.
+const MOST_ARC_TOLERANCE_MM: f64 = 10.0;
+/// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
+const COARSEST_MM: f64 = 0.1;
 
 impl Loader<'_> {
     fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
@@ -88,6 +100,7 @@ impl Loader<'_> {
         let tools = self.tools(&document.tool);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
+        let program = self.program_rules(&document.program, &document.m_codes);
         let effects = self.effects(&document.effect);
         let setup = MeasuringFrame {
             shift_mm: triple(document.setup.shift_mm),
@@ -118,6 +131,7 @@ impl Loader<'_> {
             tools,
             work_offsets,
             correction,
+            program,
             effects,
             setup,
             rigid_body,
@@ -150,6 +164,82 @@ impl Loader<'_> {
             temperature_c: written.temperature_c.map(|Finite(t)| t),
             instrument: written.instrument.clone(),
         }
+    }
+
+    fn program_rules(&mut self, program: &format::Program, m_codes: &format::MCodes) -> ProgramRules {
+        let bare_lengths = program.decimal.map(|name| match name {
+            DecimalName::Increments => BareLengths::Increments,
+            DecimalName::Millimetres => BareLengths::Millimetres,
+        });
+        let tool_change = program
+            .tool_change
+            .as_ref()
+            .map_or([AfterChange::Unknown; 3], |written| self.tool_change(written));
+        let mut harmless_m_codes = Vec::with_capacity(m_codes.harmless.len());
+        for code in &m_codes.harmless {
+            match code.get_ref().strip_prefix(['M', 'm']).and_then(|digits| digits.parse().ok()) {
+                Some(number) => harmless_m_codes.push(number),
+                None => {
+                    let diagnostic = Diagnostic::error(VALUE, format!("`{}` is no M code", code.get_ref()))
+                        .help("write the letter and its number, like \"M777\"");
+                    self.refuse(code, diagnostic, "expected an M code");
+                }
+            }
+        }
+        let mut arc_tolerance_mm = None;
+        if let Some(written) = &program.arc_tolerance_mm {
+            let Finite(mm) = *written.get_ref();
+            if mm > 0.0 && mm <= MOST_ARC_TOLERANCE_MM {
+                arc_tolerance_mm = Some(mm);
+            } else {
+                let message = format!("arc_tolerance_mm is {mm}");
+                let help = "give what the control is set to (parameter 3410, CENTER_ARC_RADIUS_TOLERANCE_MM)";
+                let diagnostic = Diagnostic::error(VALUE, message).help(help);
+                self.refuse(
+                    written,
+                    diagnostic,
+                    format!("expected above 0, up to {MOST_ARC_TOLERANCE_MM} mm"),
+                );
+            }
+        }
+        ProgramRules { bare_lengths, tool_change, arc_tolerance_mm, harmless_m_codes }
+    }
+
+    /// Axes that a tool change leaves, and where it puts the others.
+    fn tool_change(&mut self, written: &Spanned<format::ToolChange>) -> [AfterChange; 3] {
+        let mut change = [AfterChange::Unknown; 3];
+        let (keeps, place) = match written.get_ref() {
+            ToolChange::At(place) => ("", Some(ChangePlace::All(*place))),
+            ToolChange::By(rules) => (rules.keeps.as_deref().unwrap_or_default(), rules.position_mm),
+        };
+        for axis in keeps.chars() {
+            match "XYZ".find(axis) {
+                Some(index) => change[index] = AfterChange::Stays,
+                None => {
+                    let diagnostic = Diagnostic::error(VALUE, format!("`{axis}` is not X, Y or Z"))
+                        .help("name the axes that stay where they were, like keeps = \"XYZ\"");
+                    self.refuse(written, diagnostic, "expected some of X, Y, Z");
+                }
+            }
+        }
+        let place = match place {
+            None => [None; 3],
+            Some(ChangePlace::All(place)) => place.map(Some),
+            Some(ChangePlace::Some(format::ChangeAxes { X, Y, Z })) => [X, Y, Z],
+        };
+        for (axis, (change, place)) in "XYZ".chars().zip(change.iter_mut().zip(place)) {
+            let Some(Finite(place_mm)) = place else { continue };
+            if *change == AfterChange::Stays {
+                let diagnostic = Diagnostic::error(
+                    CONFLICT,
+                    format!("a tool change both keeps {axis} and brings it to {place_mm} mm"),
+                )
+                .help("name the axis under `keeps` or under `position_mm`");
+                self.refuse(written, diagnostic, "this tool change");
+            }
+            *change = AfterChange::At(place_mm);
+        }
+        change
     }
 
     /// The bytes of a table; an error where it cannot be read.
@@ -208,10 +298,10 @@ impl Loader<'_> {
         if let Some(step) = &data.resolution_mm {
             let Finite(value) = *step.get_ref();
             resolution_mm[index] = value;
-            if value <= 0.0 {
+            if value <= 0.0 || value > COARSEST_MM {
                 let diagnostic = Diagnostic::error(VALUE, format!("resolution_mm of {axis} is {value}"))
                     .help("write the smallest step the control takes, like 0.001");
-                self.refuse(step, diagnostic, "expected a number above 0");
+                self.refuse(step, diagnostic, format!("expected a number above 0, at most {COARSEST_MM}"));
             }
         }
         let before = self.errors.len();
@@ -336,12 +426,13 @@ impl Loader<'_> {
 
     fn tools(&mut self, written: &format::Tool) -> Vec<(u32, [f64; 3])> {
         let mut tools = Vec::new();
+        let mut known = BTreeSet::new();
         for (name, length) in &written.lengths_mm {
             let digits = name.strip_prefix('H').unwrap_or_default();
             let number =
                 if digits.bytes().all(|b| b.is_ascii_digit()) { digits.parse::<u32>().ok() } else { None };
             match number.filter(|number| *number > 0) {
-                Some(number) if tools.iter().any(|(known, _)| *known == number) => {
+                Some(number) if !known.insert(number) => {
                     let diagnostic =
                         Diagnostic::error(CONFLICT, format!("tool H{number} stands there twice"));
                     self.refuse(length, diagnostic, "again here");

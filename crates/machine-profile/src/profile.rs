@@ -42,6 +42,40 @@ pub struct CorrectionOptions {
     pub minimum_segment_mm: f64,
 }
 
+/// What a length without a decimal point is, where a parameter of the control decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BareLengths {
+    /// Least increments: `Z10` is ten of them.
+    Increments,
+    /// The unit in force: `Z10` is `Z10.`.
+    Millimetres,
+}
+
+/// Where an axis stands behind a tool change.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AfterChange {
+    /// Anywhere.
+    #[default]
+    Unknown,
+    /// Where it stood before.
+    Stays,
+    /// At this machine coordinate, mm.
+    At(f64),
+}
+
+/// How the machine's programs are to be read, where its control's dialect leaves that open.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProgramRules {
+    /// Lengths without a point; `None`: not said.
+    pub bare_lengths: Option<BareLengths>,
+    /// X, Y, Z behind a tool change.
+    pub tool_change: [AfterChange; 3],
+    /// Numbers of M codes that move neither an axis nor the frame.
+    pub harmless_m_codes: Vec<u16>,
+    /// Largest difference of an arc's radii that the control takes, mm; `None`: the dialect's.
+    pub arc_tolerance_mm: Option<f64>,
+}
+
 /// An effect beyond the tables, as the profile names it; [`machine_model::effects::EffectTerm::from_entry`] reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectEntry {
@@ -88,6 +122,8 @@ pub struct Profile {
     pub work_offsets: Vec<(String, [f64; 3])>,
     /// How programs are corrected.
     pub correction: CorrectionOptions,
+    /// How programs are read.
+    pub program: ProgramRules,
     /// Effects beyond the tables.
     pub effects: Vec<EffectEntry>,
     /// The measuring frame.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use machine_model::{Axis, EngineId};
 
 use crate::format::Document;
-use crate::profile::{Outside, Profile};
+use crate::profile::{AfterChange, BareLengths, Outside, Profile};
 
 /// The JSON Schema of `format = 1`.
 #[must_use]
@@ -130,10 +130,38 @@ impl Profile {
             "correction   engine {engine}, tolerance {} um, feed outside {outside}",
             c.tolerance_um
         )?;
+        self.write_program_rules(out)?;
         for effect in &self.effects {
             let text: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
             writeln!(out, "effect       {} {}", effect.id, text.join(", "))?;
+        }
+        Ok(())
+    }
+
+    /// What is said of the machine's programs, where anything is.
+    fn write_program_rules(&self, out: &mut String) -> std::fmt::Result {
+        let rules = &self.program;
+        match rules.bare_lengths {
+            Some(BareLengths::Increments) => writeln!(out, "programs     Z10 is ten increments")?,
+            Some(BareLengths::Millimetres) => writeln!(out, "programs     Z10 is Z10.")?,
+            None => {}
+        }
+        if rules.tool_change != [AfterChange::Unknown; 3] {
+            let axis = |(name, change): (char, AfterChange)| match change {
+                AfterChange::Unknown => format!("{name} anywhere"),
+                AfterChange::Stays => format!("{name} where it was"),
+                AfterChange::At(place_mm) => format!("{name} at {place_mm} mm"),
+            };
+            let axes: Vec<String> = "XYZ".chars().zip(rules.tool_change).map(axis).collect();
+            writeln!(out, "tool change  {}", axes.join(", "))?;
+        }
+        if let Some(mm) = rules.arc_tolerance_mm {
+            writeln!(out, "arcs         radii may differ by {mm} mm")?;
+        }
+        if !rules.harmless_m_codes.is_empty() {
+            let codes: Vec<String> = rules.harmless_m_codes.iter().map(|code| format!("M{code}")).collect();
+            writeln!(out, "M codes      {} move neither an axis nor the frame", codes.join(", "))?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
 use insta::assert_snapshot;
-use machine_profile::{ProfileError, load};
+use machine_profile::{AfterChange, BareLengths, ProfileError, load};
 
 fn base() -> String {
     "format = 1\nname = \"test\"\nchain = \"[w X Y b Z t]\"\n\n[axis.X]\ntravel_mm = [0, 400]\n[axis.Y]\ntravel_mm = [0, 280]\n\
@@ -98,7 +98,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, tool, work_offsets_mm, correction, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, tool, work_offsets_mm, correction, program, m_codes, effect, setup
     "####);
 }
 
@@ -168,7 +168,17 @@ fn travel_reversed() {
 fn resolution_zero() {
     assert_snapshot!(told(&base().replace("travel_mm = [0, 400]", "travel_mm = [0, 400]\nresolution_mm = 0")), @r####"
     error[VP0303]: resolution_mm of X is 0
-      line 7: `0` expected a number above 0
+      line 7: `0` expected a number above 0, at most 0.1
+    help: write the smallest step the control takes, like 0.001
+    "####);
+}
+
+/// A micrometre step written as one: everything would be rounded to it.
+#[test]
+fn resolution_in_the_wrong_unit() {
+    assert_snapshot!(told(&base().replace("travel_mm = [0, 400]", "travel_mm = [0, 400]\nresolution_mm = 1")), @r####"
+    error[VP0303]: resolution_mm of X is 1
+      line 7: `1` expected a number above 0, at most 0.1
     help: write the smallest step the control takes, like 0.001
     "####);
 }
@@ -345,7 +355,7 @@ fn several_at_once() {
       line 6: `[400, 0]` the lower end must lie below the upper
     help: write the lower end first: [0, 400]
     error[VP0303]: resolution_mm of Y is -1
-      line 9: `-1` expected a number above 0
+      line 9: `-1` expected a number above 0, at most 0.1
     help: write the smallest step the control takes, like 0.001
     "####);
 }
@@ -477,4 +487,35 @@ fn traverse_that_moves_two_axes() {
       line 1: `comanded_y_mm` this column
     help: did you mean commanded_y_mm?
     "####);
+}
+
+/// What programs of this machine mean: read, and wrong in each way.
+#[test]
+fn program_rules() {
+    let rules = |text: &str| load(&format!("{}{text}\n", base()), &read).unwrap().program;
+    assert_eq!(rules("").tool_change, [AfterChange::Unknown; 3]);
+    assert_eq!(rules("[program]\ndecimal = \"increments\"").bare_lengths, Some(BareLengths::Increments));
+    assert_eq!(rules("[m_codes]\nharmless = [\"M777\", \"m12\"]").harmless_m_codes, [777, 12]);
+    let change = |text: &str| rules(&format!("[program]\ntool_change = {text}")).tool_change;
+    let at = AfterChange::At;
+    assert_eq!(change("{ keeps = \"XYZ\" }"), [AfterChange::Stays; 3]);
+    assert_eq!(change("[1, 2, 3]"), [at(1.0), at(2.0), at(3.0)]);
+    assert_eq!(change("{ position_mm = [1, 2, 3] }"), [at(1.0), at(2.0), at(3.0)]);
+    assert_eq!(
+        change("{ keeps = \"X\", position_mm = { Z = 350.0 } }"),
+        [AfterChange::Stays, AfterChange::Unknown, at(350.0)]
+    );
+    for (text, code) in [
+        ("[program]\ndecimal = \"inches\"", "VP0303"),
+        ("[program]\ntool_change = { keeps = \"XW\" }", "VP0303"),
+        ("[program]\ntool_change = { keeps = \"XYZ\", position_mm = { Z = 350.0 } }", "VP0309"),
+        ("[program]\ntool_change = [1, 2]", "VP0303"),
+        ("[program]\ntool_change = [1, 2, inf]", "VP0303"),
+        ("[program]\ntoolchange = 1", "VP0302"),
+        ("[m_codes]\nharmless = [\"777\"]", "VP0303"),
+        ("[m_codes]\nharmless = [\"M70000\"]", "VP0303"),
+    ] {
+        let said = told(&format!("{}{text}\n", base()));
+        assert!(said.contains(code), "{text}: {said}");
+    }
 }

@@ -3,12 +3,13 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 53] = [
+pub const ACTION_NAMES: [&str; 54] = [
     "rapid",
     "line",
     "arc-clockwise",
     "arc-counterclockwise",
     "dwell",
+    "dwell-by-setting",
     "plane-xy",
     "plane-zx",
     "plane-yz",
@@ -68,6 +69,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "arc-clockwise" => Action::ArcClockwise,
         "arc-counterclockwise" => Action::ArcCounterClockwise,
         "dwell" => Action::Dwell,
+        "dwell-by-setting" => Action::DwellBySetting,
         "plane-xy" => Action::Plane(PlaneCode::Xy),
         "plane-zx" => Action::Plane(PlaneCode::Zx),
         "plane-yz" => Action::Plane(PlaneCode::Yz),

@@ -7,6 +7,9 @@ use toml::Spanned;
 use crate::load::wide;
 use crate::table::Grammar;
 
+/// No control takes arcs whose radii differ by more of the radius.
+const MOST_SHARE: f64 = 0.01;
+
 /// The start codes as codes of the table, one per modal group.
 pub(crate) fn start_codes(
     written: &[Spanned<String>],
@@ -77,6 +80,16 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
                 "expected 0 to 9",
             );
         }
+    }
+    if let Some(share) = &output.arc_radius_tolerance_share
+        // Written so that NaN is refused too.
+        && !(*share.get_ref() >= 0.0 && *share.get_ref() <= MOST_SHARE)
+    {
+        report(
+            share.span(),
+            format!("arc_radius_tolerance_share = {} is out of range", share.get_ref()),
+            &format!("expected 0 to {MOST_SHARE} of the radius"),
+        );
     }
     for (what, length, most) in [
         ("peck_clearance_mm", &cycles.peck_clearance_mm, 100.0),

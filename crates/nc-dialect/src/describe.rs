@@ -1,7 +1,7 @@
 //! The code-by-code list of a dialect, for people.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CycleCode, GCode, MCode, Macros};
+use nc_syntax::dialect::{Action, CycleCode, GCode, LengthAfter, MCode, Macros};
 
 use crate::action_name;
 
@@ -74,7 +74,7 @@ pub const fn treatment(action: &Action) -> Treatment {
         | Action::ArcCounterClockwise
         | Action::Cycle(_) => Treatment::Corrected,
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
-        Action::Dwell | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
+        Action::Dwell | Action::DwellBySetting | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
         Action::PolarOn | Action::PolarOff => Treatment::Executed,
         _ => Treatment::Followed,
@@ -90,7 +90,14 @@ pub fn rows(dialect: &Dialect) -> Rows {
         let (treatment, note) = if calls {
             (Treatment::Executed, executed())
         } else {
-            (treatment(&entry.action), note(&entry.action))
+            let unstated =
+                entry.action == Action::LengthOff && dialect.length_under_g49 == LengthAfter::Unstated;
+            let note = if unstated {
+                "refused while a tool length is in force, or with H or D beside it".to_owned()
+            } else {
+                note(&entry.action)
+            };
+            (treatment(&entry.action), note)
         };
         Row { code: entry.code.to_string(), group: entry.group, treatment, note }
     });
@@ -105,7 +112,10 @@ pub fn rows(dialect: &Dialect) -> Rows {
     let commands = dialect.commands.iter().map(|entry| {
         let (treatment, note) = match &entry.refuse {
             None => (Treatment::Passed, String::new()),
-            Some((reason, help)) => (Treatment::Refused, format!("{reason}; {help}")),
+            Some((reason, help)) => {
+                let most = entry.passes_with.map(|most| format!("with more than {most} argument(s): "));
+                (Treatment::Refused, format!("{}{reason}; {help}", most.unwrap_or_default()))
+            }
         };
         Row { code: entry.name.clone(), group: 0, treatment, note }
     });
@@ -116,6 +126,12 @@ fn of_m_code(entry: &MCode) -> (Treatment, String) {
     if let Some((reason, help)) = &entry.refuse {
         return (Treatment::Refused, format!("{reason}; {help}"));
     }
+    if let Some(what) = &entry.switches {
+        return (
+            Treatment::Refused,
+            format!("{what}; passes where the profile has it under `[m_codes] harmless`"),
+        );
+    }
     let mut what = Vec::new();
     if entry.after_motion {
         what.push("executed after the motion of its block".to_owned());
@@ -123,7 +139,8 @@ fn of_m_code(entry: &MCode) -> (Treatment, String) {
     let lost: String =
         "XYZ".chars().zip(entry.loses_position).filter(|(_, lost)| *lost).map(|(axis, _)| axis).collect();
     if !lost.is_empty() {
-        what.push(format!("position of {lost} unknown afterwards"));
+        let unless = if entry.changes_tool { ", unless the profile's `tool_change` says" } else { "" };
+        what.push(format!("position of {lost} unknown afterwards{unless}"));
     }
     if entry.ends_program {
         what.push("ends the program".to_owned());
@@ -143,6 +160,7 @@ fn note(action: &Action) -> String {
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
         Action::Dwell => "X, U and P are a time".to_owned(),
+        Action::DwellBySetting => "no word is a time, none beside it may be a position".to_owned(),
         Action::DwellP => "P is a time; axis words belong to the motion".to_owned(),
         Action::WorkOffsetNumbered => "the work offset that P numbers: `G54.1P1` in the profile".to_owned(),
         Action::WriteOffset => {

@@ -5,16 +5,16 @@ use std::ops::Range;
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
-    Action, CodeEntry, Command, CycleLevels, Flow, FrameRules, GCode, MCode, Macros, Numbers, OffsetL20,
-    Output, Paren, PointFree, Semicolon,
+    Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
+    Macros, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon,
 };
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
-    CodeRow, CommandRow, Grammar, L20, Levels, MRow, MacroLanguage, RoundBrackets, SemicolonRule, WithoutH,
-    WithoutPoint,
+    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, Levels, MRow, MacroLanguage, RoundBrackets,
+    SemicolonRule, StartUnit, TWord, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -61,6 +61,7 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
     let codes = unique(codes, |entry| entry.code, &mut wrong);
     let m_codes = unique(m_codes, |entry| entry.number, &mut wrong);
     let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
+    let lathe = grammar.lathe.iter().filter_map(|row| lathe(row, &mut wrong)).collect();
     let initial = checks::start_codes(&grammar.start.codes, &codes, &mut wrong);
     checks::letters(&grammar.text.letters, &mut wrong);
     checks::numbers(&grammar, &mut wrong);
@@ -68,20 +69,24 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
         wrong.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         return Err(wrong);
     }
-    Ok(dialect(name, grammar, codes, m_codes, commands, initial))
+    let rows = Rows { codes, m_codes, commands, lathe };
+    Ok(dialect(name, grammar, rows, initial))
 }
 
-/// The table as a value, once nothing in it is wrong.
-fn dialect(
-    name: &str,
-    grammar: Grammar,
+/// Rows that were read.
+struct Rows {
     codes: Vec<CodeEntry>,
     m_codes: Vec<MCode>,
     commands: Vec<Command>,
-    initial: Vec<GCode>,
-) -> Dialect {
-    let Grammar { title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, .. } =
-        grammar;
+    lathe: Vec<LatheSign>,
+}
+
+/// The table as a value, once nothing in it is wrong.
+fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dialect {
+    let Grammar {
+        title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, start, ..
+    } = grammar;
+    let Rows { codes, m_codes, commands, lathe } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     let polar_words = codes.iter().any(|entry| entry.action == Action::PolarOn);
@@ -101,7 +106,11 @@ fn dialect(
             SemicolonRule::EndOfBlock => Semicolon::EndOfBlock,
         },
         skip: text.block_delete.and_then(|mark| u8::try_from(mark.into_inner()).ok()),
-        colon_number: text.colon_number,
+        colon: match text.colon {
+            ColonRule::None => Colon::None,
+            ColonRule::Number => Colon::Number,
+            ColonRule::Comment => Colon::Comment,
+        },
         equals_words: text.equals_words,
         letters,
         numbers: Numbers {
@@ -117,6 +126,8 @@ fn dialect(
         m_codes,
         commands,
         initial,
+        unit_is_kept: start.unit == StartUnit::Kept,
+        lathe,
         flow: Flow {
             macros: match flow.macros {
                 MacroLanguage::None => Macros::None,
@@ -133,7 +144,19 @@ fn dialect(
             Levels::Reread => CycleLevels::Reread,
             Levels::Unstated => CycleLevels::Unstated,
         },
+        cycle_repeats: cycles.repeats.into_bytes(),
+        zero_repeats_define: cycles.zero_repeats == ZeroRepeats::Define,
         length_of_loaded_tool: tool_length.without_h == WithoutH::LoadedTool,
+        length_under_g40: match tool_length.under_g40 {
+            UnderG40::Stays => LengthAfter::Stays,
+            UnderG40::Ends => LengthAfter::Ends,
+            UnderG40::Unstated => LengthAfter::Unstated,
+        },
+        length_under_g49: match tool_length.under_g49 {
+            UnderG49::Ends => LengthAfter::Ends,
+            UnderG49::Unstated => LengthAfter::Unstated,
+        },
+        t_may_change_tool: tool_length.t_word == TWord::MayChange,
         frames: FrameRules {
             p_selects_numbered: frames.p_selects_numbered,
             l20: match frames.l20 {
@@ -153,6 +176,7 @@ fn dialect(
             centre_words: output.centre_words.into_inner(),
             radius_word: output.radius_word,
             arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
+            arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
             peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
             chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
         },
@@ -256,12 +280,14 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
             loses_position[index] = true;
         }
     }
-    let refuse = refusal(key, false, row.refuse.as_deref(), row.help.as_deref())?;
+    let refuse = refusal(key, row.switches.is_some(), row.refuse.as_deref(), row.help.as_deref())?;
     Ok(MCode {
         number,
         after_motion: row.after_motion,
         loses_position,
         ends_program: row.ends_program,
+        changes_tool: row.changes_tool,
+        switches: row.switches.clone(),
         refuse,
     })
 }
@@ -276,7 +302,45 @@ fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnosti
             .at(wide(key.span()), "expected capital letters, at least two"));
     }
     let refuse = refusal(key, false, row.refuse.as_deref(), row.help.as_deref())?;
-    Ok(Command { name: name.clone(), refuse })
+    Ok(Command { name: name.clone(), refuse, passes_with: row.passes_with })
+}
+
+/// A sign of a lathe; `None`, and what is wrong noted, where it cannot be read.
+fn lathe(row: &LatheRow, wrong: &mut Vec<Diagnostic>) -> Option<LatheSign> {
+    let mut codes = Vec::with_capacity(row.codes.len());
+    for code in &row.codes {
+        match number_behind(code.get_ref(), 'G').and_then(tenths) {
+            Some(tenths) => codes.push(GCode(tenths)),
+            None => {
+                wrong.push(no_code(code, "G50"));
+                return None;
+            }
+        }
+    }
+    let digits = match &row.digits {
+        None => None,
+        Some(written) => match written.get_ref().as_bytes() {
+            [letter @ b'A'..=b'Z', count @ b'2'..=b'8'] => Some((*letter, *count - b'0')),
+            _ => {
+                wrong.push(
+                    Diagnostic::error(Code(806), format!("`{}` is no letter and count", written.get_ref()))
+                        .at(wide(written.span()), "expected a letter and how many digits, like T4"),
+                );
+                return None;
+            }
+        },
+    };
+    Some(LatheSign {
+        codes,
+        commands: row.commands.clone(),
+        alone: row.alone,
+        with: row.with.to_ascii_uppercase().into_bytes(),
+        without: row.without.to_ascii_uppercase().into_bytes(),
+        digits,
+        sure: row.sure,
+        says: row.says.clone(),
+        mill: row.mill.clone(),
+    })
 }
 
 /// Sorted rows; a second row of the same code is reported at its key.

@@ -27,6 +27,8 @@ pub(crate) struct Grammar {
     pub(crate) m_codes: BTreeMap<Spanned<String>, MRow>,
     #[serde(default)]
     pub(crate) commands: BTreeMap<Spanned<String>, CommandRow>,
+    #[serde(default)]
+    pub(crate) lathe: Vec<LatheRow>,
 }
 
 /// How a block is written.
@@ -37,7 +39,7 @@ pub(crate) struct Text {
     pub(crate) semicolon: SemicolonRule,
     pub(crate) block_delete: Option<Spanned<char>>,
     #[serde(default)]
-    pub(crate) colon_number: bool,
+    pub(crate) colon: ColonRule,
     #[serde(default)]
     pub(crate) equals_words: bool,
     pub(crate) letters: Spanned<String>,
@@ -58,6 +60,15 @@ pub(crate) enum SemicolonRule {
     None,
     Comment,
     EndOfBlock,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ColonRule {
+    #[default]
+    None,
+    Number,
+    Comment,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -83,6 +94,39 @@ pub(crate) struct NumberRules {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Start {
     pub(crate) codes: Vec<Spanned<String>>,
+    #[serde(default)]
+    pub(crate) unit: StartUnit,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum StartUnit {
+    /// That of `codes`.
+    #[default]
+    Set,
+    /// That of the program before.
+    Kept,
+}
+
+/// A block by which a lathe's program is known.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LatheRow {
+    #[serde(default)]
+    pub(crate) codes: Vec<Spanned<String>>,
+    #[serde(default)]
+    pub(crate) commands: Vec<String>,
+    #[serde(default)]
+    pub(crate) alone: bool,
+    #[serde(default)]
+    pub(crate) with: String,
+    #[serde(default)]
+    pub(crate) without: String,
+    pub(crate) digits: Option<Spanned<String>>,
+    #[serde(default)]
+    pub(crate) sure: bool,
+    pub(crate) says: String,
+    pub(crate) mill: String,
 }
 
 /// Variables, program flow and subprograms.
@@ -113,8 +157,21 @@ pub(crate) enum MacroLanguage {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cycles {
     pub(crate) levels: Levels,
+    /// Letters that count the holes of a block.
+    #[serde(default)]
+    pub(crate) repeats: String,
+    #[serde(default)]
+    pub(crate) zero_repeats: ZeroRepeats,
     pub(crate) peck_clearance_mm: Spanned<f64>,
     pub(crate) chip_retreat_mm: Spanned<f64>,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ZeroRepeats {
+    #[default]
+    Refused,
+    Define,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -130,6 +187,39 @@ pub(crate) enum Levels {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ToolLength {
     pub(crate) without_h: WithoutH,
+    #[serde(default)]
+    pub(crate) under_g40: UnderG40,
+    #[serde(default)]
+    pub(crate) under_g49: UnderG49,
+    #[serde(default)]
+    pub(crate) t_word: TWord,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum UnderG40 {
+    #[default]
+    Stays,
+    Ends,
+    Unstated,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum UnderG49 {
+    #[default]
+    Ends,
+    Unstated,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum TWord {
+    /// M6 brings in what T selects.
+    #[default]
+    Selects,
+    /// T may bring it in at once.
+    MayChange,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -181,6 +271,7 @@ pub(crate) struct OutputRules {
     pub(crate) centre_words: Spanned<bool>,
     pub(crate) radius_word: bool,
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
+    pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
 }
 
 /// One G code: `does`, or `refuse` with `help`.
@@ -202,6 +293,9 @@ pub(crate) struct MRow {
     pub(crate) loses_position: Option<Spanned<String>>,
     #[serde(default)]
     pub(crate) ends_program: bool,
+    #[serde(default)]
+    pub(crate) changes_tool: bool,
+    pub(crate) switches: Option<String>,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
 }
@@ -210,6 +304,7 @@ pub(crate) struct MRow {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CommandRow {
+    pub(crate) passes_with: Option<u32>,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
 }

@@ -22,7 +22,7 @@ fn a_misspelt_action() {
     insta::assert_snapshot!(changed(r#"does = "inch""#, r#"does = "inches""#), @r#"
     error[VP0804]: `inches` is not something a code does
       at `"inches"`: G20 cannot do this
-      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
+      help: did you mean "inch"? known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, dwell-by-setting, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 
@@ -31,7 +31,7 @@ fn an_action_nothing_is_near_to() {
     insta::assert_snapshot!(changed(r#"does = "dwell-p""#, r#"does = "warten""#), @r#"
     error[VP0804]: `warten` is not something a code does
       at `"warten"`: G4 cannot do this
-      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
+      help: known are: rapid, line, arc-clockwise, arc-counterclockwise, dwell, dwell-by-setting, plane-xy, plane-zx, plane-yz, inch, millimetre, reference, machine-coordinates, probe, compensation-off, compensation-on, length-on, length-on-negative, length-off, work-offset, drill, bore, peck-full, peck-chip, synchronised-cycle, cycle-cancel, return-initial, return-r, absolute, incremental, arc-centres-absolute, arc-centres-incremental, feed-inverse-time, feed-per-minute, feed-per-revolution, work-offset-numbered, write-offset, local-shift, preset, preset-cancel, preset-suspend, preset-restore, rotation-on, rotation-off, scaling-on, scaling-off, mirror-on, mirror-off, polar-on, polar-off, length-from-words, dwell-p, pass, pass-with-words
     "#);
 }
 
@@ -109,17 +109,22 @@ fn a_start_that_cannot_be() {
 
 #[test]
 fn numbers_out_of_range() {
-    insta::assert_snapshot!(changed("radius_tolerance_mm = 0.01", "radius_tolerance_mm = nan"), @r#"
+    insta::assert_snapshot!(changed("radius_tolerance_mm = 0.0279", "radius_tolerance_mm = nan"), @r#"
     error[VP0806]: arc_radius_tolerance_mm = NaN is out of range
       at `nan`: expected above 0, up to 10 mm
       help: -
     "#);
-    insta::assert_snapshot!(changed("decimals_inch           = 4", "decimals_inch = 12"), @r#"
+    insta::assert_snapshot!(changed("tolerance_share = 0.001", "tolerance_share = 0.5"), @r#"
+    error[VP0806]: arc_radius_tolerance_share = 0.5 is out of range
+      at `0.5`: expected 0 to 0.01 of the radius
+      help: -
+    "#);
+    insta::assert_snapshot!(changed("decimals_inch           = 6", "decimals_inch = 12"), @r#"
     error[VP0806]: decimals_inch = 12 is no control's resolution
       at `12`: expected 0 to 9
       help: -
     "#);
-    insta::assert_snapshot!(changed("loses_position = \"XYZ\" }\nM9", "loses_position = \"XQ\" }\nM9"), @r#"
+    insta::assert_snapshot!(changed("loses_position = \"XYZ\" }\nM7", "loses_position = \"XQ\" }\nM7"), @r#"
     error[VP0806]: `Q` is not a linear axis
       at `"XQ"`: expected some of X, Y, Z
       help: -

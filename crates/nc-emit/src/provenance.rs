@@ -66,7 +66,8 @@ pub fn find_provenance(text: &[u8]) -> Option<Range<u64>> {
 /// Where the comment goes: bytes of the file before it.
 ///
 /// After the first `%`, a leader before it, the program's name and its `O` or `:` word, where these
-/// open the program; before everything else.
+/// open the program, and after what a control reads in comments behind its `%` (`;$PATH=/_N_WKS_DIR`); before
+/// everything else.
 #[must_use]
 pub fn provenance_position<'t>(blocks: impl IntoIterator<Item = impl Borrow<Block<'t>>>) -> u64 {
     let mut position = 0;
@@ -88,7 +89,9 @@ pub fn provenance_position<'t>(blocks: impl IntoIterator<Item = impl Borrow<Bloc
                 }
                 ItemKind::Name => opens = true,
                 ItemKind::Word { letter: b'O' | b':', .. } => opens = true,
-                ItemKind::Comment => {}
+                ItemKind::Comment => {
+                    opens |= percent_seen && block.text(item.span).starts_with(b";$");
+                }
                 _ => {
                     if !opens {
                         return position;

@@ -75,3 +75,18 @@ fn no_comment_changes_nothing() {
     insert_provenance(&mut out, 0, b"");
     assert_eq!(out, b"G0");
 }
+
+/// The control reads the folder from the line behind the name.
+#[test]
+fn the_path_of_a_sinumerik_program_stays_behind_its_name() {
+    let dialect = nc_dialect::builtin("sinumerik").unwrap();
+    let text = "%_N_PART_MPF\n;$PATH=/_N_WKS_DIR/_N_PART_WPD\n;(POSTED)\nG0 X1\n";
+    let mut out = text.as_bytes().to_vec();
+    insert_provenance(&mut out, provenance_position(read(dialect, text)), b";C");
+    assert_eq!(
+        String::from_utf8(out).unwrap(),
+        "%_N_PART_MPF\n;$PATH=/_N_WKS_DIR/_N_PART_WPD\n;C\n;(POSTED)\nG0 X1\n"
+    );
+    // Without a name above it such a comment is one like any other.
+    assert_eq!(provenance_position(read(dialect, ";$PATH=/_N_WKS_DIR\nG0 X1\n")), 0);
+}

@@ -51,7 +51,7 @@ use std::ops::Range;
 
 use diagnostic::Diagnostic;
 use nc_syntax::dialect::{Dialect, Macros};
-use nc_syntax::{Block, Reader};
+use nc_syntax::{Block, ItemKind, Reader};
 
 use output::Segment;
 pub use variables::Preset;
@@ -244,7 +244,14 @@ impl Work {
         }
         let mut reader = Reader::new(text, dialect);
         let mut block = Block::default();
+        let mut runs = false;
         while reader.next(&mut block) {
+            // What stands behind a `%` that closes the program is not executed, whatever it would be.
+            let percent = block.items.iter().any(|item| item.kind == ItemKind::Percent);
+            if percent && runs {
+                break;
+            }
+            runs |= block.acts();
             work.flow |= may_flow && statement::needs_work(&block, dialect);
             work.shorthand |= may_be_short && shorthand::needed(&block, dialect);
             if (work.flow || !may_flow) && (work.shorthand || !may_be_short) {

@@ -109,7 +109,8 @@ impl Run<'_, '_> {
     /// True for M codes that end, call or return.
     fn decides_flow(&self, code: f64) -> bool {
         let row = self.dialect.m_code(code.clamp(0.0, 65535.0) as u16);
-        matches!(code, 98.0 | 99.0 | 198.0) || row.is_some_and(|row| row.ends_program || row.refuse.is_some())
+        matches!(code, 98.0 | 99.0 | 198.0)
+            || row.is_some_and(|row| row.ends_program || row.refuse.is_some() || row.switches.is_some())
     }
 
     /// A G code from a variable sets what it sets.

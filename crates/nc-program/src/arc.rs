@@ -12,6 +12,25 @@ const SAME_POINT_MM: f64 = 1e-6;
 /// An arc whose ends lie on one ray from the centre, up to this angle, is a full turn.
 const SAME_RAY_RAD: f64 = 1e-9;
 
+/// By how much the radii at start and end of an arc may differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tolerance {
+    /// Whatever the radius, mm.
+    pub(crate) absolute_mm: f64,
+    /// As a share of the radius, where that is more.
+    pub(crate) share: f64,
+}
+
+/// So many times the absolute tolerance is the most that a share of the radius may come to (LinuxCNC).
+const MOST_TIMES: f64 = 100.0;
+
+impl Tolerance {
+    /// What is allowed at a radius, mm.
+    pub(crate) fn at(self, radius_mm: f64) -> f64 {
+        self.absolute_mm.max((self.share * radius_mm).min(MOST_TIMES * self.absolute_mm))
+    }
+}
+
 /// Centre and signed angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Circle {
@@ -26,7 +45,7 @@ pub(crate) enum Fault {
     /// The start is the centre.
     NoRadius,
     /// The ends lie on different circles.
-    RadiiDiffer { start_mm: f64, end_mm: f64 },
+    RadiiDiffer { start_mm: f64, end_mm: f64, allowed_mm: f64 },
     /// R is shorter than half the chord.
     RadiusTooSmall { radius_mm: f64, chord_mm: f64 },
     /// R gives no centre where start and end are the same point.
@@ -36,7 +55,7 @@ pub(crate) enum Fault {
 /// The circle about a given centre.
 ///
 /// * `start`, `end`, `centre` – mm, in the plane's first and second axis
-/// * `tolerance_mm` – largest difference of the radii at start and end that the control takes
+/// * `tolerance` – largest difference of the radii at start and end that the control takes
 ///
 /// Equal ends make a full circle.
 pub(crate) fn by_centre(
@@ -44,7 +63,7 @@ pub(crate) fn by_centre(
     end: [f64; 2],
     centre: [f64; 2],
     turn: Turn,
-    tolerance_mm: f64,
+    tolerance: Tolerance,
 ) -> Result<Circle, Fault> {
     let from = [start[0] - centre[0], start[1] - centre[1]];
     let to = [end[0] - centre[0], end[1] - centre[1]];
@@ -54,8 +73,9 @@ pub(crate) fn by_centre(
         return Err(Fault::NoRadius);
     }
     // The last term: what subtracting machine coordinates of metres leaves in binary.
-    if (start_mm - end_mm).abs() > tolerance_mm + 1e-9 {
-        return Err(Fault::RadiiDiffer { start_mm, end_mm });
+    let allowed_mm = tolerance.at(start_mm.min(end_mm));
+    if (start_mm - end_mm).abs() > allowed_mm + 1e-9 {
+        return Err(Fault::RadiiDiffer { start_mm, end_mm, allowed_mm });
     }
     let same_point = (end[0] - start[0]).abs() < SAME_POINT_MM && (end[1] - start[1]).abs() < SAME_POINT_MM;
     let angle = if same_point {
@@ -123,30 +143,57 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::FRAC_PI_2;
 
+    const EXACT: Tolerance = Tolerance { absolute_mm: 0.001, share: 0.0 };
+
+    /// LinuxCNC as its interpreter answers: up to 0.0279 mm, from there to 0.1 % of the radius, and never above 2.79 mm.
+    #[test]
+    fn radii_may_differ_by_a_share_of_the_radius() {
+        let tolerance = Tolerance { absolute_mm: 0.0279, share: 0.001 };
+        let takes = |radius: f64, end: f64| {
+            by_centre([radius, 0.0], [0.0, -end], [0.0, 0.0], Clockwise, tolerance).is_ok()
+        };
+        for (radius, good, bad) in [
+            (10.0, 10.0279, 10.029),
+            (100.0, 100.09, 100.11),
+            (1000.0, 1000.9, 1001.1),
+            (5000.0, 5002.7, 5003.0),
+        ] {
+            assert!(takes(radius, good) && !takes(radius, bad), "{radius}");
+        }
+    }
+
     fn near(a: f64, b: f64) {
         assert!((a - b).abs() < 1e-9, "{a} is not {b}");
     }
 
     #[test]
     fn quarter_and_three_quarters() {
-        let by = |turn| by_centre([10.0, 0.0], [0.0, 10.0], [0.0, 0.0], turn, 0.001).unwrap().sweep_rad;
+        let by = |turn| by_centre([10.0, 0.0], [0.0, 10.0], [0.0, 0.0], turn, EXACT).unwrap().sweep_rad;
         near(by(CounterClockwise), FRAC_PI_2);
         near(by(Clockwise), -3.0 * FRAC_PI_2);
     }
 
     #[test]
     fn equal_ends_are_a_full_circle() {
-        let full = |turn| by_centre([10.0, 0.0], [10.0, 1e-9], [0.0, 0.0], turn, 0.001).unwrap().sweep_rad;
+        let full = |turn| by_centre([10.0, 0.0], [10.0, 1e-9], [0.0, 0.0], turn, EXACT).unwrap().sweep_rad;
         near(full(CounterClockwise), TAU);
         near(full(Clockwise), -TAU);
     }
 
     #[test]
     fn radii_may_differ_by_the_tolerance() {
-        let by = |end| by_centre([10.0, 0.0], [0.0, end], [0.0, 0.0], Clockwise, 0.01);
+        let by = |end| {
+            by_centre(
+                [10.0, 0.0],
+                [0.0, end],
+                [0.0, 0.0],
+                Clockwise,
+                Tolerance { absolute_mm: 0.01, share: 0.0 },
+            )
+        };
         assert!(by(10.01).is_ok());
-        assert_eq!(by(10.5), Err(Fault::RadiiDiffer { start_mm: 10.0, end_mm: 10.5 }));
-        assert_eq!(by_centre([1.0, 1.0], [1.0, 1.0], [1.0, 1.0], Clockwise, 0.01), Err(Fault::NoRadius));
+        assert_eq!(by(10.5), Err(Fault::RadiiDiffer { start_mm: 10.0, end_mm: 10.5, allowed_mm: 0.01 }));
+        assert_eq!(by_centre([1.0, 1.0], [1.0, 1.0], [1.0, 1.0], Clockwise, EXACT), Err(Fault::NoRadius));
     }
 
     #[test]
@@ -180,7 +227,7 @@ mod tests {
             let at = |angle: f64| [x + r * math::cos(angle), y + r * math::sin(angle)];
             let signed = if clockwise { -sweep } else { sweep };
             let (start, end) = (at(from), at(from + signed));
-            let circle = by_centre(start, end, [x, y], turn, 0.001).unwrap();
+            let circle = by_centre(start, end, [x, y], turn, EXACT).unwrap();
             prop_assert!((circle.sweep_rad - signed).abs() < 1e-9);
             let radius = if sweep > PI { -r } else { r };
             let circle = by_radius(start, end, radius, turn, 0.001).unwrap();

@@ -3,7 +3,7 @@
 use diagnostic::Diagnostic;
 use toolpath::{Arc, Feed, Motion, Shape};
 
-use crate::arc::{self, Circle, Fault};
+use crate::arc::{self, Circle, Fault, Tolerance};
 use crate::codes;
 use crate::frames::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
@@ -51,7 +51,9 @@ pub(crate) fn circular(
     let local = |point: &[f64; 3]| plane(&if shift { *point } else { frame.to_program(*point) });
     let (start_2d, end_2d) = (local(&from.linear_mm), local(&to.linear_mm));
     let origin = if shift { plane(&frame.offset_mm()) } else { [0.0; 2] };
-    let tolerance_mm = env.dialect.output.arc_radius_tolerance_mm;
+    let output = &env.dialect.output;
+    let tolerance =
+        Tolerance { absolute_mm: output.arc_radius_tolerance_mm, share: output.arc_radius_tolerance_share };
     let inch = state.units == Units::Inch;
     let circle = match words.coordinate(b'R', inch) {
         Some(_) if words.has(CENTRE_LETTERS) => {
@@ -60,14 +62,15 @@ pub(crate) fn circular(
                 .refuse(codes::ARC_WORDS, "R and a centre in one arc", span, "which one?")
                 .help(format!("remove R or {}", words.names(CENTRE_LETTERS))));
         }
-        Some(radius) => arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance_mm),
+        Some(radius) => {
+            arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance.absolute_mm)
+        }
         None => {
             let centre = centre(words, state, start_2d, origin)?;
-            arc::by_centre(start_2d, end_2d, centre, turn, tolerance_mm)
+            arc::by_centre(start_2d, end_2d, centre, turn, tolerance)
         }
     };
-    let Circle { centre_mm, sweep_rad } =
-        circle.map_err(|fault| no_circle(words, state, fault, tolerance_mm))?;
+    let Circle { centre_mm, sweep_rad } = circle.map_err(|fault| no_circle(words, state, fault))?;
     let rate = feed_rate(words, state)?;
     state.axes = end;
     let centre_mm = if shift {
@@ -169,7 +172,7 @@ fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagno
         ))
 }
 
-fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_mm: f64) -> Box<Diagnostic> {
+fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diagnostic> {
     let [one, two] = shown_letters(state);
     let (unit_mm, unit) = match state.units {
         Units::Millimetre => (1.0, "mm"),
@@ -181,13 +184,13 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault, tolerance_m
         Fault::NoRadius => words
             .refuse(codes::ARC_WORDS, "an arc about its own start", centre, format!("{one} and {two} are 0"))
             .help(format!("write the distance from the start to the centre as {one} and {two}")),
-        Fault::RadiiDiffer { start_mm, end_mm } => {
+        Fault::RadiiDiffer { start_mm, end_mm, allowed_mm } => {
             let message = "the ends of the arc lie at different distances from its centre";
             let label = format!(
                 "radius {} at the start, {} {unit} at the end, {} allowed",
                 show(start_mm),
                 show(end_mm),
-                show(tolerance_mm)
+                show(allowed_mm)
             );
             let mode = match state.arc_centres {
                 ArcCentres::Incremental => "measured from the start (G91.1)",

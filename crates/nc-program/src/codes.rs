@@ -31,8 +31,8 @@ pub const BAD_NUMBER: Code = Code(211);
 /// Axis words without a motion code in force. Remedy: G0, G1, G2 or G3 in the block.
 pub const NO_MOTION_CODE: Code = Code(212);
 /// A motion needs the position of an axis that nobody knows here: at the start of the program, after a
-/// reference return, a tool change, a probe move or a skipped block. Remedy: a rapid that names the
-/// axis in absolute coordinates, or `--start-at`.
+/// reference return, a tool change, a change of tool length without a word of its axis, a probe move or a
+/// skipped block. Remedy: a rapid that names the axis in absolute coordinates.
 pub const POSITION_UNKNOWN: Code = Code(213);
 /// The work offset in force is neither in the profile nor on the command line.
 /// Remedy: `--work-offset G54=X,Y,Z`.
@@ -48,7 +48,7 @@ pub const CYCLE_WORDS: Code = Code(217);
 pub const INVERSE_TIME: Code = Code(218);
 /// A rotary axis is programmed that the profile's chain does not have.
 pub const NO_SUCH_AXIS: Code = Code(219);
-/// Rotary and linear axes move together at feed rate: no path correction is available for that.
+/// Rotary axes move at feed rate, alone or together with linear ones: no path correction is available for that.
 pub const SIMULTANEOUS: Code = Code(220);
 /// U, V or W: increments on some controls, axes on others.
 pub const SECONDARY_AXIS: Code = Code(221);
@@ -70,3 +70,16 @@ pub const COMBINATION: Code = Code(226);
 pub const FRAME: Code = Code(227);
 /// Motion stands behind the end of the program: a second program in the same file, say. Remedy: a file for each.
 pub const AFTER_END: Code = Code(228);
+/// The program was made for a lathe. Remedy: none yet, vpost corrects mills.
+pub const LATHE: Code = Code(240);
+/// Lengths with and without a decimal point, where a parameter of the control decides what the latter are. Remedy:
+/// `--decimal`.
+pub const MIXED_LENGTHS: Code = Code(241);
+/// Doubt: lengths without a decimal point are read as increments. Remedy: `--decimal`.
+pub const BARE_LENGTHS: Code = Code(242);
+/// Doubt: M codes that no table knows pass. Remedy: `[m_codes] harmless` in the profile.
+pub const UNKNOWN_M_CODE: Code = Code(243);
+/// Doubt: the program states no unit, and the control keeps that of the program before. Remedy: G21.
+pub const UNIT_UNSTATED: Code = Code(244);
+/// Doubt: the program may have been cut off. Remedy: the whole one.
+pub const CUT_OFF: Code = Code(245);

@@ -1,6 +1,6 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
-use nc_syntax::dialect::{CycleCode, CycleLevels};
+use nc_syntax::dialect::{CycleCode, CycleLevels, GCode};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
 
@@ -17,6 +17,9 @@ const SAME_LEVEL_MM: f64 = 1e-6;
 /// More holes than a control repeats in one block.
 const MOST_REPEATS: u32 = 9999;
 
+/// Cycles that take no P on any control whose manual was read; their twins G82 and G89 differ in nothing else.
+const WITHOUT_DWELL: [GCode; 2] = [GCode(810), GCode(850)];
+
 const K: Letters = Letters::of(b"K");
 const L: Letters = Letters::of(b"L");
 const Q: Letters = Letters::of(b"Q");
@@ -27,16 +30,49 @@ pub(crate) fn makes_hole(words: &Words<'_, '_, '_>) -> bool {
     words.has(AXIS_LETTERS.or(R))
 }
 
-/// How often the block is repeated: K or L, else once.
-pub(crate) fn repeats(words: &Words<'_, '_, '_>) -> Outcome<u32> {
+/// How often the block is repeated, by K or L; else once.
+pub(crate) fn repeats(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<u32> {
     let (k, l) = (words.whole(b'K')?, words.whole(b'L')?);
     let both = K.or(L);
+    for (letter, count) in [(b'K', k), (b'L', l)] {
+        let counts = env.dialect.cycle_repeats.contains(&letter);
+        // Once is once, whoever counts.
+        if count.is_some_and(|count| count != 1) && !counts {
+            let span = words.span(Letters::of(&[letter]));
+            let message = format!("{} in a drilling cycle", words.text(span));
+            return Err(words
+                .refuse(
+                    codes::CYCLE_WORDS,
+                    message,
+                    span,
+                    "counts holes on some controls, is another depth or nothing on others",
+                )
+                .help("write each hole in a block of its own, or what the control's manual says as cycles.repeats in a copy of the grammar"));
+        }
+    }
     if k.is_some() && l.is_some() {
         return Err(words
             .refuse(codes::CYCLE_WORDS, "K and L both count repetitions", words.span(both), "which one?")
             .help("remove one of the two"));
     }
     let count = k.or(l).unwrap_or(1);
+    if count == 0 && !env.dialect.zero_repeats_define {
+        let message = "a drilling cycle repeated zero times";
+        return Err(words
+            .refuse(codes::CYCLE_WORDS, message, words.span(both), "an error on this control")
+            .help("write the words in the block of the first hole"));
+    }
+    if k.is_some() && words.has(Letters::of(b"IJ")) {
+        let span = words.span(Letters::of(b"IJK"));
+        return Err(words
+            .refuse(
+                codes::CYCLE_WORDS,
+                "K beside I or J in a drilling cycle",
+                span,
+                "a count of holes, or the smallest peck? controls differ",
+            )
+            .help("write each hole in a block of its own, with its pecks as Q"));
+    }
     if count > MOST_REPEATS {
         let message = format!("{count} repetitions of a drilling cycle");
         return Err(words
@@ -108,7 +144,8 @@ pub(crate) fn holes(
     let parameters = Cycle {
         kind: kind(cycle.kind),
         peck_mm: cycle.peck_mm,
-        dwell: cycle.dwell,
+        // P beside a cycle without a dwell (G81, G85) is kept for the next, and is not its own.
+        dwell: cycle.dwell.filter(|_| !WITHOUT_DWELL.contains(&cycle.code)),
         return_to_initial: state.return_level == ReturnLevel::Initial,
     };
     let mut motions: Motions = SmallVec::with_capacity(count as usize);
@@ -222,7 +259,8 @@ fn read_words(
         cycle.peck_mm = Some((value * unit_mm).abs());
     }
     if let Some(value) = words.plain(b'P') {
-        cycle.dwell = value > 0.0;
+        let time = words.number(b'P').map(|(number, _)| number.decimal);
+        cycle.dwell = time.filter(|_| value > 0.0);
     }
     Ok(())
 }

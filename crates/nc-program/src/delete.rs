@@ -9,8 +9,8 @@
 
 use crate::codes;
 use crate::modal::{
-    Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress, ReturnLevel,
-    ToolLength, Units, Why,
+    Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress, ReturnLevel,
+    Stated, ToolLength, Units, Why,
 };
 use crate::words::{Outcome, Words};
 
@@ -37,14 +37,24 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         both.tool_loaded = None;
     }
     let lost = Axis::Unknown(Lost { why: Why::BlockDelete, line });
-    if aside.moved {
-        both.axes.linear = [lost; 3];
-    }
     for i in 0..3 {
+        if aside.moved || executed.axes.linear[i] != skipped.axes.linear[i] {
+            both.axes.linear[i] = lost;
+        }
         if executed.axes.rotary[i] != skipped.axes.rotary[i] {
             both.axes.rotary[i] = lost;
         }
     }
+    for i in 0..3 {
+        if executed.named[i] != skipped.named[i] || aside.moved {
+            both.named[i] = Naming::Since(Lost { why: Why::BlockDelete, line });
+        }
+    }
+    both.stated = Stated {
+        work_offset: executed.stated.work_offset && skipped.stated.work_offset,
+        tool_length: executed.stated.tool_length && skipped.stated.tool_length,
+        units: executed.stated.units && skipped.stated.units,
+    };
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
     both.progress = Progress::Running;

@@ -1,21 +1,22 @@
 //! Block by block: check the whole block, then commit it.
 
 use diagnostic::Diagnostic;
-use nc_syntax::dialect::{Action, GCode};
-use nc_syntax::{Block, Dialect, ItemKind, Value};
+use nc_syntax::dialect::{Action, GCode, MCode};
+use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Motion, Plane};
 
 use crate::codes;
 use crate::delete;
 use crate::modal::{
-    ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Progress,
-    ReturnLevel, Shifts, ToolLength, Transform, Units, Why, WorkOffset,
+    ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming,
+    Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset,
 };
 use crate::motion::{self, Moved};
+use crate::naming;
 use crate::plain::Plain;
 use crate::settings::{self, Environment};
-use crate::setup::Setup;
+use crate::setup::{AfterChange, Setup};
 use crate::words::{Outcome, Words};
 
 /// What a block means.
@@ -40,6 +41,8 @@ pub struct Context {
     pub frame: Frame,
     /// One unit of the program in mm: 1.0 or 25.4.
     pub unit_mm: f64,
+    /// G93, G94, G95.
+    pub feed_mode: FeedMode,
     /// G91.
     pub incremental: bool,
     /// G90.1.
@@ -61,6 +64,9 @@ pub struct Context {
     pub repeats: u32,
     /// Axes that a motion names together: a rotation, scaling or mirror was switched since they were last named.
     pub whole: [bool; 3],
+    /// X, Y, Z: since when the program has not named the axis in the frame in force, before this block; `None` where it
+    /// has. No word may be added for one that is not named.
+    pub unnamed: [Option<Lost>; 3],
 }
 
 /// Executes a program block by block.
@@ -105,6 +111,8 @@ impl<'d> Interpreter<'d> {
                     .has_rotary
                     .map(|has| if has && setup.rotary_matters { unknown } else { Axis::At(0.0) }),
             },
+            named: [Naming::Since(Lost { why: Why::Start, line: 0 }); 3],
+            stated: Stated::default(),
             tool_selected: None,
             tool_loaded: None,
             progress: Progress::Leader,
@@ -196,19 +204,26 @@ fn run<'d>(
     if words.percent {
         // The first `%` opens a tape, unless the program already runs; the next one closes it.
         state.progress = match before.progress {
-            Progress::Leader => Progress::Running,
+            Progress::Leader => Progress::Opened,
+            Progress::Opened | Progress::OpenedTwice => Progress::OpenedTwice,
             Progress::Running | Progress::Ended => Progress::Ended,
         };
     }
     if words.is_idle() || state.progress == Progress::Ended {
         return Ok(());
     }
+    if state.progress == Progress::OpenedTwice {
+        return Err(opened_twice(words));
+    }
     state.progress = Progress::Running;
     let demand = settings::apply(env, words, before, state)?;
+    naming::disturb(env, words, &demand, before, state);
+    moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
     if !words.m_codes.is_empty() {
         miscellaneous(env, words, state, moved)?;
     }
+    naming::name(words, &demand, before, state, moved);
     Ok(())
 }
 
@@ -231,6 +246,48 @@ fn after_end(block: &Block<'_>) -> Outcome<()> {
     }
 }
 
+/// What an M code makes of the axes: those that it moves stand anywhere afterwards, or where the setup says that a
+/// tool change leaves them. Who says that knows the machine: an axis that was named before stays so, since the frame is
+/// the same.
+fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> SmallVec<[Motion; 1]> {
+    let why = Why::Miscellaneous { code: row.number, changes_tool: row.changes_tool };
+    let known = |i: usize| if row.changes_tool { env.setup.tool_change[i] } else { AfterChange::Unknown };
+    let moved = [0, 1, 2].map(|i| row.loses_position[i] && known(i) != AfterChange::Stays);
+    if moved == [false; 3] {
+        return SmallVec::new();
+    }
+    for i in (0..3).filter(|i| moved[*i]) {
+        state.axes.linear[i] = Axis::Unknown(Lost { why, line });
+    }
+    let mut motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+    let mut arrives = false;
+    for i in (0..3).filter(|i| moved[*i]) {
+        if let AfterChange::At(place_mm) = known(i) {
+            state.axes.linear[i] = Axis::At(place_mm);
+            arrives = true;
+        }
+    }
+    if arrives {
+        // Two motions, since the words name no axis: the first takes them from where they stood, whoever follows.
+        motions.push(Motion::Uncorrected { end: state.axes.partial() });
+    }
+    motions
+}
+
+/// Two `%` in front of the program: a control that takes the second for the end would execute nothing, one that does
+/// not all of it.
+fn opened_twice(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+    let whole = Span { start: 0, end: words.block.bytes.trim_ascii_end().len() as u32 };
+    words
+        .refuse(
+            codes::AFTER_END,
+            "two `%` stand in front of the program",
+            whole,
+            "the second `%` closes what the first opens, so this may be behind the end",
+        )
+        .help("delete one of the two `%`")
+}
+
 /// M codes that the dialect's table names.
 fn miscellaneous(
     env: &Environment<'_>,
@@ -249,12 +306,7 @@ fn miscellaneous(
                     .refuse(codes::COMBINATION, message, span, "before or after the motion? controls differ")
                     .help("write it in a block of its own"));
             }
-            for i in 0..3 {
-                if row.loses_position[i] {
-                    state.axes.linear[i] = Axis::Unknown(Lost { why: Why::Machine, line: words.block.line });
-                }
-            }
-            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+            moved.motions = leave(env, row, words.block.line, state);
         }
         if row.ends_program {
             state.progress = Progress::Ended;
@@ -273,6 +325,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
     Context {
         frame: state.frame.clone().unwrap_or_default(),
         unit_mm: state.units.mm(),
+        feed_mode: state.feed_mode,
         incremental: state.distance == Distance::Incremental,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
         plane: state.plane,
@@ -282,6 +335,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,
+        unnamed: moved.unnamed,
         whole: if before.transform == state.transform {
             before.unsettled
         } else {

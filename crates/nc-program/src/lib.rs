@@ -8,8 +8,8 @@
 //! # Positions
 //!
 //! * The axes stand nowhere known at the start ([`Setup::start_mm`] may say otherwise), after G28, G30
-//!   and probe moves (the axes named; all where none is named), after M codes whose row says so, after G53
-//!   under G91, and behind motions that block delete may skip. G53 under G90 makes its axes known.
+//!   and probe moves (the axes named; all where none is named), after M codes whose row says so (behind a tool change the
+//!   setup may know better), after G53 under G91, and behind motions that block delete may skip. G53 under G90 makes its axes known.
 //! * A rapid may start from and lead to partly unknown positions. A feed move, an arc, a cycle and an
 //!   increment need the positions they start from.
 //! * A change of work offset or tool length moves nothing: the axis commands stay, and the program's
@@ -30,7 +30,8 @@
 //!   K0 or L0. Its initial level is the normal axis where the series of cycles began.
 //! * `/`: see the module `delete`: blocks of one switch behind each other are executed all or skipped all; settings that
 //!   would differ behind them are refused, positions are forgotten.
-//! * Words no code here asks for (S, T, D, E, unknown M) pass. Unknown G codes, variables, flow and bracket
+//! * Words no code here asks for (S, T, D, E, unknown M) pass; unknown M codes are counted ([`Evidence`]). What they mean
+//!   for the part: [`process`]. Unknown G codes, variables, flow and bracket
 //!   commands are refused.
 //! * The first `%` opens the program, the next one, M2 or M30 ends it; nothing after that is looked at.
 
@@ -39,19 +40,23 @@ mod circular;
 pub mod codes;
 mod cycle;
 mod delete;
+mod evidence;
 mod frames;
 mod interpreter;
 pub mod modal;
 mod motion;
+mod naming;
 mod plain;
 mod position;
+pub mod process;
 mod settings;
 mod setup;
 mod tool_length;
 mod transform;
 mod words;
 
+pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::Modal;
 pub use plain::{PlainEnd, PlainFeeds};
-pub use setup::Setup;
+pub use setup::{AfterChange, Setup};

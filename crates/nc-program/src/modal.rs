@@ -2,6 +2,7 @@
 
 use nc_syntax::dialect::{CycleCode, GCode};
 use toolpath::{Frame, Partial, Plane};
+use units::decimal::Decimal;
 
 pub use crate::transform::Transform;
 
@@ -137,6 +138,12 @@ pub enum ToolLength {
 }
 
 impl ToolLength {
+    /// No length: off, or that of H0.
+    #[must_use]
+    pub const fn is_none(&self) -> bool {
+        matches!(self, Self::Off | Self::On { number: 0, .. })
+    }
+
     /// What is added to axis commands, mm.
     #[must_use]
     pub const fn applied_mm(&self) -> [f64; 3] {
@@ -192,10 +199,56 @@ pub enum Why {
     MachineCoordinates,
     /// A probe move ends where it touches.
     Probe,
-    /// M6 and the like.
-    Machine,
+    /// An M code whose row says so: a tool change, a pallet change, a return.
+    Miscellaneous {
+        /// 6 of M6.
+        code: u16,
+        /// It changes the tool.
+        changes_tool: bool,
+    },
     /// A motion that block delete may skip.
     BlockDelete,
+    /// A tool length that changes: some controls move its axis at once.
+    ToolLength,
+    /// A tool offset that is chosen by D.
+    ToolOffset,
+    /// G53: what its words say is no place of the frame, and some controls end a tool length with it.
+    MachineWords,
+    /// A work offset, a shift, a rotation, a scaling or a mirror.
+    Frame,
+    /// G20, G21.
+    Units,
+}
+
+/// Whether the program has itself named an axis in the frame in force (`crate::naming`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Naming {
+    /// By an absolute word.
+    Named,
+    /// Not since this.
+    Since(Lost),
+}
+
+impl Naming {
+    /// Since when not, where that is so.
+    #[must_use]
+    pub const fn lost(self) -> Option<Lost> {
+        match self {
+            Self::Named => None,
+            Self::Since(lost) => Some(lost),
+        }
+    }
+}
+
+/// Settings that the program has itself written; the others are what the control was left with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stated {
+    /// G54 and its like.
+    pub work_offset: bool,
+    /// G43, G44, G49, G43.1.
+    pub tool_length: bool,
+    /// G20, G21.
+    pub units: bool,
 }
 
 /// One axis.
@@ -265,8 +318,8 @@ pub struct CycleState {
     pub bottom: Option<Level>,
     /// Q, mm, without sign.
     pub peck_mm: Option<f64>,
-    /// P above zero.
-    pub dwell: bool,
+    /// P as written, where it is above zero.
+    pub dwell: Option<Decimal>,
     /// It has made a hole.
     pub drilled: bool,
 }
@@ -276,7 +329,11 @@ pub struct CycleState {
 pub enum Progress {
     /// Nothing but names and comments so far.
     Leader,
-    /// After the opening `%`, or after the first word.
+    /// The same behind the opening `%`.
+    Opened,
+    /// The same behind a second `%`: one of the two closes the program before it begins.
+    OpenedTwice,
+    /// After the first word.
     Running,
     /// After M2, M30 or the closing `%`: nothing that follows is executed.
     Ended,
@@ -333,6 +390,10 @@ pub struct Modal {
     pub frame: Option<Frame>,
     /// Where the axes are.
     pub axes: Axes,
+    /// Which of X, Y, Z the program has named in this frame.
+    pub named: [Naming; 3],
+    /// Which settings it has written.
+    pub stated: Stated,
     /// The last T.
     pub tool_selected: Option<u32>,
     /// The T that the last M6 brought into the spindle.

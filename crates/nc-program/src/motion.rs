@@ -28,6 +28,8 @@ pub(crate) struct Moved {
     pub(crate) arc_by_radius: bool,
     pub(crate) repeats: u32,
     pub(crate) states_position: bool,
+    /// Axes that the program has not named in the frame of the block before it.
+    pub(crate) unnamed: [Option<Lost>; 3],
 }
 
 /// Executes the words of a block whose codes are already applied to `state`.
@@ -52,6 +54,7 @@ pub(crate) fn execute(
         Owner::Frame => moved.states_position = frames::execute(env, words, demand, before, state)?,
         Owner::Length => tool_length::from_words(words, demand, before, state)?,
         Owner::Dwell => dwell(words, demand)?,
+        Owner::DwellBySetting => dwell_by_setting(words, demand)?,
         Owner::Arguments => {
             if let (Some(motion), true) = (demand.written_motion, words.has(AXIS_LETTERS.or(ARC_LETTERS))) {
                 return Err(whose(words, demand, motion));
@@ -133,7 +136,7 @@ fn by_mode(
     moved: &mut Moved,
 ) -> Outcome<()> {
     if let Some(running) = state.cycle {
-        moved.repeats = cycle::repeats(words)?;
+        moved.repeats = cycle::repeats(env, words)?;
         if cycle::makes_hole(words) {
             moved.motions = cycle::holes(env, words, state, running, moved.repeats)?;
         } else if words.has(Letters::of(b"Q")) {
@@ -210,7 +213,10 @@ fn straight(
     state.axes = end;
     let turns = words.has(ROTARY_LETTERS);
     if turns && (!words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary)) {
-        // Only rotary axes move: nothing to correct, and the linear axes stay where they are.
+        if !rapid && env.setup.rotary_matters && end.rotary != start.rotary {
+            return Err(rotary_feed(words));
+        }
+        // Rotary axes position, or their place does not matter: the linear axes stay where they are.
         motions.push(Motion::Uncorrected { end: end.partial() });
         return Ok(());
     }
@@ -274,6 +280,22 @@ fn dwell(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
             .help("write the dwell in a block of its own"));
     }
     Ok(())
+}
+
+/// G4 whose time is set elsewhere: axis words are a motion's, and whether it comes before or after is not known.
+fn dwell_by_setting(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
+    let others = AXIS_LETTERS.or(ARC_LETTERS).or(SECONDARY_LETTERS);
+    if !words.has(others) && demand.written_motion.is_none() {
+        return Ok(());
+    }
+    Err(words
+        .refuse(
+            codes::WORDS_OF_TWO,
+            "a dwell and a motion in one block",
+            words.span(others),
+            "no time: this control takes it from elsewhere, and these are a motion's words",
+        )
+        .help("write the dwell in a block of its own, and its time as the control takes it"))
 }
 
 /// G53 with axis words: they are axis commands, tool length included.
@@ -358,6 +380,19 @@ fn stray(words: &Words<'_, '_, '_>, why: &str) -> Box<Diagnostic> {
     words
         .refuse(codes::STRAY_ARC_WORD, format!("{names} has no meaning here"), words.span(ARC_LETTERS), why)
         .help("write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs")
+}
+
+/// While a rotary axis feeds, the tool cuts: along the rotary axis' real path, which the linear axes would have to
+/// follow.
+fn rotary_feed(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+    words
+        .refuse(
+            codes::SIMULTANEOUS,
+            format!("a feed of {} alone", words.names(ROTARY_LETTERS)),
+            words.span(ROTARY_LETTERS),
+            "the linear axes would have to move with it to hold the path, and are not programmed",
+        )
+        .help("where nothing is cut turn at rapid (G0); where it cuts, this path cannot be corrected")
 }
 
 pub(crate) fn simultaneous(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {

@@ -9,7 +9,7 @@ use nc_syntax::{PlainLine, PlainWord};
 use toolpath::{Feed, FeedRate, Frame, Position, Shape};
 
 use crate::interpreter::{Context, Interpreter, context};
-use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Progress};
+use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Naming, Progress};
 use crate::motion::Moved;
 use crate::settings::Environment;
 
@@ -46,6 +46,8 @@ pub struct PlainEnd {
     pub end_mm: [f64; 3],
     /// Which of them the line names.
     pub names: [bool; 3],
+    /// Some of them without a decimal point.
+    pub bare: bool,
 }
 
 impl Plain {
@@ -65,6 +67,7 @@ impl Plain {
             && modal.compensation == Compensation::Off
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
+            && modal.named == [Naming::Named; 3]
             && modal.frame.as_ref().is_some_and(Frame::is_shift)
             && known(&modal.axes.linear);
         let [Axis::At(a), Axis::At(b), Axis::At(c)] = modal.axes.rotary else { return Self::No };
@@ -94,22 +97,25 @@ impl PlainFeeds {
     pub fn end_of(&self, line: &PlainLine<'_>, start_mm: [f64; 3]) -> Option<PlainEnd> {
         // Each axis by itself: what is stored by a number found out is waited for when all are read together.
         let ([mut x, mut y, mut z], mut names) = (start_mm, [false; 3]);
+        let mut bare = false;
         for word in line.words() {
             match word.letter() {
-                b'X' => (x, names[0]) = (self.place(word, 0), true),
-                b'Y' => (y, names[1]) = (self.place(word, 1), true),
-                b'Z' => (z, names[2]) = (self.place(word, 2), true),
+                b'X' => (x, names[0]) = (self.place(word, 0, &mut bare), true),
+                b'Y' => (y, names[1]) = (self.place(word, 1, &mut bare), true),
+                b'Z' => (z, names[2]) = (self.place(word, 2, &mut bare), true),
                 b'G' if word.number().tenths() != Some(self.code.0) => return None,
                 _ => {}
             }
         }
-        (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names })
+        (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names, bare })
     }
 
     /// Where a word brings its axis, mm.
     #[inline]
-    fn place(&self, word: &PlainWord, axis: usize) -> f64 {
-        let length = self.numbers.length(word.number(), self.inch).to_f64();
+    fn place(&self, word: &PlainWord, axis: usize, bare: &mut bool) -> f64 {
+        let number = word.number();
+        *bare |= !number.has_point;
+        let length = self.numbers.length(number, self.inch).to_f64();
         length * self.context.unit_mm + self.offset_mm[axis]
     }
 

@@ -205,13 +205,14 @@ pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<
 
 fn unknown(words: &Words<'_, '_, '_>, message: &str, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
     let names: Vec<String> = lost.iter().map(|(name, _)| format!("{name}…")).collect();
-    let linear_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "XYZ".contains(*name);
-    let start_at = if lost.iter().any(linear_from_start) {
-        ", or say where the axes start with `--start-at X,Y,Z`"
+    let changed =
+        |(_, lost): &(char, Lost)| matches!(lost.why, Why::Miscellaneous { changes_tool: true, .. });
+    let tool_change = if lost.iter().any(changed) {
+        ", or say where a tool change leaves the axes: `tool_change = { keeps = \"XYZ\" }` or a position, under `[program]` in the profile"
     } else {
         ""
     };
-    let help = format!("program a rapid `G90 G0 {}` before this block{start_at}", names.join(" "));
+    let help = format!("program a rapid `G90 G0 {}` before this block{tool_change}", names.join(" "));
     words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
 }
 
@@ -228,20 +229,36 @@ fn reasons(lost: &[(char, Lost)]) -> String {
         }
     }
     let parts: Vec<String> =
-        parts.iter().map(|(lost, names)| format!("{names} not known since {}", since(*lost))).collect();
+        parts.iter().map(|(lost, names)| format!("{names} not known since {}", lost.since())).collect();
     parts.join("; ")
 }
 
-fn since(lost: Lost) -> String {
-    let line = lost.line;
-    match lost.why {
-        Why::Start => "the start of the program".to_owned(),
-        Why::Reference => format!("the reference return in line {line}"),
-        Why::MachineCoordinates => format!("G53 under G91 in line {line}, which some controls ignore"),
-        Why::Probe => format!("the probe move in line {line}"),
-        Why::Machine => format!("the tool change in line {line}"),
-        Why::BlockDelete => {
-            format!("line {line}, which moves or not, depending on the block delete switch")
+impl Lost {
+    /// What happened, to follow upon `not known since`.
+    #[must_use]
+    pub fn since(self) -> String {
+        let line = self.line;
+        match self.why {
+            Why::Start => "the start of the program".to_owned(),
+            Why::Reference => format!("the reference return in line {line}"),
+            Why::MachineCoordinates => format!("G53 under G91 in line {line}, which some controls ignore"),
+            Why::Probe => format!("the probe move in line {line}"),
+            Why::Miscellaneous { code, changes_tool: true } => {
+                format!("the tool change M{code} in line {line}")
+            }
+            Why::Miscellaneous { code, changes_tool: false } => format!("M{code} in line {line}"),
+            Why::BlockDelete => {
+                format!("line {line}, which moves or not, depending on the block delete switch")
+            }
+            Why::ToolLength => {
+                format!(
+                    "the tool length changed in line {line}, for which some controls move the axis at once"
+                )
+            }
+            Why::ToolOffset => format!("D chose a tool offset in line {line}"),
+            Why::MachineWords => format!("G53 in line {line}"),
+            Why::Frame => format!("the frame changed in line {line}"),
+            Why::Units => format!("the unit changed in line {line}"),
         }
     }
 }

@@ -30,6 +30,8 @@ pub(crate) enum Owner {
     Motion,
     /// G4: a time.
     Dwell,
+    /// G4 whose time is set elsewhere: nobody's.
+    DwellBySetting,
     /// G28, G30.
     Reference,
     /// G53.
@@ -71,6 +73,8 @@ struct Wanted<'d> {
     /// G92.1, G92.2, G92.3 where they take no words.
     shift: Option<(&'d Action, Span)>,
     length: Option<(Length, Span)>,
+    /// G40.
+    compensation_off: Option<Span>,
 }
 
 /// Applies the codes of a block to the state.
@@ -134,12 +138,15 @@ pub(crate) fn apply<'d>(
                 .help(help.as_str()));
         }
     }
-    tool_length::tool(words, state);
+    tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
         let other = takes_p(env, words, state, &demand, &wanted);
         work_offset(env, words, state, offset, other)?;
     }
     tool_length::length(env, words, state, wanted.length)?;
+    if let Some(span) = wanted.compensation_off {
+        tool_length::under_compensation_off(env, words, span, wanted.length.is_some(), state)?;
+    }
     switches(words, state, &wanted)?;
     motion(env, state, &wanted);
     if !before.transform.is_none() && before.transform == state.transform {
@@ -311,7 +318,10 @@ fn set<'d>(
         Action::Plane(PlaneCode::Yz) => state.plane = Plane::Yz,
         Action::Inch => state.units = Units::Inch,
         Action::Millimetre => state.units = Units::Millimetre,
-        Action::CompensationOff => state.compensation = Compensation::Off,
+        Action::CompensationOff => {
+            state.compensation = Compensation::Off;
+            wanted.compensation_off = Some(span);
+        }
         Action::CompensationOn => state.compensation = Compensation::On,
         Action::LengthOn => wanted.length = Some((Length::On { negative: false }, span)),
         Action::LengthOnNegative => wanted.length = Some((Length::On { negative: true }, span)),
@@ -358,6 +368,7 @@ fn set<'d>(
         Action::PolarOn => {}
         Action::Pass { takes_words: true } => return Owner::Arguments,
         Action::Dwell => return Owner::Dwell,
+        Action::DwellBySetting => return Owner::DwellBySetting,
         Action::Reference => return Owner::Reference,
         Action::MachineCoordinates => return Owner::MachineCoordinates,
         Action::Probe => {
@@ -397,7 +408,7 @@ fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
             retract: None,
             bottom: None,
             peck_mm: None,
-            dwell: false,
+            dwell: None,
             drilled: false,
         });
         state.cycle = Some(CycleState { code, kind, ..running });

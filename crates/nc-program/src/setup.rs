@@ -1,5 +1,17 @@
 use toolpath::AXIS_NAMES;
 
+/// Where a linear axis stands behind a tool change.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AfterChange {
+    /// Anywhere.
+    #[default]
+    Unknown,
+    /// Where it stood before.
+    Stays,
+    /// At this axis command, mm.
+    At(f64),
+}
+
 /// What the program cannot say of itself: the profile's and the command line's part, plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
@@ -17,6 +29,10 @@ pub struct Setup {
     pub rotary_matters: bool,
     /// Axis commands at the start of the program, mm (`--start-at`); `None`: unknown.
     pub start_mm: Option<[f64; 3]>,
+    /// X, Y, Z behind a tool change.
+    pub tool_change: [AfterChange; 3],
+    /// What a length without a point is was said by profile or command line: the dialect's numbers are not open.
+    pub lengths_settled: bool,
 }
 
 impl Setup {

@@ -1,6 +1,7 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
 use nc_syntax::Span;
+use nc_syntax::dialect::LengthAfter;
 
 use crate::codes;
 use crate::frames;
@@ -19,20 +20,60 @@ pub(crate) enum Length {
 }
 
 /// T, and the M6 that brings it into the spindle. A T that is no whole number selects nothing known.
-pub(crate) fn tool(words: &Words<'_, '_, '_>, state: &mut Modal) {
+pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
     const T: Letters = Letters::of(b"T");
     if words.has(T) {
+        if env.dialect.t_may_change_tool {
+            let message = format!("{} may change the tool at once", words.text(words.span(T)));
+            return Err(words
+                .refuse(
+                    codes::TOOL_LENGTH,
+                    message,
+                    words.span(T),
+                    "brings in a length that no word of the program names, and moves the axes",
+                )
+                .help("correct the operations of each tool apart, without T and M6, the length given in the profile's tool.default_mm; or write t_word = \"selects\" in a copy of the grammar where M6 changes the tool"));
+        }
         state.tool_selected = words.whole(b'T').ok().flatten();
     }
-    if words.m_codes.iter().any(|(number, _)| *number == 6) {
+    let changes = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
+    if words.m_codes.iter().any(|(number, _)| changes(*number)) {
         state.tool_loaded = state.tool_selected;
+    }
+    Ok(())
+}
+
+/// The code that ends cutter compensation, where it may end a tool length too.
+pub(crate) fn under_compensation_off(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    written: bool,
+    state: &mut Modal,
+) -> Outcome<()> {
+    // One that is written beside it is in force, or off, whatever it does to an earlier one.
+    if state.tool_length.is_none() || written {
+        return Ok(());
+    }
+    match env.dialect.length_under_g40 {
+        LengthAfter::Stays => Ok(()),
+        LengthAfter::Ends => {
+            state.tool_length = ToolLength::Off;
+            Ok(())
+        }
+        LengthAfter::Unstated => {
+            let message = format!("{} while a tool length is in force", words.text(span));
+            Err(words
+                .refuse(codes::TOOL_LENGTH, message, span, "ends every tool offset on some controls, cutter compensation alone on others")
+                .help("write the tool length (G43 and its H) again in this block, or what the control's manual says as tool_length.under_g40 in a copy of the grammar"))
+        }
     }
 }
 
 /// G43, G44, G49 and H.
 ///
 /// H alone changes the length while G43 or G44 is in force and means nothing otherwise; G43 without H
-/// takes the loaded tool where the dialect says so, else the H already in force.
+/// takes the loaded tool where the dialect says so (there H0 does too), else the H already in force.
 pub(crate) fn length(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
@@ -41,6 +82,15 @@ pub(crate) fn length(
 ) -> Outcome<()> {
     const H: Letters = Letters::of(b"H");
     let (negative, span) = match (wanted, state.tool_length) {
+        (Some((Length::Off, span)), in_force)
+            if env.dialect.length_under_g49 == LengthAfter::Unstated
+                && (!in_force.is_none() || words.has(H.or(Letters::of(b"D")))) =>
+        {
+            let message = format!("{} with a tool length", words.text(span));
+            return Err(words
+                .refuse(codes::TOOL_LENGTH, message, span, "adds a tool offset on some controls, ends the length on others")
+                .help("end the length with G43 H0, or write what the control's manual says as tool_length.under_g49 in a copy of the grammar"));
+        }
         (Some((Length::Off, _)), _) => {
             state.tool_length = ToolLength::Off;
             return Ok(());
@@ -49,19 +99,20 @@ pub(crate) fn length(
         (None, ToolLength::On { negative, .. }) if words.has(H) => (negative, words.span(H)),
         (None, _) => return Ok(()),
     };
-    let number = match (words.whole(b'H')?, state.tool_length) {
+    let loaded = env.dialect.length_of_loaded_tool;
+    let number = match (words.whole(b'H')?.filter(|number| *number != 0 || !loaded), state.tool_length) {
         (Some(number), _) => number,
-        (None, _) if env.dialect.length_of_loaded_tool => match state.tool_loaded {
+        (None, _) if loaded => match state.tool_loaded {
             Some(number) => number,
             None => {
-                let message = "tool length without H, and no tool was loaded before";
+                let message = "the length of the loaded tool, and no tool was loaded before";
                 return Err(words
                     .refuse(codes::TOOL_LENGTH, message, span, "takes the tool in the spindle: which one?")
                     .help("program T and M6 before it, or H in this block"));
             }
         },
-        (None, ToolLength::On { number, .. }) => number,
-        (None, ToolLength::Off | ToolLength::Written { .. }) => {
+        (_, ToolLength::On { number, .. }) => number,
+        (_, ToolLength::Off | ToolLength::Written { .. }) => {
             let message = "tool length without H";
             return Err(words
                 .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")

@@ -306,7 +306,17 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     fn miscellaneous(&mut self, number: Number, span: Span) -> Outcome<()> {
         // An M code with decimals or beyond 65535 is no code of any table; it passes like every unknown one.
         if let Some(value) = whole(number).and_then(|value| u16::try_from(value).ok()) {
-            if let Some((reason, help)) = self.dialect.m_code(value).and_then(|row| row.refuse.as_ref()) {
+            let row = self.dialect.m_code(value);
+            if let Some(what) = row.and_then(|row| row.switches.as_ref()) {
+                let code = GCode(value.saturating_mul(10)).to_string().replace('G', "M");
+                let message = format!("{code} is refused: {what}");
+                return Err(self
+                    .refuse(codes::REFUSED_CODE, message, span, "what follows would run in another frame")
+                    .help(format!(
+                        "where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile"
+                    )));
+            }
+            if let Some((reason, help)) = row.and_then(|row| row.refuse.as_ref()) {
                 let message = format!("{} is refused: {reason}", self.text(span));
                 return Err(self
                     .refuse(codes::REFUSED_CODE, message, span, "not understood")
@@ -320,7 +330,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     /// A command by name passes where the dialect's table says that it moves nothing.
     fn command(&self, span: Span) -> Outcome<()> {
         let (message, help) = match self.dialect.command(self.block.text(span)) {
-            Some(row) => match &row.refuse {
+            Some(row) => match row.refusal(self.block.text(span)) {
                 None => return Ok(()),
                 Some((reason, help)) => (format!("{} is refused: {reason}", row.name), help.as_str()),
             },

@@ -84,9 +84,9 @@ fn radius_words() {
     near(sweep(&arc("fanuc", &format!("{START}G3 X0 Y10. R10.\n"))), FRAC_PI_2);
     near(sweep(&arc("fanuc", &format!("{START}G3 X0 Y10. R-10.\n"))), 1.5 * PI);
     near(sweep(&arc("fanuc", &format!("{START}G2 X-10. R10.\n"))), -PI);
-    // Half the chord is 10; Fanuc allows 0.02 mm, LinuxCNC 0.01.
+    // Half the chord is 10; Fanuc allows 0.02 mm, LinuxCNC 0.0279 where radii differ (and less here: it says so itself).
     near(sweep(&arc("fanuc", &format!("{START}G2 X-10. R9.985\n"))), -PI);
-    assert_eq!(refusal("linuxcnc", &format!("{START}G2 X-10. R9.985\n")), (203, 2));
+    assert_eq!(refusal("linuxcnc", &format!("{START}G2 X-10. R9.97\n")), (203, 2));
     let steps = run("fanuc", &format!("{START}G3 X0 Y10. R10.\nX10. Y0 I-10. J-10.\n")).steps;
     assert_eq!(steps[1..].iter().map(|s| s.context.arc_by_radius).collect::<Vec<_>>(), [true]);
 }

@@ -54,7 +54,7 @@ fn which_blocks_drill() {
         ("Y5.", 1),
         ("Z-6.", 1),
         ("R3.", 1),
-        ("X5. L3", 3),
+        ("X5. K3", 3),
         ("X5. K0", 0),
     ] {
         assert_eq!(drills(block), count, "{block}");
@@ -65,7 +65,7 @@ fn which_blocks_drill() {
 fn k0_defines_only() {
     assert_eq!(places("fanuc", "G81 X5. Z-5. R2. K0\nX7.\n"), [[7.0, 0.0, 2.0, -5.0, 10.0]]);
     assert_eq!(
-        places("fanuc", "G99 G81 Z-5. R2. L0\nX7.\nY1.\n"),
+        places("fanuc", "G99 G81 Z-5. R2. K0\nX7.\nY1.\n"),
         [[7.0, 0.0, 2.0, -5.0, 2.0], [7.0, 1.0, 2.0, -5.0, 2.0]]
     );
 }
@@ -141,10 +141,12 @@ fn cycles_in_the_other_planes() {
 fn parameters_are_modal_until_the_cycle_ends() {
     let holes = holes("fanuc", "G73 X1. Z-5. R2. Q1.5 P100\nX2.\nG81 X3.\nG84 X4. Z-6.\n");
     assert_eq!(
-        (holes[1].cycle.kind, holes[1].cycle.peck_mm, holes[1].cycle.dwell),
+        (holes[1].cycle.kind, holes[1].cycle.peck_mm, holes[1].cycle.dwell.is_some()),
         (CycleKind::PeckChip, Some(1.5), true)
     );
     assert_eq!((holes[2].cycle.kind, holes[2].bottom_mm), (CycleKind::Drill, -5.0));
+    // P is kept, but G81 does not dwell.
+    assert_eq!(holes[2].cycle.dwell, None);
     assert_eq!((holes[3].cycle.kind, holes[3].bottom_mm), (CycleKind::Synchronised, -6.0));
     assert_eq!(refusal("fanuc", "G0 X0. Y0. Z0.\nG81 X1. Z-5. R2.\nG80\nG81 X2.\n"), (216, 4));
     assert_eq!(refusal("fanuc", "G0 X0. Y0. Z0.\nG81 X1. Z-5. R2.\nG0 X2.\nG82 X2. R2.\n"), (216, 4));

@@ -235,7 +235,7 @@ fn what_no_manual_tells_is_refused() {
 #[test]
 fn a_length_written_in_the_program() {
     near(end("linuxcnc", "G43.1 Z120\nG0 X0 Y0 Z1\n"), [0.0, 0.0, 121.0]);
-    near(end("linuxcnc", "G43.1 Z120\nG43.1 X2\nG0 X0 Y0 Z1\nG49\nG0 Z1\n"), [2.0, 0.0, 1.0]);
+    near(end("linuxcnc", "G43.1 Z120\nG43.1 X2\nG0 X0 Y0 Z1\nG49\nG0 X2 Z1\n"), [2.0, 0.0, 1.0]);
     let steps = run("linuxcnc", "G43.1 Z120\nG0 X0 Y0 Z1\n").steps;
     assert_eq!(steps[1].context.tool_mm, [0.0, 0.0, -120.0]);
     assert_eq!(refusal("linuxcnc", "G43.1 H1\n"), (215, 1));

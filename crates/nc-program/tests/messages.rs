@@ -39,17 +39,17 @@ fn positions() {
     insta::assert_snapshot!(message("fanuc", "G0 Z5.\nG1 X10. F100.\n"), @r#"
     error[VP0213]: the feed move starts from an unknown position
       2: `X10.` X, Y not known since the start of the program
-      help: program a rapid `G90 G0 X… Y…` before this block, or say where the axes start with `--start-at X,Y,Z`
+      help: program a rapid `G90 G0 X… Y…` before this block
     "#);
     insta::assert_snapshot!(message("fanuc", "G0 X1. Y1. Z5.\nM6 T2\nG91 G28 X0\nG90 G1 X10. F100.\n"), @r#"
     error[VP0213]: the feed move starts from an unknown position
-      4: `X10.` X not known since the reference return in line 3; Y, Z not known since the tool change in line 2
-      help: program a rapid `G90 G0 X… Y… Z…` before this block
+      4: `X10.` X not known since the reference return in line 3; Y, Z not known since the tool change M6 in line 2
+      help: program a rapid `G90 G0 X… Y… Z…` before this block, or say where a tool change leaves the axes: `tool_change = { keeps = "XYZ" }` or a position, under `[program]` in the profile
     "#);
     insta::assert_snapshot!(message("fanuc", "G91 G0 X1.\n"), @r#"
     error[VP0213]: an increment from an unknown position
       1: `X1.` X not known since the start of the program
-      help: program a rapid `G90 G0 X…` before this block, or say where the axes start with `--start-at X,Y,Z`
+      help: program a rapid `G90 G0 X…` before this block
     "#);
     insta::assert_snapshot!(message("fanuc", "G0 X1. Y1. Z5.\n/X5.\nG1 Y2.\n"), @r#"
     error[VP0213]: the feed move starts from an unknown position
@@ -87,7 +87,7 @@ fn frames() {
       help: write the number of the length, e.g. H1; H0 is no length
     "#);
     insta::assert_snapshot!(message("linuxcnc", "G43 Z1.\n"), @r#"
-    error[VP0215]: tool length without H, and no tool was loaded before
+    error[VP0215]: the length of the loaded tool, and no tool was loaded before
       1: `G43` takes the tool in the spindle: which one?
       help: program T and M6 before it, or H in this block
     "#);

@@ -72,6 +72,11 @@ fn assert_sound(motion: &Motion) {
     }
 }
 
+/// Places, but for those that are no longer known.
+fn forgetting(at: [Option<f64>; 3], now: [Option<f64>; 3]) -> [Option<f64>; 3] {
+    [0, 1, 2].map(|i| now[i].and(at[i]))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
@@ -108,9 +113,11 @@ proptest! {
                     Motion::Hole(hole) => (hole.start.linear_mm.map(Some), hole.end().linear_mm.map(Some)),
                     Motion::Uncorrected { end } => (at, end.linear_mm),
                 };
-                prop_assert_eq!(start, at);
+                // A tool length that changes may move its axis: nobody knows where it is then.
+                prop_assert_eq!(start, forgetting(at, start));
                 at = end;
             }
+            at = forgetting(at, interpreter.modal().axes.partial().linear_mm);
             // `/M30` closes the blocks that may be skipped too.
             if open && interpreter.modal().aside.is_none() {
                 at = interpreter.modal().axes.partial().linear_mm;

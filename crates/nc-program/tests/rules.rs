@@ -3,8 +3,8 @@
 mod common;
 
 use common::{dialect, end, feed, motions, refusal, run, run_with, setup, uncorrected};
-use nc_program::Setup;
 use nc_program::modal::{MotionMode, Progress};
+use nc_program::{AfterChange, Setup};
 use nc_syntax::dialect::GCode;
 use toolpath::{FeedRate, Motion};
 
@@ -167,26 +167,42 @@ fn machine_coordinates_are_known_and_not_corrected() {
 
 #[test]
 fn a_change_of_frame_moves_nothing() {
-    let text = "G54 G0 X0 Y0 Z0\nG55\nG43 H1\nG1 X0\nG91 G44 H2\nX1.\nG90 G49 X0\nG43 H0 X1.\n";
+    let text = "G49 G54 G0 X0 Y0 Z0\nG55\nG1 X0\nG43 H1 Z1.\nG90 G44 H2 X0 Z0\nG43 H0 X1. Z0\n";
     let run = run("fanuc", text);
     assert!(run.refused.is_none(), "{:?}", run.refused);
     let ends: Vec<[f64; 3]> =
         run.steps.iter().flat_map(|step| &step.motions).skip(1).map(|m| feed(m).end.linear_mm).collect();
-    // X0 in G55 is 100; Y and Z stay where the axes are until they are named. H2 has an X part.
-    assert_eq!(ends, [[100.0, 0.0, 0.0], [101.0, 0.0, 0.0], [100.0, 0.0, 0.0], [101.0, 0.0, 0.0]]);
+    // X0 in G55 is 100; Y stays where the axis is until it is named. H2 has an X part.
+    assert_eq!(ends, [[100.0, 0.0, 0.0], [100.0, 0.0, 122.0], [99.5, 0.0, -79.0], [101.0, 0.0, 1.0]]);
     let tool = |at: usize| run.steps[at].context.tool_mm;
     assert_eq!(tool(1), [0.0; 3]);
     assert_eq!(tool(3), [0.0, 0.0, -120.0]);
-    assert_eq!(tool(5), [0.5, 0.0, 80.0]);
-    assert_eq!(tool(7), [0.0; 3]);
+    assert_eq!(tool(4), [0.5, 0.0, 80.0]);
+    assert_eq!(tool(5), [0.0; 3]);
     assert_eq!(run.steps[3].context.frame.offset_mm(), [100.0, 10.0, 121.0]);
-    assert_eq!(run.steps[5].context.frame.offset_mm(), [99.5, 10.0, -79.0]);
+    assert_eq!(run.steps[4].context.frame.offset_mm(), [99.5, 10.0, -79.0]);
+}
+
+/// Some controls move the axis by the length at once, others with its next word.
+#[test]
+fn a_tool_length_without_a_word_for_its_axis_loses_it() {
+    let stand = "G49 G54 G0 X0 Y0 Z50.\n";
+    let nowhere_in_z = [Some(0.0), Some(0.0), None];
+    assert_eq!(end("fanuc", &format!("{stand}G43 H1\n")), nowhere_in_z);
+    assert_eq!(end("fanuc", &format!("{stand}G43 H1 X0\n")), nowhere_in_z);
+    assert_eq!(end("fanuc", &format!("{stand}G43 H1 Z9.\nG49\n")), nowhere_in_z);
+    assert_eq!(end("fanuc", &format!("{stand}G43 H1 Z9.\nH0\nG0 X0\n")), nowhere_in_z);
+    assert_eq!(refusal("fanuc", &format!("{stand}G43 H1\nG1 X9.\n")), (213, 3));
+    assert_eq!(refusal("fanuc", &format!("{stand}G43 H1\nG91 G1 Z9.\n")), (213, 3));
+    assert_eq!(refusal("fanuc", &format!("{stand}G43 H1 G81 Z-9. R2.\n")), (213, 2));
+    // The same length again moves nothing; in the block of a word all controls end alike.
+    assert_eq!(end("fanuc", &format!("{stand}G43 H1 Z9.\nG43 H1 X1.\n")), at(1.0, 0.0, 129.0));
 }
 
 #[test]
 fn the_first_z_after_g43_means_the_tip() {
-    assert_eq!(end("fanuc", "G54 G0 X0 Y0 Z50.\nG43 H1 Z2.\n"), at(0.0, 0.0, 122.0));
-    assert_eq!(end("fanuc", "G54 G43 H1 G0 X0 Y0 Z50.\nH2 Z50.\n"), at(0.0, 0.0, 130.0));
+    assert_eq!(end("fanuc", "G49 G54 G0 X0 Y0 Z50.\nG43 H1 Z2.\n"), at(0.0, 0.0, 122.0));
+    assert_eq!(end("fanuc", "G54 G43 H1 G0 X0 Y0 Z50.\nH2 X0 Z50.\n"), at(0.5, 0.0, 130.0));
     let setup = Setup { default_tool_mm: [0.0, 0.0, -7.0], ..setup() };
     let run = run_with(dialect("fanuc"), &setup, "G0 X0 Y0 Z0\nG43 H1 Z0\nG49\n");
     assert_eq!(run.steps[0].context.tool_mm, [0.0, 0.0, -7.0]);
@@ -252,7 +268,8 @@ fn compensation_keeps_its_blocks_whole() {
 #[test]
 fn rotary_axes_that_do_not_matter() {
     let with_a = Setup { has_rotary: [true, false, false], rotary_matters: false, ..setup() };
-    let run = run_with(dialect("fanuc"), &with_a, "G0 X1. Y2. Z3.\nG1 X5. A10. F10.\nG28 A0.\nG1 X6.\n");
+    let run =
+        run_with(dialect("fanuc"), &with_a, "G0 X1. Y2. Z3.\nG1 X5. A10. F10.\nG28 A0.\nG1 X6.\nA60.\n");
     assert!(run.refused.is_none(), "{:?}", run.refused);
     assert!(!feed(&run.steps[1].motions[0]).may_split);
     assert!(feed(&run.steps[3].motions[0]).may_split);
@@ -269,7 +286,7 @@ fn rotary_axes() {
     assert_eq!(code("G0 X0 Y0 Z0\n"), Some((213, 1)));
     assert_eq!(code("G91 G0 A10.\n"), Some((213, 1)));
     // Rotary axes alone: tracked, not corrected.
-    let run = go("G0 A0.\nX1. Y2. Z3.\nA90.\nG91 A-15.\nG90 G1 A80. F10.\nX5.\nG0 X6. A0.\n");
+    let run = go("G0 A0.\nX1. Y2. Z3.\nA90.\nG91 A-15.\nG90 A80.\nG1 X5. F10.\nG0 X6. A0.\n");
     assert!(run.refused.is_none(), "{:?}", run.refused);
     let motion = |at: usize| &run.steps[at].motions[0];
     assert_eq!(uncorrected(motion(0)).linear_mm, [None; 3]);
@@ -285,6 +302,12 @@ fn rotary_axes() {
         assert_eq!(code(&format!("{begin}{block}")), Some((220, 3)), "{block}");
     }
     assert_eq!(code(&format!("{begin}G1 X5. A0.\n")), None);
+    // Alone at feed rate, by whatever feed and with linear axes that stand still: it cuts, off its path.
+    for block in ["G1 A60. F500.\n", "G93 G1 A60. F2.\n", "G1 X1. A60. F500.\n", "G1 G91 A1. F500.\n"] {
+        assert_eq!(code(&format!("{begin}{block}")), Some((220, 3)), "{block}");
+    }
+    assert_eq!(code("G1 A60. F500.\n"), Some((220, 1)));
+    assert_eq!(code(&format!("{begin}G1 A0. F500.\n")), None);
     assert_eq!(code(&format!("{begin}G28 A0.\nG1 X5.\n")), Some((213, 4)));
     assert_eq!(code(&format!("{begin}G28\nG0 X5.\n")), Some((213, 4)));
 }
@@ -423,4 +446,73 @@ fn block_delete_at_the_end_of_the_program() {
     let ended: Vec<bool> = run.steps.iter().map(|step| step.ends_program).collect();
     assert_eq!(ended, [false, false, false, true]);
     feed(&run.steps[2].motions[0]);
+}
+
+/// G49 is a tool offset in one standard and the end of the length in others, and G40 may end it too.
+#[test]
+fn tool_lengths_after_gost() {
+    let code = |text: &str| {
+        run("perspektiva", text).refused.map(|(line, diagnostics)| (diagnostics[0].code.0, line))
+    };
+    let begin = "G17 G40 G49 G54 G90\nG0 X1. Y1. Z200.\nG43 H1 Z200.\n";
+    assert_eq!(code(begin), None);
+    assert_eq!(code(&format!("{begin}G49\n")), Some((215, 4)));
+    assert_eq!(code("G49 H1\n"), Some((215, 1)));
+    assert_eq!(code(&format!("{begin}G40\nG1 X2. F10.\n")), Some((215, 4)));
+    assert_eq!(code(&format!("{begin}G43 H0\nG49\nG40\n")), None);
+    assert_eq!(code(&format!("{begin}G40 G43 H1\nG1 X2. F10.\n")), None);
+}
+
+/// LinuxCNC's reference: H0 is the tool in the spindle on tool changers that are not random.
+#[test]
+fn h0_is_the_loaded_tool_of_linuxcnc() {
+    assert_eq!(end("linuxcnc", "T1 M6\nG43 H0\nG0 X0 Y0 Z5\n"), at(0.0, 0.0, 125.0));
+    assert_eq!(end("linuxcnc", "T0 M6\nG43 H0\nG0 X0 Y0 Z5\n"), at(0.0, 0.0, 5.0));
+    assert_eq!(refusal("linuxcnc", "G43 H0\n"), (215, 1));
+    assert_eq!(motions("fanuc", "G43 H0\nG0 X0. Y0. Z5.\n").len(), 1);
+}
+
+/// What a tool change leaves is the machine's affair, and may be said.
+#[test]
+fn axes_behind_a_tool_change() {
+    let text = "G0 X1. Y2. Z50.\nT1 M6\nG1 X5. F10.\n";
+    let told =
+        |tool_change: [AfterChange; 3]| run_with(dialect("fanuc"), &Setup { tool_change, ..setup() }, text);
+    let refused = told([AfterChange::Unknown; 3]).refused.unwrap();
+    assert_eq!((refused.0, refused.1[0].code.0), (3, 213));
+    assert!(refused.1[0].label.contains("the tool change M6 in line 2"), "{}", refused.1[0].label);
+    let help = refused.1[0].help.as_deref().unwrap_or_default();
+    assert!(help.contains("tool_change") && !help.contains("--start-at"), "{help}");
+    let stays = told([AfterChange::Stays; 3]);
+    assert!(stays.steps[1].motions.is_empty());
+    assert_eq!(feed(&stays.steps[2].motions[0]).start.linear_mm, [1.0, 2.0, 50.0]);
+    let place = told([AfterChange::Stays, AfterChange::Stays, AfterChange::At(350.0)]);
+    let last = place.steps[1].motions.last().unwrap();
+    assert_eq!(uncorrected(last).linear_mm, at(1.0, 2.0, 350.0));
+    assert_eq!(feed(&place.steps[2].motions[0]).start.linear_mm, [1.0, 2.0, 350.0]);
+    let partly = told([AfterChange::Unknown, AfterChange::Stays, AfterChange::At(350.0)]).refused.unwrap();
+    assert!(partly.1[0].label.starts_with("X not known"), "{}", partly.1[0].label);
+    // M codes that move by themselves are named, and are no tool changes.
+    let pallet = run("fanuc", "G0 X1. Y2. Z50.\nM60\nG1 X5. F10.\n").refused.unwrap();
+    assert!(pallet.1[0].label.contains("M60 in line 2"), "{}", pallet.1[0].label);
+}
+
+#[test]
+fn counts_of_holes() {
+    let begin = "G0 X0. Y0. Z5.\nG91 G99\n";
+    let holes = |name: &str, block: &str| {
+        run(name, &format!("{begin}{block}")).steps[2..].iter().map(|s| s.motions.len()).sum::<usize>()
+    };
+    assert_eq!(holes("fanuc", "G81 X1. Z-2. R-1. K3 F10.\n"), 3);
+    assert_eq!(holes("linuxcnc", "G81 X1. Z-2. R-1. L3 F10.\n"), 3);
+    for (name, block) in [
+        ("fanuc", "G81 X1. Z-2. R-1. L3 F10.\n"),
+        ("fanuc", "G81 X1. Z-2. R-1. L0 F10.\n"),
+        ("fanuc", "G83 X1. Z-2. R-1. I1. J.5 K1 F10.\n"),
+        ("linuxcnc", "G81 X1. Z-2. R-1. K3 F10.\n"),
+        ("linuxcnc", "G81 X1. Z-2. R-1. L0 F10.\n"),
+        ("perspektiva", "G81 X1. Z-2. R-1. L3 F10.\n"),
+    ] {
+        assert_eq!(refusal(name, &format!("{begin}{block}")), (217, 3), "{name} {block}");
+    }
 }

@@ -51,6 +51,17 @@ pub enum Semicolon {
     EndOfBlock,
 }
 
+/// What `:` means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colon {
+    /// Not part of the dialect.
+    None,
+    /// `:1234` is a program number or main block.
+    Number,
+    /// First on its line it makes the line a comment (Centroid).
+    Comment,
+}
+
 /// What a number without a decimal point means for lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointFree {
@@ -86,6 +97,8 @@ pub enum Action {
     ArcCounterClockwise,
     /// G4: X, U or P are a time.
     Dwell,
+    /// G4 whose time is set elsewhere: no word of the block is one.
+    DwellBySetting,
     /// G17, G18, G19
     Plane(PlaneCode),
     /// G20
@@ -218,6 +231,17 @@ pub enum CycleLevels {
     Unstated,
 }
 
+/// What becomes of a tool length in force behind a code that ends offsets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthAfter {
+    /// It stays.
+    Stays,
+    /// It ends.
+    Ends,
+    /// Nobody said: the code is refused while one is in force.
+    Unstated,
+}
+
 /// What `G10 L20 Pn` writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OffsetL20 {
@@ -301,8 +325,36 @@ pub struct MCode {
     pub loses_position: [bool; 3],
     /// The program ends here.
     pub ends_program: bool,
+    /// A tool change: where the axes stand afterwards may be known of the machine.
+    pub changes_tool: bool,
+    /// What it switches on some machines (kinematics, a mirror, the workpiece's place): refused unless the machine
+    /// is said to have it do nothing of the kind.
+    pub switches: Option<String>,
     /// Refused, with the way out (M98, M99).
     pub refuse: Option<(String, String)>,
+}
+
+/// A block that stands in programs of lathes: any of the codes or commands, all of the letters, none of the others.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LatheSign {
+    /// Any of them; empty where every block may be one.
+    pub codes: Vec<GCode>,
+    /// Any of them by name.
+    pub commands: Vec<String>,
+    /// No other G code stands in the block.
+    pub alone: bool,
+    /// All of these letters, upper case.
+    pub with: Vec<u8>,
+    /// None of these letters.
+    pub without: Vec<u8>,
+    /// This letter's number has so many digits, and neither half of them is zero (`T0101`).
+    pub digits: Option<(u8, u8)>,
+    /// No mill's program has it; else it counts together with others.
+    pub sure: bool,
+    /// What it does on a lathe.
+    pub says: String,
+    /// What to write where the program is a mill's.
+    pub mill: String,
 }
 
 /// A command by name: a word of letters (Sinumerik `TRANS`) or the first word in brackets (Balt-System `(UAO,1)`).
@@ -314,6 +366,22 @@ pub struct Command {
     pub name: String,
     /// `None`: moves no axis and no frame, passes. Else why it is refused, and the way out.
     pub refuse: Option<(String, String)>,
+    /// It passes with so many arguments in its brackets, and is refused with more.
+    pub passes_with: Option<u32>,
+}
+
+impl Command {
+    /// Why it is refused as it stands, and the way out; `text` is its bytes, brackets included.
+    #[must_use]
+    pub fn refusal(&self, text: &[u8]) -> Option<&(String, String)> {
+        let arguments = || {
+            let open = text.iter().position(|byte| *byte == b'(').map_or(text.len(), |at| at + 1);
+            let commas = text[open..].iter().filter(|byte| **byte == b',').count();
+            commas + usize::from(commas > 0 || !matches!(text[open..].trim_ascii(), [] | [b')']))
+        };
+        let passes = |most: u32| arguments() <= most as usize;
+        self.refuse.as_ref().filter(|_| !self.passes_with.is_some_and(passes))
+    }
 }
 
 /// How text is written.
@@ -335,6 +403,8 @@ pub struct Output {
     pub radius_word: bool,
     /// Largest difference between an arc's radius at its start and at its end that the control takes, mm.
     pub arc_radius_tolerance_mm: f64,
+    /// The same as a share of the radius, where the control takes that too and it is more; 0 for none.
+    pub arc_radius_tolerance_share: f64,
     /// Distance above the last depth where a G83 peck resumes feeding when written as moves, mm.
     pub peck_clearance_mm: f64,
     /// Retreat of a G73 peck when written as moves, mm.
@@ -384,8 +454,8 @@ pub struct Dialect {
     pub semicolon: Semicolon,
     /// Character of block delete, if any.
     pub skip: Option<u8>,
-    /// `:1234` is a program number or main block.
-    pub colon_number: bool,
+    /// What `:` means.
+    pub colon: Colon,
     /// `X=10.5` and `X=R1+2` are words too; a value other than a number runs to the next white space.
     pub equals_words: bool,
     /// Letters of words, upper case; others are invalid.
@@ -400,12 +470,27 @@ pub struct Dialect {
     pub commands: Vec<Command>,
     /// State at the start of a program: codes as if they stood in a first block.
     pub initial: Vec<GCode>,
+    /// The unit of the program before may still be in force at the start: one that states none is doubtful.
+    pub unit_is_kept: bool,
+    /// Blocks by which a program of a lathe is known.
+    pub lathe: Vec<LatheSign>,
     /// Variables, program flow and subprograms.
     pub flow: Flow,
     /// How cycles carry R and Z on.
     pub cycle_levels: CycleLevels,
-    /// G43 without H takes the length of the tool in the spindle (LinuxCNC); where false it needs H.
+    /// Letters that count the holes of a cycle's block.
+    pub cycle_repeats: Vec<u8>,
+    /// A count of zero stores the words of the cycle and makes no hole; where false it is an error.
+    pub zero_repeats_define: bool,
+    /// G43 without H, and with H0, takes the length of the tool in the spindle (LinuxCNC); where false it needs H, and
+    /// H0 is no length.
     pub length_of_loaded_tool: bool,
+    /// What G40 does to a tool length in force.
+    pub length_under_g40: LengthAfter,
+    /// What G49 does to it.
+    pub length_under_g49: LengthAfter,
+    /// A T word may bring in the tool, and its length, at once.
+    pub t_may_change_tool: bool,
     /// Codes that move the frame.
     pub frames: FrameRules,
     /// Output.

@@ -25,7 +25,8 @@ impl Envelope {
 /// Finds the `%` marks of a program that is read part by part: first on their line, blanks aside.
 ///
 /// The first one opens the program unless blocks stand before it. The last one closes it, unless it is
-/// the one that opened it. Marks between the two are left for the reader to show.
+/// the one that opened it, or blocks stand behind it: somebody may execute those. Marks between the two are left for
+/// the reader to show.
 pub struct EnvelopeFinder<'d> {
     lexer: Lexer<'d>,
     length: u64,
@@ -33,13 +34,22 @@ pub struct EnvelopeFinder<'d> {
     last: Option<u64>,
     /// Blocks stand before the first mark.
     blocks_before: bool,
+    /// Blocks stand behind the mark that would close the program.
+    blocks_behind: bool,
 }
 
 impl<'d> EnvelopeFinder<'d> {
     /// Nothing read yet.
     #[must_use]
     pub fn new(dialect: &'d Dialect) -> Self {
-        Self { lexer: Lexer::new(dialect), length: 0, first: None, last: None, blocks_before: false }
+        Self {
+            lexer: Lexer::new(dialect),
+            length: 0,
+            first: None,
+            last: None,
+            blocks_before: false,
+            blocks_behind: false,
+        }
     }
 
     /// The next part of the program, which ends at the end of a line or of the program.
@@ -53,7 +63,31 @@ impl<'d> EnvelopeFinder<'d> {
             self.first = first.map(|at| self.length + at as u64);
         }
         self.last = marks.next_back().map(|at| self.length + at as u64).or(self.last);
+        self.see_behind(part);
         self.length += part.len() as u64;
+    }
+
+    /// Looks for blocks behind the mark that would close the program.
+    fn see_behind(&mut self, part: &[u8]) {
+        let Some(mark) = self.closing() else { return };
+        // What stands beside a mark is a name.
+        let behind = match mark.checked_sub(self.length) {
+            Some(at) => {
+                self.blocks_behind = false;
+                let at = at as usize;
+                memchr2(b'\n', b'\r', &part[at..]).map_or(&part[part.len()..], |length| &part[at + length..])
+            }
+            None => part,
+        };
+        self.blocks_behind = self.blocks_behind || holds_blocks(behind, false, &self.lexer);
+    }
+
+    const fn opening(&self) -> Option<u64> {
+        if self.blocks_before { None } else { self.first }
+    }
+
+    fn closing(&self) -> Option<u64> {
+        self.last.or(self.first.filter(|_| self.blocks_before))
     }
 
     /// What is known while further parts are to come: nothing closes the program yet.
@@ -65,9 +99,8 @@ impl<'d> EnvelopeFinder<'d> {
     /// What was found, once all parts were seen.
     #[must_use]
     pub fn finish(&self) -> Envelope {
-        let opening = self.first.filter(|_| !self.blocks_before);
-        let closing = self.last.or(self.first.filter(|_| opening.is_none()));
-        Envelope { leader: opening.unwrap_or(0), trailer: closing.map_or(self.length, |at| at + 1) }
+        let closing = self.closing().filter(|_| !self.blocks_behind);
+        Envelope { leader: self.opening().unwrap_or(0), trailer: closing.map_or(self.length, |at| at + 1) }
     }
 }
 

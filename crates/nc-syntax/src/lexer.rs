@@ -1,6 +1,6 @@
 //! Items inside one block.
 
-use crate::dialect::{Command, Paren, Semicolon};
+use crate::dialect::{Colon, Command, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
     angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, nested_comment,
@@ -13,7 +13,7 @@ pub(crate) struct Lexer<'d> {
     paren: Paren,
     semicolon: Semicolon,
     skip: Option<u8>,
-    colon_number: bool,
+    colon: Colon,
     equals_words: bool,
     pub(crate) spaces_inside: bool,
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
@@ -58,7 +58,7 @@ impl<'d> Lexer<'d> {
             paren: dialect.paren,
             semicolon: dialect.semicolon,
             skip: dialect.skip,
-            colon_number: dialect.colon_number,
+            colon: dialect.colon,
             equals_words: dialect.equals_words,
             spaces_inside: dialect.numbers.spaces_inside,
             letters,
@@ -254,7 +254,10 @@ impl<'d> Lexer<'d> {
         match byte {
             b'(' => self.round_bracket(line, at),
             b';' if self.semicolon == Semicolon::Comment => (ItemKind::Comment, line.len()),
-            b':' if self.colon_number => match number(line, skip_spaces(line, at + 1), false) {
+            b':' if self.colon == Colon::Comment && skip_blanks(line, 0) == at => {
+                (ItemKind::Comment, line.len())
+            }
+            b':' if self.colon == Colon::Number => match number(line, skip_spaces(line, at + 1), false) {
                 (Ok(plain), end) => (ItemKind::Word { letter: b'O', value: Value::Number(plain) }, end),
                 (Err(_), _) => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
             },
@@ -349,13 +352,16 @@ fn names(command: &Command, text: &[u8]) -> bool {
 
 /// A refused command takes the rest of the block with it, to a `;`: whose words they are is not known.
 ///
-/// One that passes takes its round brackets only, so that a motion beside it is not overlooked.
+/// One that passes takes its value (`LIMS=2000`) or its round brackets only, so that a motion beside it is not overlooked.
 fn end_of_command(command: &Command, line: &[u8], at: usize) -> usize {
-    if command.refuse.is_some() {
+    if command.refuse.is_some() && command.passes_with.is_none() {
         let stop = line[at..].iter().position(|byte| *byte == b';').map_or(line.len(), |length| at + length);
         return at + trim_end(&line[at..stop]);
     }
     let end = at + command.name.len();
+    if line.get(end) == Some(&b'=') {
+        return end + line[end..].iter().take_while(|byte| !is_blank(**byte) && **byte != b';').count();
+    }
     match nested_comment(&line[skip_spaces(line, end)..]) {
         Ok((left, _)) => line.len() - left.len(),
         Err(_) => end,

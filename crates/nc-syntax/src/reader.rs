@@ -17,7 +17,8 @@ pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 ///
 /// Before the `%` that opens the program and behind the `%` that closes it every line is a
 /// [`ItemKind::Name`]: text that nobody executes. A file with one `%` above its blocks, or with none, is
-/// a program as a whole. A `%` between the first and the last is shown where it stands.
+/// a program as a whole. A `%` between the first and the last is shown where it stands, and so is the last one where
+/// blocks stand behind it.
 pub struct Reader<'a> {
     text: &'a [u8],
     lexer: Lexer<'a>,

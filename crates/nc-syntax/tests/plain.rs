@@ -73,7 +73,7 @@ fn numbered<'t>(text: &'t str, dialect: &'t Dialect, skip: bool) -> Vec<Block<'t
 
 #[test]
 fn lines_without_a_letter_are_skipped_and_counted() {
-    let (text, dialect) = ("%\nNAME\nX1\r\nX2\rX3\r\r\nn5 X4\nX5\n(ON)\nX6;N7\n%\nN8\n", conventional());
+    let (text, dialect) = ("%\nNAME\nX1\r\nX2\rX3\r\r\nn5 X4\nX5\n(ON)\nX6;N7\n%\nEND N8\n", conventional());
     let found = numbered(text, &dialect, true);
     assert_eq!(found.iter().map(|block| block.line).collect::<Vec<_>>(), [6, 9]);
     let mut reader = Reader::new(b"X1\nX2\nX3 (N)\n", &dialect);

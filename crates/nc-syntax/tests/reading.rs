@@ -154,9 +154,18 @@ fn one_percent_or_none_is_a_whole_program() {
 #[test]
 fn a_percent_between_two_others_is_shown() {
     assert_eq!(
-        one("%\nG1 X1\n%\nG1 X2\n%\nX3"),
-        "Percent<%> | G1 X1 | Percent<%> | G1 X2 | Percent<%> | Name<X3>"
+        one("%\nG1 X1\n%\nG1 X2\n%\nend of tape"),
+        "Percent<%> | G1 X1 | Percent<%> | G1 X2 | Percent<%> | Name<end of tape>"
     );
+}
+
+#[test]
+fn blocks_behind_the_last_percent_are_read() {
+    assert_eq!(one("%\nG1 X1\n%\nX3"), "Percent<%> | G1 X1 | Percent<%> | X3");
+    assert_eq!(one("G1 X1\n%\nX3 (AGAIN)\n"), "G1 X1 | Percent<%> | X3 comment");
+    assert_eq!(one("%\nG1 X1\n%PART 2\nX3\n"), "Percent<%> | G1 X1 | Percent<%> Name<PART 2> | X3");
+    // Two in front of the program: the second would close it.
+    assert_eq!(one("%\n%\nO1\nG1 X1\n"), "Percent<%> | Percent<%> | O1 | G1 X1");
 }
 
 #[test]
@@ -215,7 +224,8 @@ fn bracket_commands_are_kept_as_commands() {
 fn words_with_an_equals_sign() {
     let mut sinumerik = dialect();
     sinumerik.equals_words = true;
-    let command = |name: &str, refuse| nc_syntax::dialect::Command { name: name.to_owned(), refuse };
+    let command =
+        |name: &str, refuse| nc_syntax::dialect::Command { name: name.to_owned(), refuse, passes_with: None };
     let refused = Some(("moves the frame".to_owned(), "do without".to_owned()));
     sinumerik.commands = vec![command("MSG", None), command("SOFT", None), command("TRANS", refused)];
     assert_eq!(

@@ -1,3 +1,5 @@
+use units::decimal::Decimal;
+
 use crate::Plane;
 
 /// Where the axes are commanded to be.
@@ -106,8 +108,8 @@ pub struct Cycle {
     pub kind: CycleKind,
     /// Peck depth Q, mm, positive.
     pub peck_mm: Option<f64>,
-    /// True where a dwell (P) is programmed.
-    pub dwell: bool,
+    /// Dwell at the bottom, P as written; none where it is zero.
+    pub dwell: Option<Decimal>,
     /// G98: back to the initial level; G99: back to R.
     pub return_to_initial: bool,
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use serde::{Deserialize, Serialize};
 
 use crate::message::Failure;
 
@@ -66,7 +67,7 @@ pub struct Shared {
     #[arg(short, long, value_name = "DIALECT", global = true)]
     pub dialect: Option<String>,
     /// Largest path deviation, µm, rounding of the output apart.
-    #[arg(long, value_name = "UM", global = true)]
+    #[arg(long, value_name = "UM", global = true, value_parser = finite)]
     pub tolerance: Option<f64>,
     /// Machine coordinates of a work offset's zero, mm: G54=X,Y,Z (repeatable).
     #[arg(long = "work-offset", value_name = "G54=X,Y,Z", global = true, allow_hyphen_values = true)]
@@ -84,6 +85,13 @@ pub struct Shared {
     /// Folder of subprograms that the program calls by number or name (repeatable).
     #[arg(long, value_name = "DIR", global = true)]
     pub include: Vec<PathBuf>,
+    /// What a length without a decimal point is, where the dialect reads increments: `increments` (Z10 is ten steps) or
+    /// `millimetres` (Z10 is Z10.; inches under G20); default: the profile's.
+    #[arg(long, value_enum, value_name = "MEANING", global = true)]
+    pub decimal: Option<Decimal>,
+    /// Refuse programs that are warned of as doubtful: cut off, unknown M codes, no unit, lengths without a point.
+    #[arg(long, global = true)]
+    pub strict: bool,
     /// Conditions that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min (repeatable).
     #[arg(long = "at", value_name = "NAME=VALUE,…", global = true, allow_hyphen_values = true)]
     pub at: Vec<String>,
@@ -108,6 +116,16 @@ pub enum Outside {
     Refuse,
     /// The nearest point's correction.
     Clamp,
+}
+
+/// A length without a decimal point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Decimal {
+    /// Least increments.
+    Increments,
+    /// The unit in force.
+    Millimetres,
 }
 
 /// Colours in messages.
@@ -254,4 +272,26 @@ pub(crate) fn man() -> Result<(), Failure> {
         .render(&mut text)
         .map_err(|error| Failure::file("standard output", "write", &error))?;
     crate::file::print(&text)
+}
+
+/// A number of an option: neither `inf` nor `NaN`, which would pass every check of a range from one side.
+///
+/// # Errors
+/// What was expected.
+pub fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("expected a finite number".to_owned()),
+    }
+}
+
+/// A size of an option: above zero, and no larger than a metre in micrometres, beyond which it is a slip.
+///
+/// # Errors
+/// What was expected.
+pub fn size(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|v| *v > 0.0 && *v <= 1e6)
+        .ok_or_else(|| "expected a number above 0, at most 1000000".to_owned())
 }

@@ -1,68 +1,27 @@
-//! The closed loop: two programs through the machine model, their tool paths compared.
+//! The closed loop: two programs through the machine model, what they make of the part compared.
 
+mod findings;
 mod page;
+mod reading;
 
-use std::borrow::Cow;
+use std::cell::RefCell;
 use std::path::Path;
 
-use correction::{Comparison, Mismatch, Step, compare};
-use diagnostic::Diagnostic;
-use nc_program::Interpreter;
-use nc_syntax::dialect::{Action, CodeEntry};
-use nc_syntax::{Block, ItemKind, Reader};
+use nc_expand::Expanded;
+use path_comparison::{Comparison, Pecks, Traces, compare};
 use serde::Serialize;
 
 use crate::arguments::{Check, Shared};
 use crate::expand;
 use crate::file;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 use crate::settings::Settings;
-
-/// A program as the check sees it.
-#[derive(Default)]
-struct Program {
-    steps: Vec<Step>,
-    /// Of each step: its block may be skipped.
-    aside: Vec<bool>,
-    /// Words that are not motion, in order: M, S, T, H, D and G codes that set something.
-    events: Vec<Event>,
-    /// Steps and words up to an end of the program that may be skipped.
-    ends_aside: Option<(usize, usize)>,
-    /// Some blocks may be skipped.
-    may_skip: bool,
-    /// With blocks under `/` executed, and with them skipped.
-    output: [Output; 2],
-}
-
-/// What decides how coarse the output is.
-#[derive(Clone, Copy, Default)]
-struct Output {
-    inch: bool,
-    /// What G51 makes of the output step; 0 where nothing moves.
-    scale: f64,
-}
-
-/// A word that is not motion.
-struct Event {
-    text: String,
-    line: u64,
-    /// Counts the blocks.
-    block: u64,
-    /// Its block may be skipped.
-    aside: bool,
-}
-
-/// What becomes of blocks under `/`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Optional {
-    Executed,
-    Skipped,
-}
+use reading::{Numbers, Optional, Program};
 
 /// Two programs, with blocks under `/` executed or skipped.
 struct Loop {
     comparison: Comparison,
-    limit_mm: f64,
     findings: Vec<String>,
 }
 
@@ -86,12 +45,21 @@ struct Outcome<'a> {
 /// `vpost check IN.nc OUT.nc -m PROFILE`
 pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let settings = Settings::load(shared, messages)?;
+    Roles::default()
+        .reads("the program", &arguments.input)
+        .reads("the corrected program", &arguments.output)
+        .reads_all("read by the profile", &settings.files)
+        .writes("--html", arguments.html.as_deref())
+        .are_apart()?;
     let model = settings.path_model()?;
     let read = |path: &Path| Ok((file::name(path), file::read_program(path)?));
     let (wanted_name, wanted) = read(&arguments.input)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
-    let Loop { comparison, limit_mm, findings } =
-        closed((&wanted_name, &wanted), (&commanded_name, &commanded), &settings)?;
+    let traces = if arguments.html.is_some() { Traces::Kept } else { Traces::Forgotten };
+    let Loop { comparison, findings } =
+        closed((&wanted_name, &wanted), (&commanded_name, &commanded), &settings, traces)?;
+    // A program that feeds nowhere has no limit of its own.
+    let limit_mm = comparison.limit_mm.max(settings.options.tolerance_mm);
     let passed = findings.is_empty();
     let um = |mm: f64| (mm * 1e6).round() / 1e3;
     if arguments.json || arguments.html.is_some() {
@@ -159,204 +127,58 @@ pub(crate) fn findings_between(
     corrected: (&str, &[u8]),
     settings: &Settings,
 ) -> Result<Vec<String>, Failure> {
-    Ok(closed(posted, corrected, settings)?.findings)
+    Ok(closed(posted, corrected, settings, Traces::Forgotten)?.findings)
 }
 
 /// Both programs through the model. Where blocks may be skipped, once with and once without them: what is said of the
 /// path is said of the way with them, what is wrong is said of both.
-fn closed(posted: (&str, &[u8]), corrected: (&str, &[u8]), settings: &Settings) -> Result<Loop, Failure> {
-    let wanted = program(posted.0, posted.1, settings)?;
-    let commanded = program(corrected.0, corrected.1, settings)?;
+fn closed(
+    posted: (&str, &[u8]),
+    corrected: (&str, &[u8]),
+    settings: &Settings,
+    traces: Traces,
+) -> Result<Loop, Failure> {
+    // What is refused is not compared either: its motions would be read as the correction would not read them.
+    let questions = settings.questions();
+    nc_program::Evidence::of(posted.1, &questions)
+        .refusal(&questions)
+        .map_err(|finding| Failure::refused(posted.0, posted.1, vec![finding.0]))?;
     let model = settings.path_model()?;
-    let compared = |optional: Optional| {
-        let limit_mm =
-            settings.options.tolerance_mm + rounding_mm(settings, wanted.output[optional as usize]);
-        let comparison = compare(model, &wanted.steps(optional), &commanded.steps(optional), limit_mm);
-        let findings = findings(&comparison, &wanted.events(optional), &commanded.events(optional));
-        Loop { comparison, limit_mm, findings }
+    let programs = [posted, corrected].map(|(name, text)| {
+        nc_syntax::looks_like_program(text)
+            .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
+        Ok((name, text, expand::expanded(text, name, settings)?))
+    });
+    let [wanted, commanded] = programs;
+    let (wanted, commanded): ((_, _, Expanded<'_>), (_, _, Expanded<'_>)) = (wanted?, commanded?);
+    let pecks = Pecks {
+        clearance_mm: settings.dialect.output.peck_clearance_mm,
+        retreat_mm: settings.dialect.output.chip_retreat_mm,
     };
-    let mut executed = compared(Optional::Executed);
-    if wanted.may_skip || commanded.may_skip {
-        for finding in compared(Optional::Skipped).findings {
+    let compared = |optional: Optional, traces: Traces| {
+        let numbers = RefCell::new(Numbers::default());
+        let mut steps =
+            [&wanted, &commanded].map(|(.., text)| Program::new(text, settings, optional, &numbers));
+        let [w, c] = &mut steps;
+        let comparison = compare(model, &mut *w, &mut *c, pecks, traces);
+        // The one that the other was compared with may end early: what cannot be read is refused all the same.
+        for (program, (name, text, expanded)) in steps.iter_mut().zip([&wanted, &commanded]) {
+            program.by_ref().for_each(drop);
+            if let Some(diagnostics) = program.refused.take() {
+                return Err(Failure::Refused(expand::reports(expanded, name, text, diagnostics)));
+            }
+        }
+        let may_skip = steps.iter().any(|program| program.may_skip);
+        let findings = findings::of(&comparison, &numbers.borrow());
+        Ok((Loop { comparison, findings }, may_skip))
+    };
+    let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
+    if may_skip {
+        for finding in compared(Optional::Skipped, Traces::Forgotten)?.0.findings {
             if !executed.findings.contains(&finding) {
                 executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
             }
         }
     }
     Ok(executed)
-}
-
-/// What rounding adds to the tolerance: half an output step on each axis, as a distance.
-fn rounding_mm(settings: &Settings, Output { inch, scale }: Output) -> f64 {
-    let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
-    let unit = if inch { 25.4 } else { 1.0 };
-    let half = decimals.map(|d| 0.5 * unit / f64::from(10u32.pow(u32::from(d))));
-    scale.max(1.0) * half.iter().map(|h| h * h).sum::<f64>().sqrt()
-}
-
-impl Program {
-    /// The motions, in order.
-    fn steps(&self, optional: Optional) -> Cow<'_, [Step]> {
-        match (optional, self.ends_aside) {
-            (Optional::Executed, None) => Cow::Borrowed(&self.steps),
-            (Optional::Executed, Some((steps, _))) => Cow::Borrowed(&self.steps[..steps]),
-            (Optional::Skipped, _) => {
-                let kept = self.steps.iter().zip(&self.aside).filter(|(_, aside)| !**aside);
-                Cow::Owned(kept.map(|(step, _)| *step).collect())
-            }
-        }
-    }
-
-    /// The words that are not motion, in order.
-    fn events(&self, optional: Optional) -> Vec<&Event> {
-        match (optional, self.ends_aside) {
-            (Optional::Executed, None) => self.events.iter().collect(),
-            (Optional::Executed, Some((_, events))) => self.events[..events].iter().collect(),
-            (Optional::Skipped, _) => self.events.iter().filter(|event| !event.aside).collect(),
-        }
-    }
-}
-
-fn program(name: &str, text: &[u8], settings: &Settings) -> Result<Program, Failure> {
-    nc_syntax::looks_like_program(text)
-        .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
-    let expanded = expand::expanded(text, name, settings)?;
-    let refuse =
-        |diagnostics: Vec<Diagnostic>| Failure::Refused(expand::reports(&expanded, name, text, diagnostics));
-    let mut program = Program::default();
-    let mut interpreter = Interpreter::new(&settings.dialect, &settings.setup);
-    let mut reader = Reader::new(expanded.text(), &settings.dialect);
-    let mut block = Block::default();
-    let mut number = 0;
-    while reader.next(&mut block) {
-        let step = interpreter.step(&block).map_err(refuse)?;
-        let aside = block.switches() != 0;
-        let line = expanded.source_line(block.line).1;
-        program.may_skip |= aside;
-        if !step.motions.is_empty() {
-            let executed = program.ends_aside.is_none();
-            for (output, counts) in program.output.iter_mut().zip([executed, !aside]) {
-                if counts {
-                    output.scale = output.scale.max(step.context.frame.largest_scale());
-                    output.inch |= step.context.unit_mm != 1.0;
-                }
-            }
-        }
-        for motion in &step.motions {
-            program.steps.push(Step { motion: *motion, tool_mm: step.context.tool_mm, line });
-            program.aside.push(aside);
-        }
-        number += 1;
-        let at = Event { text: String::new(), line, block: number, aside };
-        events(&block, &at, settings, &mut program.events);
-        if step.ends_program {
-            if !aside {
-                break;
-            }
-            program.ends_aside.get_or_insert((program.steps.len(), program.events.len()));
-        }
-    }
-    Ok(program)
-}
-
-/// What a block says besides where to go.
-fn events(block: &Block<'_>, at: &Event, settings: &Settings, events: &mut Vec<Event>) {
-    for item in &block.items {
-        let ItemKind::Word { letter, .. } = item.kind else { continue };
-        let counts = match letter {
-            b'M' | b'S' | b'T' | b'H' | b'D' => true,
-            b'G' => block
-                .words()
-                .find(|word| word.span == item.span)
-                .and_then(|word| word.g_code())
-                .is_some_and(|code| settings.dialect.code(code).is_none_or(sets_something)),
-            _ => false,
-        };
-        if counts {
-            let text: String =
-                block.text(item.span).iter().map(|byte| byte.to_ascii_uppercase() as char).collect();
-            events.push(Event { text, ..*at });
-        }
-    }
-}
-
-/// False for motion codes and for what only a cycle needs: a cycle may be written as moves.
-fn sets_something(entry: &CodeEntry) -> bool {
-    const MOTION_GROUP: u8 = 1;
-    entry.group != MOTION_GROUP
-        && !matches!(
-            entry.action,
-            Action::Dwell
-                | Action::DwellP
-                | Action::Cycle(_)
-                | Action::CycleCancel
-                | Action::ReturnInitial
-                | Action::ReturnR
-        )
-}
-
-fn findings(comparison: &Comparison, wanted: &[&Event], commanded: &[&Event]) -> Vec<String> {
-    let mut findings: Vec<String> = comparison
-        .mismatches
-        .iter()
-        .map(|mismatch| match mismatch {
-            Mismatch::TooFar { wanted_line, commanded_line, distance_mm } => format!(
-                "line {commanded_line} of the corrected program is {:.3} um off the path of line {wanted_line}",
-                distance_mm * 1e3
-            ),
-            Mismatch::Missing { wanted_line } => {
-                format!("the motion of line {wanted_line} is missing from the corrected program")
-            }
-            Mismatch::Short { wanted_line, left_mm } => {
-                format!("the corrected program ends {:.3} um short of the end of line {wanted_line}", left_mm * 1e3)
-            }
-            Mismatch::Extra { commanded_line } => {
-                format!("line {commanded_line} of the corrected program belongs to no programmed motion")
-            }
-            Mismatch::Turned { wanted_line, commanded_line } => {
-                format!("the rotary axes stand elsewhere in line {commanded_line} of the corrected program than in line {wanted_line}")
-            }
-            Mismatch::NotPositioned { wanted_line } => {
-                format!("the positioning of line {wanted_line} is missing from the corrected program")
-            }
-            Mismatch::PositionedElsewhere { commanded_line } => {
-                format!("line {commanded_line} of the corrected program positions the tool where the program does not")
-            }
-        })
-        .collect();
-    if comparison.more_mismatches > 0 {
-        findings.push(format!("and {} more of the path", comparison.more_mismatches));
-    }
-    if let Some((a, b)) = different(wanted, commanded) {
-        findings.push(format!(
-            "the programs say different things besides motion: {} on line {} against {} on line {}",
-            a.text, a.line, b.text, b.line
-        ));
-    } else if wanted.len() != commanded.len() {
-        findings.push(format!(
-            "the programs say different things besides motion: {} words against {}",
-            wanted.len(),
-            commanded.len()
-        ));
-    }
-    findings
-}
-
-/// The first words that differ. The order within a posted block means nothing: of its pieces the last one has what is
-/// executed behind the motion.
-fn different<'e>(wanted: &[&'e Event], commanded: &[&'e Event]) -> Option<(&'e Event, &'e Event)> {
-    let mut rest = commanded;
-    for block in wanted.chunk_by(|a, b| a.block == b.block) {
-        let (here, behind) = rest.split_at(block.len().min(rest.len()));
-        let sorted = |events: &[&'e Event]| {
-            let mut texts: Vec<&str> = events.iter().map(|event| event.text.as_str()).collect();
-            texts.sort_unstable();
-            texts
-        };
-        if here.len() == block.len() && sorted(block) != sorted(here) {
-            return block.iter().copied().zip(here.iter().copied()).find(|(a, b)| a.text != b.text);
-        }
-        rest = behind;
-    }
-    None
 }

@@ -18,12 +18,14 @@ use correction::Options;
 use diagnostic::{Code, Diagnostic};
 use machine_model::PathModel;
 use nc_emit::BlockNumbers;
-use nc_program::Setup;
+use nc_program::{Evidence, Setup};
 use nc_syntax::{Block, Dialect, Reader};
 
 use crate::arguments::{self, Shared};
-use crate::file::{self, Interrupt};
+use crate::file;
+use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 use crate::settings::Settings;
 use crate::summary::Summary;
 use pass::{Pass, State, Tally};
@@ -47,6 +49,14 @@ pub const RAPID_OUTSIDE: Code = Code(507);
 pub const COMPENSATED: Code = Code(508);
 /// Nobody knows on which side of its play an axis stands.
 pub const UNKNOWN_SIDE: Code = Code(509);
+/// A hole of more pecks than anybody drills.
+pub const TOO_MANY_PECKS: Code = Code(510);
+/// Arcs end off their circle, as the control takes them.
+pub const SPIRAL: Code = Code(515);
+/// An axis would need a word, and the program has not named it in the frame in force.
+pub const UNNAMED: Code = Code(514);
+/// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
+pub const SIDEWAYS: Code = Code(519);
 
 /// The mark of the correction stands behind one of so many blocks at most.
 const OPENING_BLOCKS: usize = 64;
@@ -100,6 +110,8 @@ pub struct Corrected {
     pub text: Vec<u8>,
     /// What was done.
     pub figures: Figures,
+    /// What the program as a whole shows; who corrects it judges that.
+    pub evidence: Evidence,
 }
 
 /// Corrects a program.
@@ -172,9 +184,9 @@ fn pass<E: From<Vec<Diagnostic>>>(
         Err(Ended::Stopped) => return Ok(None),
         Err(Ended::Failed(error)) => return Err(error),
     }
-    let Pass { out, tally: Tally { mut figures, notices }, .. } = pass;
+    let Pass { out, tally: Tally { mut figures, notices, evidence }, .. } = pass;
     figures.warnings = notices.warnings().into_iter().map(|(warning, _)| warning).collect();
-    Ok(Some(Corrected { text: out, figures }))
+    Ok(Some(Corrected { text: out, figures, evidence }))
 }
 
 /// Puts the mark of the correction into what is not the input.
@@ -219,8 +231,16 @@ pub(crate) fn run(
     shared: &Shared,
     messages: &Messages,
 ) -> Result<(), Failure> {
-    let input = Input::open(arguments.input.as_deref().unwrap_or(Path::new("-")));
+    let path = arguments.input.as_deref().unwrap_or(Path::new("-"));
     let settings = Settings::load(shared, messages)?;
+    Roles::default()
+        .reads("the program", path)
+        .reads_all("read by the profile", &settings.files)
+        .reads_folders("in a folder of subprograms", &shared.include)
+        .writes("--output", arguments.output.as_deref())
+        .writes("--summary", arguments.summary.as_deref())
+        .are_apart()?;
+    let input = Input::open(path);
     let interrupt = Interrupt::listen();
     let linuxcnc = arguments.progress.is_some();
     let reported = Mutex::new(None);
@@ -245,10 +265,13 @@ pub(crate) fn run(
     let done = program(input, &settings, manner, &mut output, &progress)?;
     interrupt.check()?;
     report(100);
+    // All that can fail before the program gets its name.
+    let summary = match arguments.summary.as_deref() {
+        Some(path) => Some(file::written(path, &Summary::new(&settings, &done).json())?),
+        None => None,
+    };
     output.finish()?;
-    if let Some(path) = &arguments.summary {
-        file::write(path, &Summary::new(&settings, &done).json())?;
-    }
+    summary.map_or(Ok(()), file::Output::finish)?;
     for report in &done.warnings {
         messages.report(report);
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use diagnostic::Diagnostic;
 use nc_expand::{Environment, Expanded, Limits, Preset};
+use nc_program::{Evidence, Finding};
 use serde::{Deserialize, Serialize};
 
 use crate::arguments::Shared;
@@ -169,6 +170,10 @@ fn correct_expanded(
     force: bool,
     mut progress: impl FnMut(f64) -> Result<(), Failure>,
 ) -> Result<Done, Failure> {
+    // Of the text as it was written: a loop counts once, and what is computed says nothing of how lengths are written.
+    let questions = settings.questions();
+    let evidence = Evidence::of(text, &questions);
+    evidence.refusal(&questions).map_err(|finding| Failure::refused(name, text, vec![finding.0]))?;
     let lookups = RefCell::new(Vec::new());
     let expanded = expanded_with(text, name, settings, &|file| {
         let found = settings.flow.read(file);
@@ -194,6 +199,19 @@ fn correct_expanded(
         Err(PipelineEnd::Failed(failure)) => return Err(failure),
     };
     let mut warnings = reports(&expanded, name, text, corrected.figures.warnings.clone());
+    let mut doubt = |name: &str, text: &[u8], findings: Vec<Finding>| {
+        let diagnostics: Vec<Diagnostic> = findings.into_iter().map(|(diagnostic, _)| diagnostic).collect();
+        if !diagnostics.is_empty() {
+            corrected.figures.warnings.extend_from_slice(&diagnostics);
+            warnings.push(Report { source: Some(Source::whole(name, text)), diagnostics });
+        }
+    };
+    doubt(name, text, evidence.doubts(&questions));
+    for (name, text) in (1..).map_while(|index| expanded.file(index)) {
+        let evidence = Evidence::of(text, &questions);
+        evidence.refusal(&questions).map_err(|finding| Failure::refused(name, text, vec![finding.0]))?;
+        doubt(name, text, evidence.doubts_of_a_part(&questions));
+    }
     if expanded.changed() {
         let figures = &mut corrected.figures;
         for figure in [&mut figures.largest, &mut figures.before, &mut figures.after] {
@@ -226,14 +244,24 @@ fn correct_plain(
     let total = text.len().max(1) as f64;
     let result =
         correct::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));
-    let corrected = match result {
+    let mut corrected = match result {
         Ok(Some(corrected)) => corrected,
         Ok(None) | Err(PipelineEnd::Refused(_)) => return Ok(None),
         Err(PipelineEnd::Failed(failure)) => return Err(failure),
     };
-    let diagnostics = corrected.figures.warnings.clone();
+    let questions = settings.questions();
+    if corrected.evidence.refusal(&questions).is_err() {
+        return Ok(None);
+    }
+    let doubts = corrected.evidence.doubts(&questions).into_iter().map(|(diagnostic, _)| diagnostic);
+    let told = [corrected.figures.warnings.clone(), doubts.collect()];
+    corrected.figures.warnings = told.concat();
     let report = |diagnostics| Report { source: Some(Source::whole(name, text)), diagnostics };
-    let warnings = (!diagnostics.is_empty()).then(|| report(diagnostics)).into_iter().collect();
+    let warnings = told
+        .into_iter()
+        .filter(|diagnostics: &Vec<Diagnostic>| !diagnostics.is_empty())
+        .map(report)
+        .collect();
     Ok(Some(Done { corrected, warnings, lookups: Vec::new() }))
 }
 
@@ -283,6 +311,8 @@ mod tests {
                 assert!(done.corrected == whole.corrected, "{name}");
                 assert_eq!(format!("{:?}", done.warnings), format!("{:?}", whole.warnings), "{name}");
                 assert_eq!(done.lookups, whole.lookups);
+                // Seen on the way of the correction, plain lines nearly free, is what reading each block shows.
+                assert_eq!(done.corrected.evidence, Evidence::of(&text, &settings.questions()), "{name}");
                 short += 1;
                 warned += done.warnings.len();
             }

@@ -106,6 +106,7 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         Format::Csv => own(&profile, &arguments.folder)?,
     };
     let mut lost = lost;
+    lost.extend(rotary_lost(&profile, arguments.format));
     if !profile.effects.is_empty() {
         lost.push("the profile's [[effect]] entries".to_owned());
     }
@@ -115,6 +116,19 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
     Ok(())
+}
+
+/// What becomes of rotary axes that have errors: only a profile holds them.
+fn rotary_lost(profile: &Profile, format: Format) -> Option<String> {
+    let machine = &profile.description;
+    let axes = machine.chain.table().iter().chain(machine.chain.head());
+    let crooked = axes.filter(|axis| !machine.rotary[axis.direction()].is_perfect());
+    let names: Vec<String> = crooked.map(|axis| axis.letter().to_string()).collect();
+    let names = names.join(", ");
+    (!names.is_empty()).then(|| match format {
+        Format::Lattice => format!("the errors of {names} at any angle but 0, where the lattice has them"),
+        Format::Linuxcnc | Format::Isg | Format::Csv => format!("the errors of {names}"),
+    })
 }
 
 /// One file per axis. No comments: LinuxCNC stops reading at the first line that is not three numbers.
@@ -182,16 +196,19 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
 
 /// Vectors on a lattice over the calibrated volume, its far faces included.
 fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure> {
+    const MOST_POINTS: f64 = 1e6;
     let volume = profile.volume();
+    let cells = volume.0.map(|range| ((range.high - range.low) / arguments.step - 1e-9).ceil().max(1.0));
+    // Counted before there are any.
+    let points: f64 = cells.iter().map(|cells| cells + 1.0).product();
+    if points > MOST_POINTS {
+        let message = format!("a lattice of {points:.3e} points, more than {MOST_POINTS:e}");
+        return Err(Failure::option(message, "use a larger `--step`"));
+    }
     let places: [Vec<f64>; 3] = [0, 1, 2].map(|i| {
         let range = volume.0[i];
-        let cells = ((range.high - range.low) / arguments.step - 1e-9).ceil().max(1.0) as usize;
-        (0..=cells).map(|k| (range.low + k as f64 * arguments.step).min(range.high)).collect()
+        (0..=cells[i] as usize).map(|k| (range.low + k as f64 * arguments.step).min(range.high)).collect()
     });
-    let points: usize = places.iter().map(Vec::len).product();
-    if points > 1_000_000 {
-        return Err(Failure::option(format!("a lattice of {points} points"), "use a larger `--step`"));
-    }
     let model = profile.rigid_body_without_effects();
     let tool_mm = Vector::from(profile.default_tool_mm);
     let (sign, head) = match arguments.lattice {
@@ -248,5 +265,5 @@ fn own(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         }
         file::write(&folder.join(format!("{}.csv", letter.to_ascii_lowercase())), text.as_bytes())?;
     }
-    Ok(vec!["squareness, rotary axes, tools and offsets: they stand in the profile".to_owned()])
+    Ok(vec!["squareness, tools and offsets: they stand in the profile".to_owned()])
 }

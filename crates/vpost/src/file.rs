@@ -1,24 +1,28 @@
 //! Files: read whole, written whole or not at all.
 
 use std::borrow::Cow;
-use std::io::{Read, Seek, SeekFrom, Write};
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::io::{IsTerminal, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 
 use diagnostic::{Code, Diagnostic};
 
 use crate::correct::Growing;
 use crate::growing::{GrowingFile, Nursery};
 use crate::message::Failure;
-use crate::to_disk::ToDisk;
+use crate::source::Still;
+use crate::terminal;
+use crate::to_disk::{self, ToDisk};
 
 /// A block is longer than any that is read.
 const TOO_LONG: Code = Code(106);
 
 /// The name of a path in messages.
 pub(crate) fn name(path: &Path) -> String {
-    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+    if path.as_os_str() == "-" {
+        return "standard input".to_owned();
+    }
+    // In a message a name is one line.
+    terminal::shown(&path.to_string_lossy()).replace(['\n', '\r'], "?")
 }
 
 /// Text of a file that may be older than UTF-8: then it is Windows-1251, as controls and instruments of the region write.
@@ -44,17 +48,25 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 /// No block is longer, padding apart: what has no line end for so long is no part program.
 pub(crate) const LONGEST_LINE: usize = 1 << 20;
 
-/// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows.
+/// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows; refuses a file that
+/// changes meanwhile.
 pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, Failure> {
-    let fail = |error: std::io::Error| Failure::file(&name(path), "read", &error);
+    let name = name(path);
     if path.as_os_str() == "-" {
-        read_lines(std::io::stdin().lock(), path)
-    } else {
-        read_lines(std::fs::File::open(path).map_err(fail)?, path)
+        return read_lines(std::io::stdin().lock(), &name);
     }
+    let fail = |error: std::io::Error| Failure::file(&name, "read", &error);
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return read_lines(std::fs::File::open(path).map_err(fail)?, &name);
+    }
+    let still = Still::open(path).map_err(fail)?;
+    let text = read_lines(still.reading(), &name)?;
+    still.unchanged(path, &name)?;
+    Ok(text)
 }
 
-fn read_lines(mut source: impl Read, path: &Path) -> Result<Vec<u8>, Failure> {
+/// Reads the lines of a program by the name it has in messages.
+pub(crate) fn read_lines(mut source: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     loop {
         let start = bytes.len();
@@ -62,11 +74,11 @@ fn read_lines(mut source: impl Read, path: &Path) -> Result<Vec<u8>, Failure> {
             .by_ref()
             .take(LONGEST_LINE as u64)
             .read_to_end(&mut bytes)
-            .map_err(|error| Failure::file(&name(path), "read", &error))?;
+            .map_err(|error| Failure::file(name, "read", &error))?;
         if read < LONGEST_LINE {
             return Ok(bytes);
         }
-        check_line(&bytes, start, &name(path))?;
+        check_line(&bytes, start, name)?;
     }
 }
 
@@ -108,8 +120,8 @@ const SPOOLED_BYTES: usize = 16 << 20;
 /// A file is there whole or, where that fails, an earlier one is left as it was; standard output gets nothing
 /// before all of it is known to be right.
 #[derive(Debug)]
-pub(crate) struct Output<'p> {
-    path: Option<&'p Path>,
+pub(crate) struct Output {
+    path: Option<PathBuf>,
     /// What is written to.
     place: Place,
     to_disk: ToDisk,
@@ -125,43 +137,73 @@ pub(crate) enum Place {
 }
 
 /// The folder that a file lies in.
-fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-impl<'p> Output<'p> {
+/// What makes two paths one file: links and other spellings. None where nothing is there.
+#[cfg(unix)]
+pub(crate) fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|found| (found.dev(), found.ino()))
+}
+#[cfg(not(unix))]
+pub(crate) fn identity(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
+}
+
+/// Where a path leads through links, whether anything is there or not: what is written to a link is its target's.
+pub(crate) fn target(path: &Path) -> PathBuf {
+    /// More than any system follows.
+    const MOST_LINKS: usize = 64;
+    let mut place = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&place) {
+            Ok(next) => place = folder_of(&place).join(next),
+            Err(_) => break,
+        }
+    }
+    place
+}
+
+impl Output {
     /// An output to a file, or to standard output.
-    pub(crate) fn new(path: Option<&'p Path>) -> Result<Self, Failure> {
-        let Some(to) = path else {
+    pub(crate) fn new(path: Option<&Path>) -> Result<Self, Failure> {
+        let Some(to) = path.map(target) else {
             let place = Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES));
-            return Ok(Self { path, place, to_disk: ToDisk::default() });
+            return Ok(Self { path: None, place, to_disk: ToDisk::default() });
         };
-        let fail = |error: &std::io::Error| Failure::file(&name(to), "write", error);
+        let fail = |error: &std::io::Error| Failure::file(&name(&to), "write", error);
+        if let (true, Err(error)) = (to.is_symlink(), to.metadata()) {
+            // It leads in a circle.
+            return Err(fail(&error));
+        }
         if to.is_dir() {
             return Err(fail(&std::io::Error::from(std::io::ErrorKind::IsADirectory)));
         }
         let place = if to.exists() && !to.is_file() {
             Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES))
         } else {
-            // An overwritten file keeps its permissions.
-            let permissions = to.metadata().ok().map(|old| old.permissions());
+            // An overwritten file keeps its owner and its permissions.
+            let old = to.metadata().ok();
             Place::Beside(
-                Nursery::new(folder_of(to).to_owned()).file(permissions).map_err(|error| fail(&error))?,
+                Nursery::new(folder_of(&to).to_owned()).file(old.as_ref()).map_err(|error| fail(&error))?,
             )
         };
-        Ok(Self { path, place, to_disk: ToDisk::default() })
+        Ok(Self { path: Some(to), place, to_disk: ToDisk::default() })
     }
 
-    /// Shows it.
+    /// Shows it. A file is then on the disk under its name, whatever becomes of the power.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        let named = self.path.map_or_else(|| "standard output".to_owned(), name);
+        let named = self.path.as_deref().map_or_else(|| "standard output".to_owned(), name);
         let fail = |error: &std::io::Error| Failure::file(&named, "write", error);
-        match (self.place, self.path) {
+        match (self.place, self.path.as_deref()) {
             (Place::Beside(beside), Some(path)) => {
                 self.to_disk.finish(beside.file()).map_err(|error| fail(&error))?;
                 beside
                     .put_new(path)
                     .or_else(|(_, beside)| beside.replace(folder_of(path), path))
+                    .and_then(|()| to_disk::names(folder_of(path)))
                     .map_err(|error| fail(&error))
             }
             (Place::Beside(_), None) => Ok(()),
@@ -175,14 +217,20 @@ impl<'p> Output<'p> {
                             .map_err(|error| fail(&error))?;
                         std::io::copy(&mut apart, &mut out).map(|_| ()).map_err(|error| fail(&error))
                     }
-                    None => printed(|out| std::io::copy(&mut apart, out).map(|_| ())),
+                    None => {
+                        if std::io::stdout().is_terminal() {
+                            terminal::obeys_nothing_of(&mut apart)?;
+                            apart.seek(SeekFrom::Start(0)).map_err(|error| fail(&error))?;
+                        }
+                        printed(|out| std::io::copy(&mut apart, out).map(|_| ()))
+                    }
                 }
             }
         }
     }
 }
 
-impl Write for Output<'_> {
+impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         let written = self.place.write(bytes)?;
         if let Place::Beside(beside) = &self.place {
@@ -196,7 +244,7 @@ impl Write for Output<'_> {
     }
 }
 
-impl Growing for Output<'_> {
+impl Growing for Output {
     fn clear(&mut self) -> std::io::Result<()> {
         self.place.clear()
     }
@@ -232,49 +280,33 @@ impl Growing for Place {
 
 /// Writes a file so that it is there whole or, where that fails, an earlier one is left as it was.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut output = Output::new(Some(path))?;
-    output.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
-    output.finish()
+    written(path, bytes)?.finish()
 }
 
-/// Prints to standard output.
+/// A file that is written and not shown yet.
+pub(crate) fn written(path: &Path, bytes: &[u8]) -> Result<Output, Failure> {
+    let mut output = Output::new(Some(path))?;
+    output.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
+    Ok(output)
+}
+
+/// Prints a report, a table or JSON to standard output; of names and ids in it a terminal obeys nothing.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
-    printed(|out| out.write_all(bytes))
+    match std::str::from_utf8(bytes) {
+        Ok(text) => printed(|out| out.write_all(terminal::shown(text).as_bytes())),
+        Err(_) => printed(|out| out.write_all(bytes)),
+    }
 }
 
 fn printed(print: impl FnOnce(&mut std::io::StdoutLock<'_>) -> std::io::Result<()>) -> Result<(), Failure> {
+    if !open_streams::is_stdout_open() {
+        let closed = std::io::Error::other("it was closed before vpost began");
+        return Err(Failure::file("standard output", "write to", &closed));
+    }
     let mut out = std::io::stdout().lock();
     match print(&mut out).and_then(|()| out.flush()) {
         // Whoever reads has seen enough.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::Check),
         result => result.map_err(|error| Failure::file("standard output", "write to", &error)),
-    }
-}
-
-/// Signals that end the work, asked for between blocks, so that nothing is left half done.
-#[derive(Debug, Clone)]
-pub(crate) struct Interrupt(Arc<AtomicUsize>);
-
-impl Interrupt {
-    /// Catches SIGINT and SIGTERM from here on.
-    pub(crate) fn listen() -> Self {
-        let seen = Arc::new(AtomicUsize::new(0));
-        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            // Where a signal cannot be caught it ends the program at once, as it would have without us.
-            let _ = signal_hook::flag::register_usize(
-                signal,
-                Arc::clone(&seen),
-                usize::from(signal.unsigned_abs() as u16),
-            );
-        }
-        Self(seen)
-    }
-
-    /// Fails once a signal has come.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        match self.0.load(Ordering::Relaxed) {
-            0 => Ok(()),
-            signal => Err(Failure::Interrupted(u8::try_from(signal).unwrap_or(2))),
-        }
     }
 }

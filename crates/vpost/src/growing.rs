@@ -1,6 +1,6 @@
 //! A file on its way to its place: whole under its final name, or not there at all.
 
-use std::fs::{File, Permissions};
+use std::fs::{File, Metadata};
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -40,18 +40,27 @@ impl Nursery {
         &self.path
     }
 
-    /// An empty file; with the usual permissions where none are given.
-    pub(crate) fn file(&self, permissions: Option<Permissions>) -> io::Result<GrowingFile> {
-        let nameless = self.opened.as_ref().and_then(|opened| nameless(opened, permissions.as_ref()));
-        if let Some(file) = nameless {
-            return Ok(GrowingFile::Nameless(file));
+    /// An empty file, with the owner and the permissions of the `old` one where there is one, else the usual ones.
+    pub(crate) fn file(&self, old: Option<&Metadata>) -> io::Result<GrowingFile> {
+        let grown = match self.opened.as_ref().and_then(nameless) {
+            Some(file) => GrowingFile::Nameless(file),
+            None => {
+                let mut builder = tempfile::Builder::new();
+                for_everybody(builder.prefix(PREFIX));
+                GrowingFile::Named(builder.tempfile_in(&self.path)?)
+            }
+        };
+        if let Some(old) = old {
+            #[cfg(unix)]
+            {
+                use std::os::unix::fs::MetadataExt;
+                // Who may not give files away keeps them.
+                let _ = std::os::unix::fs::fchown(grown.file(), Some(old.uid()), Some(old.gid()));
+            }
+            // Not when it is made: the mask of new files is none of an old one's.
+            grown.file().set_permissions(old.permissions())?;
         }
-        let mut builder = tempfile::Builder::new();
-        for_everybody(builder.prefix(PREFIX));
-        if let Some(permissions) = permissions {
-            builder.permissions(permissions);
-        }
-        builder.tempfile_in(&self.path).map(GrowingFile::Named)
+        Ok(grown)
     }
 }
 
@@ -117,22 +126,20 @@ pub(crate) fn for_everybody<'b, 'p, 's>(
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        builder.permissions(Permissions::from_mode(USUAL));
+        builder.permissions(std::fs::Permissions::from_mode(USUAL));
     }
     builder
 }
 
 /// A file without a name; none where the system or the file system has none.
 #[cfg(target_os = "linux")]
-fn nameless(folder: &File, permissions: Option<&Permissions>) -> Option<File> {
-    use std::os::unix::fs::PermissionsExt;
-
+fn nameless(folder: &File) -> Option<File> {
     use rustix::fs::{Mode, OFlags, openat};
-    let mode = Mode::from_raw_mode(permissions.map_or(USUAL, Permissions::mode));
+    let mode = Mode::from_raw_mode(USUAL);
     openat(folder, ".", OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC, mode).ok().map(File::from)
 }
 #[cfg(not(target_os = "linux"))]
-fn nameless(_: &File, _: Option<&Permissions>) -> Option<File> {
+fn nameless(_: &File) -> Option<File> {
     None
 }
 
@@ -224,16 +231,21 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn its_permissions_are_the_usual_ones_or_those_given() {
+    fn its_permissions_are_the_usual_ones_or_those_of_the_old_one() {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
-        let mode = |name: &str| folder.path().join(name).metadata().unwrap().permissions().mode() & 0o777;
-        std::fs::write(folder.path().join("usual"), "").unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let mode = |name: &str| place(name).metadata().unwrap().permissions().mode() & 0o777;
+        std::fs::write(place("usual"), "").unwrap();
         let nursery = Nursery::new(folder.path().to_owned());
-        assert!(nursery.file(None).unwrap().put_new(&folder.path().join("new")).is_ok());
+        assert!(nursery.file(None).unwrap().put_new(&place("new")).is_ok());
         assert_eq!(mode("new"), mode("usual"));
-        let own = Some(Permissions::from_mode(0o600));
-        assert!(nursery.file(own).unwrap().put_new(&folder.path().join("own")).is_ok());
-        assert_eq!(mode("own"), 0o600);
+        // More than the mask of new files lets through, and less.
+        for bits in [0o666, 0o664, 0o600] {
+            std::fs::set_permissions(place("usual"), std::fs::Permissions::from_mode(bits)).unwrap();
+            let old = place("usual").metadata().unwrap();
+            nursery.file(Some(&old)).unwrap().replace(folder.path(), &place("usual")).unwrap();
+            assert_eq!(mode("usual"), bits);
+        }
     }
 }

@@ -17,25 +17,31 @@ mod figures;
 mod file;
 mod grammar;
 mod growing;
+mod interrupt;
 pub mod map;
 mod message;
 mod points;
 mod predict;
 mod profile;
 mod profile_command;
+mod roles;
 pub mod session;
 mod settings;
 mod solve;
+mod source;
 mod summary;
+mod terminal;
 mod to_disk;
 mod words;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use arguments::{Arguments, Command};
+use interrupt::Interrupt;
 use message::{Failure, Messages};
 
 /// Exit status: done; refused or a check failed; usage, profile or grammar error; interrupted.
@@ -51,11 +57,19 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             let status = if error.use_stderr() { USAGE } else { DONE };
-            // A closed terminal is no reason to fail louder.
-            let _ = error.print();
-            return ExitCode::from(status);
+            let printed = if error.use_stderr() {
+                // It quotes what was typed, or what a script put there.
+                let text = error.render().to_string();
+                writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
+            } else {
+                error.print().is_ok() && open_streams::is_stdout_open()
+            };
+            // Help that nobody got is not done; a usage error that nobody reads is one all the same.
+            return ExitCode::from(if printed { status } else { status.max(REFUSED) });
         }
     };
+    // From here on: opening a named pipe waits, too.
+    let interrupt = Interrupt::listen();
     let messages = Messages::new(arguments.shared.color, arguments.shared.quiet);
     let result = match &arguments.command {
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
@@ -75,6 +89,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::from(DONE),
         Err(failure) => {
+            // What failed because it was told to end was told to end.
+            let failure = match (interrupt.check(), failure) {
+                (Err(interrupted), Failure::Refused(_) | Failure::File(_)) => interrupted,
+                (_, failure) => failure,
+            };
             messages.failure(&failure);
             ExitCode::from(match failure {
                 Failure::Refused(_) | Failure::File(_) | Failure::Check => REFUSED,

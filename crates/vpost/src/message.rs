@@ -7,6 +7,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use diagnostic::{Code, Diagnostic, Severity};
 
 use crate::arguments::Color;
+use crate::terminal::{is_obeyed, shown};
 
 /// A text that diagnostics speak of.
 #[derive(Debug, Clone)]
@@ -163,14 +164,14 @@ impl Messages {
     }
 
     fn rendered(&self, report: &Report) -> impl Iterator<Item = String> {
-        let told = report.diagnostics.iter().filter(|d| d.severity != Severity::Warning || !self.quiet);
+        let told = report.diagnostics.iter().filter(|d| d.severity == Severity::Error || !self.quiet);
         told.map(|diagnostic| self.render(diagnostic, report.source.as_ref()))
     }
 
     /// Prints a line about progress or result, unless quiet.
     pub(crate) fn note(&self, text: &str) {
         if !self.quiet {
-            self.line(text);
+            self.line(&shown(text));
         }
     }
 
@@ -182,38 +183,43 @@ impl Messages {
     fn render(&self, diagnostic: &Diagnostic, source: Option<&Source>) -> String {
         let level = match diagnostic.severity {
             Severity::Error => Level::ERROR,
-            Severity::Warning => Level::WARNING,
+            Severity::Warning | Severity::Doubt => Level::WARNING,
         };
         let code = diagnostic.code.to_string();
-        let title = level.primary_title(diagnostic.message.as_str()).id(code.as_str());
+        let [message, label] = [&diagnostic.message, &diagnostic.label].map(|text| shown(text));
+        let help = diagnostic.help.as_deref().map(shown);
+        let title = level.primary_title(message.as_ref()).id(code.as_str());
         let line = match (&diagnostic.span, source) {
-            (Some(span), Some(source)) => Some((source.around(span), source.name.as_str())),
+            (Some(span), Some(source)) => Some((source.around(span), shown(&source.name))),
             _ => None,
         };
         let mut groups = Vec::new();
         match &line {
-            Some((line, name)) => groups.push(title.element(
-                Snippet::source(line.text.as_str()).line_start(line.number).path(*name).annotation(
-                    AnnotationKind::Primary.span(line.span.clone()).label(diagnostic.label.as_str()),
+            Some((line, name)) => groups.push(
+                title.element(
+                    Snippet::source(line.text.as_str())
+                        .line_start(line.number)
+                        .path(name.as_ref())
+                        .annotation(AnnotationKind::Primary.span(line.span.clone()).label(label.as_ref())),
                 ),
-            )),
+            ),
             None => match source {
                 Some(source) => {
-                    groups.push(title.element(annotate_snippets::Origin::path(source.name.as_str())))
+                    groups.push(title.element(annotate_snippets::Origin::path(shown(&source.name))))
                 }
                 None => groups.push(Group::with_title(title)),
             },
         }
         // Without a line of source there is nothing that a rule would join to the help.
         let separate = source.is_none();
-        if let (Some(help), false) = (&diagnostic.help, separate) {
-            groups.push(Group::with_title(Level::HELP.secondary_title(help.as_str())));
+        if let (Some(help), false) = (&help, separate) {
+            groups.push(Group::with_title(Level::HELP.secondary_title(help.as_ref())));
         }
         let mut text = self.renderer.render(&groups);
-        if let (Some(help), true) = (&diagnostic.help, separate) {
+        if let (Some(help), true) = (&help, separate) {
             text.push('\n');
             text.push_str(
-                &self.renderer.render(&[Group::with_title(Level::HELP.secondary_title(help.as_str()))]),
+                &self.renderer.render(&[Group::with_title(Level::HELP.secondary_title(help.as_ref()))]),
             );
         }
         text
@@ -267,7 +273,7 @@ fn lines_before(bytes: &[u8]) -> usize {
 fn printable(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len());
     for chunk in bytes.utf8_chunks() {
-        text.extend(chunk.valid().chars().map(|c| if c.is_control() { '\u{b7}' } else { c }));
+        text.extend(chunk.valid().chars().map(|c| if c.is_control() || is_obeyed(c) { '\u{b7}' } else { c }));
         text.extend(chunk.invalid().iter().map(|_| '\u{b7}'));
     }
     text

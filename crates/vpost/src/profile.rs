@@ -13,6 +13,8 @@ pub(crate) struct Loaded {
     pub profile: Profile,
     /// Hash of the profile and of every table it names, in the order they were read.
     pub hash: blake3::Hash,
+    /// The profile and the tables.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads a profile and the tables it names; everything wrong with them is one failure.
@@ -34,15 +36,20 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let hasher = std::cell::RefCell::new(blake3::Hasher::new());
     hasher.borrow_mut().update(&bytes);
+    let files = std::cell::RefCell::new(vec![path.to_owned()]);
     let read = |table: &str| {
-        let bytes = std::fs::read(folder.join(table))?;
+        let table = folder.join(table);
+        let bytes = std::fs::read(&table)?;
+        files.borrow_mut().push(table);
         hasher.borrow_mut().update(&bytes);
         Ok(bytes)
     };
     match machine_profile::load(text, &read) {
-        Ok(profile) => Ok(Loaded { profile, hash: hasher.into_inner().finalize() }),
+        Ok(profile) => {
+            Ok(Loaded { profile, hash: hasher.into_inner().finalize(), files: files.into_inner() })
+        }
         Err(errors) => Err(Failure::Usage(
-            errors
+            some_of(errors)
                 .into_iter()
                 .map(|ProfileError { file, diagnostic }| {
                     let source = match file {
@@ -57,4 +64,20 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
                 .collect(),
         )),
     }
+}
+
+/// No more errors of a profile are told: who mends these sees the rest.
+const MOST_TOLD: usize = 20;
+
+/// The first errors, and how many more there are.
+fn some_of(mut errors: Vec<ProfileError>) -> Vec<ProfileError> {
+    if let Some(next) = errors.get(MOST_TOLD) {
+        let more = errors.len() - MOST_TOLD;
+        let diagnostic =
+            Diagnostic::error(next.diagnostic.code, format!("and {more} more errors of this profile"))
+                .help("mend those above first");
+        errors.truncate(MOST_TOLD);
+        errors.push(ProfileError { file: None, diagnostic });
+    }
+    errors
 }

@@ -1,12 +1,13 @@
 //! What the profile and the command line say together.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use correction::{Options, Outside};
 use machine_model::{Engine, EngineId};
-use machine_profile::Profile;
-use nc_program::Setup;
+use machine_profile::{BareLengths, Profile};
+use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
+use nc_syntax::dialect::{MCode, PointFree};
 
 use crate::arguments::{self, Shared};
 use crate::correct::Job;
@@ -19,11 +20,15 @@ pub(crate) struct Settings {
     pub profile: Profile,
     pub profile_name: String,
     pub profile_hash: blake3::Hash,
+    /// Profile, tables, and the dialect's where it is a file.
+    pub files: Vec<PathBuf>,
     pub dialect: Dialect,
     pub setup: Setup,
     pub engine: Box<dyn Engine>,
     pub options: Options,
     pub flow: Flow,
+    /// Doubtful programs are refused.
+    pub strict: bool,
 }
 
 impl Settings {
@@ -37,8 +42,16 @@ impl Settings {
             None => profile.correction.engine,
         };
         let engine = conditions::engine(&profile, engine_id, shared)?;
-        let dialect = dialect(shared, &profile)?;
-        let setup = setup(shared, &profile)?;
+        let mut dialect = dialect(shared, &profile)?;
+        let mut files = loaded.files;
+        let tables = shared.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
+        files.extend(tables.map(PathBuf::from));
+        let mut setup = setup(shared, &profile)?;
+        setup.lengths_settled = settle_lengths(shared, &profile, &mut dialect)?;
+        declare_harmless(&profile, &mut dialect)?;
+        if let Some(mm) = profile.program.arc_tolerance_mm {
+            dialect.output.arc_radius_tolerance_mm = mm;
+        }
         let tolerance_um = shared.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
             return Err(Failure::option(
@@ -60,7 +73,23 @@ impl Settings {
         };
         let profile_name = file::name(path);
         let flow = Flow::load(shared)?;
-        Ok(Self { profile, profile_name, profile_hash: loaded.hash, dialect, setup, engine, options, flow })
+        Ok(Self {
+            profile,
+            profile_name,
+            profile_hash: loaded.hash,
+            files,
+            dialect,
+            setup,
+            engine,
+            options,
+            flow,
+            strict: shared.strict,
+        })
+    }
+
+    /// What is asked of a whole program.
+    pub(crate) fn questions(&self) -> Questions<'_> {
+        Questions::new(&self.dialect, &self.setup)
     }
 
     /// The engine as a model of paths; the published variants are none.
@@ -112,6 +141,65 @@ impl Settings {
             provenance,
         })
     }
+}
+
+/// Puts into the dialect what command line or profile say of lengths without a point; true where one of them does.
+fn settle_lengths(shared: &Shared, profile: &Profile, dialect: &mut Dialect) -> Result<bool, Failure> {
+    let said = shared.decimal.map(|decimal| match decimal {
+        arguments::Decimal::Increments => BareLengths::Increments,
+        arguments::Decimal::Millimetres => BareLengths::Millimetres,
+    });
+    let point_free = &mut dialect.numbers.point_free;
+    match said.or(profile.program.bare_lengths) {
+        None => return Ok(false),
+        Some(BareLengths::Millimetres) => *point_free = PointFree::Unit,
+        Some(BareLengths::Increments) if *point_free == PointFree::Unit => {
+            return Err(Failure::option(
+                format!(
+                    "dialect {} reads a length without a point as Z10 = Z10., not as increments",
+                    dialect.name
+                ),
+                "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+            ));
+        }
+        Some(BareLengths::Increments) => {}
+    }
+    Ok(true)
+}
+
+/// Puts the M codes that the profile calls harmless into the dialect, beside those that its table has.
+fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
+    for &number in &profile.program.harmless_m_codes {
+        let harmless = MCode {
+            number,
+            after_motion: false,
+            loses_position: [false; 3],
+            ends_program: false,
+            changes_tool: false,
+            switches: None,
+            refuse: None,
+        };
+        match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
+            Err(at) => dialect.m_codes.insert(at, harmless),
+            Ok(at) if dialect.m_codes[at].switches.is_some() => dialect.m_codes[at] = harmless,
+            Ok(at) => {
+                let row = &dialect.m_codes[at];
+                let acts = row.ends_program || row.refuse.is_some() || row.loses_position != [false; 3];
+                if acts {
+                    return Err(Failure::option(
+                        format!(
+                            "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
+                            dialect.name
+                        ),
+                        format!(
+                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`"
+                        ),
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The profile's path, which every job needs.
@@ -185,6 +273,12 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
         start_mm: None,
+        tool_change: profile.program.tool_change.map(|change| match change {
+            machine_profile::AfterChange::Unknown => AfterChange::Unknown,
+            machine_profile::AfterChange::Stays => AfterChange::Stays,
+            machine_profile::AfterChange::At(place_mm) => AfterChange::At(place_mm),
+        }),
+        lengths_settled: false,
     };
     for option in &shared.work_offset {
         let (name, value) = assignment("--work-offset", option, "G54=100,50,0")?;
@@ -239,10 +333,13 @@ fn assignment<'v>(option: &str, given: &'v str, example: &str) -> Result<(&'v st
 }
 
 fn millimetres(text: &str) -> Option<f64> {
-    text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
+    /// A kilometre: no machine is larger, and sums of what is larger lose their micrometres.
+    const FARTHEST_MM: f64 = 1e6;
+    text.trim().parse::<f64>().ok().filter(|v| v.abs() <= FARTHEST_MM)
 }
 
-fn triple(option: &str, given: &str, value: &str, example: &str) -> Result<[f64; 3], Failure> {
+/// Three lengths of an option, mm.
+pub(crate) fn triple(option: &str, given: &str, value: &str, example: &str) -> Result<[f64; 3], Failure> {
     let numbers: Option<Vec<f64>> = value.split(',').map(millimetres).collect();
     match numbers.as_deref() {
         Some([x, y, z]) => Ok([*x, *y, *z]),

@@ -1,7 +1,8 @@
 //! A large output goes to the disk while it grows: in the end there is little to wait for.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, ErrorKind};
+use std::path::Path;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
@@ -49,6 +50,20 @@ impl ToDisk {
             thread.join().map_err(|_| io::Error::other("the thread that writes to the disk has died"))??;
         }
         file.sync_all()
+    }
+}
+
+/// The names in a folder are on the disk.
+///
+/// # Errors
+/// What the disk said. A file system that knows no such request has no such delay.
+pub(crate) fn names(folder: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(folder)?.sync_all() {
+        Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
+        synced => synced,
     }
 }
 

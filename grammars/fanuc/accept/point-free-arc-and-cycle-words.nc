@@ -2,7 +2,7 @@
 O0001
 (I, R, Q and P without a point count as X does, and P of a dwell milliseconds, F not at all: a reader with one rule for all of them is off by 1000)
 G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
+G0 X10000 Y10000 Z60000
 G1 Z50000 F200
 G2 X30000 I10000 J0
 G3 X10000 R10000

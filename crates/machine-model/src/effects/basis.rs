@@ -152,15 +152,34 @@ impl EffectKind {
         }
     }
 
-    /// Displacement of the tip by one unit of coefficient `index`, mm, directions of the linear axes (for
-    /// rotary axes: workpiece frame).
+    /// Displacement of the tip by one unit of coefficient `index`, mm, as the workpiece sees it.
     ///
-    /// Forms and signs: docs/diagnosis.md, "The library". First order in the coefficients.
+    /// Forms and signs: docs/diagnosis.md, "The library". First order in the coefficients. What arises along the
+    /// linear axes is turned with the ideal table ([`EffectGeometry::table_turn`]), equation (23).
     ///
     /// # Errors
     /// [`MissingCondition`] where a needed condition is not known. A direction of 0 displaces by the mean
     /// of both directions.
     pub fn unit_displacement_mm(
+        &self,
+        index: usize,
+        shape: &Shape,
+        command: &Command,
+        conditions: &Conditions,
+        geometry: &EffectGeometry,
+    ) -> Result<Vector, MissingCondition> {
+        let arising = self.arising_mm(index, shape, command, conditions, geometry)?;
+        Ok(if self.arises_along_linear_axes() { geometry.table_turn(command) * arising } else { arising })
+    }
+
+    /// What a linear axis, its drive or the spindle does, and what turns with the table for the workpiece; a table's
+    /// own errors and the drift of an instrument are seen from the workpiece as they are.
+    const fn arises_along_linear_axes(&self) -> bool {
+        !matches!(self, Self::Rotary { .. } | Self::Eccentricity(_) | Self::InstrumentDrift)
+    }
+
+    /// The displacement where it arises: along the linear axes, or as the workpiece sees it.
+    fn arising_mm(
         &self,
         index: usize,
         shape: &Shape,

@@ -1,6 +1,6 @@
 //! Which axis carries which: lever arms and rotary joints.
 
-use nalgebra::Rotation3;
+use nalgebra::{Matrix3, Rotation3};
 
 use crate::{Chain, Command, Vector};
 
@@ -85,12 +85,31 @@ impl EffectGeometry {
         };
         let (sin, cos) = units::math::sin_cos(angle_rad);
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut matrix = nalgebra::Matrix3::identity();
+        let mut matrix = Matrix3::identity();
         matrix[(a, a)] = cos;
         matrix[(b, b)] = cos;
         matrix[(a, b)] = -sin;
         matrix[(b, a)] = sin;
         Some((axis, Rotation3::from_matrix_unchecked(matrix)))
+    }
+
+    /// From the directions of the linear axes to those of the workpiece, ideal table: the identity without one.
+    #[must_use]
+    pub fn table_turn(&self, command: &Command) -> Matrix3<f64> {
+        let tables = self.joints.iter().filter(|joint| matches!(joint, Joint::Table(_)));
+        tables.filter_map(|joint| Self::rotation(*joint, command)).fold(
+            Matrix3::identity(),
+            |turn, (_, own)| {
+                // From the workpiece on, each table turns what lies beyond it.
+                turn * own.matrix()
+            },
+        )
+    }
+
+    /// True where a table turns the workpiece: then a displacement along a linear axis is seen along several.
+    #[must_use]
+    pub fn has_table(&self) -> bool {
+        self.joints.iter().any(|joint| matches!(joint, Joint::Table(_)))
     }
 
     /// Where an ideal machine puts the tool tip, workpiece frame (equal to the machine frame with all

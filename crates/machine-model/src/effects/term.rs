@@ -185,7 +185,7 @@ impl EffectTerm {
         all
     }
 
-    /// Displacement of the tip by this effect, mm.
+    /// Displacement of the tip by this effect, mm, as the workpiece sees it.
     ///
     /// # Errors
     /// [`MissingCondition`] where it depends on a condition that is not known: it is never guessed.

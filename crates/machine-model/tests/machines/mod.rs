@@ -39,9 +39,14 @@ pub(crate) fn command(linear_mm: [f64; 3], tool_mm: [f64; 3]) -> Command {
 
 /// A machine without errors.
 pub(crate) fn perfect(chain: &str) -> Description {
+    perfect_over(chain, TRAVEL_MM)
+}
+
+/// The same with these travels, mm.
+pub(crate) fn perfect_over(chain: &str, travel_mm: [f64; 3]) -> Description {
     Description {
         chain: Chain::parse(chain).unwrap(),
-        linear: TRAVEL_MM.map(|high| LinearAxis::perfect(Range { low: 0.0, high })),
+        linear: travel_mm.map(|high| LinearAxis::perfect(Range { low: 0.0, high })),
         rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
         squareness: Squareness::default(),
     }
@@ -49,10 +54,21 @@ pub(crate) fn perfect(chain: &str) -> Description {
 
 /// Errors like a worn machine's: 40 µm, 0.3 mrad, 1 mrad out of square, for `scale` 1.
 pub(crate) fn machine(seed: u64, chain: &str, monotone: bool, scale: f64) -> Description {
+    machine_over(seed, chain, monotone, scale, TRAVEL_MM)
+}
+
+/// The same with these travels, mm, each of 10 mm at least.
+pub(crate) fn machine_over(
+    seed: u64,
+    chain: &str,
+    monotone: bool,
+    scale: f64,
+    travel_mm: [f64; 3],
+) -> Description {
     let mut random = Random::new(seed);
-    let mut machine = perfect(chain);
+    let mut machine = perfect_over(chain, travel_mm);
     let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
-    for (axis, high) in TRAVEL_MM.into_iter().enumerate() {
+    for (axis, high) in travel_mm.into_iter().enumerate() {
         let set = |random: &mut Random| {
             let mut nodes = vec![0.0];
             while nodes[nodes.len() - 1] < high {

@@ -8,7 +8,7 @@ use nc_syntax::{Block, Dialect, Reader};
 /// LinuxCNC's table (calculator-type numbers) with what these tests are about switched on.
 pub(crate) fn dialect() -> Dialect {
     let mut dialect = nc_dialect::builtin("linuxcnc").expect("shipped").clone();
-    dialect.colon_number = true;
+    dialect.colon = nc_syntax::dialect::Colon::Number;
     dialect.equals_words = true;
     dialect.initial = vec![GCode(0), GCode(210)];
     dialect.output.max_block_bytes = 0;

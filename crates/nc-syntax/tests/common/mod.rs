@@ -1,7 +1,9 @@
 //! Dialects that tests read with.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{CycleLevels, FrameRules, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon};
+use nc_syntax::dialect::{
+    Colon, CycleLevels, FrameRules, LengthAfter, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon,
+};
 
 /// A dialect without codes: reading needs none.
 pub(crate) fn dialect() -> Dialect {
@@ -12,7 +14,7 @@ pub(crate) fn dialect() -> Dialect {
         paren: Paren::Comment { nested: false },
         semicolon: Semicolon::Comment,
         skip: Some(b'/'),
-        colon_number: true,
+        colon: Colon::Number,
         equals_words: false,
         letters: (b'A'..=b'Z').collect(),
         numbers: Numbers {
@@ -25,6 +27,13 @@ pub(crate) fn dialect() -> Dialect {
         m_codes: Vec::new(),
         commands: Vec::new(),
         initial: Vec::new(),
+        unit_is_kept: false,
+        lathe: Vec::new(),
+        cycle_repeats: Vec::new(),
+        zero_repeats_define: false,
+        length_under_g40: LengthAfter::Stays,
+        length_under_g49: LengthAfter::Ends,
+        t_may_change_tool: false,
         cycle_levels: CycleLevels::Unstated,
         flow: nc_syntax::dialect::Flow::default(),
         length_of_loaded_tool: false,
@@ -44,6 +53,7 @@ pub(crate) fn dialect() -> Dialect {
             centre_words: true,
             radius_word: true,
             arc_radius_tolerance_mm: 0.01,
+            arc_radius_tolerance_share: 0.0,
             peck_clearance_mm: 1.0,
             chip_retreat_mm: 0.5,
         },

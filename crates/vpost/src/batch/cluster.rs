@@ -19,8 +19,10 @@ use super::shard::{self, Shard};
 use super::work::{self, Results};
 use super::{finish, has_place, interrupted, passed_over};
 use crate::arguments::Shared;
-use crate::file::{self, Interrupt};
+use crate::file;
+use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 use crate::{REFUSED, TRY_AGAIN};
 
 /// `vpost batch plan`
@@ -72,11 +74,17 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
         threads: work::threads(arguments.work.jobs),
         interrupt: &interrupt,
     };
+    Roles::default()
+        .reads("the manifest", &arguments.manifest)
+        .reads_all("a program", manifest.items.iter().map(|item| &item.input))
+        .reads_all("read by the profile", &job.settings.files)
+        .writes("--results", arguments.work.results.as_deref())
+        .are_apart()?;
     let results = batch.run(&items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&Records::new(), &results.records);
-    finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    finish(&results, arguments.work.results.as_deref())?;
     kept?;
     match results.records.iter().map(|record| record.status).max() {
         Some(Status::Failed) => Err(Failure::Said(TRY_AGAIN)),
@@ -119,7 +127,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
             }
         }
         (_, of) => {
-            finish(&results, None, arguments.results.as_deref())?;
+            finish(&results, arguments.results.as_deref())?;
             say_missing(&missing, &manifest, of, messages);
         }
     }

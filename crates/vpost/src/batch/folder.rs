@@ -11,6 +11,7 @@
 //! Whoever opens the folder next and is alone with it empties that: locks end with their process, so being alone is
 //! known, not guessed from ages or process numbers.
 
+use std::collections::BTreeSet;
 use std::fs::{File, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -21,9 +22,16 @@ use diagnostic::{Code, Diagnostic};
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
 use crate::message::{Failure, Report};
+use crate::to_disk;
 
 /// Someone else works in the output folder.
 const BUSY: Code = Code(1005);
+
+/// The folder of vpost's own in an output folder.
+pub(crate) const OWN: &str = ".vpost";
+
+/// Something of vpost's own in the output folder is not what vpost made.
+const NOT_OURS: Code = Code(1012);
 
 /// Who else may work in the folder at the same time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +40,15 @@ pub(crate) enum Company {
     Alone,
     /// Other shards.
     Shards,
+}
+
+/// An output that is whole and has no name yet.
+#[derive(Debug)]
+pub(crate) enum Grown {
+    /// For a place where nothing is.
+    New(Place),
+    /// For one where something is that may go.
+    Over(Place),
 }
 
 /// The output folder, open for work.
@@ -46,10 +63,23 @@ pub(crate) struct OutputFolder {
 impl OutputFolder {
     /// Opens the folder, making it where it is not there; sweeps what a killed run left, if nobody else is at work.
     pub(crate) fn open(root: &Path, company: Company) -> Result<Self, Failure> {
-        let own = root.join(".vpost");
+        let own = root.join(OWN);
         // Made whole here, it is not made whole for each file.
         let temporaries = std::path::absolute(own.join("tmp"))
             .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+        std::fs::create_dir_all(root)
+            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+        for (path, kind) in [
+            (&own, Kind::Folder),
+            (&own.join("tmp"), Kind::Folder),
+            (&own.join("journal"), Kind::Folder),
+            (&own.join("lock"), Kind::File),
+        ] {
+            kind.is_ours(path)?;
+        }
+        for entry in std::fs::read_dir(own.join("journal")).into_iter().flatten().flatten() {
+            Kind::File.is_ours(&entry.path())?;
+        }
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
@@ -77,6 +107,13 @@ impl OutputFolder {
         Ok(Self { root: root.to_owned(), temporaries, lock: Some(lock) })
     }
 
+    /// Refuses outputs whose folders are links: they would lie somewhere else.
+    pub(crate) fn holds<'o>(&self, outputs: impl Iterator<Item = &'o str>) -> Result<(), Failure> {
+        let folders: BTreeSet<&str> =
+            outputs.flat_map(|output| output.match_indices('/').map(|(at, _)| &output[..at])).collect();
+        folders.into_iter().try_for_each(|folder| Kind::Folder.is_ours(&self.place(folder)))
+    }
+
     /// True where nobody else can be at work here.
     pub(crate) fn is_locked(&self) -> bool {
         self.lock.is_some()
@@ -84,7 +121,7 @@ impl OutputFolder {
 
     /// The folder of the journal.
     pub(crate) fn journal(&self) -> PathBuf {
-        self.root.join(".vpost").join("journal")
+        self.root.join(OWN).join("journal")
     }
 
     /// The final place of an output.
@@ -109,7 +146,7 @@ impl OutputFolder {
         Ok(nc_emit::find_provenance(&head).is_some())
     }
 
-    /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put_new).
+    /// A place for an output to grow in, out of sight; gone again unless it is [put in place](Self::put).
     pub(crate) fn temporary(&self) -> io::Result<Place> {
         self.temporaries.file(None).map(Place::Beside)
     }
@@ -120,42 +157,82 @@ impl OutputFolder {
         let mut file = self.temporaries.file(None)?;
         file.write_all(bytes)?;
         file.file().sync_all()?;
-        file.replace(self.temporaries.path(), &self.journal().join(name))
+        file.replace(self.temporaries.path(), &self.journal().join(name))?;
+        to_disk::names(&self.journal())
     }
 
-    /// Puts an output in its place where nothing is: whole under its final name. Gives it back where something is, or
-    /// where the file system cannot tell.
-    pub(crate) fn put_new(&self, temporary: Place, output: &str) -> io::Result<Option<Place>> {
-        let temporary = beside(temporary)?;
-        // On Linux all outputs are brought to the disk together, at the end: see `sync`.
+    /// Puts an output in its place: whole under its final name. Its bytes are on the disk by then: see
+    /// [`sync`](Self::sync).
+    pub(crate) fn put(&self, grown: Grown, output: &str) -> io::Result<()> {
+        let (file, over) = match grown {
+            Grown::New(file) => (file, false),
+            Grown::Over(file) => (file, true),
+        };
+        let file = beside(file)?;
         if !cfg!(target_os = "linux") {
-            temporary.file().sync_all()?;
+            file.file().sync_all()?;
         }
         let place = self.place(output);
-        let put = match (temporary.put_new(&place), place.parent()) {
+        if over {
+            return file.replace(self.temporaries.path(), &place);
+        }
+        let put = match (file.put_new(&place), place.parent()) {
             // The first output of a folder makes it.
-            (Err((error, temporary)), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
+            (Err((error, file)), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
                 std::fs::create_dir_all(folder)?;
-                temporary.put_new(&place)
+                file.put_new(&place)
             }
             (put, _) => put,
         };
-        Ok(put.err().map(|(_, temporary)| Place::Beside(temporary)))
+        put.map_err(|(error, _)| error)
     }
 
-    /// Puts an output that [`put_new`](Self::put_new) gave back over what is in its place, which stays whole until then.
-    pub(crate) fn replace(&self, temporary: Place, output: &str) -> io::Result<()> {
-        beside(temporary)?.replace(self.temporaries.path(), &self.place(output))
-    }
-
-    /// Brings everything written so far to the disk: what is reported as done survives a power cut.
+    /// Brings everything written so far to the disk: bytes, and the names that were given.
     ///
-    /// One call for all files; a call for each costs more than correcting a small program. A cut before it may leave an
-    /// output empty under its final name; the next run finds that its hash is not the recorded one.
+    /// One call for all files; a call for each costs more than correcting a small program.
     pub(crate) fn sync(&self) -> io::Result<()> {
         #[cfg(target_os = "linux")]
         rustix::fs::syncfs(File::open(&self.root)?)?;
         Ok(())
+    }
+
+    /// True where nothing but zeros stands in an output's place: what a power cut left of a file that it took.
+    pub(crate) fn is_blank(&self, output: &str) -> io::Result<bool> {
+        let mut file = File::open(self.place(output))?;
+        let mut part = vec![0; 1 << 16];
+        loop {
+            match file.read(&mut part)? {
+                0 => return Ok(true),
+                read if part[..read].iter().any(|byte| *byte != 0) => return Ok(false),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// What something of vpost's own is.
+#[derive(Clone, Copy)]
+enum Kind {
+    Folder,
+    File,
+}
+
+impl Kind {
+    /// Refuses what somebody put there: through a link vpost would sweep and write in a folder that is not its own.
+    fn is_ours(self, path: &Path) -> Result<(), Failure> {
+        let Ok(found) = path.symlink_metadata() else { return Ok(()) };
+        let ours = match self {
+            Self::Folder => found.is_dir(),
+            Self::File => found.is_file(),
+        };
+        if ours {
+            return Ok(());
+        }
+        let what = if found.is_symlink() { "a link" } else { "not what vpost makes there" };
+        let message = format!("{} is {what}", file::name(path));
+        Err(Failure::usage(
+            Diagnostic::error(NOT_OURS, message).help("remove it, or give another output folder with `-O`"),
+        ))
     }
 }
 
@@ -209,6 +286,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_a_power_cut_left_is_nobodys() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::open(root.path(), Company::Alone).unwrap();
+        for (text, blank) in [(b"".as_slice(), true), (&[0; 70_000], true), (b"\0\0G0", false)] {
+            std::fs::write(root.path().join("part.nc"), text).unwrap();
+            assert_eq!(folder.is_blank("part.nc").unwrap(), blank);
+        }
+    }
+
+    #[test]
     fn a_new_output_takes_no_others_place() {
         let root = tempfile::tempdir().unwrap();
         let folder = OutputFolder::open(root.path(), Company::Alone).unwrap();
@@ -218,12 +305,12 @@ mod tests {
             temporary
         };
         let read = || std::fs::read(root.path().join("op10/part.nc")).unwrap();
-        assert!(folder.put_new(grown(b"first"), "op10/part.nc").unwrap().is_none());
-        let second = folder.put_new(grown(b"second"), "op10/part.nc").unwrap();
+        folder.put(Grown::New(grown(b"first")), "op10/part.nc").unwrap();
+        assert!(folder.put(Grown::New(grown(b"second")), "op10/part.nc").is_err());
         assert_eq!(read(), b"first");
-        folder.replace(second.expect("given back"), "op10/part.nc").unwrap();
+        folder.put(Grown::Over(grown(b"second")), "op10/part.nc").unwrap();
         assert_eq!(read(), b"second");
-        drop(folder.put_new(grown(b"third"), "op10/part.nc").unwrap());
+        drop(grown(b"third"));
         assert_eq!(std::fs::read_dir(root.path().join(".vpost/tmp")).unwrap().count(), 0);
     }
 }

@@ -238,10 +238,10 @@ fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let inputs: BTreeMap<_, &Item> =
-        items.iter().filter_map(|item| Some((identity(&item.input)?, item))).collect();
+        items.iter().filter_map(|item| Some((file::identity(&item.input)?, item))).collect();
     for item in named() {
         let place = output.join(&item.output);
-        if let Some(input) = identity(&place).and_then(|place| inputs.get(&place)) {
+        if let Some(input) = file::identity(&place).and_then(|place| inputs.get(&place)) {
             return Err(Failure::usage(
                 Diagnostic::error(
                     ONTO_INPUT,
@@ -271,15 +271,4 @@ fn collision(a: &Item, b: &Item, output: &Path) -> Failure {
         )
         .help("name the folder above both instead of the files, or run vpost once for each `-O`"),
     )
-}
-
-/// What makes two paths one file.
-#[cfg(unix)]
-fn identity(path: &Path) -> Option<(u64, u64)> {
-    use std::os::unix::fs::MetadataExt;
-    path.metadata().ok().map(|data| (data.dev(), data.ino()))
-}
-#[cfg(not(unix))]
-fn identity(path: &Path) -> Option<PathBuf> {
-    path.canonicalize().ok()
 }

@@ -6,7 +6,8 @@ use super::inputs::Item;
 use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
 use crate::correct::{self, Input, Manner, Program};
-use crate::file::{Interrupt, Place};
+use crate::file::Place;
+use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages, Report};
 use crate::settings::Settings;
 
@@ -37,7 +38,7 @@ impl Job {
         interrupt: &Interrupt,
     ) -> Result<Program, Failure> {
         let manner = Manner { force: false, threads, hashes: true };
-        let input = Input::File(item.input.clone(), item.bytes);
+        let input = Input::File(item.input.clone());
         correct::program(input, &self.settings, manner, out, &|_| interrupt.check())
     }
 }
@@ -79,6 +80,7 @@ fn hash(settings: &Settings, shared: &Shared) -> Hash {
     put("engine", settings.engine.id().name().as_bytes());
     put("options", format!("{:?}", settings.options).as_bytes());
     put("values", format!("{:?}", settings.flow.presets()).as_bytes());
+    put("strict", &[u8::from(settings.strict)]);
     put("conditions", format!("{:?}", shared.at).as_bytes());
     hasher.finalize()
 }

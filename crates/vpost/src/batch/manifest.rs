@@ -10,9 +10,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::folder;
+use super::folder::OWN;
 use super::inputs::Item;
 use super::job::Job;
-use crate::arguments::{Outside, Shared};
+use crate::arguments::{Decimal, Outside, Shared};
 use crate::file;
 use crate::message::{Failure, Messages};
 
@@ -57,6 +58,10 @@ struct Options {
     include: Vec<PathBuf>,
     at: Vec<String>,
     clamp: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decimal: Option<Decimal>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    strict: bool,
 }
 
 impl Options {
@@ -74,12 +79,28 @@ impl Options {
             include,
             at,
             outside,
+            decimal,
+            strict,
             quiet: _,
             verbose: _,
             color: _,
         } = shared.clone();
         let clamp = outside.map(|outside| outside == Outside::Clamp);
-        Self { machine, engine, dialect, tolerance, work_offset, tool, start_at, set, include, at, clamp }
+        Self {
+            machine,
+            engine,
+            dialect,
+            tolerance,
+            work_offset,
+            tool,
+            start_at,
+            set,
+            include,
+            at,
+            clamp,
+            decimal,
+            strict,
+        }
     }
 
     /// These options with the messages of another command line.
@@ -96,6 +117,8 @@ impl Options {
             include,
             at,
             clamp,
+            decimal,
+            strict,
         } = self.clone();
         let outside = clamp.map(|clamp| if clamp { Outside::Clamp } else { Outside::Refuse });
         let Shared { quiet, verbose, color, .. } = *own;
@@ -111,6 +134,8 @@ impl Options {
             include,
             at,
             outside,
+            decimal,
+            strict,
             quiet,
             verbose,
             color,
@@ -263,11 +288,25 @@ impl Manifest {
         if blake3::hash(lines).to_hex().as_str() != header.programs_blake3 {
             return Err(damaged("the lines below the first were changed or cut".to_owned()));
         }
-        let mut items = Vec::with_capacity(header.programs);
+        let mut items = Vec::new();
+        let mut outputs = std::collections::BTreeSet::new();
         for (at, line) in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).enumerate() {
             let Program { output, input, bytes, blake3 } =
                 serde_json::from_slice(line).map_err(|error| damaged(format!("line {}: {error}", at + 2)))?;
+            if !stays_inside(&output) {
+                return Err(damaged(format!("line {}: its output leaves the output folder", at + 2)));
+            }
+            // As for `plan`: letters' case counts for nothing on the shares that most controls read.
+            if !outputs.insert(output.to_lowercase()) {
+                return Err(damaged(format!("line {}: its output is another program's, too", at + 2)));
+            }
             items.push(Item { input, output, bytes, blake3: Some(blake3) });
+        }
+        if items.iter().try_fold(0_u64, |sum, item: &Item| sum.checked_add(item.bytes)).is_none() {
+            return Err(damaged("its programs are larger than any disk".to_owned()));
+        }
+        if items.len() != header.programs {
+            return Err(damaged(format!("it says {} programs and has {}", header.programs, items.len())));
         }
         let name = blake3::hash(&text).to_hex()[..16].to_owned();
         Ok(Self { header, items, name })
@@ -307,6 +346,14 @@ impl Manifest {
         }
         Ok(job)
     }
+}
+
+/// A name below the output folder, spelled in the one way in which `plan` spells it, and none of vpost's own.
+fn stays_inside(output: &str) -> bool {
+    let parts: Vec<&str> = output.split('/').collect();
+    let plain =
+        |part: &&str| !part.is_empty() && *part != "." && *part != ".." && !part.contains(['\\', '\0']);
+    parts.iter().all(plain) && parts.first() != Some(&OWN) && !Path::new(output).has_root()
 }
 
 fn unusable(message: String, help: &str) -> Failure {

@@ -13,6 +13,7 @@ mod manifest;
 mod progress;
 mod record;
 mod shard;
+mod shelf;
 mod table;
 mod work;
 
@@ -23,8 +24,10 @@ use arguments::BatchCommand;
 
 use crate::REFUSED;
 use crate::arguments::Shared;
-use crate::file::{self, Interrupt};
+use crate::file;
+use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 use folder::{Company, OutputFolder};
 use job::Job;
 use journal::Journal;
@@ -47,6 +50,11 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let job = Job::load(shared, messages)?;
     has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
+    Roles::default()
+        .reads_all("a program", found.items.iter().map(|item| &item.input))
+        .reads_all("read by the profile", &job.settings.files)
+        .writes("--results", arguments.work.results.as_deref().filter(|path| path.as_os_str() != "-"))
+        .are_apart()?;
     passed_over(&found, messages);
     let interrupt = Interrupt::listen();
     let folder = OutputFolder::open(root, Company::Alone)?;
@@ -69,7 +77,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&earlier, &results.records);
-    finish(&results, Some(&folder), arguments.work.results.as_deref())?;
+    finish(&results, arguments.work.results.as_deref())?;
     kept?;
     if results.records.iter().all(|record| record.status.is_done()) {
         Ok(())
@@ -115,9 +123,7 @@ fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
 }
 
 /// Results to disk and to the user, who gets the table whatever cannot be written.
-fn finish(results: &Results, folder: Option<&OutputFolder>, lines: Option<&Path>) -> Result<(), Failure> {
-    let synced = folder.map_or(Ok(()), OutputFolder::sync);
-    let synced = synced.map_err(|error| Failure::file("the output folder", "write to", &error));
+fn finish(results: &Results, lines: Option<&Path>) -> Result<(), Failure> {
     let (written, printed) = match lines {
         Some(path) if path.as_os_str() == "-" => (Ok(()), file::print(&record::lines(&results.records))),
         path => (
@@ -125,5 +131,5 @@ fn finish(results: &Results, folder: Option<&OutputFolder>, lines: Option<&Path>
             file::print(table::table(results).as_bytes()),
         ),
     };
-    synced.and(written).and(printed)
+    written.and(printed)
 }

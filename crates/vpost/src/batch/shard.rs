@@ -45,7 +45,7 @@ impl Shard {
                 ));
             };
             // Below the first number: shard 0, which is told below.
-            let number = whole(&value).map(|value| (value + 1).saturating_sub(first));
+            let number = whole(&value).map(|value| value.saturating_add(1).saturating_sub(first));
             (number.ok_or_else(|| unreadable(&format!("{name}={value}")))?, format!("{name}={value}"))
         } else {
             (whole(number).ok_or_else(|| unreadable(given))?, format!("--shard {given}"))

@@ -6,17 +6,20 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::time::{Duration, Instant};
 
 use blake3::Hash;
 use diagnostic::{Code, Diagnostic};
 
-use super::folder::{OutputFolder, hash};
+use super::folder::{Grown, OutputFolder, hash};
 use super::inputs::Item;
 use super::job::{self, Job};
 use super::journal::{Journal, Records};
 use super::progress::Progress;
 use super::record::{Record, Status};
-use crate::file::{self, Interrupt};
+use super::shelf::Shelf;
+use crate::file;
+use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages, Report};
 
 /// An output would be written over a file that vpost did not write.
@@ -27,8 +30,11 @@ const CHANGED: Code = Code(1007);
 const DEFECT: Code = Code(1008);
 
 /// Results of so many bytes read and written are told at once: telling each costs as much as a tenth of correcting a
-/// small program. A run that is killed corrects these again, some hundredths of a second's work.
+/// small program.
 const TOLD_TOGETHER_BYTES: u64 = 1 << 21;
+
+/// Nor does anything wait longer than this for others: so much work is done again after a kill.
+const KEPT_BACK: Duration = Duration::from_millis(10);
 
 /// No more refusals are printed with their lines.
 const MOST_PRINTED: usize = 20;
@@ -55,9 +61,11 @@ pub(crate) struct Results {
 }
 
 /// What became of one program.
-struct Outcome {
-    record: Record,
-    resumed: bool,
+pub(crate) struct Outcome {
+    pub record: Record,
+    pub resumed: bool,
+    /// Its output, where it is not in its place yet.
+    pub grown: Option<Grown>,
     told: Vec<Report>,
 }
 
@@ -66,29 +74,32 @@ pub(crate) fn threads(jobs: Option<u16>) -> usize {
     jobs.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from)
 }
 
-impl Batch<'_> {
+impl<'a> Batch<'a> {
     /// Corrects the programs. What fails is told, and the others go on.
     ///
     /// Programs are begun in order, and their results are put in order before anybody sees them.
     pub(crate) fn run(
         &self,
         items: &[Item],
-        journal: &mut Journal<'_>,
+        journal: &mut Journal<'a>,
         progress: &Progress,
         messages: &Messages,
     ) -> Result<Results, Failure> {
+        self.folder.holds(items.iter().map(|item| item.output.as_str()))?;
         let threads = self.threads;
         let workers = threads.min(items.len()).max(1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(workers).build().map_err(|error| {
             Failure::option(format!("{threads} threads cannot be had: {error}"), "fewer: `--jobs 2`")
         })?;
         let next = AtomicUsize::new(0);
-        let (sender, receiver) = mpsc::channel();
+        // Each worker has so many outputs in hand, as many again on the way, and those of a group wait for the disk.
+        let in_hand = (most_open() / (3 * workers)).max(1);
+        let (sender, receiver) = mpsc::sync_channel(workers);
         pool.in_place_scope(|scope| {
             for _ in 0..workers {
                 let (sender, next) = (sender.clone(), &next);
                 scope.spawn(move |_| {
-                    let (mut done, mut bytes) = (Vec::new(), 0_u64);
+                    let (mut done, mut bytes, mut since) = (Vec::new(), 0_u64, Instant::now());
                     while self.interrupt.check().is_ok()
                         && let Some((index, item)) = {
                             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -96,12 +107,15 @@ impl Batch<'_> {
                         }
                     {
                         // What is done does not wait for a large one.
-                        if bytes + 2 * item.bytes > TOLD_TOGETHER_BYTES {
+                        if bytes + 2 * item.bytes > TOLD_TOGETHER_BYTES
+                            || done.len() >= in_hand
+                            || since.elapsed() > KEPT_BACK
+                        {
                             // Whoever listens no more has a reason that is told there.
                             if sender.send(std::mem::take(&mut done)).is_err() {
                                 break;
                             }
-                            bytes = 0;
+                            (bytes, since) = (0, Instant::now());
                         }
                         // The last programs are shared by the threads that would have none.
                         let threads = (threads / (items.len() - index)).max(1);
@@ -119,15 +133,18 @@ impl Batch<'_> {
                 });
             }
             drop(sender);
+            let mut shelf = Shelf::new(self.folder, journal);
             let mut told = Told::default();
-            for done in receiver {
-                let new = done.iter().map(|(_, outcome)| outcome).filter(|outcome| !outcome.resumed);
-                journal.add(new.map(|outcome| &outcome.record));
-                for (index, outcome) in done {
+            while let Ok(mut group) = receiver.recv() {
+                // Whatever else is there waits for the disk together with it.
+                group.extend(receiver.try_iter().flatten());
+                shelf.put(group.iter_mut().map(|(_, outcome)| outcome));
+                for (index, outcome) in group {
                     progress.done(&items[index], outcome.resumed);
                     told.take(index, outcome, progress, messages);
                 }
             }
+            shelf.end().map_err(|error| Failure::file("the output folder", "write to", &error))?;
             self.interrupt.check()?;
             Ok(told.results)
         })
@@ -136,11 +153,11 @@ impl Batch<'_> {
     /// A defect of ours in one program is that program's failure.
     fn guarded(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
         catch_unwind(AssertUnwindSafe(|| self.one(item, threads))).unwrap_or_else(|_| {
-            let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
+            let mut outcome = Outcome::of(self.record(item));
             let diagnostic =
                 Diagnostic::error(DEFECT, format!("vpost broke down on {}", item.input.display()))
                     .help("this is a defect of vpost; please report it with the program and the lines above");
-            fail(&mut outcome, refused(diagnostic));
+            outcome.fail(refused(diagnostic));
             Ok(outcome)
         })
     }
@@ -165,12 +182,12 @@ impl Batch<'_> {
 
     /// One program; fails only where the work was interrupted.
     fn one(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
-        let mut outcome = Outcome { record: self.record(item), resumed: false, told: Vec::new() };
+        let mut outcome = Outcome::of(self.record(item));
         match self.corrected(item, threads, &mut outcome) {
             Ok(()) => {}
             Err(failure @ Failure::Interrupted(_)) => return Err(failure),
             Err(failure) => {
-                fail(&mut outcome, failure);
+                outcome.fail(failure);
                 // A refusal is of certain bytes; those of a program that changed since the plan decide nothing.
                 if item.blake3.is_none()
                     && let Ok((bytes, hash)) = hash(&item.input)
@@ -194,6 +211,9 @@ impl Batch<'_> {
             let (bytes, hash) = hash(&item.input).map_err(|error| gone(item, &error))?;
             record.bytes_in = bytes;
             planned(item, hash)?;
+            if item.blake3.is_some() && bytes != item.bytes {
+                return Err(changed(&item.input, "is of another length"));
+            }
             record.input_blake3 = Some(hash.to_hex().to_string());
         }
         if resumes && let Some(known) = self.known(record)? {
@@ -208,16 +228,14 @@ impl Batch<'_> {
         if let Some(hash) = done.input.hash {
             planned(item, hash)?;
         }
-        // In most runs nothing is there: whoever looks first looks twice.
-        if let Some(temporary) = self.folder.put_new(temporary, &item.output).map_err(fail)? {
-            match self.folder.present(&item.output).map_err(fail)? {
-                Some(present) if done.output.hash == Some(present) => {}
-                Some(present) if !self.force && !self.is_ours(&item.output, present).map_err(fail)? => {
-                    return Err(foreign(&place()));
-                }
-                _ => self.folder.replace(temporary, &item.output).map_err(fail)?,
+        outcome.grown = match self.folder.present(&item.output).map_err(fail)? {
+            None => Some(Grown::New(temporary)),
+            Some(present) if done.output.hash == Some(present) => None,
+            Some(present) if self.force || self.is_ours(&item.output, present).map_err(fail)? => {
+                Some(Grown::Over(temporary))
             }
-        }
+            Some(_) => return Err(foreign(&place())),
+        };
         job::corrected(record, &done);
         outcome.told = done.warnings;
         Ok(())
@@ -240,13 +258,13 @@ impl Batch<'_> {
         Ok(intact.then(|| known.clone()))
     }
 
-    /// True for a file that an earlier run wrote, or that says it was corrected.
+    /// True for a file that an earlier run wrote, or that says it was corrected, or that holds nothing of anybody's.
     fn is_ours(&self, output: &str, present: Hash) -> std::io::Result<bool> {
         let mut known = self.earlier.get(output).into_iter().flatten();
         if known.any(|record| is(record.output_blake3.as_deref(), present)) {
             return Ok(true);
         }
-        self.folder.bears_mark(output)
+        Ok(self.folder.bears_mark(output)? || self.folder.is_blank(output)?)
     }
 }
 
@@ -292,16 +310,48 @@ fn foreign(place: &Path) -> Failure {
     )
 }
 
-/// Turns an outcome into that of a failure.
-fn fail(outcome: &mut Outcome, failure: Failure) {
-    let (status, reports) = match failure {
-        Failure::Refused(reports) | Failure::Usage(reports) => (Status::Refused, reports),
-        Failure::File(report) | Failure::Later(report) => (Status::Failed, vec![report]),
-        Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => (Status::Refused, Vec::new()),
-    };
-    outcome.record.status = status;
-    outcome.record.errors = reports.iter().flat_map(job::faults).collect();
-    outcome.told = reports;
+impl Outcome {
+    fn of(record: Record) -> Self {
+        Self { record, resumed: false, grown: None, told: Vec::new() }
+    }
+
+    /// Makes it that of a failure.
+    pub(crate) fn fail(&mut self, failure: Failure) {
+        let (status, reports) = match failure {
+            Failure::Refused(reports) | Failure::Usage(reports) => (Status::Refused, reports),
+            Failure::File(report) | Failure::Later(report) => (Status::Failed, vec![report]),
+            Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => (Status::Refused, Vec::new()),
+        };
+        self.record.status = status;
+        self.record.errors = reports.iter().flat_map(job::faults).collect();
+        self.grown = None;
+        self.told = reports;
+    }
+}
+
+/// Files that may be open at once, outputs that wait for the disk among them: as many as the system lets this process
+/// have, and no more than help.
+fn most_open() -> usize {
+    /// Beyond this the disk is waited for seldom enough.
+    const ENOUGH: u64 = 4096;
+    /// What every system allows, and what else is open.
+    const USUAL: u64 = 256;
+    #[cfg(unix)]
+    {
+        use rustix::process::{Resource, getrlimit, setrlimit};
+        let mut limit = getrlimit(Resource::Nofile);
+        let wanted = limit.maximum.map_or(2 * ENOUGH, |most| most.min(2 * ENOUGH));
+        if limit.current.is_some_and(|current| current < wanted) {
+            limit.current = Some(wanted);
+            let _ = setrlimit(Resource::Nofile, limit);
+        }
+        let open = getrlimit(Resource::Nofile).current.unwrap_or(2 * ENOUGH);
+        (open / 2).clamp(USUAL / 2, ENOUGH) as usize
+    }
+    #[cfg(not(unix))]
+    {
+        USUAL as usize
+    }
 }
 
 /// Puts results in order.

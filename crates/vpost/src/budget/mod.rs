@@ -15,6 +15,7 @@ use machine_model::EngineId;
 use crate::arguments::Shared;
 use crate::conditions::{conditions, failure};
 use crate::message::{Failure, Messages, Report};
+use crate::roles::Roles;
 use crate::settings::{engine_named, machine};
 use crate::{file, profile};
 
@@ -53,7 +54,12 @@ pub struct Budget {
 /// `vpost budget -m PROFILE`
 pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let path = machine(shared)?;
-    let profile = profile::load(path)?.profile;
+    let profile::Loaded { profile, files, .. } = profile::load(path)?;
+    Roles::default()
+        .reads_all("the control points", &arguments.points)
+        .reads_all("read by the profile", &files)
+        .writes("--json", arguments.json.as_deref())
+        .are_apart()?;
     if let Some(name) = &shared.engine
         && engine_named(name)? != EngineId::RigidBody
     {
@@ -96,8 +102,14 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
 }
 
 fn target_mm(target_um: f64) -> Result<f64, Failure> {
-    if target_um > 0.0 && target_um.is_finite() {
+    /// A metre, µm: what is farther off is a slip.
+    const FARTHEST_UM: f64 = 1e6;
+    if target_um > 0.0 && target_um <= FARTHEST_UM {
         return Ok(target_um * 1e-3);
+    }
+    if target_um > FARTHEST_UM {
+        let message = format!("`--target {target_um}` is more than a metre");
+        return Err(Failure::option(message, "give micrometres: `--target 50`"));
     }
     Err(Failure::option(
         format!("`--target {target_um}`: no machine is that good"),

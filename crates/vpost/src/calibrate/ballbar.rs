@@ -13,6 +13,7 @@ use machine_profile::Calibrated;
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
+use crate::settings::triple;
 
 use super::codes::{AXES, UNSAID, failure, question};
 use super::output::{Output, Target, warn};
@@ -182,18 +183,7 @@ fn plausible(name: &str, lines: &[Line]) -> Result<(), Failure> {
 pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let base = shared.machine.as_deref().map(crate::profile::load).transpose()?.map(|loaded| loaded.profile);
     let crossing = match &arguments.crossing {
-        Some(text) => {
-            let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
-            match numbers.as_deref() {
-                Some([x, y, z]) => Some(Vector::new(*x, *y, *z)),
-                _ => {
-                    return Err(Failure::option(
-                        format!("`--crossing {text}` cannot be read"),
-                        "write millimetres as in `--crossing 0,0,0`",
-                    ));
-                }
-            }
-        }
+        Some(text) => Some(Vector::from(triple("--crossing", text, text, "0,0,0")?)),
         None => base.as_ref().map(|b| {
             let [a, _, c] = &b.description.rotary;
             Vector::new(c.centre_mm.x, a.centre_mm.y, a.centre_mm.z)

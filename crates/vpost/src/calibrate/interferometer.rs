@@ -12,6 +12,7 @@ use machine_profile::Calibrated;
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
+use crate::settings;
 
 use super::codes::{MISSING, UNITS, UNSAID, failure, question};
 use super::formats::{self, Reference, Series, Values};
@@ -57,7 +58,7 @@ pub struct Interferometer {
     #[arg(long, value_enum, default_value_t = Between::Linear)]
     pub interpolation: Between,
     /// Relative standard uncertainty of the instrument, µm/m.
-    #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5)]
+    #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5, value_parser = crate::arguments::size)]
     pub u_um_per_m: f64,
 }
 
@@ -114,6 +115,9 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     if arguments.refine.is_some_and(|step| !(step > 0.0 && step.is_finite())) {
         return Err(Failure::option("a step of finer tables is above zero", "write `--refine 2`"));
     }
+    // Whether they are needed depends on what the files hold; whether they can be read does not.
+    triple("--through", arguments.through.as_deref())?;
+    triple("--optics", arguments.optics.as_deref())?;
     let mut all: Vec<Series> = Vec::new();
     let mut angles_read: Option<[f64; 3]> = None;
     for spec in &arguments.files {
@@ -368,6 +372,12 @@ fn write_axis(
             "leave one of them out",
         ));
     }
+    /// More than any control's table, and small enough for every text.
+    const MOST_NODES: f64 = 1e5;
+    if arguments.refine.is_some_and(|step| (nodes[nodes.len() - 1] - nodes[0]) / step > MOST_NODES) {
+        let message = format!("`--refine` makes more than {MOST_NODES} rows for {axis}");
+        return Err(Failure::option(message, "use a larger step"));
+    }
     let two = given().any(|f| f.directions.is_some());
     let both = two && arguments.directions == Directions::Tables;
     let remove = arguments.straightness_slopes == Some(Slopes::Remove);
@@ -423,16 +433,7 @@ fn write_axis(
 }
 
 fn triple(option: &str, text: Option<&str>) -> Result<[f64; 3], Failure> {
-    let Some(text) = text else { return Ok([0.0; 3]) };
-    let numbers: Option<Vec<f64>> =
-        text.split(',').map(|v| v.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect();
-    match numbers.as_deref() {
-        Some([x, y, z]) => Ok([*x, *y, *z]),
-        _ => Err(Failure::option(
-            format!("`{option} {text}` cannot be read"),
-            format!("write millimetres as in `{option} 400,200,-50`"),
-        )),
-    }
+    text.map_or(Ok([0.0; 3]), |text| settings::triple(option, text, text, "400,200,-50"))
 }
 
 fn summary(out: &mut String, axes: &[Functions; 3]) {

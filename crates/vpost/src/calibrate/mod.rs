@@ -16,10 +16,13 @@ mod volumetric;
 
 pub(crate) use output::short;
 
+use std::path::PathBuf;
+
 use clap::{Args, Subcommand};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 
 /// `vpost calibrate`
 #[derive(Debug, Args)]
@@ -44,6 +47,18 @@ pub enum CalibrateCommand {
 
 /// `vpost calibrate INSTRUMENT FILES… -o PROFILE`
 pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let (target, files): (_, Vec<PathBuf>) = match &arguments.command {
+        CalibrateCommand::Tracker(a) => (&a.target, a.traverses.clone()),
+        CalibrateCommand::Interferometer(a) => {
+            (&a.target, a.files.iter().map(|name| PathBuf::from(formats::path_of(name))).collect())
+        }
+        CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone()),
+        CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),
+    };
+    Roles::default()
+        .reads_all("a measurement", &files)
+        .writes("--output", target.output.as_deref())
+        .are_apart()?;
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
         CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),

@@ -32,7 +32,7 @@ pub struct Target {
     #[arg(long, value_name = "DATE")]
     pub date: Option<String>,
     /// Temperature of the machine during the measurement, °C; default: the mean of the files' temp_c.
-    #[arg(long, value_name = "C")]
+    #[arg(long, value_name = "C", value_parser = crate::arguments::finite)]
     pub temperature: Option<f64>,
     /// What it was measured with.
     #[arg(long, value_name = "TEXT")]

@@ -30,10 +30,10 @@ pub struct Tracker {
     #[arg(long, value_enum, default_value_t = FrameName::AsMeasured)]
     pub frame: FrameName,
     /// Standard uncertainty of one reading, µm; default: from the repeats, or from the roughness of the lines.
-    #[arg(long = "u-um", value_name = "UM")]
+    #[arg(long = "u-um", value_name = "UM", value_parser = crate::arguments::size)]
     pub u_um: Option<f64>,
     /// Use nodes this far apart only: longer chords know their directions better.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = crate::arguments::size)]
     pub chord_mm: Option<f64>,
     /// Interval whose directions make G and r01, from 0.
     #[arg(long, value_name = "K", default_value_t = 1)]

@@ -1,5 +1,6 @@
 //! `vpost calibrate volumetric`.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -64,7 +65,7 @@ const COLUMNS: [&str; 25] = [
 /// `vpost calibrate volumetric`
 pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let mut points: Vec<Point> = Vec::new();
-    let mut runs: Vec<String> = Vec::new();
+    let mut runs: BTreeMap<String, usize> = BTreeMap::new();
     let mut temperatures = Vec::new();
     let mut output = Output::start(&arguments.target, shared)?;
     let chain = output.chain(&arguments.target)?;
@@ -80,10 +81,8 @@ pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) 
         }
         for row in sheet.rows() {
             let name = format!("{}:{}", sheet.name, row.text("run"));
-            let run = runs.iter().position(|known| *known == name).unwrap_or_else(|| {
-                runs.push(name);
-                runs.len() - 1
-            });
+            let next = runs.len();
+            let run = *runs.entry(name).or_insert(next);
             points.push(point(&row, run, default_tool)?);
             temperatures.extend(row.number("temp_c")?);
         }

@@ -1,7 +1,7 @@
 //! The check as one page: the tool path coloured by its error before and after, the worst blocks by line.
 
-use correction::{Comparison, Curve, Trace};
 use maud::{Markup, html};
+use path_comparison::{Comparison, Trace, Way};
 use report::chart::solid::{Solid, Stretch, path};
 use report::page::{Page, Section, figure, table};
 use report::text::{number, shown};
@@ -100,7 +100,7 @@ fn paths(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
 /// The box around everything that is fed.
 fn solid(traces: &[Trace]) -> Option<Solid> {
     let mut ranges = [(f64::INFINITY, f64::NEG_INFINITY); 3];
-    for place in traces.iter().flat_map(|trace| places(&trace.curve)) {
+    for place in traces.iter().flat_map(|trace| places(&trace.way)) {
         for (range, value) in ranges.iter_mut().zip(place) {
             *range = (range.0.min(value), range.1.max(value));
         }
@@ -109,9 +109,9 @@ fn solid(traces: &[Trace]) -> Option<Solid> {
 }
 
 /// Places along a motion, ends included.
-fn places(curve: &Curve) -> impl Iterator<Item = [f64; 3]> + use<'_> {
-    let pieces = (curve.turning_rad() / TURN_RAD).ceil().clamp(1.0, 200.0) as u32;
-    (0..=pieces).map(move |k| curve.at(f64::from(k) / f64::from(pieces)).into())
+fn places(way: &Way) -> impl Iterator<Item = [f64; 3]> + use<'_> {
+    let pieces = (way.turning_rad() / TURN_RAD).ceil().clamp(1.0, 200.0) as u32;
+    (0..=pieces).map(move |k| way.at(f64::from(k) / f64::from(pieces)).into())
 }
 
 /// Motions of one colour that follow one another are one stretch; places closer than can be seen are left out, the
@@ -138,7 +138,7 @@ fn stretches_apart(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64, apa
     let mut end = None;
     for trace in traces {
         let value = value(trace);
-        let mut way = places(&trace.curve);
+        let mut way = places(&trace.way);
         let Some(from) = way.next() else { continue };
         let joins = end.is_some_and(|end: [f64; 3]| near(&end, &from, 1e-6));
         let goes_on = joins && all.last().is_some_and(|s| shade(s.value) == shade(value));

@@ -5,12 +5,13 @@ use std::ops::Range;
 use correction::CorrectionError;
 use diagnostic::{Code, Diagnostic};
 use machine_model::SolveError;
+use nc_program::Context;
 use nc_syntax::Block;
-use toolpath::Motion;
+use toolpath::{AXIS_NAMES, Motion};
 
 use super::{
     COMPENSATED, LEANING_CYCLE, MUST_NOT_SPLIT, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE,
-    UNKNOWN_SIDE,
+    SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -20,6 +21,7 @@ pub(crate) struct Notices {
     pub(crate) leaning: Notice,
     pub(crate) compensated: Notice,
     pub(crate) unknown_side: Notice,
+    pub(crate) spirals: Notice,
 }
 
 /// One kind of them.
@@ -29,6 +31,8 @@ pub(crate) struct Notice {
     /// Where it happened first, and that line.
     first: Option<(Range<u64>, u64)>,
     largest_mm: f64,
+    /// Where that was.
+    at_largest: Option<(Range<u64>, u64)>,
 }
 
 /// What is to be said, and the line it is said of.
@@ -38,7 +42,10 @@ impl Notice {
     pub(crate) fn see(&mut self, span: &Range<u64>, line: u64, size_mm: f64) {
         self.count += 1;
         self.first.get_or_insert_with(|| (span.clone(), line));
-        self.largest_mm = self.largest_mm.max(size_mm);
+        if self.at_largest.is_none() || size_mm > self.largest_mm {
+            self.largest_mm = size_mm;
+            self.at_largest = Some((span.clone(), line));
+        }
     }
 
     fn add(&mut self, later: &Self) {
@@ -46,7 +53,10 @@ impl Notice {
         if self.first.is_none() {
             self.first.clone_from(&later.first);
         }
-        self.largest_mm = self.largest_mm.max(later.largest_mm);
+        if self.at_largest.is_none() || later.largest_mm > self.largest_mm {
+            self.largest_mm = later.largest_mm;
+            self.at_largest.clone_from(&later.at_largest);
+        }
     }
 
     /// What is to be said where it happened; the message is made of how often, and of the largest, um.
@@ -69,6 +79,7 @@ impl Notices {
         self.leaning.add(&later.leaning);
         self.compensated.add(&later.compensated);
         self.unknown_side.add(&later.unknown_side);
+        self.spirals.add(&later.spirals);
     }
 
     pub(crate) fn warnings(&self) -> Vec<Warning> {
@@ -94,9 +105,16 @@ impl Notices {
             UNKNOWN_SIDE,
             |count, um| format!("{count} motion(s) with an axis on an unknown side of its play, off by up to {um:.1} um"),
             "the first; the middle of the play was taken, since nothing before tells from where the axis came",
-            "say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return or `/`, feed the axis to its place from one side first",
+            "say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return, a tool change (M6) or `/`, feed the axis to its place from one side first",
         );
-        [clamped, leaning, compensated, unknown_side].into_iter().flatten().collect()
+        let largest = Notice { first: self.spirals.at_largest.clone(), ..self.spirals.clone() };
+        let spirals = largest.warning(
+            SPIRAL,
+            |count, um| format!("{count} arc(s) end off their circle, the largest by {:.3} mm", um * 1e-3),
+            "the largest; the control cuts a spiral from the one radius to the other, and that is the path",
+            "post with more decimals where that matters",
+        );
+        [clamped, leaning, compensated, unknown_side, spirals].into_iter().flatten().collect()
     }
 }
 
@@ -108,8 +126,28 @@ pub(crate) fn hole_skipped(block: &Block<'_>) -> Diagnostic {
         .help("delete the `/`, or post a program without this hole")
 }
 
+/// The word that says where an axis stands before a motion, as `X12.5`.
+fn stands_at(axis: usize, motion: &Motion, context: &Context) -> String {
+    let start_mm = match motion {
+        Motion::Feed(feed) => feed.start.linear_mm,
+        Motion::Hole(hole) => hole.start.linear_mm,
+        Motion::Rapid { start, .. } | Motion::Uncorrected { end: start } => {
+            start.linear_mm.map(Option::unwrap_or_default)
+        }
+    };
+    let place = context.frame.to_program(start_mm)[axis] / context.unit_mm;
+    let number = format!("{place:.4}");
+    let number = number.trim_end_matches('0');
+    format!("{}{}", AXIS_NAMES[axis], if number == "-0." { "0." } else { number })
+}
+
 /// What to say of a motion that cannot be corrected.
-pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_>) -> Vec<Diagnostic> {
+pub(crate) fn refusal(
+    error: &CorrectionError,
+    motion: &Motion,
+    block: &Block<'_>,
+    context: &Context,
+) -> Vec<Diagnostic> {
     let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
     let word = |letter: u8| block.word(letter).map(|word| block.file_span(word.span));
     let diagnostic = match error {
@@ -134,9 +172,33 @@ pub(crate) fn refusal(error: &CorrectionError, motion: &Motion, block: &Block<'_
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
             .at(whole, "this block cannot be split: cutter compensation or a thread is active")
             .help("post with compensation computed in CAM, or accept more with `--tolerance`"),
-        CorrectionError::TurnedFrame => Diagnostic::error(nc_program::codes::FRAME, error.to_string())
-            .at(whole, "each word moves several axes, and each axis back and forth by its rounding: its play has no side")
-            .help("let the CAM write the rotated coordinates, or correct with a profile without backlash"),
+        CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.to_string())
+            .at(word(b'Q').unwrap_or(whole), "far below what a drill bites")
+            .help("correct Q: it is the depth of one peck"),
+        CorrectionError::Unnamed { axis, .. } => {
+            let name = AXIS_NAMES[*axis];
+            let since = context.unnamed[*axis].map_or_else(String::new, |lost| format!(" since {}", lost.since()));
+            let all = (0..3).filter(|i| context.unnamed[*i].is_some() || i == axis);
+            let words: Vec<String> = all.map(|i| stands_at(i, motion, context)).collect();
+            Diagnostic::error(UNNAMED, error.to_string())
+                .at(
+                    whole,
+                    format!("{name} is not named{since}; a word for it would rest on a guess of where its zero is"),
+                )
+                .help(format!(
+                    "before this block say once where the tool is to be, as in `G90 G0 {}`",
+                    words.join(" ")
+                ))
+        }
+        CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.to_string())
+            .at(whole, "each word moves several axes here, so that none of them can be held where it stands")
+            .help("let the CAM write the rotated coordinates, or accept more with `--tolerance`"),
+        CorrectionError::Sideways { distance_um, .. } => Diagnostic::error(SIDEWAYS, error.to_string())
+            .at(whole, "before this motion an axis turns")
+            .help(format!(
+                "no command undoes what changes at once: accept it with `--tolerance {:.1}` or more, or let the axis turn in a rapid above the part",
+                (distance_um * 10.0).ceil() / 10.0
+            )),
         CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.to_string())
             .at(whole, "this motion")
             .help("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`"),

@@ -3,11 +3,10 @@
 use correction::{Correction, Corrector, Letters};
 use diagnostic::Diagnostic;
 use nc_emit::{BlockNumbers, Emitter};
-use nc_program::{Context, Interpreter};
+use nc_program::{Context, Evidence, Interpreter, Questions};
 use nc_syntax::{Block, Reader};
 use smallvec::SmallVec;
-use toolpath::{Feed, FeedRate, Hole, Motion};
-use units::decimal::Decimal;
+use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
 use super::notices::{Notices, hole_skipped, refusal};
 use super::{Figures, Job};
@@ -19,8 +18,6 @@ pub(crate) struct State<'a> {
     pub(super) interpreter: Interpreter<'a>,
     pub(super) corrector: Corrector<'a>,
     pub(super) emitter: Emitter<'a>,
-    /// The last P of a cycle.
-    dwell: Option<Decimal>,
     /// [`nc_syntax::Place::expects_name`]
     pub(crate) expects_name: bool,
 }
@@ -36,7 +33,6 @@ impl<'a> State<'a> {
                 None => corrector,
             },
             emitter: Emitter::new(job.dialect).with_numbers(numbers),
-            dwell: None,
             expects_name: false,
         }
     }
@@ -46,7 +42,6 @@ impl<'a> State<'a> {
         self.interpreter.modal() == other.interpreter.modal()
             && self.corrector.continues_as(&other.corrector)
             && self.emitter.continues_as(&other.emitter)
-            && self.dwell == other.dwell
             && self.expects_name == other.expects_name
     }
 
@@ -66,6 +61,7 @@ impl<'a> State<'a> {
 pub(crate) struct Tally {
     pub(crate) figures: Figures,
     pub(crate) notices: Notices,
+    pub(crate) evidence: Evidence,
 }
 
 impl Tally {
@@ -80,6 +76,7 @@ impl Tally {
         raise(&mut figures.before, more.before);
         raise(&mut figures.after, more.after);
         self.notices.add(&later.notices);
+        self.evidence.add(&later.evidence);
     }
 }
 
@@ -98,6 +95,7 @@ type Pieces = SmallVec<[nc_emit::Piece; 4]>;
 pub(crate) struct Pass<'a> {
     pub(super) job: &'a Job<'a>,
     codes: MotionCodes,
+    pub(super) questions: Questions<'a>,
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
@@ -111,6 +109,7 @@ impl<'a> Pass<'a> {
         Self {
             job,
             codes: MotionCodes::of(job.dialect),
+            questions: Questions::new(job.dialect, job.setup),
             state,
             out: Vec::with_capacity(bytes + bytes / 8 + 64),
             tally: Tally::default(),
@@ -155,13 +154,9 @@ impl Pass<'_> {
         let executed = self.state.interpreter.step(block);
         // Looked at where it lies: hundreds of bytes.
         let Ok(step) = &executed else { return executed.map(|_| ()) };
+        self.tally.evidence.see(block, &self.questions);
         self.state.emitter.meet(block);
         let context = &step.context;
-        if step.motions.iter().any(|motion| matches!(motion, Motion::Hole(_)))
-            && let Some(number) = block.word(b'P').and_then(|word| word.number())
-        {
-            self.state.dwell = Some(number.decimal);
-        }
         if step.states_position {
             return self.state_position(block, context);
         }
@@ -187,7 +182,7 @@ impl Pass<'_> {
                 .state
                 .corrector
                 .correct(motion, &info)
-                .map_err(|error| refusal(&error, motion, block))?;
+                .map_err(|error| refusal(&error, motion, block, context))?;
             untouched &= corrected.pieces.is_empty();
             corrections.push(corrected.correction);
             if motions.len() == 1 && !corrected.pieces.is_empty() {
@@ -306,15 +301,20 @@ impl Pass<'_> {
         let repeats = [b'L', b'K'].into_iter().filter(|letter| letters.contains(*letter));
         let repeats: SmallVec<[(u8, nc_emit::WordEdit); 2]> =
             repeats.map(|letter| (letter, nc_emit::WordEdit::Remove)).collect();
+        let mut named = self.info(context, letters).named;
         for (k, motion) in motions.iter().enumerate() {
             // From the second hole on there is no block with words to keep.
             let letters = if k == 0 { letters } else { Letters::default() };
-            let info = self.info(context, letters);
+            let info = correction::Block { named, ..self.info(context, letters) };
             let corrected = self
                 .state
                 .corrector
                 .correct(motion, &info)
-                .map_err(|error| refusal(&error, motion, block))?;
+                .map_err(|error| refusal(&error, motion, block, context))?;
+            // The block has said where the holes that follow are, in the plane.
+            for axis in &context.plane.axes()[..2] {
+                named[*axis] |= info.has_axis(*axis);
+            }
             corrections.push(corrected.correction);
             let editing = self.editing(context, letters, motion);
             if corrected.pieces.is_empty() {
@@ -361,7 +361,10 @@ impl Pass<'_> {
                 _ => None,
             },
             decimals_feed: self.job.dialect.output.decimals_feed,
-            dwell: self.state.dwell,
+            dwell: match motion {
+                Motion::Hole(hole) => hole.cycle.dwell,
+                _ => None,
+            },
         }
     }
 
@@ -374,7 +377,7 @@ impl Pass<'_> {
         blocks_out: usize,
         written: bool,
     ) {
-        let Tally { figures, notices } = &mut self.tally;
+        let Tally { figures, notices, .. } = &mut self.tally;
         figures.blocks_out += if written { blocks_out as u64 } else { 0 };
         figures.splits += u64::from(blocks_out > 1);
         let line = block.line;
@@ -393,11 +396,26 @@ impl Pass<'_> {
             if correction.unknown_side_mm > 0.0 {
                 notices.unknown_side.see(&span, line, correction.unknown_side_mm);
             }
+            if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
+                notices.spirals.see(&span, line, apart_mm);
+            }
             if context.compensation && matches!(motion, Motion::Feed(_)) {
                 notices.compensated.see(&span, line, 0.0);
             }
         }
     }
+}
+
+/// An arc whose radii differ by less is as round as words of two decimals make it, mm.
+const SPIRAL_MM: f64 = 0.01;
+
+/// By how much the radii of an arc differ between its start and its end, mm.
+fn radii_apart_mm(motion: &Motion) -> Option<f64> {
+    let Motion::Feed(Feed { start, end, shape: Shape::Arc(arc), .. }) = motion else { return None };
+    let [u, v, _] = arc.plane.axes();
+    let radius_mm =
+        |place: &[f64; 3]| units::math::hypot(place[u] - arc.centre_mm[0], place[v] - arc.centre_mm[1]);
+    Some((radius_mm(&start.linear_mm) - radius_mm(&end.linear_mm)).abs())
 }
 
 /// Decimals of X, Y, Z in the units in force.
@@ -417,6 +435,7 @@ pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         arc_centres_absolute: context.arc_centres_absolute,
         letters,
         whole: context.whole,
+        named: context.unnamed.map(|lost| lost.is_none()),
         tool_mm: context.tool_mm,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,

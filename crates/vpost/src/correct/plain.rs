@@ -59,6 +59,9 @@ impl Pass<'_> {
             let corrector = &mut self.state.corrector;
             short = short.or_else(|| corrector.short_lines(&info, rotary_deg));
             let foreseen = short.as_ref().and_then(|short| corrector.foresee(short, start_mm, &ends_mm));
+            // Nearly always false from the second turn on.
+            let seen = self.tally.evidence.wants_lines(&self.questions)
+                || (self.questions.lengths_open() && found[..count].iter().any(|end| end.bare));
             if count == LANES
                 && lines[LANES - 1].offset < self.next_stop
                 && self.state.emitter.motion() == motion_code
@@ -68,12 +71,18 @@ impl Pass<'_> {
             {
                 start_mm = last_mm;
                 self.state.interpreter.go_to(start_mm);
+                if seen {
+                    lines.iter().for_each(|line| self.tally.evidence.see_line(line, &self.questions));
+                }
                 self.write_run(&lines, &run, info.decimals)?;
                 continue;
             }
             for (k, line) in lines[..count].iter().enumerate() {
                 if line.offset >= self.next_stop && ends(self, line.offset)? {
                     return Ok(true);
+                }
+                if seen {
+                    self.tally.evidence.see_line(line, &self.questions);
                 }
                 info.letters = Letters::axes(found[k].names);
                 let in_force = self.state.emitter.motion() == motion_code;
@@ -124,7 +133,7 @@ impl Pass<'_> {
         short: Option<&ShortLines>,
         ahead: &Ahead<'_, 't>,
     ) -> Result<(), Vec<Diagnostic>> {
-        let Ahead { line, start_mm, end: PlainEnd { end_mm, names }, foreseen } = *ahead;
+        let Ahead { line, start_mm, end: PlainEnd { end_mm, names, .. }, foreseen } = *ahead;
         self.state.interpreter.go_to(end_mm);
         let corrector = &mut self.state.corrector;
         let corrected = short.and_then(|short| corrector.short_line(short, info, start_mm, end_mm, foreseen));

@@ -3,9 +3,11 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use diagnostic::Diagnostic;
-use nc_syntax::{Place, Reader};
+use diagnostic::{Diagnostic, Severity};
+use nc_program::Evidence;
+use nc_syntax::{Envelope, Place, Reader};
 
 use super::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
 use super::notices::Warning;
@@ -17,14 +19,15 @@ use crate::expand::{self, Lookup};
 use crate::file;
 use crate::message::{Failure, Report, Source};
 use crate::settings::Settings;
+use crate::source::{Reading, Still};
 
 /// A program up to this size is corrected in memory, all at once.
 const SMALL_BYTES: u64 = 4 << 20;
 
 /// Where a program comes from.
 pub(crate) enum Input {
-    /// A file, which can be read more than once, and its length where that is known: only room is made by it.
-    File(PathBuf, u64),
+    /// A file, which can be read more than once.
+    File(PathBuf),
     /// Anything else, by the name it has in messages.
     Stream(String, Box<dyn Read + Send>),
 }
@@ -33,21 +36,12 @@ impl Input {
     /// A file, or standard input for `-`. Errors come when it is read.
     pub(crate) fn open(path: &Path) -> Self {
         if path.as_os_str() == "-" {
-            Self::Stream(file::name(path), Box::new(io::stdin()))
-        } else {
-            let found = path.metadata().ok();
-            let pipe = found.as_ref().is_some_and(|found| !found.is_file() && !found.is_dir());
-            match pipe.then(|| File::open(path)) {
-                Some(Ok(pipe)) => Self::Stream(file::name(path), Box::new(pipe)),
-                _ => Self::File(path.to_owned(), found.map_or(0, |found| found.len())),
-            }
+            return Self::Stream(file::name(path), Box::new(io::stdin()));
         }
-    }
-
-    fn name(&self) -> String {
-        match self {
-            Self::File(path, _) => file::name(path),
-            Self::Stream(name, _) => name.clone(),
+        let pipe = path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir());
+        match pipe.then(|| File::open(path)) {
+            Some(Ok(pipe)) => Self::Stream(file::name(path), Box::new(pipe)),
+            _ => Self::File(path.to_owned()),
         }
     }
 }
@@ -112,37 +106,93 @@ pub(crate) fn program(
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
-    let name = input.name();
-    let unread = |error: &io::Error| Failure::file(&name, "read", error);
-    let (path, bytes, mut rest): (Option<PathBuf>, u64, Box<dyn Read + Send>) = match input {
-        Input::File(path, bytes) => {
-            let file = File::open(&path).map_err(|error| unread(&error))?;
-            (Some(path), bytes, Box::new(file))
-        }
-        Input::Stream(_, stream) => (None, 0, stream),
-    };
-    // A small file is read at once, and room is left to see that it ends there.
-    let mut head = Vec::with_capacity(bytes.min(SMALL_BYTES) as usize + 1);
-    rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
-    file::check_lines(&head, &name)?;
-    if (head.len() as u64) < SMALL_BYTES {
-        return in_memory(&head, name, settings, manner, out, progress);
+    let program = whatever_is_doubtful(input, settings, manner, out, progress)?;
+    if settings.strict {
+        refuse_doubts(&program.warnings)?;
     }
-    // A stream is kept on disk: it is read more than once.
-    let kept = match path {
-        Some(path) => Kept { path, _spool: None },
-        None => Kept::spool(&head, rest).map_err(|error| unread(&error))?,
+    Ok(program)
+}
+
+/// Refuses a program for the warnings that it is doubtful.
+fn refuse_doubts(warnings: &[Report]) -> Result<(), Failure> {
+    let doubts = |report: &Report| {
+        let doubtful = report.diagnostics.iter().filter(|warning| warning.severity == Severity::Doubt);
+        let diagnostics: Vec<Diagnostic> =
+            doubtful.map(|doubt| Diagnostic { severity: Severity::Error, ..doubt.clone() }).collect();
+        (!diagnostics.is_empty()).then(|| Report { source: report.source.clone(), diagnostics })
     };
-    let large = Large { name: &name, head: &head, kept: &kept, settings, manner, progress };
-    match large.correct(out) {
-        Ok(program) => Ok(program),
-        Err(LargeEnd::AsAWhole) => {
-            drop(head);
-            out.clear().map_err(|error| unwritten(&error))?;
-            let text = file::read_program(&kept.path)?;
-            in_memory(&text, name, settings, manner, out, progress)
+    let doubts: Vec<Report> = warnings.iter().filter_map(doubts).collect();
+    if doubts.is_empty() { Ok(()) } else { Err(Failure::Refused(doubts)) }
+}
+
+fn whatever_is_doubtful(
+    input: Input,
+    settings: &Settings,
+    manner: Manner,
+    out: &mut impl Growing,
+    progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
+) -> Result<Program, Failure> {
+    match input {
+        Input::File(path) => {
+            let name = file::name(&path);
+            let still = Still::open(&path).map_err(|error| Failure::file(&name, "read", &error))?;
+            let text = Text { name: &name, kept: Some(&still), rest: Box::new(still.reading()) };
+            let done = text.corrected(still.bytes(), settings, manner, out, progress);
+            // What is wrong with half a program is not the user's fault to mend.
+            if !matches!(done, Err(Failure::Interrupted(_))) {
+                still.unchanged(&path, &name)?;
+            }
+            done
         }
-        Err(LargeEnd::Failed(failure)) => Err(failure),
+        Input::Stream(name, stream) => {
+            Text { name: &name, kept: None, rest: stream }.corrected(0, settings, manner, out, progress)
+        }
+    }
+}
+
+/// A program that is about to be read.
+struct Text<'a> {
+    name: &'a str,
+    /// Where it can be read again.
+    kept: Option<&'a Still>,
+    rest: Box<dyn Read + Send>,
+}
+
+impl Text<'_> {
+    /// `bytes`: its length where that is known; only room is made by it.
+    fn corrected(
+        mut self,
+        bytes: u64,
+        settings: &Settings,
+        manner: Manner,
+        out: &mut impl Growing,
+        progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
+    ) -> Result<Program, Failure> {
+        let name = self.name;
+        let unread = |error: &io::Error| Failure::file(name, "read", error);
+        // A small file is read at once, and room is left to see that it ends there.
+        let mut head = Vec::with_capacity(bytes.min(SMALL_BYTES) as usize + 1);
+        self.rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
+        file::check_lines(&head, name)?;
+        if (head.len() as u64) < SMALL_BYTES {
+            return in_memory(&head, name, settings, manner, out, progress);
+        }
+        // A stream is kept on disk: it is read more than once.
+        let kept = match self.kept {
+            Some(still) => Kept::File(still.clone()),
+            None => Kept::spool(&head, self.rest).map_err(|error| unread(&error))?,
+        };
+        let large = Large { name, head: &head, kept: &kept, settings, manner, progress };
+        match large.correct(out) {
+            Ok(program) => Ok(program),
+            Err(LargeEnd::AsAWhole) => {
+                drop(head);
+                out.clear().map_err(|error| unwritten(&error))?;
+                let text = file::read_lines(kept.reading(), name)?;
+                in_memory(&text, name, settings, manner, out, progress)
+            }
+            Err(LargeEnd::Failed(failure)) => Err(failure),
+        }
     }
 }
 
@@ -152,17 +202,17 @@ fn unwritten(error: &io::Error) -> Failure {
 
 fn in_memory(
     text: &[u8],
-    name: String,
+    name: &str,
     settings: &Settings,
     manner: Manner,
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
     let expand::Done { corrected, warnings, lookups } =
-        expand::correct(text, &name, settings, manner.force, progress)?;
+        expand::correct(text, name, settings, manner.force, progress)?;
     out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
     Ok(Program {
-        name,
+        name: name.to_owned(),
         input: Digest::of(text, manner.hashes),
         output: Digest::of(&corrected.text, manner.hashes),
         changed: corrected.text != text,
@@ -173,15 +223,16 @@ fn in_memory(
 }
 
 /// A program on disk.
-struct Kept {
-    path: PathBuf,
-    /// Gone when this is.
-    _spool: Option<tempfile::TempPath>,
+enum Kept {
+    /// Where it was posted.
+    File(Still),
+    /// A copy of a stream, without a name: however the process ends, nothing is left of it.
+    Spool(Arc<File>),
 }
 
 impl Kept {
     fn spool(head: &[u8], mut rest: impl Read) -> io::Result<Self> {
-        let mut spool = tempfile::NamedTempFile::new()?;
+        let mut spool = tempfile::tempfile()?;
         spool.write_all(head)?;
         let mut part = Vec::new();
         // What has no line end will be refused when it is read, however much of it there is.
@@ -193,12 +244,14 @@ impl Kept {
                 break;
             }
         }
-        let spool = spool.into_temp_path();
-        Ok(Self { path: spool.to_path_buf(), _spool: Some(spool) })
+        Ok(Self::Spool(Arc::new(spool)))
     }
 
-    fn open(&self) -> io::Result<File> {
-        File::open(&self.path)
+    fn reading(&self) -> Reading {
+        match self {
+            Self::File(still) => still.reading(),
+            Self::Spool(spool) => Reading::of(spool),
+        }
     }
 }
 
@@ -232,10 +285,10 @@ impl Large<'_> {
             return Err(LargeEnd::AsAWhole);
         }
         let unread = |error: &io::Error| LargeEnd::Failed(Failure::file(self.name, "read", error));
-        let open = || self.kept.open();
+        let open = || Ok(self.kept.reading());
         let settings = self.settings;
         let survey = Survey::of(
-            open().map_err(|error| unread(&error))?,
+            self.kept.reading(),
             &settings.dialect,
             self.manner.hashes,
             |_| -> Result<(), SurveyEnd> { (self.progress)(0.0).map_err(SurveyEnd::Failed) },
@@ -267,10 +320,11 @@ impl Large<'_> {
                 false
             }
         };
-        let source = open().map_err(|error| unread(&error))?;
-        let tally = match stream::correct(&plan, source, &mut sink, &open, &progress) {
+        let tally = match stream::correct(&plan, self.kept.reading(), &mut sink, &open, &progress) {
             Ok(tally) => tally,
-            Err(End::Refused(chunk, diagnostics)) => return Err(self.refused(chunk, diagnostics)),
+            Err(End::Refused(chunk, diagnostics)) => {
+                return Err(self.refused(chunk, diagnostics, survey.envelope));
+            }
             Err(End::Flows | End::Unread(Unread::AsAWhole)) => return Err(LargeEnd::AsAWhole),
             Err(End::Unread(Unread::Failed(error))) => return Err(unread(&error)),
             Err(End::Unwritten(error)) => return Err(LargeEnd::Failed(unwritten(&error))),
@@ -282,7 +336,10 @@ impl Large<'_> {
         let Written { bytes, hash, changed } =
             sink.finish(open).map_err(|error| LargeEnd::Failed(unwritten(&error)))?;
         let mut figures = tally.figures;
-        let warnings = tally.notices.warnings();
+        let questions = settings.questions();
+        tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
+        let mut warnings = tally.notices.warnings();
+        warnings.extend(tally.evidence.doubts(&questions));
         figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
         let reports: Result<Vec<Report>, LargeEnd> = warnings
             .into_iter()
@@ -309,7 +366,7 @@ impl Large<'_> {
     }
 
     /// A program that computes somewhere behind the block that was refused is told about as a whole.
-    fn refused(&self, chunk: Chunk, diagnostics: Vec<Diagnostic>) -> LargeEnd {
+    fn refused(&self, chunk: Chunk, diagnostics: Vec<Diagnostic>, envelope: Envelope) -> LargeEnd {
         let computes = |text: &[u8]| {
             let mut found = false;
             super::each_block(text, &self.settings.dialect, |block| {
@@ -317,17 +374,27 @@ impl Large<'_> {
             });
             found
         };
-        let Ok(source) = self.kept.open() else { return LargeEnd::AsAWhole };
-        let mut chunks = Chunks::new(source, CHUNK_BYTES);
+        let mut chunks = Chunks::new(self.kept.reading(), CHUNK_BYTES);
+        // What the program as a whole shows tells more than one of its blocks.
+        let questions = self.settings.questions();
+        let (mut evidence, mut expects_name) = (Evidence::default(), false);
         loop {
             match chunks.next() {
-                Ok(Some(other)) if other.index >= chunk.index && computes(&other.text) => {
-                    return LargeEnd::AsAWhole;
+                Ok(Some(other)) => {
+                    if other.index >= chunk.index && computes(&other.text) {
+                        return LargeEnd::AsAWhole;
+                    }
+                    let place = other.place(expects_name);
+                    let mut reader = Reader::part(&other.text, &self.settings.dialect, envelope, place);
+                    evidence.see_all(&mut reader, &questions);
+                    expects_name = reader.expects_name();
                 }
-                Ok(Some(_)) => {}
                 Ok(None) => break,
                 Err(_) => return LargeEnd::AsAWhole,
             }
+        }
+        if let Err(finding) = evidence.refusal(&questions) {
+            return self.refused_as_a_whole(*finding);
         }
         let source = Source {
             name: self.name.to_owned(),
@@ -338,13 +405,21 @@ impl Large<'_> {
         LargeEnd::Failed(Failure::Refused(vec![Report { source: Some(source), diagnostics }]))
     }
 
+    /// A refusal for what the program as a whole shows.
+    fn refused_as_a_whole(&self, finding: Warning) -> LargeEnd {
+        match self.report(finding) {
+            Ok(report) => LargeEnd::Failed(Failure::Refused(vec![report])),
+            Err(error) => LargeEnd::Failed(Failure::file(self.name, "read", &error)),
+        }
+    }
+
     /// A warning with the line it is about.
     fn report(&self, (diagnostic, line): Warning) -> io::Result<Report> {
         /// Longer lines are shown in part.
         const BEFORE: u64 = 1 << 16;
         let span = diagnostic.span.clone().unwrap_or(0..0);
         let from = span.start.saturating_sub(BEFORE);
-        let mut file = self.kept.open()?;
+        let mut file = self.kept.reading();
         file.seek(SeekFrom::Start(from))?;
         let mut bytes = Vec::new();
         file.take(span.end - from + 4096).read_to_end(&mut bytes)?;

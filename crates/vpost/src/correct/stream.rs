@@ -381,14 +381,19 @@ mod tests {
         "G91\nG1 X1. Y.5\nX-2. Z.25\nG90\n",
         "G1 X20. Y0.\nG17 G2 X0. Y0. R30.\n",
         "G0 Z25.\nG98 G81 X5. Y5. Z-3. R8. F100\nX15.\nY15.\nG80\n",
-        "G55\nG1 X1. Y2.\n",
-        "G54\nG1 X2. Y1. Z4.\n",
+        "G55\nG0 X0. Y0. Z30.\nG1 X1. Y2.\n",
+        "G54\nG0 X0. Y0. Z30.\nG1 X2. Y1. Z4.\n",
         "G49\nG43 H2\nG0 X0. Y0. Z30.\nG1 Z5. F200\n",
         "N100 G1 X30. Y10.\r\nN110 X31.\r\n",
         "G1 X90. Y-60. Z12.\nX-90.\nY60.\n",
     ];
 
-    fn in_chunks(text: &[u8], job: &Job<'_>, chunk_bytes: usize, threads: usize) -> (Vec<u8>, Figures) {
+    fn in_chunks(
+        text: &[u8],
+        job: &Job<'_>,
+        chunk_bytes: usize,
+        threads: usize,
+    ) -> Result<(Vec<u8>, Figures), Vec<Diagnostic>> {
         let mut numbers = BlockNumbers::new();
         crate::correct::each_block(text, job.dialect, |block| _ = numbers.see(block));
         let mut finder = EnvelopeFinder::new(job.dialect);
@@ -397,11 +402,15 @@ mod tests {
         let plan = Plan { job, envelope: finder.finish(), start, threads, chunk_bytes };
         let mut out = Vec::new();
         let mut sink = Sink::new(&mut out, false, (0, Vec::new()));
-        let tally = correct(&plan, text, &mut sink, &|| Ok(text), &|_| true).map_err(|_| "refused").unwrap();
+        let tally = match correct(&plan, text, &mut sink, &|| Ok(text), &|_| true) {
+            Ok(tally) => tally,
+            Err(End::Refused(_, diagnostics)) => return Err(diagnostics),
+            Err(_) => panic!("neither corrected nor refused"),
+        };
         sink.finish(|| Ok(text)).unwrap();
         let mut figures = tally.figures;
         figures.warnings = tally.notices.warnings().into_iter().map(|(warning, _)| warning).collect();
-        (out, figures)
+        Ok((out, figures))
     }
 
     proptest! {
@@ -439,8 +448,14 @@ mod tests {
             text.push_str("M30\n%\n");
             let whole: Result<Option<Corrected>, Vec<Diagnostic>> =
                 crate::correct::pass(text.as_bytes(), &job, |_| false, |_| Ok(()));
+            let chunked = in_chunks(text.as_bytes(), &job, chunk_bytes, threads);
+            // A jump that cannot be hidden is refused, in one piece as in chunks.
+            if let (Err(one), Err(other)) = (&whole, &chunked) {
+                prop_assert_eq!(one, other);
+                return Ok(());
+            }
             let whole = whole.unwrap().unwrap();
-            let (out, figures) = in_chunks(text.as_bytes(), &job, chunk_bytes, threads);
+            let (out, figures) = chunked.unwrap();
             prop_assert_eq!(String::from_utf8_lossy(&out), String::from_utf8_lossy(&whole.text));
             prop_assert_eq!(&figures, &whole.figures);
 

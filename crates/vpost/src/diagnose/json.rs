@@ -4,6 +4,8 @@ use gap_diagnosis::{Cause, Diagnosis};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::change::Change;
+
 #[derive(Serialize)]
 struct Document<'a> {
     schema: &'static str,
@@ -23,7 +25,7 @@ struct Document<'a> {
 }
 
 /// The file's text.
-pub(super) fn text(d: &Diagnosis) -> String {
+pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let document = Document {
         schema: "vpost.diagnosis/1",
         verdict: d.verdict.name(),
@@ -37,7 +39,7 @@ pub(super) fn text(d: &Diagnosis) -> String {
             .iter()
             .map(|c| json!({ "by": c.by, "cell": c.cell, "share": round(c.share), "p": round(c.p) }))
             .collect(),
-        causes: d.causes.iter().map(cause).collect(),
+        causes: d.causes.iter().zip(changes).map(|(c, changes)| cause(c, changes)).collect(),
         setup: json!({
             "shift_um": d.setup.shift_um.map(round),
             "rotation_urad": d.setup.rotation_urad.map(round),
@@ -71,7 +73,7 @@ pub(super) fn text(d: &Diagnosis) -> String {
     text
 }
 
-fn cause(c: &Cause) -> Value {
+fn cause(c: &Cause, changes: &[Change]) -> Value {
     let parameters: Vec<Value> = c
         .parameters
         .iter()
@@ -95,6 +97,7 @@ fn cause(c: &Cause) -> Value {
             "high": round(c.shrink_predicted.high),
         },
         "remedy": c.remedy,
+        "changes": changes,
     })
 }
 

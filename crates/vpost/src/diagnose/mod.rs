@@ -1,5 +1,6 @@
 //! `vpost diagnose`: files in, the answer of `gap-diagnosis` out.
 
+mod change;
 mod json;
 mod measurements;
 mod plan;
@@ -15,9 +16,11 @@ use machine_model::effects::{EffectGeometry, EffectKind, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
 
+use self::change::Change;
 use self::report::{Facts, Report};
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
+use crate::roles::Roles;
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{file, profile};
 
@@ -58,6 +61,8 @@ struct Model {
     profile: Profile,
     /// Of the profile and its tables.
     hash: blake3::Hash,
+    /// The profile and its tables.
+    files: Vec<PathBuf>,
     engine: Option<Box<dyn machine_model::Engine>>,
     effects: Vec<EffectTerm>,
     geometry: EffectGeometry,
@@ -75,6 +80,14 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     let Some(measurements) = &arguments.measurements else {
         return plan::print(arguments.plan.unwrap_or(plan::Form::Points), &model, shared, messages);
     };
+    Roles::default()
+        .reads("the measurements", measurements)
+        .reads_all("the hold-out", &arguments.holdout)
+        .reads_all("read by the profile", &model.files)
+        .writes("--json", arguments.json.as_deref())
+        .writes("--html", arguments.html.as_deref())
+        .writes("--write-profile", arguments.write_profile.as_deref())
+        .are_apart()?;
     let measured = read(measurements, &model, &arguments.ignore_column)?;
     let holdout =
         arguments.holdout.as_deref().map(|path| read(path, &model, &arguments.ignore_column)).transpose()?;
@@ -87,7 +100,9 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     let options = Options { without, seed: arguments.seed, volume: Some(model.profile.volume()) };
     let unseen = holdout.as_ref().map(|h| &h.data);
     let diagnosis = gap_diagnosis::diagnose(&measured.data, unseen, &options);
-    let json = json::text(&diagnosis);
+    let changes: Vec<Vec<Change>> =
+        diagnosis.causes.iter().map(|cause| change::of(cause, &model.profile)).collect();
+    let json = json::text(&diagnosis, &changes);
     if let Some(path) = &arguments.json {
         file::write(path, json.as_bytes())?;
     }
@@ -95,6 +110,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         let facts = model.facts(arguments, shared, &measured, holdout.as_ref())?;
         let page = Report {
             diagnosis: &diagnosis,
+            changes: &changes,
             data: &measured.data,
             holdout: unseen,
             facts: &facts,
@@ -106,12 +122,12 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         written::write(path, machine(shared)?, &diagnosis)?;
         messages.note(&format!("{} holds the profile with the causes as effects", file::name(path)));
     }
-    file::print(summary::text(&diagnosis).as_bytes())
+    file::print(summary::text(&diagnosis, &changes).as_bytes())
 }
 
 impl Model {
     fn load(shared: &Shared) -> Result<Self, Failure> {
-        let profile::Loaded { profile, hash } = profile::load(machine(shared)?)?;
+        let profile::Loaded { profile, hash, files } = profile::load(machine(shared)?)?;
         let engine = match &shared.engine {
             None => None,
             Some(name) => {
@@ -129,7 +145,7 @@ impl Model {
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| Failure::option(error.to_string(), "correct the profile's [[effect]]"))?;
         let effects = effects.into_iter().map(|term| term.with_geometry(geometry.clone())).collect();
-        Ok(Self { profile, hash, engine, effects, geometry })
+        Ok(Self { profile, hash, files, engine, effects, geometry })
     }
 
     /// What the report says of files, options and machine.
@@ -195,7 +211,8 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
     let rigid = model.profile.rigid_body_without_effects();
     for row in &mut data.rows {
         row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {
-            Some(engine) => engine.error_mm(&row.command),
+            // Said along the linear axes, read by the workpiece.
+            Some(engine) => model.geometry.table_turn(&row.command) * engine.error_mm(&row.command),
             None => rigid.predict(&row.command).error_mm,
         };
         for effect in &model.effects {

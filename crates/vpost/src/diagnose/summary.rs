@@ -4,11 +4,13 @@ use std::fmt::Write;
 
 use gap_diagnosis::{Diagnosis, Verdict};
 
+use super::change::Change;
+
 /// The text.
-pub(super) fn text(d: &Diagnosis) -> String {
+pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let mut out = String::new();
     // Writing into a string cannot fail.
-    let _ = write(&mut out, d);
+    let _ = write(&mut out, d, changes);
     out
 }
 
@@ -18,7 +20,7 @@ fn share(unique: f64, alone: f64) -> String {
     if low == high { format!("{low} %") } else { format!("{low}..{high} %") }
 }
 
-fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
+fn write(out: &mut String, d: &Diagnosis, changes: &[Vec<Change>]) -> std::fmt::Result {
     writeln!(out, "{}: {}\n", d.verdict.name(), d.sentence)?;
     if d.verdict == Verdict::Underpowered {
         return Ok(());
@@ -39,10 +41,13 @@ fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
     if !places.is_empty() {
         writeln!(out, "where   {}", places.join(", "))?;
     }
-    for cause in &d.causes {
+    for (cause, changes) in d.causes.iter().zip(changes) {
         let first = cause.parameters.first().map_or_else(String::new, |p| {
-            let spread = p.u95.map_or_else(String::new, |u| format!(" ± {:.2}", u));
-            format!("{} = {:.2}{spread}", p.name, p.value)
+            // What is added to the model, not what the model then holds.
+            p.u95.map_or_else(
+                || format!("{} = {:.2}", p.name, p.value),
+                |u| format!("{} {:+.2} ± {u:.2}", p.name, p.value),
+            )
         });
         writeln!(out, "\ncause   {}  {first}", cause.effect)?;
         writeln!(
@@ -54,6 +59,10 @@ fn write(out: &mut String, d: &Diagnosis) -> std::fmt::Result {
         )?;
         if !cause.cannot_be_told_from.is_empty() {
             writeln!(out, "        cannot be told from {}", cause.cannot_be_told_from.join(", "))?;
+        }
+        if !changes.is_empty() {
+            let changes: Vec<String> = changes.iter().map(Change::text).collect();
+            writeln!(out, "        change {}", changes.join(", "))?;
         }
         writeln!(out, "        {}", cause.remedy)?;
     }

@@ -18,6 +18,7 @@ use machine_model::{Command, Engine, EngineId, PathModel, Range, Vector, Volume}
 use crate::arguments::{Outside, Shared};
 use crate::message::{Failure, Messages, Report};
 use crate::predict::POINT_OUTSIDE;
+use crate::roles::Roles;
 use crate::settings::{engine_named, machine};
 use crate::{conditions, file, profile};
 
@@ -70,6 +71,13 @@ pub struct Map {
 pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let loaded = profile::load(machine(shared)?)?;
     let profile = loaded.profile;
+    Roles::default()
+        .reads_all("read by the profile", &loaded.files)
+        .writes("--csv", arguments.csv.as_deref())
+        .writes("--vtk", arguments.vtk.as_deref())
+        .writes("--json", arguments.json.as_deref())
+        .writes("--html", arguments.html.as_deref())
+        .are_apart()?;
     let conditions = conditions::conditions(shared)?;
     let id = shared.engine.as_deref().map_or(Ok(EngineId::RigidBody), engine_named)?;
     let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;

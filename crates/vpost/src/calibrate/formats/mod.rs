@@ -131,6 +131,11 @@ impl Told<'_> {
     }
 }
 
+/// The file of `FILE[=SYMBOL[:UNIT]]`.
+pub(in crate::calibrate) fn path_of(spec: &str) -> &str {
+    spec.rsplit_once('=').map_or(spec, |(path, _)| path)
+}
+
 /// Reads `FILE[=SYMBOL[:UNIT]]`.
 pub(in crate::calibrate) fn read(
     spec: &str,

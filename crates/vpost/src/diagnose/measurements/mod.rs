@@ -4,6 +4,8 @@ mod columns;
 mod plausible;
 mod table;
 
+use std::collections::BTreeMap;
+
 use gap_diagnosis::{Measurements, Reading, Row};
 use machine_model::effects::{Conditions, EffectGeometry};
 use machine_model::{Command, Vector};
@@ -25,6 +27,7 @@ pub(super) fn read<'a>(
     let table = table(name, bytes, ignore)?;
     columns::agree(&table)?;
     let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), geometry: geometry.clone() };
+    let mut places = BTreeMap::new();
     for record in &table.records {
         let run_place = table.place["run"];
         let run = file::decoded(record.get(run_place).unwrap_or_default()).into_owned();
@@ -37,10 +40,11 @@ pub(super) fn read<'a>(
                 "give every row the id of its measurement line",
             ));
         }
-        let index = data.runs.iter().position(|r| *r == run).unwrap_or_else(|| {
-            data.runs.push(run);
+        let index = *places.entry(run).or_insert_with_key(|run| {
+            data.runs.push(run.clone());
             data.runs.len() - 1
         });
+        table.number(record, "repeat")?;
         data.rows.push(row(&table, record, index, tool_mm)?);
     }
     columns::alive(&table)?;

@@ -6,6 +6,8 @@ use report::chart::{Bar, Matrix, Range, matrix, ranges, waterfall as waterfall_c
 use report::page::{figure, table};
 use report::text::{number, percent, shown};
 
+use crate::diagnose::change::Change;
+
 /// RMS of the gap as the causes are added.
 pub(super) fn waterfall(d: &Diagnosis) -> Markup {
     let first = Bar { label: "model as it is".to_owned(), value: d.gap.rms_um };
@@ -25,7 +27,7 @@ pub(super) fn waterfall(d: &Diagnosis) -> Markup {
 }
 
 /// Shares and numbers of the causes.
-pub(super) fn causes(d: &Diagnosis) -> Markup {
+pub(super) fn causes(d: &Diagnosis, changes: &[Vec<Change>]) -> Markup {
     if d.causes.is_empty() {
         return html! { p { "No cause is named." } (absorber(d)) };
     }
@@ -40,12 +42,12 @@ pub(super) fn causes(d: &Diagnosis) -> Markup {
             "Bar: what nothing else explains. Whisker: what it explains alone. Shares of the gap's square above the noise.",
             None,
         ))
-        @for cause in &d.causes { (one(cause)) }
+        @for (cause, changes) in d.causes.iter().zip(changes) { (one(cause, changes)) }
         (absorber(d))
     }
 }
 
-fn one(c: &Cause) -> Markup {
+fn one(c: &Cause, changes: &[Change]) -> Markup {
     html! {
         h3 { (shown(&c.effect)) }
         dl {
@@ -59,6 +61,10 @@ fn one(c: &Cause) -> Markup {
             dt { "chance that it is none" } dd { (probability(c.p)) }
             @if !c.cannot_be_told_from.is_empty() {
                 dt { "cannot be told from" } dd { (shown(&c.cannot_be_told_from.join(", "))) }
+            }
+            @if !changes.is_empty() {
+                dt { "change" }
+                dd { (shown(&changes.iter().map(Change::text).collect::<Vec<_>>().join(", "))) }
             }
             dt { "what to do" } dd { (c.remedy) }
         }

@@ -13,12 +13,15 @@ use report::text::{number, shown};
 
 pub(super) use provenance::{Facts, File};
 
+use super::change::Change;
 use rows::Rows;
 
 /// What a page is made of.
 pub(super) struct Report<'a> {
     /// The answer.
     pub diagnosis: &'a Diagnosis,
+    /// What acting on each cause changes in the profile.
+    pub changes: &'a [Vec<Change>],
     /// The measurements it is about.
     pub data: &'a Measurements,
     /// Measurements no fit has seen.
@@ -36,7 +39,7 @@ impl Report<'_> {
         let rows = Rows::new(d, self.data);
         let sections = [
             Some(Section { id: "waterfall", title: "How the gap shrinks", body: causes::waterfall(d) }),
-            Some(Section { id: "causes", title: "Causes", body: causes::causes(d) }),
+            Some(Section { id: "causes", title: "Causes", body: causes::causes(d, self.changes) }),
             Some(Section { id: "where", title: "Where the gap lies", body: causes::places(d) }),
             pictures::strips(d, self.data, &rows).map(|body| Section {
                 id: "strips",

@@ -1,0 +1,327 @@
+//! Play along a commanded path: equation (25) of `docs/equations.md`.
+//!
+//! An axis with play does not follow at once when its command turns back: its carriage stands until the command has
+//! gone back by the reversal value. Which of its two error curves holds is therefore no question of the direction of a
+//! block but of the whole way so far. [`Play`] is that way in three numbers an axis: the play operator of the
+//! hysteresis literature (Krasnoselskii and Pokrovskii 1989), its width the reversal value that the model states at the
+//! place. The correction proves its blocks with it, and `check` measures with it: there is no other rule.
+//!
+//! ```
+//! use machine_model::{Command, Play, PathModel, RigidBody, Vector};
+//! # use machine_model::{Chain, Description, LinearAxis, Range, RotaryAxis, Squareness};
+//! # let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+//! # linear[0].backlash_mm = 0.010;
+//! # let model = RigidBody::new(Description {
+//! #     chain: Chain::parse("[w X Y b Z t]").unwrap(),
+//! #     linear,
+//! #     rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+//! #     squareness: Squareness::default(),
+//! # }).unwrap();
+//! // X has a reversal value of 10 µm.
+//! let at = |x: f64| Command {
+//!     linear_mm: Vector::new(x, 0.0, 0.0),
+//!     rotary_rad: Vector::zeros(),
+//!     tool_mm: Vector::zeros(),
+//!     direction: [0; 3],
+//! };
+//! let mut play = Play::unknown();
+//! let mut tip_x = |x: f64| {
+//!     play.go(&model, &at(x));
+//!     x + play.error_mm(&model, &at(x)).x
+//! };
+//! tip_x(10.0);
+//! // From below it stands short by half of the play; back by 4 µm it has not moved, back by 14 µm it has by 4 µm.
+//! assert!((tip_x(50.0) - 49.995).abs() < 1e-12);
+//! assert!((tip_x(49.996) - 49.995).abs() < 1e-12);
+//! assert!((tip_x(49.986) - 49.991).abs() < 1e-12);
+//! ```
+
+use crate::{Command, PathModel, Vector};
+
+/// Commands nearer than this are one place, mm: far below every output step, far above what a place changes by when it
+/// is carried into a frame and back.
+pub const SAME_PLACE_MM: f64 = 1e-9;
+
+/// Where the axes stand in their play.
+///
+/// Two things an axis has, and both are only known once it has moved: where its carriage stands, and on which side of
+/// everything else that depends on the direction (what lies across the axis, angles).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Play {
+    /// The last command of each axis, mm.
+    at_mm: [Option<f64>; 3],
+    /// The middle of each axis' play, as a command, mm: what the command would be with the carriage where it stands and
+    /// no play at all.
+    carriage_mm: [Option<f64>; 3],
+    /// Between which places it stands for certain, mm, where an axis came from a side that nobody knows: it is known once
+    /// both are one.
+    certain_mm: [[f64; 2]; 3],
+    /// Which way each carriage last moved; 0 where unknown.
+    side: [i8; 3],
+}
+
+impl Play {
+    /// Nobody knows where the axes are, nor from which side they came.
+    #[must_use]
+    pub const fn unknown() -> Self {
+        Self { at_mm: [None; 3], carriage_mm: [None; 3], certain_mm: [ANYWHERE; 3], side: [0; 3] }
+    }
+
+    /// An axis is brought to a command (machine coordinates, mm; `None` where unknown) by a way that nobody knows.
+    pub fn forget(&mut self, axis: usize, at_mm: Option<f64>) {
+        (self.at_mm[axis], self.carriage_mm[axis], self.side[axis]) = (at_mm, None, 0);
+        self.certain_mm[axis] = ANYWHERE;
+    }
+
+    /// An axis is taken for one that has come to where it stands (`at`) in a direction, its play taken up.
+    pub fn rest(&mut self, model: &dyn PathModel, at: &Command, axis: usize, direction: i8) {
+        let at_mm = at.linear_mm[axis];
+        self.at_mm[axis] = Some(at_mm);
+        let behind = at_mm - f64::from(direction) * half_play_mm(model, axis, at);
+        self.carriage_mm[axis] = Some(behind);
+        self.certain_mm[axis] = [behind; 2];
+        self.side[axis] = direction;
+    }
+
+    /// The axes go to a command, each of them one way only.
+    ///
+    /// A path on which an axis turns is gone to piece by piece, to every place where it does. How often it is asked on
+    /// the way makes no difference. An axis whose side is not known counts, once it moves, as lying against the side to
+    /// which it goes.
+    ///
+    /// * `to` – where to, machine coordinates; its direction is not used
+    pub fn go(&mut self, model: &dyn PathModel, to: &Command) {
+        for axis in 0..3 {
+            let at = to.linear_mm[axis];
+            let Some(from) = self.at_mm[axis].replace(at) else {
+                self.forget(axis, Some(at));
+                continue;
+            };
+            if (at - from).abs() <= SAME_PLACE_MM {
+                // The same place; what another axis has done to the reversal value here is no motion of this one.
+                continue;
+            }
+            let heading = if at > from { 1 } else { -1 };
+            let half = half_play_mm(model, axis, to);
+            if self.certain_mm[axis] == ANYWHERE {
+                // Before this, anywhere in its play.
+                let half =
+                    half_play_mm(model, axis, &Command { linear_mm: with(to.linear_mm, axis, from), ..*to });
+                self.certain_mm[axis] = [from - half, from + half];
+            }
+            let taken = |stood: f64| if heading > 0 { stood.max(at - half) } else { stood.min(at + half) };
+            self.certain_mm[axis] = self.certain_mm[axis].map(taken);
+            // With its play taken up the carriage stands here.
+            let behind = at - f64::from(heading) * half;
+            let carriage = self.carriage_mm[axis].map_or(behind, taken);
+            self.carriage_mm[axis] = Some(carriage);
+            if (carriage - behind).abs() <= SAME_PLACE_MM {
+                self.side[axis] = heading;
+            }
+        }
+    }
+
+    /// Which way each carriage last moved, 0 where unknown: the direction by which everything that lies across the axis
+    /// is to be looked up.
+    #[must_use]
+    pub const fn side(&self) -> [i8; 3] {
+        self.side
+    }
+
+    /// How far each axis has yet to go in a direction before its carriage moves that way, mm; 0 where its side is not
+    /// known, and where it is asked for no direction.
+    ///
+    /// * `at` – where the axes stand
+    #[must_use]
+    pub fn lag_mm(&self, model: &dyn PathModel, at: &Command, direction: [i8; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| {
+            let Some(carriage) = self.carriage_mm[axis].filter(|_| direction[axis] != 0) else { return 0.0 };
+            let heading = f64::from(direction[axis]);
+            let behind = at.linear_mm[axis] - heading * half_play_mm(model, axis, at);
+            let lag_mm = (carriage - behind) * heading;
+            if lag_mm > SAME_PLACE_MM { lag_mm } else { 0.0 }
+        })
+    }
+
+    /// How far each carriage may stand from where it is taken to, mm: half its play where the axis has not moved, and all of it
+    /// that a first motion has not taken up for certain. 0 once the side is known.
+    ///
+    /// * `at` – where the axes stand
+    #[must_use]
+    pub fn unsure_mm(&self, model: &dyn PathModel, at: &Command) -> [f64; 3] {
+        std::array::from_fn(|axis| match self.carriage_mm[axis] {
+            None => half_play_mm(model, axis, at),
+            Some(carriage) => {
+                let [low, high] = self.certain_mm[axis];
+                let far = (carriage - low).abs().max((high - carriage).abs());
+                if far > SAME_PLACE_MM { far } else { 0.0 }
+            }
+        })
+    }
+
+    /// Real tip minus nominal tip with the axes standing here after the way they came, mm, as
+    /// [`PathModel::error_mm`].
+    ///
+    /// Along an axis the carriage stands where its play has left it; everything else is that of the side to which it
+    /// last moved. Products of play and rotation (a nanometre at 10 µm and 100 µrad) are left out.
+    ///
+    /// * `command` – where the axes stand; its direction is not used
+    #[must_use]
+    pub fn error_mm(&self, model: &dyn PathModel, command: &Command) -> Vector {
+        self.error_on_mm(model, command, self.side)
+    }
+
+    /// The same, what does not lie along the axes being that of other sides: for those who do not trust a moment at which it
+    /// changes.
+    #[must_use]
+    pub fn error_on_mm(&self, model: &dyn PathModel, command: &Command, side: [i8; 3]) -> Vector {
+        let mut error = model.error_mm(&Command { direction: side, ..*command });
+        for axis in 0..3 {
+            if let Some(carriage) = self.carriage_mm[axis] {
+                let half = half_play_mm(model, axis, command);
+                let into_play = (command.linear_mm[axis] - carriage).clamp(-half, half);
+                error[axis] += f64::from(side[axis]) * half - into_play;
+            }
+        }
+        error
+    }
+}
+
+/// What is certain of a carriage of which nothing is known, mm.
+const ANYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// A place with another command of one axis.
+fn with(mut place: Vector, axis: usize, mm: f64) -> Vector {
+    place[axis] = mm;
+    place
+}
+
+/// Half the width of an axis' play, mm: half the reversal value, and none where that is negative.
+fn half_play_mm(model: &dyn PathModel, axis: usize, at: &Command) -> f64 {
+    0.5 * model.reversal_mm(axis, at).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
+        Table,
+    };
+
+    fn command(x: f64, y: f64) -> Command {
+        Command {
+            linear_mm: Vector::new(x, y, 0.0),
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::zeros(),
+            direction: [0; 3],
+        }
+    }
+
+    /// X with tables for each direction, 6 to 14 µm apart along it and 3 µm across; Y with lost motion in Z only.
+    fn machine() -> RigidBody {
+        let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+        let nodes = vec![0.0, 40.0, 100.0];
+        let table = |values: [f64; 3]| Table::new(nodes.clone(), values.into(), Interpolation::Linear).ok();
+        let set = |along: [f64; 3], across: [f64; 3]| {
+            AxisTables::new(&[table(along), None, table(across), None, None, None])
+        };
+        linear[0].errors = set([0.001, 0.002, -0.003], [0.0; 3]);
+        linear[0].errors_negative = set([0.007, 0.012, 0.011], [0.003; 3]);
+        linear[1].errors = AxisTables::new(&[None, None, table([0.005; 3]), None, None, None]);
+        linear[1].errors_negative = AxisTables::new(&[None, None, table([-0.005; 3]), None, None, None]);
+        RigidBody::new(Description {
+            chain: Chain::parse("[w X Y b Z t]").unwrap(),
+            linear,
+            rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+            squareness: Squareness::default(),
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn reversal_values_are_those_of_the_tables() {
+        let model = machine();
+        assert!((model.reversal_mm(0, &command(40.0, 0.0)) - 0.010).abs() < 1e-15);
+        assert!((model.reversal_mm(0, &command(100.0, 0.0)) - 0.014).abs() < 1e-15);
+        assert_eq!(model.reversal_mm(1, &command(40.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn what_lies_across_turns_with_the_carriage() {
+        let model = machine();
+        let mut play = Play::unknown();
+        let mut error = |x: f64, y: f64| {
+            play.go(&model, &command(x, y));
+            play.error_mm(&model, &command(x, y))
+        };
+        error(10.0, 10.0);
+        assert_eq!(error(20.0, 20.0).z, 0.005);
+        // X goes back, but not by its play; Y has none.
+        assert_eq!(error(19.997, 20.0).z, 0.005);
+        assert!((error(19.0, 20.0).z - 0.008).abs() < 1e-15);
+        assert!((error(19.0, 19.999).z - -0.002).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_side_is_known_once_all_play_is_taken_up_for_certain() {
+        let model = machine();
+        let mut play = Play::unknown();
+        let mut unsure_um = |x: f64| {
+            play.go(&model, &command(x, 5.0));
+            (play.unsure_mm(&model, &command(x, 5.0))[0] * 1e3 * 10.0).round() / 10.0
+        };
+        // At 40 mm the reversal value is 10 µm.
+        assert_eq!([40.0, 40.003, 40.009, 40.011, 39.0].map(&mut unsure_um), [5.0, 7.0, 1.0, 0.0, 0.0]);
+    }
+
+    proptest! {
+        /// At the side of its play a machine is what the model says for that direction.
+        #[test]
+        fn behind_a_long_way_the_direction_tells_all(from in 0.0f64..45.0, way in 0.02f64..50.0, back: bool) {
+            let model = machine();
+            let (from, to) = if back { (from + way, from) } else { (from, from + way) };
+            let mut play = Play::unknown();
+            for x in [50.0, from, to] {
+                play.go(&model, &command(x, 5.0));
+            }
+            let direction = [if back { -1 } else { 1 }, 0, 0];
+            prop_assert_eq!(play.side(), direction);
+            prop_assert_eq!(play.lag_mm(&model, &command(to, 5.0), direction), [0.0; 3]);
+            let told = model.error_mm(&Command { direction, ..command(to, 5.0) });
+            prop_assert!((play.error_mm(&model, &command(to, 5.0)) - told).norm() < 1e-12);
+        }
+
+        /// However often it is asked on the way, the carriage ends where it ends, and never goes against the command.
+        #[test]
+        fn the_way_counts_and_not_its_pieces(places in prop::collection::vec(10.0f64..10.03, 2..12), pieces in 1u32..9) {
+            let model = machine();
+            // From a side that is known.
+            let mut once = Play::unknown();
+            [5.0, 9.0].into_iter().for_each(|x| once.go(&model, &command(x, 0.0)));
+            let mut often = once;
+            let mut before: Option<f64> = None;
+            for to in places {
+                let tip = |play: &Play, x: f64| x + play.error_mm(&model, &command(x, 0.0)).x;
+                if let Some(from) = before {
+                    let mut last = tip(&often, from);
+                    for k in 1..=pieces {
+                        let x = from + (to - from) * f64::from(k) / f64::from(pieces);
+                        often.go(&model, &command(x, 0.0));
+                        let now = tip(&often, x);
+                        // It stands but for what the mean curve changes by over the play.
+                        prop_assert!((now - last) * (to - from).signum() >= -1e-8, "{} {}", last, now);
+                        last = now;
+                    }
+                } else {
+                    often.go(&model, &command(to, 0.0));
+                }
+                once.go(&model, &command(to, 0.0));
+                prop_assert!((tip(&once, to) - tip(&often, to)).abs() < 1e-12);
+                before = Some(to);
+            }
+        }
+    }
+}

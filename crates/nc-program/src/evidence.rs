@@ -1,0 +1,463 @@
+//! What a program as a whole shows of the control and the machine it was written for.
+//!
+//! No block by itself tells that a program was made for a lathe, that its lengths mix two conventions, or that it was cut
+//! off. So each block is seen ([`Evidence::see`]), whatever else is done with it, and the whole is judged at the end
+//! ([`Evidence::judge`]). What was seen in parts of a program adds up ([`Evidence::add`]); blocks are only read for it,
+//! not executed.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, GCode, LatheSign, Macros, PointFree};
+use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
+use smallvec::SmallVec;
+
+use crate::codes;
+use crate::setup::Setup;
+use crate::words::{Letters, is_motion};
+
+/// No more codes are named in one message.
+const MOST_NAMED: usize = 8;
+
+/// Letters whose numbers are lengths or angles wherever the block's words are positions. K counts the holes of a cycle on
+/// some controls, and posts write Q in increments whatever they do with the others.
+const LENGTHS: Letters = Letters::of(b"ABCIJRUVWXYZ");
+
+/// A word or block of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Bytes of the program.
+    pub span: Range<u64>,
+    /// Line, from 1.
+    pub line: u64,
+}
+
+/// What is to be said, and the line it is said of.
+pub type Finding = (Diagnostic, u64);
+
+/// What to look for.
+#[derive(Clone, Copy, Debug)]
+pub struct Questions<'d> {
+    dialect: &'d Dialect,
+    /// What a length without a point is depends on a parameter of the control, and nobody said.
+    lengths_open: bool,
+}
+
+impl<'d> Questions<'d> {
+    /// As the dialect leaves them open, and the setup does not settle them.
+    #[must_use]
+    pub fn new(dialect: &'d Dialect, setup: &Setup) -> Self {
+        let counts = dialect.numbers.point_free == PointFree::LeastIncrement;
+        Self { dialect, lengths_open: counts && !setup.lengths_settled }
+    }
+
+    /// True where it matters that a length has no point.
+    #[must_use]
+    pub const fn lengths_open(&self) -> bool {
+        self.lengths_open
+    }
+}
+
+/// What was seen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Evidence {
+    /// Signs of a lathe by their index in the dialect's table, each where it was seen first.
+    lathe: SmallVec<[(usize, Place); 1]>,
+    /// Letters of the linear axes that were named.
+    names: [bool; 3],
+    /// M6: programs of lathes have none.
+    changes_tool: bool,
+    /// Lengths without a point, zeros apart: zero is zero in either unit.
+    bare: u64,
+    first_bare: Option<Place>,
+    first_pointed: Option<Place>,
+    first_length: Option<Place>,
+    states_unit: bool,
+    unknown: u64,
+    unknown_codes: BTreeSet<String>,
+    first_unknown: Option<Place>,
+    /// Something is executed: a `%` behind it closes the program.
+    acts: bool,
+    opened: Option<Place>,
+    ends: bool,
+    /// The number with which the text ends, without a line end.
+    cut_number: Option<Place>,
+}
+
+impl Evidence {
+    /// Sees a whole text.
+    #[must_use]
+    pub fn of(text: &[u8], questions: &Questions<'_>) -> Self {
+        let mut evidence = Self::default();
+        evidence.see_all(&mut Reader::new(text, questions.dialect), questions);
+        evidence
+    }
+
+    /// Sees all that a reader reads.
+    pub fn see_all(&mut self, reader: &mut Reader<'_>, questions: &Questions<'_>) {
+        let mut block = Block::default();
+        while reader.next(&mut block) {
+            self.see(&block, questions);
+        }
+    }
+
+    /// Sees a block.
+    pub fn see(&mut self, block: &Block<'_>, questions: &Questions<'_>) {
+        self.cut_number = None;
+        let mut seen = Seen::default();
+        let mut letters = Letters::NONE;
+        for item in &block.items {
+            match item.kind {
+                ItemKind::Word { letter, value } if letter.is_ascii_uppercase() => {
+                    letters = letters.or(Letters::of(&[letter]));
+                    let word = Word { letter, value, span: item.span };
+                    match (letter, value) {
+                        (b'G', _) => seen.code(&word, questions.dialect),
+                        (b'M', Value::Number(number)) => self.miscellaneous(block, &word, number, questions),
+                        _ => {}
+                    }
+                }
+                ItemKind::Percent if self.opened.is_some() || self.acts => self.ends = true,
+                ItemKind::Percent => self.opened = Some(place(block, block.file_span(item.span))),
+                // What cannot be read says nothing of how numbers are written.
+                ItemKind::Invalid(_) => seen.arguments = true,
+                _ => {}
+            }
+        }
+        self.states_unit |= seen.unit;
+        self.acts |= !letters.without(Letters::of(b"NO")).is_empty();
+        if !letters.is_empty() || !questions.dialect.commands.is_empty() {
+            self.lathe(block, &seen, letters, questions.dialect);
+        }
+        if letters.any(LENGTHS) && !seen.arguments {
+            self.lengths(block, seen.scales, questions);
+        }
+        let number = block.words().last().filter(|word| word.span.end as usize == block.bytes.len());
+        if let Some(word) = number
+            && word.number().is_some()
+        {
+            self.cut_number = Some(place(block, block.file_span(word.span)));
+        }
+    }
+
+    /// True while something is yet to be seen that may stand in a plain line too. Where none of them has a length
+    /// without a point, no other line needs to be seen.
+    #[must_use]
+    pub const fn wants_lines(&self, questions: &Questions<'_>) -> bool {
+        let [x, y, z] = self.names;
+        !(x && y && z)
+            || self.first_length.is_none()
+            || (questions.lengths_open && self.first_pointed.is_none())
+    }
+
+    /// Sees a line of plain coordinates.
+    pub fn see_line(&mut self, line: &PlainLine<'_>, questions: &Questions<'_>) {
+        self.acts = true;
+        for word in line.words() {
+            let Some(axis) = b"XYZ".iter().position(|letter| *letter == word.letter()) else { continue };
+            self.names[axis] = true;
+            let span = word.span();
+            let span = line.offset + u64::from(span.start)..line.offset + u64::from(span.end);
+            self.length(word.number(), &Place { span, line: line.line }, questions);
+        }
+    }
+
+    /// Adds what was seen in the blocks that follow.
+    pub fn add(&mut self, later: &Self) {
+        let Self {
+            lathe,
+            names,
+            changes_tool,
+            bare,
+            first_bare,
+            first_pointed,
+            first_length,
+            states_unit,
+            unknown,
+            unknown_codes,
+            first_unknown,
+            acts,
+            opened,
+            ends,
+            cut_number,
+        } = later;
+        for (sign, place) in lathe {
+            self.sign(*sign, || place.clone());
+        }
+        (0..3).for_each(|i| self.names[i] |= names[i]);
+        self.changes_tool |= changes_tool;
+        self.bare += bare;
+        self.states_unit |= states_unit;
+        self.unknown += unknown;
+        self.unknown_codes.extend(unknown_codes.iter().cloned());
+        // The mark that opened a part closes what was open before.
+        self.ends |= *ends || (opened.is_some() && (self.opened.is_some() || self.acts));
+        self.acts |= acts;
+        for (first, later) in [
+            (&mut self.first_bare, first_bare),
+            (&mut self.first_pointed, first_pointed),
+            (&mut self.first_length, first_length),
+            (&mut self.first_unknown, first_unknown),
+            (&mut self.opened, opened),
+        ] {
+            if first.is_none() {
+                first.clone_from(later);
+            }
+        }
+        self.cut_number.clone_from(cut_number);
+    }
+
+    fn sign(&mut self, sign: usize, place: impl FnOnce() -> Place) {
+        if !self.lathe.iter().any(|(known, _)| *known == sign) {
+            self.lathe.push((sign, place()));
+        }
+    }
+
+    fn lathe(&mut self, block: &Block<'_>, seen: &Seen, letters: Letters, dialect: &Dialect) {
+        for (index, sign) in dialect.lathe.iter().enumerate() {
+            if matches(sign, block, seen, letters) {
+                self.sign(index, || {
+                    place(block, block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64)
+                });
+            }
+        }
+    }
+
+    /// An M code: known, or counted.
+    fn miscellaneous(&mut self, block: &Block<'_>, word: &Word, number: Number, questions: &Questions<'_>) {
+        const SUBPROGRAM_ENDS: u16 = 99;
+        let code = number.integer().and_then(|code| u16::try_from(code).ok());
+        let row = code.and_then(|code| questions.dialect.m_code(code));
+        self.ends |= row.is_some_and(|row| row.ends_program) || code == Some(SUBPROGRAM_ENDS);
+        self.changes_tool |= row.is_some_and(|row| row.changes_tool);
+        let call = questions.dialect.flow.macros != Macros::None && matches!(code, Some(98 | 99));
+        if row.is_none() && !call {
+            self.unknown += 1;
+            self.unknown_codes.insert(String::from_utf8_lossy(block.text(word.span)).to_ascii_uppercase());
+            self.first_unknown.get_or_insert_with(|| place(block, block.file_span(word.span)));
+        }
+    }
+
+    fn lengths(&mut self, block: &Block<'_>, scales: bool, questions: &Questions<'_>) {
+        for word in block.words() {
+            let letter = Letters::of(&[word.letter.to_ascii_uppercase()]);
+            // I and J beside G51 are factors.
+            if !LENGTHS.any(letter) || (scales && matches!(word.letter, b'I' | b'J')) {
+                continue;
+            }
+            if let Some(axis) = b"XYZ".iter().position(|letter| *letter == word.letter) {
+                self.names[axis] = true;
+            }
+            let Value::Number(number) = word.value else { continue };
+            self.length(number, &place(block, block.file_span(word.span)), questions);
+        }
+    }
+
+    fn length(&mut self, number: Number, place: &Place, questions: &Questions<'_>) {
+        self.first_length.get_or_insert_with(|| place.clone());
+        if !questions.lengths_open {
+            return;
+        }
+        if number.has_point {
+            self.first_pointed.get_or_insert_with(|| place.clone());
+        } else if number.decimal.mantissa != 0 {
+            self.bare += 1;
+            self.first_bare.get_or_insert_with(|| place.clone());
+        }
+    }
+
+    /// What must refuse the program.
+    ///
+    /// # Errors
+    /// VP0240 for a program of a lathe, VP0241 for one that mixes lengths with and without a point.
+    pub fn refusal(&self, questions: &Questions<'_>) -> Result<(), Box<Finding>> {
+        if let Some(finding) = self.of_a_lathe(questions.dialect) {
+            return Err(Box::new(finding));
+        }
+        let (Some(bare), Some(pointed)) = (&self.first_bare, &self.first_pointed) else { return Ok(()) };
+        let message = format!(
+            "{} length(s) without a decimal point beside lengths with one: a parameter of the control decides what they are",
+            self.bare
+        );
+        let label = format!("the first without a point; the first with one is in line {}", pointed.line);
+        let diagnostic = Diagnostic::error(codes::MIXED_LENGTHS, message)
+            .at(bare.span.clone(), label)
+            .help("`--decimal increments` where Z10 is ten steps (0.010 mm), `--decimal millimetres` where it is Z10.; or `decimal = \"…\"` under `[program]` in the profile");
+        Err(Box::new((diagnostic, bare.line)))
+    }
+
+    /// What is doubtful about the program, all of it read: VP0242 to VP0245.
+    #[must_use]
+    pub fn doubts(&self, questions: &Questions<'_>) -> Vec<Finding> {
+        let mut doubts = self.doubts_of_a_part(questions);
+        if let (true, false, Some(at)) =
+            (questions.dialect.unit_is_kept, self.states_unit, &self.first_length)
+        {
+            let [inch, millimetre] = [Action::Inch, Action::Millimetre].map(|action| {
+                let row = questions.dialect.codes.iter().find(|row| row.action == action);
+                row.map_or_else(String::new, |row| row.code.to_string())
+            });
+            let diagnostic = Diagnostic::doubt(
+                codes::UNIT_UNSTATED,
+                format!("the program states neither {inch} nor {millimetre}, and is read in millimetres"),
+            )
+            .at(at.span.clone(), "the first length; the control reads it in the unit of the program before")
+            .help(format!("write {millimetre} (or {inch}) at the start of the program"));
+            doubts.push((diagnostic, at.line));
+        }
+        doubts.extend(self.cut());
+        doubts
+    }
+
+    /// The same, of a subprogram: its caller states the unit, and nothing closes it.
+    #[must_use]
+    pub fn doubts_of_a_part(&self, questions: &Questions<'_>) -> Vec<Finding> {
+        let mut doubts = Vec::new();
+        if let Some(at) = &self.first_bare {
+            let decimals = questions.dialect.numbers.least_increment_decimals_mm;
+            let step = units::decimal::Decimal { mantissa: 1, decimals }.to_f64();
+            let diagnostic = Diagnostic::doubt(
+                codes::BARE_LENGTHS,
+                format!("{} length(s) without a decimal point are read as increments of {step} mm", self.bare),
+            )
+            .at(at.span.clone(), "the first; on a control set to calculator-type input it is a thousand times as long")
+            .help("`--decimal increments` says that this is right, `--decimal millimetres` that it is not; or `decimal = \"…\"` under `[program]` in the profile");
+            doubts.push((diagnostic, at.line));
+        }
+        if let Some(at) = &self.first_unknown {
+            let named: Vec<&str> = self.unknown_codes.iter().take(MOST_NAMED).map(String::as_str).collect();
+            let more = if self.unknown_codes.len() > named.len() { ", …" } else { "" };
+            let quoted: Vec<String> = named.iter().map(|code| format!("\"{code}\"")).collect();
+            let diagnostic = Diagnostic::doubt(
+                codes::UNKNOWN_M_CODE,
+                format!(
+                    "{} M code(s) that the table of dialect {} does not have: {}{more}",
+                    self.unknown,
+                    questions.dialect.name,
+                    named.join(", ")
+                ),
+            )
+            .at(at.span.clone(), "the first; taken for something that moves neither an axis nor the frame")
+            .help(format!(
+                "where the machine's manual says so, write `harmless = [{}{more}]` under `[m_codes]` in the profile",
+                quoted.join(", ")
+            ));
+            doubts.push((diagnostic, at.line));
+        }
+        doubts
+    }
+
+    /// A program that may have been cut off.
+    fn cut(&self) -> Option<Finding> {
+        if self.ends {
+            return None;
+        }
+        let (message, label, at) = match (&self.cut_number, &self.opened) {
+            (Some(at), _) => (
+                "the program ends with a number, and neither an end code nor a line end follows",
+                "perhaps not all of its digits are there",
+                at,
+            ),
+            (None, Some(at)) => {
+                ("a `%` opens the program, and neither a `%` nor an end code closes it", "opened here", at)
+            }
+            (None, None) => return None,
+        };
+        let diagnostic = Diagnostic::doubt(codes::CUT_OFF, message)
+            .at(at.span.clone(), label)
+            .help("compare it with the program as posted, and end it with M30");
+        Some((diagnostic, at.line))
+    }
+
+    /// A sure sign tells, or a hint in a program that never names Y, or two hints.
+    fn of_a_lathe(&self, dialect: &Dialect) -> Option<Finding> {
+        let rows = self.lathe.iter().filter_map(|(sign, place)| Some((dialect.lathe.get(*sign)?, place)));
+        // Mills write T1012 beside M6.
+        let rows = rows.filter(|(sign, _)| sign.digits.is_none() || sign.sure || !self.changes_tool);
+        let mut rows: Vec<(&LatheSign, &Place)> = rows.collect();
+        // What is sure first, and what comes first in the program.
+        rows.sort_by_key(|(sign, place)| (!sign.sure, place.span.start));
+        let [x, y, z] = self.names;
+        let tells = rows.iter().any(|(sign, _)| sign.sure) || rows.len() > 1 || (x && z && !y);
+        let (sign, place) = rows.first().filter(|_| tells)?;
+        let mut message =
+            "this is a program of a lathe, and vpost corrects those of mills only so far".to_owned();
+        if !sign.sure && x && z && !y {
+            message.push_str("; it never names Y");
+        }
+        let diagnostic = Diagnostic::error(codes::LATHE, message)
+            .at(place.span.clone(), sign.says.as_str())
+            .help(format!("leave it as it is; if it is a mill's: {}", sign.mill));
+        Some((diagnostic, place.line))
+    }
+}
+
+/// What the codes of a block say of its words.
+#[derive(Default)]
+struct Seen {
+    codes: SmallVec<[GCode; 8]>,
+    unit: bool,
+    /// The words are no positions.
+    arguments: bool,
+    scales: bool,
+    /// G0 to G3.
+    moves: bool,
+}
+
+impl Seen {
+    fn code(&mut self, word: &Word, dialect: &Dialect) {
+        let Some(code) = word.g_code() else { return };
+        self.codes.push(code);
+        let Some(row) = dialect.code(code) else { return };
+        self.unit |= matches!(row.action, Action::Inch | Action::Millimetre);
+        self.scales |= row.action == Action::ScalingOn;
+        self.moves |= is_motion(&row.action);
+        self.arguments |=
+            matches!(row.action, Action::Dwell | Action::Pass { takes_words: true } | Action::Refuse { .. });
+    }
+}
+
+fn place(block: &Block<'_>, span: Range<u64>) -> Place {
+    Place { span, line: block.line }
+}
+
+fn matches(sign: &LatheSign, block: &Block<'_>, seen: &Seen, letters: Letters) -> bool {
+    let all = |wanted: &[u8]| wanted.iter().all(|letter| letters.any(Letters::of(&[*letter])));
+    let any = |wanted: &[u8]| wanted.iter().any(|letter| letters.any(Letters::of(&[*letter])));
+    if !all(&sign.with) || any(&sign.without) {
+        return false;
+    }
+    let coded = if !sign.commands.is_empty() {
+        block.items.iter().any(|item| {
+            item.kind == ItemKind::BracketCommand
+                && sign.commands.iter().any(|name| is_named(block.text(item.span), name))
+        })
+    } else if sign.codes.is_empty() {
+        !seen.arguments
+    } else {
+        seen.codes.iter().any(|code| sign.codes.contains(code)) && (!sign.alone || seen.codes.len() == 1)
+    };
+    coded
+        && sign.digits.is_none_or(|(letter, count)| {
+            block.word(letter).is_some_and(|word| has_digits(block.text(word.span), count))
+        })
+}
+
+/// A command's bytes begin with its name as a whole word.
+fn is_named(text: &[u8], name: &str) -> bool {
+    text.len() >= name.len()
+        && text[..name.len()].eq_ignore_ascii_case(name.as_bytes())
+        && !text.get(name.len()).is_some_and(|next| next.is_ascii_alphanumeric() || *next == b'_')
+}
+
+/// So many digits behind the letter, neither half all zeros: `T0101`, not `T0001` or `T1000`.
+fn has_digits(word: &[u8], count: u8) -> bool {
+    let digits = word[1..].trim_ascii();
+    let half = usize::from(count) / 2;
+    let some = |digits: &[u8]| digits.iter().any(|digit| *digit != b'0');
+    digits.len() == usize::from(count)
+        && digits.iter().all(u8::is_ascii_digit)
+        && some(&digits[..half])
+        && some(&digits[half..])
+}

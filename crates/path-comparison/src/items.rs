@@ -1,0 +1,623 @@
+//! A program as a row of items: feeds, positioning moves, deeds; cycles as the moves a control makes of them.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use machine_model::{Command, PathModel, Play, Vector};
+use smallvec::SmallVec;
+use toolpath::{CycleKind, FeedRate, Hole, Motion, Partial, Position};
+
+use crate::stretch::{LEVER_MM, Place, Span, Stretch};
+use crate::way::Way;
+use crate::{Act, Pecks, Step};
+
+/// Largest distance between places that the model is asked for, mm.
+const SAMPLE_MM: f64 = 0.5;
+/// A piece of an arc leaves the parabola through its ends and its middle by no more, mm: by r θ⁴/512 square to the circle
+/// and r θ³/125 along it, which on a helix is aside of the path as far as that is steep.
+const PARABOLA_MM: f64 = 1e-7;
+/// Largest turn between places, rad.
+const SAMPLE_RAD: f64 = 0.5;
+/// Largest turn of a rotary axis between them, rad.
+const TURN_RAD: f64 = 0.02;
+/// No motion is asked for at more places.
+const MOST_SAMPLES: f64 = 100_000.0;
+/// So near to where an axis turns it is asked for on either side, mm: above what counts as the same place.
+const TURN_MM: f64 = 1e-8;
+/// A hole of more pecks is compared as one.
+const MOST_PECKS: f64 = 10_000.0;
+
+/// What must be the same for two motions to go on together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Process {
+    pub(crate) number: u32,
+    pub(crate) feed: Option<f64>,
+}
+
+/// Which places of a motion's stretches are reached: from a stretch on, those of each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Left {
+    /// It lies in the window of what was asked for.
+    pub(crate) asked: bool,
+    pub(crate) first: usize,
+    pub(crate) spans: SmallVec<[Option<Span>; 2]>,
+}
+
+impl Left {
+    /// Of a stretch.
+    pub(crate) fn at(&self, stretch: usize) -> Option<Span> {
+        self.spans.get(stretch.checked_sub(self.first)?).copied().flatten()
+    }
+
+    /// Some place is.
+    pub(crate) fn is_reached(&self) -> bool {
+        self.spans.iter().any(Option::is_some)
+    }
+
+    /// The next stretch; those in front of the first that is reached are left out.
+    pub(crate) fn push(&mut self, stretch: usize, span: Option<Span>) {
+        if self.spans.is_empty() {
+            if span.is_none() {
+                return;
+            }
+            self.first = stretch;
+        }
+        // Between two stretches that are asked for none is reached.
+        while self.first + self.spans.len() < stretch {
+            self.spans.push(None);
+        }
+        self.spans.push(span);
+    }
+
+    /// Those that are reached, by stretch.
+    pub(crate) fn reached(&self) -> impl DoubleEndedIterator<Item = (usize, Span)> + '_ {
+        self.spans.iter().enumerate().filter_map(|(k, span)| Some((self.first + k, (*span)?)))
+    }
+}
+
+/// A feed motion.
+pub(crate) struct Feeding {
+    pub(crate) stretches: SmallVec<[Stretch; 2]>,
+    /// What is reached of it while the other program stands where it does.
+    pub(crate) left: Left,
+    pub(crate) line: u64,
+    pub(crate) process: Process,
+    /// What it takes, under G93.
+    pub(crate) minutes: Option<f64>,
+    pub(crate) limit_mm: f64,
+    /// How far it leads from where it starts at most, mm: less than its length for a circle.
+    pub(crate) reach_mm: f64,
+    /// Its start, or its end, lies in the air above the hole that it drills.
+    pub(crate) airy: [bool; 2],
+    /// `None` for a positioning move of micrometres.
+    pub(crate) way: Option<Way>,
+    /// Largest distance from its own path, mm: of a programmed motion run uncorrected.
+    pub(crate) off_mm: f64,
+    /// Largest distance of what was made of it, mm.
+    pub(crate) made_off_mm: f64,
+}
+
+impl Feeding {
+    pub(crate) fn start(&self) -> Place {
+        self.stretches[0].at(0.0)
+    }
+
+    pub(crate) fn end(&self) -> Place {
+        self.stretches[self.stretches.len() - 1].at(1.0)
+    }
+
+    pub(crate) fn length_mm(&self) -> f64 {
+        self.stretches.iter().map(Stretch::length_mm).sum()
+    }
+
+    /// Its end is reached.
+    pub(crate) fn is_done(&self) -> bool {
+        self.left.at(self.stretches.len() - 1).is_some_and(|span| span.is_at_end())
+    }
+
+    /// How far its end is from the last place that is reached, mm; `None` where none is.
+    pub(crate) fn left_mm(&self) -> Option<f64> {
+        self.left_mm_of(&self.left)
+    }
+
+    /// The same where so much is reached.
+    pub(crate) fn left_mm_of(&self, left: &Left) -> Option<f64> {
+        let (last, span) = left.reached().next_back()?;
+        Some((self.end() - self.stretches[last].at(span.high)).norm())
+    }
+
+    /// Distance of a place, mm, and how far along the motion the nearest lies, 0 to 1.
+    pub(crate) fn nearest(&self, place: &Place) -> (f64, f64) {
+        let mut nearest = (f64::INFINITY, 0.0);
+        for (k, stretch) in self.stretches.iter().enumerate() {
+            let distance_mm = stretch.distance_mm(place);
+            if distance_mm < nearest.0 {
+                nearest = (distance_mm, (k as f64 + stretch.foot(place)) / self.stretches.len() as f64);
+            }
+        }
+        nearest
+    }
+}
+
+/// A move whose end counts and whose way is the control's: G0, a reference return, a turn of rotary axes.
+pub(crate) struct Positioning {
+    /// Where the axes were, as far as known.
+    pub(crate) start: Partial,
+    /// Where they end.
+    pub(crate) end: Partial,
+    /// Where the tool really ends, where that is known.
+    pub(crate) tip_mm: Option<Vector>,
+    /// Where it starts and ends on the path that is compared, as far as known.
+    places: [Option<Place>; 2],
+    /// The machine's error there, mm.
+    pub(crate) error_mm: f64,
+    /// G0, which is corrected, unlike the others.
+    pub(crate) rapid: bool,
+    /// Made by a cycle.
+    pub(crate) of_cycle: bool,
+    pub(crate) line: u64,
+    pub(crate) process: Process,
+    pub(crate) limit_mm: f64,
+}
+
+impl Positioning {
+    /// It moves the tool by so little that it makes no difference whether it is made, and how.
+    pub(crate) fn is_small(&self) -> bool {
+        /// Rounding at either end, and the limit there.
+        const LIMITS: f64 = 8.0;
+        match self.places {
+            [Some(from), Some(to)] => (to - from).norm() <= LIMITS * self.limit_mm,
+            // As far as known it stays where it is.
+            _ => self.start == self.end,
+        }
+    }
+}
+
+/// What is done once, by its number.
+pub(crate) struct Deed {
+    pub(crate) number: u32,
+    pub(crate) line: u64,
+    pub(crate) process: Process,
+}
+
+pub(crate) enum Item {
+    Feed(Box<Feeding>),
+    Position(Box<Positioning>),
+    Deed(Deed),
+}
+
+impl Item {
+    pub(crate) fn line(&self) -> u64 {
+        match self {
+            Self::Feed(feed) => feed.line,
+            Self::Position(position) => position.line,
+            Self::Deed(deed) => deed.line,
+        }
+    }
+}
+
+/// Which of both paths of a program is asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The one as programmed, and how far off it is run uncorrected.
+    Wanted,
+    /// The one on which the machine really goes.
+    Commanded,
+}
+
+/// Where the programmed holes with pecks are, and how many pecks they have.
+pub(crate) type Counted = Rc<RefCell<VecDeque<(Vector, u32)>>>;
+
+/// The items of a program, made as they are asked for.
+pub(crate) struct Items<'m, I> {
+    steps: I,
+    role: Role,
+    pecks: Pecks,
+    model: &'m dyn PathModel,
+    /// Where the axes stand in their play; `None` where the model knows none.
+    play: Option<Play>,
+    /// Where the last motion has brought the axes.
+    at: Partial,
+    /// Where it has brought the path that is compared.
+    place: Option<Place>,
+    counted: Counted,
+    ready: VecDeque<Item>,
+    /// Feed motions so far, a hole being one.
+    pub(crate) feeds: usize,
+    pub(crate) limit_mm: f64,
+}
+
+/// What the items of one step have in common.
+#[derive(Clone, Copy)]
+struct Common {
+    line: u64,
+    process: Process,
+    limit_mm: f64,
+    tool_mm: Vector,
+    dwell: Option<u32>,
+}
+
+impl Common {
+    fn command(&self, linear_mm: Vector, rotary_rad: Vector) -> Command {
+        Command { linear_mm, rotary_rad, tool_mm: self.tool_mm, direction: [0; 3] }
+    }
+}
+
+impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
+    pub(crate) fn new(
+        model: &'m dyn PathModel,
+        steps: I,
+        role: Role,
+        pecks: Pecks,
+        counted: Counted,
+    ) -> Self {
+        let play = model.depends_on_direction().then(Play::unknown);
+        Self {
+            steps,
+            role,
+            pecks,
+            model,
+            play,
+            at: Partial::default(),
+            place: None,
+            counted,
+            ready: VecDeque::new(),
+            feeds: 0,
+            limit_mm: 0.0,
+        }
+    }
+
+    /// The item so many behind the next.
+    pub(crate) fn peek(&mut self, ahead: usize) -> Option<&mut Item> {
+        while self.ready.len() <= ahead {
+            let step = self.steps.next()?;
+            self.take(&step);
+        }
+        self.ready.get_mut(ahead)
+    }
+
+    /// The feed so many behind the next item, where it is one.
+    pub(crate) fn feed(&mut self, ahead: usize) -> Option<&mut Feeding> {
+        match self.peek(ahead) {
+            Some(Item::Feed(feed)) => Some(feed),
+            _ => None,
+        }
+    }
+
+    /// Takes a positioning move of micrometres for a feed, so that a run goes on over it; false where it is none.
+    pub(crate) fn smooth(&mut self, ahead: usize, process: Process) -> bool {
+        let Some(item) = self.peek(ahead) else { return false };
+        let Item::Position(position) = item else { return false };
+        let [Some(from), Some(to)] = position.places else { return false };
+        if !position.is_small() {
+            return false;
+        }
+        let stretch = Stretch::new(from, to, None);
+        *item = Item::Feed(Box::new(Feeding {
+            reach_mm: stretch.length_mm(),
+            stretches: SmallVec::from_slice(&[stretch]),
+            left: Left::default(),
+            line: position.line,
+            process,
+            minutes: None,
+            limit_mm: position.limit_mm,
+            airy: [true; 2],
+            way: None,
+            off_mm: 0.0,
+            made_off_mm: 0.0,
+        }));
+        true
+    }
+
+    pub(crate) fn pop(&mut self) -> Option<Item> {
+        self.peek(0)?;
+        self.ready.pop_front()
+    }
+
+    fn take(&mut self, step: &Step) {
+        let Step { act, line, process: number, limit_mm } = *step;
+        let (motion, tool_mm, feed, dwell) = match act {
+            Act::Deed(deed) => {
+                let process = Process { number, feed: None };
+                self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
+                return;
+            }
+            Act::Motion { motion, tool_mm, feed, dwell } => (motion, tool_mm, feed, dwell),
+        };
+        let process = Process { number, feed };
+        let common = Common { line, process, limit_mm, tool_mm: tool_mm.into(), dwell };
+        self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
+        match motion {
+            Motion::Feed(feed) => self.feeding(&common, Way::of(&feed), feed.rate, [false; 2]),
+            Motion::Rapid { start, end } => self.positioning(&common, start, end, Kind::Rapid),
+            Motion::Uncorrected { end } => self.positioning(&common, self.at, end, Kind::Uncorrected),
+            Motion::Hole(hole) => self.hole(&common, &hole),
+        }
+    }
+
+    fn positioning(&mut self, common: &Common, start: Partial, end: Partial, kind: Kind) {
+        let rotary_rad = Vector::from(end.rotary_deg.map(f64::to_radians));
+        if let Some(play) = &mut self.play {
+            let known = Vector::from(end.linear_mm.map(|at| at.unwrap_or(0.0)));
+            play.go(self.model, &common.command(known, rotary_rad));
+            for axis in 0..3 {
+                let [from, to] = [start.linear_mm[axis], end.linear_mm[axis]];
+                // By whatever way the control takes, and from wherever.
+                let unknown = to.is_none() || from.is_none() || (kind == Kind::Uncorrected && from != to);
+                if unknown {
+                    play.forget(axis, to);
+                }
+            }
+        }
+        let error = end.complete().map(|end| {
+            let at = Vector::from(end.linear_mm);
+            (at, self.error_mm(&common.command(at, rotary_rad)))
+        });
+        let tip_mm = error.map(|(at, error)| at + error);
+        let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
+        let place = linear.map(|linear| place(&linear, &rotary_rad));
+        self.ready.push_back(Item::Position(Box::new(Positioning {
+            start,
+            end,
+            tip_mm,
+            places: [std::mem::replace(&mut self.place, place), place],
+            error_mm: error.map_or(0.0, |(_, error)| error.norm()),
+            rapid: kind != Kind::Uncorrected,
+            of_cycle: kind == Kind::OfCycle,
+            line: common.line,
+            process: Process { feed: None, ..common.process },
+            limit_mm: common.limit_mm,
+        })));
+        self.at = end;
+    }
+
+    fn error_mm(&self, command: &Command) -> Vector {
+        match &self.play {
+            None => self.model.error_mm(command),
+            Some(play) => play.error_mm(self.model, command),
+        }
+    }
+
+    fn feeding(&mut self, common: &Common, way: Way, rate: FeedRate, airy: [bool; 2]) {
+        let length_mm = way.length_mm();
+        let (radius_mm, steep) = way.radius_and_steepness();
+        let square_rad = (512.0 * PARABOLA_MM / radius_mm.max(1e-9)).sqrt().sqrt();
+        let along_rad = units::math::powf(125.0 * PARABOLA_MM / (radius_mm * steep).max(1e-9), 1.0 / 3.0);
+        let turn_rad = square_rad.min(along_rad).min(SAMPLE_RAD);
+        let pieces = (way.turning_rad() / turn_rad).max(way.rotary_turn_rad() / TURN_RAD);
+        let samples = pieces.max(length_mm / SAMPLE_MM).ceil().clamp(1.0, MOST_SAMPLES);
+        let real = self.real(common, &way, samples);
+        let stretch = |[(s0, e0), (s1, e1)]: [(f64, Vector); 2]| {
+            Stretch::new(way.place(s0, &e0), way.place(s1, &e1), way.bow(s0, s1))
+        };
+        let pairs = |places: &[(f64, Vector)]| {
+            places.windows(2).map(|pair| stretch([pair[0], pair[1]])).collect::<SmallVec<[Stretch; 2]>>()
+        };
+        let mut off_mm = 0.0f64;
+        let stretches = match self.role {
+            Role::Commanded => pairs(&real),
+            Role::Wanted => {
+                let pieces = pieces.ceil().clamp(1.0, MOST_SAMPLES);
+                let steps = (0..=pieces as u32).map(|k| (f64::from(k) / pieces, Vector::zeros()));
+                let stretches = pairs(&steps.collect::<SmallVec<[_; 4]>>());
+                for (s, error) in &real {
+                    let k = ((s * pieces) as usize).min(stretches.len() - 1);
+                    off_mm = off_mm.max(stretches[k].distance_mm(&way.place(*s, error)));
+                }
+                stretches
+            }
+        };
+        // Of a long motion its length will do.
+        let start = stretches[0].at(0.0);
+        let far = || stretches.iter().map(|stretch| (stretch.at(1.0) - start).norm()).fold(0.0, f64::max);
+        let reach_mm = if length_mm < 1.0 { far() } else { length_mm };
+        self.limit_mm = self.limit_mm.max(common.limit_mm);
+        self.at = Partial {
+            linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),
+            rotary_deg: way.end_rotary_deg(),
+        };
+        self.place = stretches.last().map(|stretch| stretch.at(1.0));
+        self.ready.push_back(Item::Feed(Box::new(Feeding {
+            stretches,
+            left: Left::default(),
+            line: common.line,
+            process: common.process,
+            minutes: if let FeedRate::InverseTime(f) = rate { Some(1.0 / f) } else { None },
+            limit_mm: common.limit_mm,
+            reach_mm,
+            airy,
+            way: Some(way),
+            off_mm,
+            made_off_mm: 0.0,
+        })));
+    }
+
+    /// The machine's errors along a way, evenly and wherever an axis turns or has its play taken up.
+    fn real(&mut self, common: &Common, way: &Way, samples: f64) -> SmallVec<[(f64, Vector); 4]> {
+        let mut cuts: SmallVec<[f64; 4]> = (1..=samples as u32).map(|k| f64::from(k) / samples).collect();
+        let command = |s: f64| common.command(way.at(s), way.rotary_rad(s));
+        let Some(mut play) = self.play else {
+            let all = std::iter::once(0.0).chain(cuts);
+            return all.map(|s| (s, self.model.error_mm(&command(s)))).collect();
+        };
+        let turns = way.turns();
+        if !turns.is_empty() {
+            cuts.extend(turns);
+            cuts.sort_by(f64::total_cmp);
+        }
+        let mut at = command(0.0);
+        play.go(self.model, &at);
+        let mut found: SmallVec<[(f64, Vector); 4]> = SmallVec::new();
+        found.push((0.0, play.error_mm(self.model, &at)));
+        let mut from = 0.0;
+        for cut in cuts {
+            let to = command(cut);
+            let way_mm: [f64; 3] = (to.linear_mm - at.linear_mm).into();
+            let direction = way_mm.map(|mm| i8::from(mm > 0.0) - i8::from(mm < 0.0));
+            let (side, lag_mm) = (play.side(), play.lag_mm(self.model, &at, direction));
+            let mut taken_up: SmallVec<[f64; 6]> = SmallVec::new();
+            for axis in 0..3 {
+                // Of an axis whose side nobody knows nobody knows either where it changes.
+                let turns = direction[axis] != 0 && side[axis] != direction[axis] && side[axis] != 0;
+                if turns && way_mm[axis].abs() > lag_mm[axis] + TURN_MM {
+                    // What lies across the axis changes there, at once.
+                    let around = [lag_mm[axis] - TURN_MM, lag_mm[axis] + TURN_MM];
+                    let before_and_behind = around.iter().filter(|mm| **mm > 0.0);
+                    taken_up.extend(before_and_behind.map(|mm| where_gone(way, from, cut, axis, *mm)));
+                }
+            }
+            taken_up.sort_by(f64::total_cmp);
+            for s in taken_up.into_iter().chain([cut]) {
+                let here = command(s);
+                play.go(self.model, &here);
+                found.push((s, play.error_mm(self.model, &here)));
+            }
+            (from, at) = (cut, to);
+        }
+        self.play = Some(play);
+        found
+    }
+
+    /// How many pecks a hole has that is so many of them deep.
+    ///
+    /// The depth of a corrected cycle is the programmed one but for micrometres: where they decide, it has as many
+    /// pecks as the programmed hole there.
+    fn pecks_of(&self, hole: &Hole, depth: f64, unsure: f64) -> u32 {
+        /// So many holes the one program may be ahead of the other.
+        const KEPT: usize = 64;
+        /// Holes that are nearer are one, mm.
+        const ONE_HOLE_MM: f64 = 1.0;
+        let counted = (depth - 1e-9).ceil().max(1.0);
+        let at = Vector::from(hole.at_r.linear_mm);
+        let mut known = self.counted.borrow_mut();
+        if self.role == Role::Wanted {
+            known.push_back((at, counted as u32));
+            if known.len() > KEPT {
+                known.pop_front();
+            }
+            return counted as u32;
+        }
+        let here = known.iter().rposition(|(known, _)| (known - at).norm() < ONE_HOLE_MM);
+        let programmed = here.map(|k| known[k].1).filter(|count| {
+            let count = f64::from(*count);
+            depth - unsure <= count && count - 1.0 <= depth + unsure
+        });
+        programmed.unwrap_or(counted as u32)
+    }
+
+    /// A cycle, move by move.
+    fn hole(&mut self, common: &Common, hole: &Hole) {
+        let normal = hole.plane.axes()[2];
+        let on_hole = |mm: f64| {
+            let mut place = hole.at_r;
+            place.linear_mm[normal] = mm;
+            place
+        };
+        let (r_mm, bottom_mm, start_mm) =
+            (hole.at_r.linear_mm[normal], hole.bottom_mm, hole.start.linear_mm[normal]);
+        let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
+        let after_mm = hole.end().linear_mm[normal];
+        // Up first where it starts lower, then across, then down to R.
+        let above_mm = if down < 0.0 { start_mm.max(after_mm) } else { start_mm.min(after_mm) };
+        let mut rise = hole.start;
+        rise.linear_mm[normal] = above_mm;
+        let mut at = hole.start;
+        let rapid = |items: &mut Self, at: &mut Position, to: Position| {
+            items.positioning(common, (*at).into(), to.into(), Kind::OfCycle);
+            *at = to;
+        };
+        for place in [rise, on_hole(above_mm), hole.at_r] {
+            rapid(self, &mut at, place);
+        }
+        let feed = |items: &mut Self, at: &mut Position, to: Position, airy: [bool; 2]| {
+            items.feeding(common, Way::line(*at, to), hole.rate, airy);
+            *at = to;
+        };
+        let peck_mm = match hole.cycle.kind {
+            CycleKind::PeckFull | CycleKind::PeckChip => hole.cycle.peck_mm,
+            CycleKind::Drill | CycleKind::Bore | CycleKind::Synchronised => None,
+        };
+        let depth_mm = (bottom_mm - r_mm).abs();
+        if let Some(peck_mm) = peck_mm.filter(|peck_mm| depth_mm < MOST_PECKS * peck_mm) {
+            let mut done_mm = 0.0;
+            for _ in 1..self.pecks_of(hole, depth_mm / peck_mm, 8.0 * common.limit_mm / peck_mm) {
+                done_mm += peck_mm;
+                feed(self, &mut at, on_hole(r_mm + down * done_mm), [true, false]);
+                let back_mm = if hole.cycle.kind == CycleKind::PeckFull {
+                    rapid(self, &mut at, hole.at_r);
+                    self.pecks.clearance_mm
+                } else {
+                    self.pecks.retreat_mm
+                };
+                rapid(self, &mut at, on_hole(r_mm + down * (done_mm - back_mm.min(done_mm))));
+            }
+        }
+        feed(self, &mut at, on_hole(bottom_mm), [true, false]);
+        if let Some(number) = common.dwell.filter(|_| hole.cycle.kind != CycleKind::Synchronised) {
+            let process = Process { feed: None, ..common.process };
+            self.ready.push_back(Item::Deed(Deed { number, line: common.line, process }));
+        }
+        if hole.cycle.kind == CycleKind::Bore {
+            feed(self, &mut at, hole.at_r, [false, true]);
+        }
+        rapid(self, &mut at, hole.end());
+    }
+}
+
+/// What makes a positioning move.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Rapid,
+    OfCycle,
+    Uncorrected,
+}
+
+fn place(linear_mm: &Vector, rotary_rad: &Vector) -> Place {
+    let rotary = rotary_rad * LEVER_MM;
+    Place::from_row_slice(&[linear_mm.x, linear_mm.y, linear_mm.z, rotary.x, rotary.y, rotary.z])
+}
+
+/// Where between two places an axis, going one way, has gone so far.
+fn where_gone(way: &Way, from: f64, to: f64, axis: usize, mm: f64) -> f64 {
+    let start = way.at(from)[axis];
+    let (mut low, mut high) = (from, to);
+    // To below a picometre of any way.
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if (way.at(middle)[axis] - start).abs() < mm { low = middle } else { high = middle }
+    }
+    high
+}
+
+/// Ends of a positioning move that are alike: where an axis goes, the tool ends there; one that stays may.
+pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
+    /// Nothing is cut there, and what lies in its play may be a little aside.
+    const LIMITS: f64 = 4.0;
+    /// No machine's correction is larger.
+    const LARGEST_CORRECTION_MM: f64 = 1.0;
+    if wanted.rapid != made.rapid || wanted.end.rotary_deg != made.end.rotary_deg {
+        return false;
+    }
+    let of_cycle = wanted.of_cycle || made.of_cycle;
+    // A control does not correct the moves of a cycle: they are off by the machine's errors, there and where it began.
+    let near_mm = LIMITS * wanted.limit_mm + if of_cycle { 2.0 * made.error_mm } else { 0.0 };
+    (0..3).all(|axis| {
+        let [(w_from, w_to), (from, to)] =
+            [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
+        let (Some(w_to), Some(to)) = (w_to, to) else { return true };
+        let by_as_much =
+            w_from.zip(from).is_some_and(|(w_from, from)| ((w_to - w_from) - (to - from)).abs() <= near_mm);
+        // An axis that stands is where its last correction left it.
+        let stands = by_as_much
+            && w_from.is_some_and(|w_from| (w_to - w_from).abs() <= near_mm)
+            && (w_to - to).abs() <= LARGEST_CORRECTION_MM;
+        let tip = made.tip_mm.filter(|_| wanted.rapid && wanted.tip_mm.is_some());
+        stands
+            || match tip {
+                Some(tip) => (tip[axis] - w_to).abs() <= near_mm,
+                // Uncorrected: what the block moves ends as written or goes as far as written.
+                None => by_as_much || (w_to - to).abs() <= near_mm,
+            }
+    })
+}

@@ -1,0 +1,371 @@
+//! Item by item through both programs; where they part, on from where they meet again.
+
+use machine_model::PathModel;
+
+use crate::alignment::{Alignment, Begins, Processes, Reached};
+use crate::difference::{self, Found};
+use crate::items::{Counted, Feeding, Item, Items, Process, Role, ends_alike};
+use crate::stretch::{Place, Stretch};
+use crate::{Comparison, Mismatch, Pecks, Step, Trace, Traces, What};
+
+/// So many differences are kept; a program that is off in one place may be off in thousands.
+const MOST_MISMATCHES: usize = 20;
+/// So many items ahead are looked at for where programs meet again.
+const AHEAD: usize = 24;
+/// Behind so many differences that is no longer worth much.
+const AHEAD_IS_FAR: usize = 200;
+/// A piece that is off by no more, mm, was made for that motion all the same.
+const NEARLY_MM: f64 = 1.0;
+/// By so much the time of a motion may differ under G93, whose F is rounded.
+const SAME_TIME: f64 = 0.02;
+/// What of a motion's time is nothing.
+const NO_TIME: f64 = 1e-3;
+
+pub(crate) struct Matcher<'m, W, C> {
+    alignment: Alignment<'m, W>,
+    commanded: Items<'m, C>,
+    traces: Traces,
+    /// How the next run begins.
+    begins: Begins,
+    time: Time,
+    /// Where the programs parted first without a name for it.
+    unnamed: Option<Mismatch>,
+    result: Comparison,
+}
+
+/// Minutes under G93, counted from the start of the first feed ahead.
+#[derive(Clone, Copy, Debug, Default)]
+struct Time {
+    made: f64,
+    /// Up to where it was compared.
+    compared: f64,
+}
+
+impl Time {
+    /// The first motion was under way.
+    const UNKNOWN: Self = Self { made: f64::NAN, compared: f64::NAN };
+}
+
+impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
+    pub(crate) fn new(
+        model: &'m dyn PathModel,
+        wanted: W,
+        commanded: C,
+        pecks: Pecks,
+        traces: Traces,
+    ) -> Self {
+        let counted = Counted::default();
+        let wanted = Items::new(model, wanted, Role::Wanted, pecks, counted.clone());
+        Self {
+            alignment: Alignment::new(wanted),
+            commanded: Items::new(model, commanded, Role::Commanded, pecks, counted),
+            traces,
+            begins: Begins::AtStart,
+            time: Time::default(),
+            unnamed: None,
+            result: Comparison::default(),
+        }
+    }
+
+    pub(crate) fn compare(mut self) -> Comparison {
+        loop {
+            let wanted = self.alignment.wanted.peek(0);
+            let pair = match (wanted, self.commanded.peek(0)) {
+                (None, None) => break,
+                (Some(Item::Feed(_)), Some(Item::Feed(first))) => {
+                    let at = first.start();
+                    let begins = std::mem::replace(&mut self.begins, Begins::AtStart);
+                    self.follow(&at, begins);
+                    continue;
+                }
+                (Some(Item::Position(w)), Some(Item::Position(c))) if ends_alike(w, c) => {
+                    [(w.line, w.process), (c.line, c.process)]
+                }
+                (Some(Item::Deed(w)), Some(Item::Deed(c))) if w.number == c.number => {
+                    [(w.line, w.process), (c.line, c.process)]
+                }
+                // What moves nothing may be left out, or put in.
+                (Some(Item::Feed(w)), _) if w.reach_mm <= w.limit_mm => {
+                    self.drop_wanted();
+                    continue;
+                }
+                (_, Some(Item::Feed(c))) if c.reach_mm <= c.limit_mm => {
+                    self.commanded.pop();
+                    continue;
+                }
+                (Some(Item::Position(w)), _) if w.is_small() => {
+                    self.drop_wanted();
+                    continue;
+                }
+                (_, Some(Item::Position(c))) if c.is_small() => {
+                    self.commanded.pop();
+                    continue;
+                }
+                _ => {
+                    self.part(0);
+                    continue;
+                }
+            };
+            self.compare_processes(pair);
+            self.drop_wanted();
+            self.begins = match self.commanded.pop() {
+                Some(Item::Position(_)) => Begins::Positioned,
+                _ => Begins::AtStart,
+            };
+        }
+        if self.result.mismatches.is_empty() {
+            self.result.mismatches.extend(self.unnamed.take());
+        }
+        self.result.wanted = self.alignment.wanted.feeds;
+        self.result.commanded = self.commanded.feeds;
+        self.result.limit_mm = self.alignment.wanted.limit_mm;
+        self.result
+    }
+
+    /// A run of feeds, until one of the programs does something else; the real path begins at a place.
+    fn follow(&mut self, at: &Place, begins: Begins) {
+        if let Some(distance_mm) = self.alignment.begin(at, begins) {
+            self.note(0, distance_mm);
+        }
+        self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
+        loop {
+            let frontier = self.alignment.frontier();
+            match self.commanded.feed(0).map(|feed| feed.process) {
+                // Both may go on over positioning moves of micrometres.
+                Some(process) => {
+                    let mut ahead = frontier;
+                    while self.alignment.wanted.smooth(ahead, process) {
+                        ahead += 1;
+                    }
+                }
+                None if self.alignment.is_complete() || self.ends_in_the_air() => break,
+                None => {
+                    let ahead = self.alignment.wanted.feed(frontier).map(|feed| feed.process);
+                    if !ahead.is_some_and(|process| self.commanded.smooth(0, process)) {
+                        break;
+                    }
+                }
+            }
+            if !self.piece() {
+                self.part(frontier);
+                return;
+            }
+            self.commanded.pop();
+            for _ in 0..self.alignment.passed() {
+                self.drop_wanted();
+            }
+        }
+        if self.alignment.is_complete() || self.ends_in_the_air() {
+            while self.alignment.wanted.feed(0).is_some() {
+                self.drop_wanted();
+            }
+        } else {
+            let frontier = self.alignment.frontier();
+            self.part(frontier);
+        }
+    }
+
+    /// The next feed of the corrected program, if it lies on the programmed path.
+    fn piece(&mut self) -> bool {
+        let Some(piece) = self.commanded.feed(0) else { return false };
+        let Feeding { line, process, minutes, .. } = *piece;
+        let stretches = std::mem::take(&mut piece.stretches);
+        let reached = self.stretches(&stretches, line, process);
+        let moved_mm = (stretches[stretches.len() - 1].at(1.0) - stretches[0].at(0.0)).norm();
+        if let Some(piece) = self.commanded.feed(0) {
+            piece.stretches = stretches;
+        }
+        match reached {
+            Reached::Nowhere => return false,
+            // It has brought the tool to the start of the run.
+            Reached::OnTheWay => self.result.approaches += 1,
+            Reached::At(ahead, _) => {
+                if let Some(minutes) = minutes {
+                    self.compare_time(minutes, moved_mm, ahead, line);
+                }
+            }
+        }
+        true
+    }
+
+    fn stretches(&mut self, stretches: &[Stretch], line: u64, process: Process) -> Reached {
+        let mut last = Reached::Nowhere;
+        for stretch in stretches {
+            last = self.alignment.advance(stretch, &process, Processes::Alike);
+            if last == Reached::Nowhere {
+                last = self.alignment.advance(stretch, &process, Processes::Whichever);
+                while let (true, Some((wanted_line, wanted))) =
+                    (last != Reached::Nowhere, self.alignment.differing(&process))
+                {
+                    self.compare_processes([(wanted_line, wanted), (line, process)]);
+                }
+            }
+            match last {
+                Reached::Nowhere => return last,
+                Reached::OnTheWay => {}
+                Reached::At(ahead, distance_mm) => self.note(ahead, distance_mm),
+            }
+        }
+        last
+    }
+
+    /// A distance from the feed so many ahead.
+    fn note(&mut self, ahead: usize, distance_mm: f64) {
+        if let Some(feed) = self.alignment.wanted.feed(ahead) {
+            // What is known of the programmed motion until it is dropped.
+            feed.made_off_mm = feed.made_off_mm.max(distance_mm);
+        }
+    }
+
+    /// Under G93 a motion is known by what it takes.
+    fn compare_time(&mut self, minutes: f64, moved_mm: f64, ahead: usize, line: u64) {
+        let Some((from, to)) = self.wanted_time() else { return };
+        let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
+        let (limit_mm, wanted_line, whole) = (feed.limit_mm, feed.line, feed.minutes.unwrap_or(0.0));
+        if self.time.made.is_nan() {
+            self.time = Time { made: to, compared: to };
+        }
+        // What takes up play takes no time that is worth comparing.
+        if moved_mm > limit_mm {
+            self.time.made += minutes;
+        }
+        let since = (self.time.made - self.time.compared).abs().max(to - self.time.compared);
+        let room = SAME_TIME * since + NO_TIME * whole;
+        if self.time.made < from - room || self.time.made > to + room {
+            let wanted = (0.5 * (from + to) - self.time.compared).max(1e-12);
+            let times = (self.time.made - self.time.compared) / wanted;
+            self.mismatch(What::Time(times), wanted_line, line);
+        }
+        self.time.made = self.time.made.clamp(from, to);
+        self.time.compared = self.time.made;
+    }
+
+    /// The minutes at the first and the last place that are reached.
+    fn wanted_time(&mut self) -> Option<(f64, f64)> {
+        let (mut so_far, mut from, mut to, mut k) = (0.0, None, 0.0, 0);
+        while let Some(feed) = self.alignment.wanted.feed(k).filter(|feed| feed.left.asked) {
+            let minutes = feed.minutes.unwrap_or(0.0);
+            for (stretch, span) in feed.left.reached() {
+                let time = |s: f64| so_far + minutes * (stretch as f64 + s) / feed.stretches.len() as f64;
+                from.get_or_insert(time(span.low));
+                to = time(span.high);
+            }
+            so_far += minutes;
+            k += 1;
+        }
+        Some((from?, to))
+    }
+
+    /// What is left of the run lies in the air above a hole.
+    fn ends_in_the_air(&mut self) -> bool {
+        let frontier = self.alignment.frontier();
+        let Some(last) = self.alignment.wanted.feed(frontier).filter(|feed| feed.airy[1]) else {
+            return false;
+        };
+        last.left_mm().is_some_and(|left_mm| left_mm <= NEARLY_MM)
+            && self.alignment.wanted.feed(frontier + 1).is_none()
+    }
+
+    /// The next programmed item is done with.
+    fn drop_wanted(&mut self) {
+        if let Some(item) = self.alignment.wanted.pop() {
+            self.record(item);
+        }
+    }
+
+    /// What is to be remembered of a programmed item.
+    fn record(&mut self, item: Item) {
+        let Item::Feed(feed) = item else { return };
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, .. } = *feed;
+        self.result.before.note(before_mm, line);
+        self.result.after.note(after_mm, line);
+        if let (Traces::Kept, Some(way)) = (self.traces, way) {
+            self.result.traces.push(Trace { line, way, before_mm, after_mm });
+        }
+        let minutes = minutes.unwrap_or(0.0);
+        (self.time.made, self.time.compared) = (self.time.made - minutes, self.time.compared - minutes);
+    }
+
+    fn compare_processes(&mut self, [(wanted_line, wanted), (line, made)]: [(u64, Process); 2]) {
+        if self.alignment.are_alike(&wanted, &made) {
+            return;
+        }
+        if wanted.number != made.number {
+            self.mismatch(What::Process([wanted.number, made.number]), wanted_line, line);
+        }
+        if wanted.feed != made.feed {
+            self.mismatch(What::Feed([wanted.feed, made.feed]), wanted_line, line);
+        }
+        self.alignment.excuse(wanted, made);
+    }
+
+    fn mismatch(&mut self, what: What, wanted_line: u64, commanded_line: u64) {
+        if self.result.mismatches.len() < MOST_MISMATCHES {
+            self.result.mismatches.push(Mismatch { what, wanted_line, commanded_line });
+        } else {
+            self.result.more_mismatches += 1;
+        }
+    }
+
+    /// The programs part: names what lies before the next items that fit each other, and goes on from there.
+    ///
+    /// * `done` – so many programmed items ahead are made
+    fn part(&mut self, done: usize) {
+        let so_far = self.result.mismatches.len() + self.result.more_mismatches;
+        let most = if so_far > AHEAD_IS_FAR { 2 } else { AHEAD };
+        let [skipped, added] = self.meeting(done, most);
+        for _ in 0..done {
+            self.drop_wanted();
+        }
+        let wanted: Vec<Item> = (0..skipped).filter_map(|_| self.alignment.wanted.pop()).collect();
+        let made: Vec<Item> = (0..added).filter_map(|_| self.commanded.pop()).collect();
+        let line = |next: Option<&mut Item>, items: &[Item]| {
+            next.map(|item| item.line()).or_else(|| items.last().map(Item::line)).unwrap_or_default()
+        };
+        let lines = [line(self.alignment.wanted.peek(0), &wanted), line(self.commanded.peek(0), &made)];
+        let next = self.alignment.wanted.feed(0);
+        let found = difference::names(&wanted, &made, next.as_deref(), NEARLY_MM);
+        let nothing = found.is_empty();
+        for Found { what, wanted: w, made: m } in found {
+            let wanted_line = w.map_or(lines[0], |k| wanted[k].line());
+            let commanded_line = m.map_or(lines[1], |k| made[k].line());
+            if let What::TooFar(mm) = what {
+                self.result.after.note(mm, wanted_line);
+            }
+            self.mismatch(what, wanted_line, commanded_line);
+        }
+        if nothing && self.unnamed.is_none() {
+            // Whatever it is called, the programs part here; mostly what comes next has a name.
+            let what = if made.is_empty() { What::Missing } else { What::Extra };
+            let line = |items: &[Item], next| items.first().map_or(next, Item::line);
+            let (wanted_line, commanded_line) = (line(&wanted, lines[0]), line(&made, lines[1]));
+            self.unnamed = Some(Mismatch { what, wanted_line, commanded_line });
+        }
+        wanted.into_iter().for_each(|item| self.record(item));
+        self.begins = Begins::Anywhere;
+    }
+
+    /// How many programmed items behind those done, and how many corrected ones, lie before two that fit each other.
+    fn meeting(&mut self, done: usize, most: usize) -> [usize; 2] {
+        for sum in 1..=2 * most {
+            // Of as many, feeds before anything else, then as many on either side.
+            let meets = |skipped: usize| {
+                let pair = (self.alignment.wanted.peek(done + skipped), self.commanded.peek(sum - skipped));
+                let rank = match pair {
+                    (None, None) => 2,
+                    (Some(wanted), Some(made)) if difference::fits(wanted, made, skipped == 0) => {
+                        u8::from(!matches!(made, Item::Feed(_)))
+                    }
+                    _ => return None,
+                };
+                Some((rank, (2 * skipped).abs_diff(sum), skipped))
+            };
+            let best = (sum.saturating_sub(most)..=sum.min(most)).filter_map(meets).min();
+            if let Some((_, _, skipped)) = best {
+                return [skipped, sum - skipped];
+            }
+        }
+        let left = [self.alignment.wanted.peek(done).is_some(), self.commanded.peek(0).is_some()];
+        left.map(usize::from)
+    }
+}

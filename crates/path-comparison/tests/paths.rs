@@ -1,0 +1,136 @@
+//! Random paths on a straight machine: cut anywhere they are the same path, damaged anywhere they are not.
+
+use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector};
+use path_comparison::{Act, Comparison, Pecks, Step, Traces, compare};
+use proptest::prelude::*;
+use toolpath::{Arc, Feed, FeedRate, Motion, Plane, Position, Shape};
+
+const LIMIT_MM: f64 = 0.002;
+
+fn straight() -> RigidBody {
+    RigidBody::new(Description {
+        chain: Chain::parse("[w X Y b Z t]").expect("a chain"),
+        linear: [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 })),
+        rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
+        squareness: Squareness::default(),
+    })
+    .expect("a machine")
+}
+
+fn at(linear_mm: [f64; 3]) -> Position {
+    Position { linear_mm, rotary_deg: [0.0; 3] }
+}
+
+fn feed(start: [f64; 3], end: [f64; 3], shape: Shape) -> Feed {
+    Feed { start: at(start), end: at(end), shape, rate: FeedRate::PerMinute, may_split: true }
+}
+
+fn step(feed: Feed, line: usize) -> Step {
+    let act = Act::Motion { motion: Motion::Feed(feed), tool_mm: [0.0; 3], feed: Some(100.0), dwell: None };
+    Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM }
+}
+
+fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {
+    let steps =
+        |feeds: &[Feed]| -> Vec<Step> { feeds.iter().enumerate().map(|(k, f)| step(*f, k + 1)).collect() };
+    let pecks = Pecks { clearance_mm: 0.25, retreat_mm: 0.5 };
+    compare(&straight(), steps(wanted).into_iter(), steps(made).into_iter(), pecks, Traces::Kept)
+}
+
+/// Lines through places; every third of them an arc of a quarter turn in XY.
+fn path(places: &[[f64; 3]]) -> Vec<Feed> {
+    let pairs = places.windows(2).enumerate();
+    pairs
+        .map(|(k, pair)| {
+            let [from, to] = [pair[0], pair[1]];
+            let arc = k % 3 == 2 && (from[0], from[1]) != (to[0], to[1]);
+            // The centre of a quarter turn lies half the chord beside its middle.
+            let centre_mm =
+                [0.5 * (from[0] + to[0] - (to[1] - from[1])), 0.5 * (from[1] + to[1] + (to[0] - from[0]))];
+            let sweep_rad = std::f64::consts::FRAC_PI_2;
+            let shape =
+                if arc { Shape::Arc(Arc { plane: Plane::Xy, centre_mm, sweep_rad }) } else { Shape::Line };
+            feed(from, to, shape)
+        })
+        .collect()
+}
+
+/// The same path in pieces.
+fn cut(feeds: &[Feed], pieces: u32) -> Vec<Feed> {
+    let mut all = Vec::new();
+    for whole in feeds {
+        let way = path_comparison::Way::of(whole);
+        let mut from = whole.start.linear_mm;
+        for k in 1..=pieces {
+            let to: [f64; 3] = way.at(f64::from(k) / f64::from(pieces)).into();
+            let shape = match whole.shape {
+                Shape::Line => Shape::Line,
+                Shape::Arc(arc) => Shape::Arc(Arc { sweep_rad: arc.sweep_rad / f64::from(pieces), ..arc }),
+            };
+            all.push(feed(from, to, shape));
+            from = to;
+        }
+    }
+    all
+}
+
+fn places() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    let coordinate = (-2000i32..2000).prop_map(|steps| f64::from(steps) * 0.05);
+    prop::collection::vec(prop::array::uniform3(coordinate), 4..12)
+}
+
+proptest! {
+    #[test]
+    fn a_path_in_pieces_is_the_same_path(places in places(), pieces in 1u32..5) {
+        let whole = path(&places);
+        let found = compared(&whole, &cut(&whole, pieces));
+        prop_assert_eq!(&found.mismatches, &Vec::new());
+        prop_assert!(found.after.largest_mm < 5e-7, "{}", found.after.largest_mm);
+        prop_assert_eq!((found.wanted, found.traces.len()), (whole.len(), whole.len()));
+    }
+
+    /// Micrometres, which lie nearer than the limit, at one place: each need not be made, their order need not be kept.
+    #[test]
+    fn a_thousand_motions_of_a_micrometre_are_one_place(steps in prop::collection::vec((-5i32..5, -5i32..5), 20..200)) {
+        let near: Vec<[f64; 3]> = steps.iter().map(|(x, y)| [f64::from(*x) * 1e-4, f64::from(*y) * 1e-4, 0.0]).collect();
+        let lines: Vec<Feed> = near.windows(2).map(|pair| feed(pair[0], pair[1], Shape::Line)).collect();
+        let stays: Vec<Feed> = lines.iter().map(|_| feed(near[0], near[0], Shape::Line)).collect();
+        prop_assert_eq!(compared(&lines, &stays).mismatches, Vec::new());
+    }
+
+    #[test]
+    fn a_place_beside_the_path_is_found(places in places(), which in 0usize..12, pieces in 2u32..5, by in 2.0f64..100.0) {
+        let whole = path(&places);
+        let mut made = cut(&whole, pieces);
+        // Inside a motion, square to it.
+        let k = (which % whole.len()) * pieces as usize;
+        let (from, to) = (Vector::from(made[k].start.linear_mm), Vector::from(made[k].end.linear_mm));
+        prop_assume!((to - from).norm() > 0.5);
+        let aside = (to - from).cross(&Vector::new(0.3, 0.5, 0.8)).normalize() * (by * LIMIT_MM);
+        let moved: [f64; 3] = (to + aside).into();
+        (made[k].end, made[k + 1].start) = (at(moved), at(moved));
+        let found = compared(&whole, &made);
+        prop_assert!(!found.mismatches.is_empty());
+        prop_assert!(found.after.largest_mm > LIMIT_MM, "{}", found.after.largest_mm);
+    }
+
+    #[test]
+    fn a_place_left_out_exchanged_or_visited_twice_is_found(places in places(), which in 0usize..12) {
+        let lines = |places: &[[f64; 3]]| -> Vec<Feed> {
+            places.windows(2).map(|pair| feed(pair[0], pair[1], Shape::Line)).collect()
+        };
+        let k = 1 + which % (places.len() - 2);
+        let [before, here, behind] = [k - 1, k, k + 1].map(|k| Vector::from(places[k]));
+        let corner = (here - before).cross(&(behind - here)).norm();
+        prop_assume!(corner > 1.0);
+        let mut gone = places.clone();
+        gone.remove(k);
+        let mut exchanged = places.clone();
+        exchanged.swap(k - 1, k);
+        let mut twice = places.clone();
+        twice.splice(k..=k, [places[k], places[k - 1], places[k]]);
+        for damaged in [gone, exchanged, twice] {
+            prop_assert!(!compared(&lines(&places), &lines(&damaged)).mismatches.is_empty(), "{:?}", damaged);
+        }
+    }
+}

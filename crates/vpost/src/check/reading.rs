@@ -1,0 +1,228 @@
+//! A program as the steps that the comparison asks for, block by block.
+
+use std::collections::HashMap;
+
+use diagnostic::Diagnostic;
+use nc_expand::Expanded;
+use nc_program::process::{BlockSays, Deed, Process, Said, said};
+use nc_program::{Context, Interpreter};
+use nc_syntax::dialect::Action;
+use nc_syntax::{Block, Reader};
+use path_comparison::{Act, Step};
+use smallvec::SmallVec;
+use toolpath::{Feed, FeedRate, Motion, Position, Shape};
+
+use crate::settings::Settings;
+
+/// What becomes of blocks under `/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Optional {
+    Executed,
+    Skipped,
+}
+
+/// The processes and deeds of two programs by number: what is alike has one number.
+#[derive(Debug, Default)]
+pub(super) struct Numbers {
+    processes: Vec<Process>,
+    process_numbers: HashMap<Process, u32>,
+    deeds: Vec<Deed>,
+    deed_numbers: HashMap<Deed, u32>,
+}
+
+impl Numbers {
+    fn of_process(&mut self, process: &Process) -> u32 {
+        number(process, &mut self.processes, &mut self.process_numbers)
+    }
+
+    fn of_deed(&mut self, deed: &Deed) -> u32 {
+        number(deed, &mut self.deeds, &mut self.deed_numbers)
+    }
+
+    /// What was numbered.
+    pub(super) fn process(&self, number: u32) -> Option<&Process> {
+        self.processes.get(number as usize)
+    }
+
+    /// What was numbered.
+    pub(super) fn deed(&self, number: u32) -> String {
+        self.deeds.get(number as usize).map(Deed::to_string).unwrap_or_default()
+    }
+}
+
+fn number<T: Clone + Eq + std::hash::Hash>(
+    value: &T,
+    all: &mut Vec<T>,
+    numbers: &mut HashMap<T, u32>,
+) -> u32 {
+    if let Some(number) = numbers.get(value) {
+        return *number;
+    }
+    let number = all.len() as u32;
+    all.push(value.clone());
+    numbers.insert(value.clone(), number);
+    number
+}
+
+/// A program under way.
+pub(super) struct Program<'a, 'n> {
+    settings: &'a Settings,
+    expanded: &'a Expanded<'a>,
+    optional: Optional,
+    reader: Reader<'a>,
+    block: Block<'a>,
+    interpreter: Interpreter<'a>,
+    numbers: &'n std::cell::RefCell<Numbers>,
+    process: Process,
+    /// The number of the process, while it is what it was.
+    process_number: Option<u32>,
+    feed: Option<f64>,
+    ready: SmallVec<[Step; 4]>,
+    ended: bool,
+    /// Why it cannot be read on.
+    pub(super) refused: Option<Vec<Diagnostic>>,
+    /// A block may be skipped.
+    pub(super) may_skip: bool,
+}
+
+impl<'a, 'n> Program<'a, 'n> {
+    pub(super) fn new(
+        expanded: &'a Expanded<'a>,
+        settings: &'a Settings,
+        optional: Optional,
+        numbers: &'n std::cell::RefCell<Numbers>,
+    ) -> Self {
+        Self {
+            settings,
+            expanded,
+            optional,
+            reader: Reader::new(expanded.text(), &settings.dialect),
+            block: Block::default(),
+            interpreter: Interpreter::new(&settings.dialect, &settings.setup),
+            numbers,
+            process: Process::at_start(&settings.dialect),
+            process_number: None,
+            feed: None,
+            ready: SmallVec::new(),
+            ended: false,
+            refused: None,
+            may_skip: false,
+        }
+    }
+
+    /// The next block's steps; false behind the last one.
+    fn block(&mut self) -> bool {
+        let mut block = std::mem::take(&mut self.block);
+        let read = !self.ended && self.reader.next(&mut block);
+        if read {
+            let before = self.interpreter.modal().axes;
+            match self.interpreter.step(&block) {
+                Err(diagnostics) => (self.refused, self.ended) = (Some(diagnostics), true),
+                Ok(mut step) => {
+                    let aside = block.switches() != 0;
+                    self.may_skip |= aside;
+                    // A turn of rotary axes alone at feed rate is a feed as any other.
+                    for motion in &mut step.motions {
+                        if let Some(turn) = self.turned_at_feed(motion, &before, &step.context) {
+                            *motion = turn;
+                        }
+                    }
+                    let says = said(&block, &self.settings.dialect, &step);
+                    if !aside || self.optional == Optional::Executed {
+                        self.take(&block, says, &step.motions, &step.context);
+                    }
+                    self.ended |= step.ends_program && (!aside || self.optional == Optional::Executed);
+                }
+            }
+        }
+        self.block = block;
+        read && self.refused.is_none()
+    }
+
+    fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
+        let line = self.expanded.source_line(block.line).1;
+        let limit_mm = self.settings.options.tolerance_mm + rounding_mm(self.settings, context);
+        says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
+        for motion in motions {
+            let (process, dwell) = match motion {
+                Motion::Hole(hole) => {
+                    let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
+                    let dwell = hole.cycle.dwell.map(|time| Deed::dwell(&self.settings.dialect, time));
+                    let mut numbers = self.numbers.borrow_mut();
+                    (numbers.of_process(&process), dwell.map(|dwell| numbers.of_deed(&dwell)))
+                }
+                _ => (self.number(), None),
+            };
+            let feed = if matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. })) {
+                None
+            } else {
+                self.feed
+            };
+            let act = Act::Motion { motion: *motion, tool_mm: context.tool_mm, feed, dwell };
+            self.ready.push(Step { act, line, process, limit_mm });
+        }
+        says.behind.into_iter().for_each(|said| self.say(said, line, limit_mm));
+    }
+
+    fn say(&mut self, said: Said, line: u64, limit_mm: f64) {
+        match said {
+            Said::Feed(feed) => self.feed = Some(feed),
+            Said::Setting(setting) => {
+                self.process.set(setting);
+                self.process_number = None;
+            }
+            Said::Deed(deed) => {
+                let process = self.number();
+                let act = Act::Deed(self.numbers.borrow_mut().of_deed(&deed));
+                self.ready.push(Step { act, line, process, limit_mm });
+            }
+        }
+    }
+
+    /// The number of the process in force.
+    fn number(&mut self) -> u32 {
+        *self.process_number.get_or_insert_with(|| self.numbers.borrow_mut().of_process(&self.process))
+    }
+
+    fn turned_at_feed(
+        &self,
+        motion: &Motion,
+        before: &nc_program::modal::Axes,
+        context: &Context,
+    ) -> Option<Motion> {
+        let Motion::Uncorrected { end } = motion else { return None };
+        let code = self.settings.dialect.code(context.motion_code?)?;
+        let start = before.partial().complete()?;
+        let end = end.complete()?;
+        let feeds = code.action == Action::Line
+            && start.linear_mm == end.linear_mm
+            && start.rotary_deg != end.rotary_deg;
+        let feed = |start: Position, end: Position| {
+            let rate = FeedRate::PerMinute;
+            Motion::Feed(Feed { start, end, shape: Shape::Line, rate, may_split: false })
+        };
+        feeds.then(|| feed(start, end))
+    }
+}
+
+impl Iterator for Program<'_, '_> {
+    type Item = Step;
+
+    fn next(&mut self) -> Option<Step> {
+        while self.ready.is_empty() {
+            if !self.block() {
+                return None;
+            }
+            self.ready.reverse();
+        }
+        self.ready.pop()
+    }
+}
+
+/// What rounding adds to the tolerance: half an output step on each axis, as a distance.
+fn rounding_mm(settings: &Settings, context: &Context) -> f64 {
+    let inch = context.unit_mm != 1.0;
+    let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
+    let half = decimals.map(|d| 0.5 * context.unit_mm / f64::from(10u32.pow(u32::from(d))));
+    context.frame.largest_scale().max(1.0) * half.iter().map(|h| h * h).sum::<f64>().sqrt()
+}

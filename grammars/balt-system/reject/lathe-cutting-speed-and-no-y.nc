@@ -1,0 +1,6 @@
+;expect VP0240: G96 and never a Y
+G17 G71 G90
+G96 S180 M3
+G0 X31 Z2
+G1 X25 F0.25
+M30

@@ -1,0 +1,9 @@
+%
+O0001
+(expect VP0240: G92 with X, Z and F)
+G17 G21 G40 G49 G54 G80 G90
+G0 X62. Z2.
+G92 X58. Z-30. F1.5
+X57.5
+M30
+%

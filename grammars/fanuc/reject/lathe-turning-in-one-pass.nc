@@ -1,0 +1,9 @@
+%
+O0001
+(expect VP0240: G90 with X, Z and F)
+G17 G21 G40 G49 G54 G80 G90
+G0 X62. Z2.
+G90 X58. Z-30. F0.25
+X54.
+M30
+%

@@ -1,0 +1,9 @@
+%
+O0001
+(expect VP0241: Z50000 is 50 mm or 50000 mm, a parameter decides)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50000 F200.
+X20.
+M30
+%

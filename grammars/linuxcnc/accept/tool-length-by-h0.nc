@@ -1,0 +1,11 @@
+%
+(H0 is the tool in the spindle)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+T1 M6
+G43 H0
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+X90. Y70.
+M2
+%

@@ -1,0 +1,11 @@
+%CORPUS
+(expect VP0215: may end the tool length too)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G43 H1 Z60.
+G1 Z50. F200.
+G41 D1 X20. Y20.
+X40.
+G40 X50.
+M30
+%

@@ -1,0 +1,8 @@
+%CORPUS
+(expect VP0208: taps for its own block)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G63 Z45.
+M30
+%

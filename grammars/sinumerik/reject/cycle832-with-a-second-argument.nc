@@ -1,0 +1,7 @@
+%_N_PAexpect VP0224: the second argument may switch TRAORIT_MPF
+;R
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+CYCLE832(0.01,112001)
+G1 Z50 F200
+M30

@@ -1,0 +1,109 @@
+//! Arcs whose radii differ at start and end: judged as the control does, and written so that it takes them.
+
+mod common;
+
+use common::{messages, root, run};
+
+const CROOKED: &str = "tests/profiles/corpus.toml";
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    }
+}
+
+/// A profile beside the tables of the crooked one, with more in it.
+fn profile(place: &Place, change: impl Fn(String) -> String) -> String {
+    for table in ["wavy_x.csv", "wavy_y.csv", "wavy_z.csv"] {
+        let text = std::fs::read_to_string(root().join("tests/profiles").join(table)).expect("readable");
+        place.write(table, &text);
+    }
+    let text = std::fs::read_to_string(root().join(CROOKED)).expect("readable");
+    place.write("machine.toml", &change(text))
+}
+
+/// Words of two decimals, as many CAM systems write them; their ends are 0.010, 0.020 and 0.015 mm off their circle.
+const TWO_DECIMALS: &str = "G21 G17 G90 G54\nG0 X30 Y20 Z60\nG1 Z50 F200\nG3 X21.35 Y35.01 I-8.66 J5\nG1 X30 Y20\nG3 X21.34 Y35.02 I-8.66 J5\nG1 X30 Y20\nG3 X21.34 Y35.015 I-8.66 J5\nG1 X40\nM2\n";
+
+#[test]
+fn one_warning_names_the_largest() {
+    let place = Place::new();
+    let program = place.write("part.ngc", TWO_DECIMALS);
+    let out = place.write("out.ngc", "");
+    let ran = run(&[&program, "-m", CROOKED, "-d", "linuxcnc", "-o", &out]);
+    let said = messages(&ran);
+    assert!(ran.status.success(), "{said}");
+    assert_eq!(said.matches("VP0515").count(), 1, "{said}");
+    assert!(said.contains("3 arc(s) end off their circle, the largest by 0.020 mm"), "{said}");
+    assert!(said.contains("part.ngc:6:"), "{said}");
+    let check = run(&["check", &program, &out, "-m", CROOKED, "-d", "linuxcnc"]);
+    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+}
+
+#[test]
+fn the_profile_may_say_what_its_control_takes() {
+    let place = Place::new();
+    let program = place.write("part.ngc", TWO_DECIMALS);
+    let with = |rules: &str| {
+        let profile = profile(&place, |text| format!("{text}\n[program]\n{rules}\n"));
+        run(&[&program, "-m", &profile, "-d", "perspektiva"])
+    };
+    let ran = run(&[&program, "-m", CROOKED, "-d", "perspektiva"]);
+    assert!(messages(&ran).contains("VP0205"), "{}", messages(&ran));
+    let ran = with("arc_tolerance_mm = 0.025");
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let ran = with("arc_tolerance_mm = -1");
+    assert!(
+        ran.status.code() == Some(2) && messages(&ran).contains("arc_tolerance_mm is -1"),
+        "{}",
+        messages(&ran)
+    );
+}
+
+/// An output step of 0.01 mm makes radii differ by more than some controls take: such an arc becomes lines.
+#[test]
+fn arcs_written_in_hundredths_satisfy_their_dialect() {
+    let place = Place::new();
+    let profile = profile(&place, |text| {
+        text.replace("_mm = [-2000, 2000]", "_mm = [-2000, 2000]\nresolution_mm = 0.01")
+    });
+    let mut program = "G21 G17 G90 G54\nG0 X30. Y20. Z60.\nG1 Z50. F200.\n".to_owned();
+    for k in 1..20 {
+        let radius = 5.0 + 1.7 * f64::from(k);
+        program += &format!("G1 X{radius:.3} Y0.\nG3 X0. Y{radius:.3} I-{radius:.3} J0.\n");
+    }
+    let program = place.write("part.nc", &(program + "M30\n"));
+    for dialect in ["perspektiva", "fanuc", "sinumerik"] {
+        let program = if dialect == "sinumerik" {
+            let text = std::fs::read_to_string(&program).expect("readable").replace("G21", "G71");
+            place.write("part.mpf", &text)
+        } else {
+            program.clone()
+        };
+        let out = place.write("out.nc", "");
+        let tolerance = ["--tolerance", "30"];
+        let ran = run(&[&[&program, "-m", &profile, "-d", dialect, "-o", &out][..], &tolerance].concat());
+        assert!(ran.status.success(), "{dialect}: {}", messages(&ran));
+        assert!(std::fs::read_to_string(&out).expect("readable").contains("G3"), "{dialect}: no arc is left");
+        // What vpost writes it reads itself, and so does the control.
+        let again = run(&[
+            &out,
+            "-m",
+            "machine-profiles/perfect.toml",
+            "-d",
+            dialect,
+            "--force",
+            "--work-offset",
+            "G54=100,80,40",
+        ]);
+        assert!(again.status.success(), "{dialect}: {}", messages(&again));
+    }
+}

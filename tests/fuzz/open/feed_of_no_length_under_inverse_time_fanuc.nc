@@ -1,0 +1,14 @@
+%
+O0001
+((F of G93 is divided when the line is)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G93  Y10. F2.
+G9G1 X200. Y200. F2.
+X10. Y10. F2.
+G94 F200.
+X20.
+M30
+%
+
