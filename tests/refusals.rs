@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
 use common::{messages, root, run, vpost};
@@ -276,13 +276,16 @@ fn an_interrupt_leaves_nothing_behind() {
     let out = trial.folder.path().join("out.nc");
     let out_text = out.to_str().expect("plain").to_owned();
     for (signal, status) in [("INT", 130), ("TERM", 143)] {
-        let child = vpost()
-            .args([input.as_str(), "-m", PROFILE[1], "-o", &out_text])
+        let mut child = vpost()
+            .args([input.as_str(), "-m", PROFILE[1], "-o", &out_text, "--progress", "linuxcnc"])
             .stderr(Stdio::piped())
             .spawn()
             .expect("starts");
-        // Signals are caught once the program is read; until then they end the command by themselves.
-        std::thread::sleep(std::time::Duration::from_millis(400));
+        // The work says that it has begun: no machine is too fast or too slow for this.
+        let mut first = String::new();
+        let mut said = BufReader::new(child.stderr.as_mut().expect("piped"));
+        said.read_line(&mut first).expect("readable");
+        assert!(first.starts_with("FILTER_PROGRESS="), "{first}");
         let sent =
             std::process::Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
         assert!(sent.is_ok_and(|sent| sent.success()), "the work was done before the signal came");
