@@ -14,7 +14,8 @@ const MOST_APPROACH_MM: f64 = 1.0;
 /// So many limits of its beginning a run may leave out, where it begins a little on.
 const LEFT_OUT_LIMITS: f64 = 4.0;
 
-/// So many feeds the programmed path may be ahead: motions of micrometres at one place by thousands all lie near it.
+/// So many feeds that lead anywhere the programmed path may be ahead: motions of micrometres at one place by thousands
+/// all lie near it.
 const BAND: usize = 128;
 
 /// What of the programmed run may be left out where a run begins.
@@ -146,7 +147,7 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
         // Of the stretch: where the programmed path may stand at the start of the next piece of it.
         let mut bottom = self.approach.as_ref().and_then(|a| on.free(&a.start, a.limit_mm));
         let on_the_way = self.approach.as_ref().is_some_and(|a| (end - a.start).norm() <= a.within_mm);
-        let (mut touched, mut next) = (0, SmallVec::<[Left; 4]>::new());
+        let (mut touched, mut band, mut next) = (0, 0, SmallVec::<[Left; 4]>::new());
         let mut reached: Option<(usize, f64)> = None;
         // What ended in the air a little before its end goes on wherever the next begins.
         let mut leaps = false;
@@ -154,7 +155,7 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
             let excused = &self.excused;
             let Some(feed) = self.wanted.feed(touched) else { break };
             leaps &= feed.airy[0];
-            if (bottom.is_none() && !leaps && !feed.left.asked) || touched == BAND {
+            if (bottom.is_none() && !leaps && !feed.left.asked) || band == BAND {
                 break;
             }
             let goes = processes == Processes::Whichever || alike(excused, &feed.process, process);
@@ -190,6 +191,7 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
                 };
             }
             touched += 1;
+            band += usize::from(feed.reach_mm > 0.0);
         }
         if reached.is_none() && !on_the_way {
             return Reached::Nowhere;

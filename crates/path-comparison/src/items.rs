@@ -83,7 +83,7 @@ pub(crate) struct Feeding {
     pub(crate) left: Left,
     pub(crate) line: u64,
     pub(crate) process: Process,
-    /// What it takes, under G93.
+    /// What it takes, under G93, where it leads farther than the limit.
     pub(crate) minutes: Option<f64>,
     pub(crate) limit_mm: f64,
     /// How far it leads from where it starts at most, mm: less than its length for a circle.
@@ -109,6 +109,13 @@ impl Feeding {
 
     pub(crate) fn length_mm(&self) -> f64 {
         self.stretches.iter().map(Stretch::length_mm).sum()
+    }
+
+    /// So short that rounding decides whether it leads anywhere.
+    pub(crate) fn is_short(&self) -> bool {
+        /// Rounding at either end, and the limit.
+        const LIMITS: f64 = 3.0;
+        self.reach_mm <= LIMITS * self.limit_mm
     }
 
     /// Its end is reached.
@@ -423,7 +430,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             left: Left::default(),
             line: common.line,
             process: common.process,
-            minutes: if let FeedRate::InverseTime(f) = rate { Some(1.0 / f) } else { None },
+            minutes: match rate {
+                // What leads nowhere may be left out, and its F with it.
+                FeedRate::InverseTime(f) if reach_mm > common.limit_mm => Some(1.0 / f),
+                _ => None,
+            },
             limit_mm: common.limit_mm,
             reach_mm,
             airy,
@@ -594,14 +605,13 @@ fn where_gone(way: &Way, from: f64, to: f64, axis: usize, mm: f64) -> f64 {
 pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     /// Nothing is cut there, and what lies in its play may be a little aside.
     const LIMITS: f64 = 4.0;
-    /// No machine's correction is larger.
-    const LARGEST_CORRECTION_MM: f64 = 1.0;
+    /// Where an axis was left by its last correction the machine was off by no more, mm; or by twice what it is off here.
+    const LEFT_MM: f64 = 1.0;
     if wanted.rapid != made.rapid || wanted.end.rotary_deg != made.end.rotary_deg {
         return false;
     }
-    let of_cycle = wanted.of_cycle || made.of_cycle;
     // A control does not correct the moves of a cycle: they are off by the machine's errors, there and where it began.
-    let near_mm = LIMITS * wanted.limit_mm + if of_cycle { 2.0 * made.error_mm } else { 0.0 };
+    let near_mm = LIMITS * wanted.limit_mm + if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
@@ -611,7 +621,7 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
         // An axis that stands is where its last correction left it.
         let stands = by_as_much
             && w_from.is_some_and(|w_from| (w_to - w_from).abs() <= near_mm)
-            && (w_to - to).abs() <= LARGEST_CORRECTION_MM;
+            && (w_to - to).abs() <= LEFT_MM.max(2.0 * made.error_mm);
         let tip = made.tip_mm.filter(|_| wanted.rapid && wanted.tip_mm.is_some());
         stands
             || match tip {

@@ -79,10 +79,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                     continue;
                 }
                 (Some(Item::Position(w)), Some(Item::Position(c))) if ends_alike(w, c) => {
-                    [(w.line, w.process), (c.line, c.process)]
+                    // Nothing is done to the part by what moves nothing, in whatever process.
+                    let moves = !w.is_small() && !c.is_small();
+                    moves.then_some([(w.line, w.process), (c.line, c.process)])
                 }
                 (Some(Item::Deed(w)), Some(Item::Deed(c))) if w.number == c.number => {
-                    [(w.line, w.process), (c.line, c.process)]
+                    Some([(w.line, w.process), (c.line, c.process)])
                 }
                 // What moves nothing may be left out, or put in.
                 (Some(Item::Feed(w)), _) if w.reach_mm <= w.limit_mm => {
@@ -106,7 +108,9 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                     continue;
                 }
             };
-            self.compare_processes(pair);
+            if let Some(pair) = pair {
+                self.compare_processes(pair);
+            }
             self.drop_wanted();
             self.begins = match self.commanded.pop() {
                 Some(Item::Position(_)) => Begins::Positioned,
@@ -128,6 +132,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             self.note(0, distance_mm);
         }
         self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
+        let mut stands = false;
         loop {
             let frontier = self.alignment.frontier();
             match self.commanded.feed(0).map(|feed| feed.process) {
@@ -146,10 +151,14 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                     }
                 }
             }
-            if !self.piece() {
+            // Where a piece of no length has stood, the next reaches what it did, and what has come ahead since.
+            let moves = self.commanded.feed(0).is_some_and(|piece| piece.reach_mm > 0.0);
+            let all_asked = self.alignment.wanted.feed(frontier).is_none_or(|feed| feed.left.asked);
+            if (moves || !stands || !all_asked) && !self.piece() {
                 self.part(frontier);
                 return;
             }
+            stands = !moves;
             self.commanded.pop();
             for _ in 0..self.alignment.passed() {
                 self.drop_wanted();
@@ -168,10 +177,10 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     /// The next feed of the corrected program, if it lies on the programmed path.
     fn piece(&mut self) -> bool {
         let Some(piece) = self.commanded.feed(0) else { return false };
+        let short = piece.is_short();
         let Feeding { line, process, minutes, .. } = *piece;
         let stretches = std::mem::take(&mut piece.stretches);
         let reached = self.stretches(&stretches, line, process);
-        let moved_mm = (stretches[stretches.len() - 1].at(1.0) - stretches[0].at(0.0)).norm();
         if let Some(piece) = self.commanded.feed(0) {
             piece.stretches = stretches;
         }
@@ -181,7 +190,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             Reached::OnTheWay => self.result.approaches += 1,
             Reached::At(ahead, _) => {
                 if let Some(minutes) = minutes {
-                    self.compare_time(minutes, moved_mm, ahead, line);
+                    self.compare_time(minutes, short, ahead, line);
                 }
             }
         }
@@ -218,19 +227,17 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     }
 
     /// Under G93 a motion is known by what it takes.
-    fn compare_time(&mut self, minutes: f64, moved_mm: f64, ahead: usize, line: u64) {
+    fn compare_time(&mut self, minutes: f64, short: bool, ahead: usize, line: u64) {
         let Some((from, to)) = self.wanted_time() else { return };
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
-        let (limit_mm, wanted_line, whole) = (feed.limit_mm, feed.line, feed.minutes.unwrap_or(0.0));
+        let (wanted_line, whole, short) = (feed.line, feed.minutes.unwrap_or(0.0), short || feed.is_short());
         if self.time.made.is_nan() {
             self.time = Time { made: to, compared: to };
         }
-        // What takes up play takes no time that is worth comparing.
-        if moved_mm > limit_mm {
-            self.time.made += minutes;
-        }
+        self.time.made += minutes;
         let since = (self.time.made - self.time.compared).abs().max(to - self.time.compared);
-        let room = SAME_TIME * since + NO_TIME * whole;
+        // Of two motions about as long as the limit only one may count.
+        let room = SAME_TIME * since + NO_TIME * whole + if short { minutes.max(whole) } else { 0.0 };
         if self.time.made < from - room || self.time.made > to + room {
             let wanted = (0.5 * (from + to) - self.time.compared).max(1e-12);
             let times = (self.time.made - self.time.compared) / wanted;
