@@ -102,11 +102,11 @@ impl<'m> Corrector<'m> {
             wanted = self.start_within_reach(machine, start, block)?;
         }
         let [Some(x), Some(y), Some(z)] = self.standing else {
-            self.approach_to(machine, wanted, start, block, length_mm, corrected);
+            self.approach_to(machine, wanted, start, block, length_mm, corrected)?;
             return Ok(());
         };
         if !self.model.depends_on_direction() {
-            self.approach_to(machine, wanted, start, block, length_mm, corrected);
+            self.approach_to(machine, wanted, start, block, length_mm, corrected)?;
             return Ok(());
         }
         let from = Vector::new(x, y, z);
@@ -132,7 +132,7 @@ impl<'m> Corrector<'m> {
             for place in places {
                 let stood = self.standing_or(&start);
                 let play = self.play;
-                if self.approach_to(machine, place, start, block, length_mm, corrected) {
+                if self.approach_to(machine, place, start, block, length_mm, corrected)? {
                     self.tips_on_the_way(machine, play, stood, start, &mut tips);
                 }
             }
@@ -289,6 +289,10 @@ impl<'m> Corrector<'m> {
     }
 
     /// A line to a corrected start, where the axes do not stand there; true where one was written.
+    ///
+    /// # Errors
+    /// [`CorrectionError::Unnamed`] where it would be the first line of a block that gives an axis of its own another frame:
+    /// no word says where that axis begins.
     fn approach_to(
         &mut self,
         machine: &Machine<'_>,
@@ -297,7 +301,7 @@ impl<'m> Corrector<'m> {
         block: &Block,
         length_mm: f64,
         corrected: &mut Corrected,
-    ) -> bool {
+    ) -> Result<bool, CorrectionError> {
         // Axes that must not have a word stay, whatever a turn would ask of them.
         self.leave(&mut wanted, block, block.named);
         let standing = self.standing_program(block);
@@ -306,20 +310,25 @@ impl<'m> Corrector<'m> {
         // Standing within rounding of the corrected start is standing there; the last block chose so.
         let away = (0..3).any(|i| standing[i].is_none_or(|v| (v - to[i]).abs() > 0.51 * block.step_mm(i)));
         if !away {
-            return false;
+            return Ok(false);
         }
         let before = self.standing;
         let axes = self.go(block, &start, &wanted, &Wording::of(block.named));
-        let way_mm =
+        let ways =
             (0..3).map(|i| before[i].zip(self.standing[i]).map_or(0.0, |(from, to)| (to - from).powi(2)));
-        let share = if length_mm > 0.0 { way_mm.sum::<f64>().sqrt() / length_mm } else { 1.0 };
+        let way_mm = ways.sum::<f64>().sqrt();
+        let share = if length_mm > 0.0 { way_mm / length_mm } else { 1.0 };
         self.gone(&machine.state);
         let written = axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing;
         if written {
+            let reframed = (0..3).find(|i| block.reframed[*i] && block.has_axis(*i));
+            if let Some(axis) = reframed.filter(|_| corrected.pieces.is_empty()) {
+                return Err(CorrectionError::Unnamed { axis, distance_um: way_mm * 1e3 });
+            }
             corrected.pieces.push(Piece { kind: PieceKind::Line, axes, share: share.max(LEAST_SHARE) });
             corrected.correction.approach = true;
         }
-        written
+        Ok(written)
     }
 
     /// Where the tool is on a line to where the axes stand: equation (27).

@@ -62,6 +62,9 @@ pub struct Block {
     /// Axes that the program has named in the frame in force before this block: a word for one of them moves it by the
     /// correction and nothing else. None is ever added for another axis.
     pub named: [bool; 3],
+    /// Axes to which a code of the block itself gives another frame, so that controls may differ in when they move: the
+    /// block's own words for them stand in the first line that is written for it.
+    pub reframed: [bool; 3],
     /// From the gauge point to the tool tip, mm.
     pub tool_mm: [f64; 3],
     /// The dialect writes arcs by centre words; else by R.

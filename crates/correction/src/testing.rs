@@ -42,6 +42,7 @@ pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
         letters: Default::default(),
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         tool_mm,
         centre_words: true,
         arc_radius_tolerance_mm: 0.01,

@@ -47,6 +47,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         letters,
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         tool_mm: [0.0; 3],
         centre_words: true,
         arc_radius_tolerance_mm: 0.02,

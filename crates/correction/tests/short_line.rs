@@ -73,6 +73,7 @@ fn block() -> Block {
         letters: Letters::axes([true; 3]),
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         tool_mm: [1.0, -2.0, -40.0],
         centre_words: true,
         arc_radius_tolerance_mm: 0.02,

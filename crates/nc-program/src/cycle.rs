@@ -7,7 +7,7 @@ use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
 use crate::codes;
 use crate::frames::settle;
 use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, ReturnLevel, Units};
-use crate::motion::{Motions, rate};
+use crate::motion::{Motions, own_feed, rate};
 use crate::position::{end, increment_base, require_frame, require_known};
 use crate::settings::Environment;
 use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
@@ -103,6 +103,7 @@ pub(crate) fn holes(
             )
             .help("program G94 before it"));
     }
+    own_feed(words, state)?;
     settle(words, state)?;
     let frame = require_frame(env, words, state)?.clone();
     let [first, second, normal] = state.plane.axes();

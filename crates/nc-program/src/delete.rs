@@ -55,6 +55,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         tool_length: executed.stated.tool_length && skipped.stated.tool_length,
         units: executed.stated.units && skipped.stated.units,
     };
+    both.feed_is_inverse_time = executed.feed_is_inverse_time || skipped.feed_is_inverse_time;
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
     both.progress = Progress::Running;

@@ -17,7 +17,7 @@ use crate::naming;
 use crate::plain::Plain;
 use crate::settings::{self, Environment};
 use crate::setup::{AfterChange, Setup};
-use crate::words::{Outcome, Words};
+use crate::words::{Letters, Outcome, Words};
 
 /// What a block means.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +95,7 @@ impl<'d> Interpreter<'d> {
             distance: Distance::Absolute,
             units: Units::Millimetre,
             feed_mode: FeedMode::PerMinute,
+            feed_is_inverse_time: false,
             arc_centres: ArcCentres::Incremental,
             compensation: Compensation::Off,
             return_level: ReturnLevel::Initial,
@@ -217,6 +218,8 @@ fn run<'d>(
     }
     state.progress = Progress::Running;
     let demand = settings::apply(env, words, before, state)?;
+    state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
+        || (state.feed_is_inverse_time && !words.has(Letters::of(b"F")));
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;

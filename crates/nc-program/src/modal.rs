@@ -368,6 +368,8 @@ pub struct Modal {
     pub units: Units,
     /// G93 G94 G95.
     pub feed_mode: FeedMode,
+    /// The last F was one of G93.
+    pub feed_is_inverse_time: bool,
     /// G90.1 G91.1.
     pub arc_centres: ArcCentres,
     /// G40 G41 G42.

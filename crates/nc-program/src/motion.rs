@@ -246,10 +246,11 @@ pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
 
 /// F of a feed motion: under G93 it must stand in the block itself.
 pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<FeedRate> {
+    const F: Letters = Letters::of(b"F");
     if state.feed_mode != FeedMode::InverseTime {
+        own_feed(words, state)?;
         return Ok(rate(state, 0.0));
     }
-    const F: Letters = Letters::of(b"F");
     match words.plain(b'F') {
         Some(value) if value > 0.0 => Ok(rate(state, value)),
         Some(_) => Err(words
@@ -264,6 +265,21 @@ pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<Fee
             )
             .help("G93 needs F on each feed block; or program G94")),
     }
+}
+
+/// Behind G93 a feed needs an F: what the last one is in another unit, controls answer with a stop or in silence.
+pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
+    if !state.feed_is_inverse_time {
+        return Ok(());
+    }
+    Err(words
+        .refuse(
+            codes::INVERSE_TIME,
+            "a feed behind G93 without F",
+            words.span(AXIS_LETTERS),
+            "the last F was an inverse time",
+        )
+        .help("write F in this block, or beside the code that ends G93"))
 }
 
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.

@@ -67,6 +67,7 @@ impl Plain {
             && modal.compensation == Compensation::Off
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
+            && !modal.feed_is_inverse_time
             && modal.named == [Naming::Named; 3]
             && modal.frame.as_ref().is_some_and(Frame::is_shift)
             && known(&modal.axes.linear);

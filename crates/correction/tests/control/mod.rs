@@ -25,6 +25,7 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
         letters: letters(text),
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         tool_mm: [0.0; 3],
         centre_words: true,
         arc_radius_tolerance_mm: 0.02,

@@ -185,10 +185,12 @@ pub(crate) fn refusal(
                     whole,
                     format!("{name} is not named{since}; a word for it would rest on a guess of where its zero is"),
                 )
-                .help(format!(
-                    "before this block say once where the tool is to be, as in `G90 G0 {}`",
-                    words.join(" ")
-                ))
+                .help(if context.unnamed[*axis].is_some_and(|lost| lost.line == block.line) {
+                    format!("write what changes {name} in a block of its own, and behind it a rapid that names {name}")
+                } else {
+                    let words = words.join(" ");
+                    format!("before this block say once where the tool is to be, as in `G90 G0 {words}`")
+                })
         }
         CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.to_string())
             .at(whole, "each word moves several axes here, so that none of them can be held where it stands")

@@ -171,7 +171,8 @@ impl Pass<'_> {
         letters: Letters,
         motions: &[Motion],
     ) -> Result<(), Vec<Diagnostic>> {
-        let info = self.info(context, letters);
+        let mut info = self.info(context, letters);
+        info.reframed = context.unnamed.map(|lost| lost.is_some_and(|lost| lost.line == block.line));
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
         let before = (motions.len() > 1).then(|| self.state.corrector.clone());
         let mut pieces = Pieces::new();
@@ -436,6 +437,7 @@ pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         letters,
         whole: context.whole,
         named: context.unnamed.map(|lost| lost.is_none()),
+        reframed: [false; 3],
         tool_mm: context.tool_mm,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
