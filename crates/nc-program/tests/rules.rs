@@ -250,9 +250,13 @@ fn inverse_time_needs_f_on_each_feed() {
     assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG93 G1 X1 F0\n"), (218, 2));
     assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG93 G2 I1\n"), (218, 2));
     assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG93 G81 X1 Z-1 R1 F1\n"), (218, 2));
-    let rapid = motions("linuxcnc", "G93 G0 X0 Y0 Z0\nG1 X1 F2.5\nG95 X2\n");
+    let rapid = motions("linuxcnc", "G93 G0 X0 Y0 Z0\nG1 X1 F2.5\nG95 X2 F0.1\nX3\n");
     assert_eq!(feed(&rapid[1]).rate, FeedRate::InverseTime(2.5));
     assert_eq!(feed(&rapid[2]).rate, FeedRate::PerRevolution);
+    assert_eq!(feed(&rapid[3]).rate, FeedRate::PerRevolution);
+    // What an inverse time is in another unit nobody says.
+    assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG93 G1 X1 F2\nG94\nG0 X5\nG1 X2\n"), (218, 5));
+    assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG93 G1 X1 F2\nG94 G81 X1 Z-1 R1\n"), (218, 3));
 }
 
 #[test]

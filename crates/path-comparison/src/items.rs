@@ -346,8 +346,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn positioning(&mut self, common: &Common, start: Partial, end: Partial, kind: Kind) {
         let rotary_rad = Vector::from(end.rotary_deg.map(f64::to_radians));
         if let Some(play) = &mut self.play {
-            let known = Vector::from(end.linear_mm.map(|at| at.unwrap_or(0.0)));
-            play.go(self.model, &common.command(known, rotary_rad));
+            // From where the program begins a first move has a direction too.
+            for place in [start, end] {
+                let known = Vector::from(place.linear_mm.map(|at| at.unwrap_or(0.0)));
+                play.go(self.model, &common.command(known, rotary_rad));
+            }
             for axis in 0..3 {
                 let [from, to] = [start.linear_mm[axis], end.linear_mm[axis]];
                 // By whatever way the control takes, and from wherever.
