@@ -115,7 +115,7 @@ def item_2():
         m("g74-left-tap", ["S300 M4", "G74 X30. Y20. Z-10. R3. F300.", "G80"]),
         m("g90-g1-x-z-f", ["G90 G1 X20. Z-5. F100."]),
         m("g94-g1-x-z-f", ["G94 G1 X20. Z-5. F100."]),
-        m("g92-x-y", ["G92 X0. Y0.", "G1 X20. F100."]),
+        m("g92-x-y", ["G92 X0. Y0.", "G0 X0. Y0.", "G1 X20. F100."]),
         m("g90-x-z-under-modal-g1", ["G1 Y20. F100.", "G90 X20. Z-5. F200."]),
         m("g18-arcs", ["G18", "G1 X10. Z10. F100.", "G2 X30. Z10. I10. K0.", "G17"]),
         m("four-digit-tool-of-a-magazine", ["T1001 M6", "G0 X10. Y10.", "G43 H1 Z50.", "G1 X20. F100."]),
