@@ -4,6 +4,7 @@
 //! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40) and (47) to (51) of
 //! `docs/equations.md`.
 
+pub mod adjustment;
 pub mod change;
 mod error;
 pub mod functions;
@@ -18,5 +19,5 @@ pub mod volumetric;
 
 pub use error::CalibrationError;
 pub use least_squares::{Estimate, solve};
-pub use student::quantile_95;
+pub use student::{quantile, quantile_95};
 pub use traverse::{MeanTraverse, Node, Noise, Reading};

@@ -1,6 +1,6 @@
 //! Coverage factors.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Two-sided 95 % quantile of Student's t: the factor from a standard uncertainty with so many degrees of
 /// freedom to the half width of the interval. 1.96 where the standard deviation is known (`None`).
@@ -15,6 +15,18 @@ pub fn quantile_95(degrees_of_freedom: Option<usize>) -> f64 {
     }
 }
 
+/// What the magnitude of a standardised deviation exceeds with this chance: Student's t, or the normal distribution where
+/// the standard deviation is known (`None`). Infinite for zero degrees of freedom.
+#[must_use]
+pub fn quantile(chance: f64, degrees_of_freedom: Option<usize>) -> f64 {
+    let below = 1.0 - 0.5 * chance;
+    match degrees_of_freedom {
+        None => Normal::standard().inverse_cdf(below),
+        Some(0) => f64::INFINITY,
+        Some(n) => StudentsT::new(0.0, 1.0, n as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(below)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -25,5 +37,9 @@ mod tests {
             assert!((quantile_95(Some(n)) - t).abs() < 5e-5, "{n}");
         }
         assert!(quantile_95(Some(0)).is_infinite());
+        assert!((quantile(0.05, Some(9)) - quantile_95(Some(9))).abs() < 1e-12);
+        assert!(
+            (quantile(1e-5, None) - 4.4172).abs() < 1e-3 && (quantile(1e-3, Some(9)) - 4.781).abs() < 1e-3
+        );
     }
 }
