@@ -212,6 +212,12 @@ impl AxisTables {
         }
     }
 
+    /// Where the functions have nodes, rising, mm or rad.
+    #[must_use]
+    pub fn nodes(&self) -> &[f64] {
+        self.grid.nodes()
+    }
+
     /// The interval all functions cover.
     #[must_use]
     pub fn range(&self) -> Range {

@@ -166,8 +166,9 @@ impl RigidBody {
         Prediction { position_mm: turn * inner + shift + error_mm, error_mm }
     }
 
-    /// Tool vector in the directions of the linear axes, ideal head.
-    fn nominal_tool(&self, command: &Command) -> Vector {
+    /// Tool vector in the directions of the linear axes, mm, as an ideal head turns it.
+    #[must_use]
+    pub fn nominal_tool(&self, command: &Command) -> Vector {
         if self.description.chain.head().is_empty() {
             return command.tool_mm;
         }
@@ -203,6 +204,13 @@ impl RigidBody {
             return Matrix3::identity();
         }
         self.table_transform(command, false).0
+    }
+
+    /// From the directions of the linear axes to the workpiece's, as the real table turns them: the rotation of
+    /// `M_1⁻¹ …` in equation (9). The identity without a table.
+    #[must_use]
+    pub fn real_table_turn(&self, command: &Command) -> Matrix3<f64> {
+        self.table_transform(command, true).0
     }
 
     /// Error of the three linear axes and the head, in the directions of the linear axes: equation (8).
