@@ -82,6 +82,22 @@ impl ProfileText {
         self.set(path, Value::Array(array));
     }
 
+    /// Sets lower and upper end, rounded.
+    pub fn set_range(&mut self, path: &[&str], [low, high]: [f64; 2], decimals: i32) {
+        let array: Array = [rounded(low, decimals), rounded(high, decimals)].into_iter().collect();
+        self.set(path, Value::Array(array));
+    }
+
+    /// True where the profile says something there.
+    #[must_use]
+    pub fn says(&self, path: &[&str]) -> bool {
+        let mut item = Some(self.document.as_item());
+        for key in path {
+            item = item.and_then(Item::as_table_like).and_then(|table| table.get(key));
+        }
+        item.is_some()
+    }
+
     /// Sets the line an axis was measured along: where the other axes stood and the tool vector.
     pub fn set_measured_at(&mut self, axis: char, others: &[(char, f64)], tool_mm: [f64; 3]) {
         let mut table = InlineTable::new();
@@ -175,6 +191,10 @@ mod tests {
         assert!(out.starts_with("# a machine\nformat = 1\n"), "{out}");
         assert!(out.contains("errors = \"new/x.csv\" # from May\n"), "{out}");
         assert!(out.contains("EC0Y_urad = -1180.0\nEA0Z_urad = 0.0\n"), "{out}");
+        assert!(profile.says(&["axis", "X", "errors"]) && profile.says(&["name"]));
+        assert!(!profile.says(&["axis", "X", "travel_mm"]) && !profile.says(&["name", "X"]));
+        profile.set_range(&["axis", "X", "travel_mm"], [-1.0004, 2.0], 3);
+        assert!(profile.to_string().contains("travel_mm = [-1.0, 2.0]"), "{profile}");
         assert!(out.contains("[axis.Y]\nerrors = \"new/y.csv\"\n") && !out.contains("[axis]"), "{out}");
     }
 }
