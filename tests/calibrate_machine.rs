@@ -9,7 +9,7 @@ use common::{messages, run, vpost};
 
 const TABLE_MACHINE: &str = "format = 1\nname = \"table machine\"\ncontrol = \"linuxcnc\"\nchain = \"[w C A X Y b Z t]\"\n[axis.X]\ntravel_mm = [0, 600]\n[axis.Y]\ntravel_mm = [0, 500]\n[axis.Z]\ntravel_mm = [-600, 0]\n[rotary.A]\ncentre_mm = [250, 150, -300]\n[rotary.C]\ncentre_mm = [250, 150, -300]\n";
 
-fn text(output: &Output) -> String {
+fn text_of(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text")
 }
 
@@ -55,7 +55,7 @@ fn the_sample_table_is_found_and_written() {
     ];
     let output = calibrate(&arguments, folder.path());
     assert!(output.status.success(), "{}", messages(&output));
-    let report = text(&output);
+    let report = text_of(&output);
     // The sample's truth: EX0C 203.5 µm, cup -40.3 and -76.5 µm; 0.3 µm of noise on 37 readings.
     for (name, truth) in [("EX0C", 203.5), ("eX", -40.3), ("eY", -76.5)] {
         assert!((figure(&report, name) - truth).abs() < 0.5, "{name} in\n{report}");
@@ -70,7 +70,7 @@ fn the_sample_table_is_found_and_written() {
         .expect("written");
     let predicted = run(&["predict", points.to_str().expect("plain"), "-m", made.to_str().expect("plain")]);
     assert!(predicted.status.success(), "{}", messages(&predicted));
-    let predicted = text(&predicted);
+    let predicted = text_of(&predicted);
     let dx = |row: usize| -> f64 {
         let line = predicted.lines().nth(row).expect("a row");
         line.split(',').nth(9).and_then(|v| v.parse().ok()).expect("dx_um")
@@ -86,7 +86,7 @@ fn circles_are_found_and_written() {
         folder.path(),
     );
     assert!(output.status.success(), "{}", messages(&output));
-    let report = text(&output);
+    let report = text_of(&output);
     assert!(figure(&report, "closure").abs() < 4.0, "{report}");
     let profile = std::fs::read_to_string(folder.path().join("made.toml")).expect("written");
     let squareness = figure(&report, "EC0Y");
@@ -111,7 +111,7 @@ fn points_of_a_volume_become_tables_that_unseen_points_confirm() {
         folder.path(),
     );
     assert!(output.status.success(), "{}", messages(&output));
-    let report = text(&output);
+    let report = text_of(&output);
     let unseen = report.lines().find(|line| line.starts_with("unseen")).expect("a hold-out").to_owned();
     let numbers: Vec<f64> = unseen.split_whitespace().filter_map(|w| w.parse().ok()).collect();
     assert!(numbers[0] > 5.0 && numbers[1] < 1.3, "{unseen}");
@@ -126,7 +126,7 @@ fn points_of_a_volume_become_tables_that_unseen_points_confirm() {
     std::fs::write(&points, rows.join("\n") + "\n").expect("written");
     let made = folder.path().join("made.toml");
     let predicted =
-        text(&run(&["predict", points.to_str().expect("plain"), "-m", made.to_str().expect("plain")]));
+        text_of(&run(&["predict", points.to_str().expect("plain"), "-m", made.to_str().expect("plain")]));
     let number = |line: &str, k: usize| -> f64 {
         line.split(',').nth(k).and_then(|v| v.parse().ok()).expect("a number")
     };
@@ -157,7 +157,7 @@ fn one_tool_leaves_angles_open_and_says_so() {
         &["volumetric", file.to_str().expect("plain"), "--chain", "[w X Y b Z t]", "--nodes", "4"],
         folder.path(),
     );
-    let report = text(&output);
+    let report = text_of(&output);
     assert!(
         report.contains("EAZ    open") && report.contains("other tool vectors"),
         "{report}{}",
@@ -194,14 +194,103 @@ fn ball_bars_that_make_no_sense_are_refused() {
         &["--crossing", "0,0,0"],
         &["VP1101", "two rotary"],
     );
+    let one_turns = format!("{head}1,0,0,0,0,-100,0,0,0,100\n1,0,0,0,0,-100,0,5,0,100\n");
+    said(&one_turns, &["--crossing", "0,0,0"], &["VP1106", "carries which", "--chain"]);
+    let chain = ["--chain", "[w C A X Y b Z t]"];
+    said(&one_turns, &chain, &["VP1106", "where is the axis of A", "--crossing"]);
     said(
-        &format!("{head}1,0,0,0,0,-100,0,0,0,100\n1,0,0,0,0,-100,0,5,0,100\n"),
-        &[],
-        &["VP1106", "--crossing"],
+        &one_turns,
+        &["--chain", "[w X Y b Z C A t]", "--crossing", "0,0,0"],
+        &["VP1101", "A turns the tool"],
     );
     // Without the spindle turn the cup offset cannot be told from the table's.
     let all =
         std::fs::read_to_string(common::root().join("samples/calibration/ballbar_ac.csv")).expect("a sample");
     let four: Vec<&str> = all.lines().filter(|line| !line.starts_with("spindle")).collect();
-    said(&(four.join("\n") + "\n"), &["--crossing", "250,150,-300"], &["VP1105", "eX", "EX0C"]);
+    let mut at_the_crossing = chain.to_vec();
+    at_the_crossing.extend(["--crossing", "250,150,-300"]);
+    said(&(four.join("\n") + "\n"), &at_the_crossing, &["VP1105", "eX", "EX0C", "the spindle's turn"]);
+    // One reading a tenth of a millimetre off is pointed at.
+    let spoilt = all.replacen(
+        "A1,250,150,-300,250,50,-300,20,0,0,100.06229",
+        "A1,250,150,-300,250,50,-300,20,0,0,100.16229",
+        1,
+    );
+    assert_ne!(spoilt, all);
+    said(&spoilt, &at_the_crossing, &["VP1107", "bar.csv:4:", "0.09", "longer than all other readings say"]);
+    // Degrees are asked for.
+    let radians: String = all
+        .lines()
+        .map(|line| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(degrees) = fields[7].parse::<f64>() {
+                fields[7] = degrees.to_radians().to_string();
+            }
+            fields.join(",") + "\n"
+        })
+        .collect();
+    said(&radians, &at_the_crossing, &["VP1102", "a_deg goes over 6.2832", "degrees"]);
+    // Another axis turned than the column says.
+    let exchanged = all.replace("a_deg,c_deg", "c_deg,a_deg");
+    said(&exchanged, &at_the_crossing, &["VP1113", "balls would be"]);
+    // The profile knows where its axes are, and where they are not.
+    let base = folder.path().join("base.toml");
+    std::fs::write(&base, TABLE_MACHINE).expect("written");
+    let base = base.to_str().expect("plain");
+    said(&all, &["-m", base, "--crossing", "250,50,-300"], &["VP1101", "100.000 mm beside the axis of C"]);
+    let elsewhere = TABLE_MACHINE.replace("travel_mm = [0, 600]", "travel_mm = [1000, 1600]");
+    let other = folder.path().join("other.toml");
+    std::fs::write(&other, elsewhere).expect("written");
+    said(
+        &all,
+        &["-m", other.to_str().expect("plain")],
+        &["VP1101", "X at 250.000 mm", "profile of this machine"],
+    );
+    let without = TABLE_MACHINE.replace("centre_mm = [250, 150, -300]\n", "");
+    std::fs::write(&other, without).expect("written");
+    said(&all, &["-m", other.to_str().expect("plain")], &["VP1106", "where is the axis of"]);
+}
+
+#[test]
+fn circles_need_no_profile_and_keep_the_one_there_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sample = "samples/calibration/ballbar_circles.csv";
+    let output = calibrate(&["ballbar", sample, "--chain", "[w X Y b Z t]", "-d", "linuxcnc"], folder.path());
+    assert!(output.status.success(), "{}", messages(&output));
+    // A bar sees no common scale: what it cannot write it says.
+    assert!(messages(&output).contains("scale X-Y of 37.6 um/m is not written"), "{}", messages(&output));
+    let made = folder.path().join("made.toml");
+    let first = std::fs::read_to_string(&made).expect("written");
+    let stated = first.split("uncertainty_um = ").nth(1).and_then(|rest| rest.split(',').next());
+    let uncertainty_um: f64 = stated.and_then(|v| v.parse().ok()).expect("a number");
+    // Squareness of ± 1.5 µrad over 200 mm, but for the frame.
+    assert!(uncertainty_um > 0.05 && uncertainty_um < 0.4, "{first}");
+    // The same circles on the machine that they gave: nothing has changed.
+    let again = folder.path().join("base.toml");
+    std::fs::rename(&made, &again).expect("moved");
+    let output = calibrate(&["ballbar", sample, "-m", again.to_str().expect("plain")], folder.path());
+    assert!(output.status.success(), "{}", messages(&output));
+    let second = std::fs::read_to_string(&made).expect("written");
+    for key in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"] {
+        let value = |text: &str| figure(&text.replace('=', " "), key);
+        assert!((value(&first) - value(&second)).abs() < 0.002, "{first}\n{second}");
+    }
+    // Tables of both directions hold the play between them.
+    let (up, down) = ("position_mm,EXX_um\n-200,1\n200,3\n", "position_mm,EXX_um\n-200,5\n200,7\n");
+    std::fs::write(folder.path().join("up.csv"), up).expect("written");
+    std::fs::write(folder.path().join("down.csv"), down).expect("written");
+    let axis_x = first.find("[axis.X]").expect("an axis");
+    let two = first[axis_x..].lines().find(|line| line.starts_with("backlash_um")).expect("play of X");
+    let text = first.replacen(two, "errors = \"up.csv\"\nerrors_negative = \"down.csv\"", 1);
+    std::fs::write(&again, text).expect("written");
+    let output = calibrate(&["ballbar", sample, "-m", again.to_str().expect("plain")], folder.path());
+    assert!(output.status.success(), "{}", messages(&output));
+    let report = text_of(&output);
+    let table = |name: &str| std::fs::read_to_string(folder.path().join("made").join(name)).expect("a table");
+    let first_of = |text: &str| -> f64 {
+        text.lines().nth(1).and_then(|l| l.split(',').nth(1)).and_then(|v| v.parse().ok()).expect("EXX")
+    };
+    let (up, down) = (first_of(&table("x.csv")), first_of(&table("x_negative.csv")));
+    assert!((down - up - figure(&report, "backlash X")).abs() < 0.01, "{report} {up} {down}");
+    assert!((down + up - 6.0).abs() < 1e-3, "the mean of both stays: {up} {down}");
 }

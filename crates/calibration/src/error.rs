@@ -20,6 +20,17 @@ pub enum CalibrationError {
     /// Fewer data than unknowns.
     #[error("{0}")]
     TooFew(String),
+    /// One reading that does not belong to the others.
+    #[error("{message}")]
+    Outlier {
+        /// Index of the point.
+        point: usize,
+        /// Which component, where, and how far off.
+        message: String,
+    },
+    /// The data contradict one another, or every machine of this kind.
+    #[error("{0}")]
+    Contradicted(String),
     /// The data leave some unknowns, or combinations of them, open.
     #[error("the measurements cannot tell {0}")]
     Unobservable(String),

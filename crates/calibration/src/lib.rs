@@ -5,13 +5,16 @@
 //! `docs/equations.md`.
 
 pub mod adjustment;
+mod ballbar;
 pub mod change;
 mod error;
+mod field;
 pub mod functions;
 pub mod iso230_2;
 mod least_squares;
 pub mod linear_ballbar;
 pub mod rotary_ballbar;
+pub mod rotary_sequence;
 mod student;
 pub mod tracker;
 mod traverse;

@@ -1,31 +1,41 @@
 //! Squareness, scale mismatch and backlash from ball-bar circles of two linear axes: equation (50).
+//!
+//! The length that is read is the distance of two balls: the moving one stands where the base's whole model puts it, its squareness and
+//! its play changed; where the fixed one stands in the plane of the circle, and how much longer the bar is than it
+//! says, is the set-up of each run. Nothing is linearised: the fixed ball may be millimetres off.
 
-use machine_model::Vector;
+use std::cell::RefCell;
+
+use machine_model::{Command, Engine, PathModel, Vector, WithEffects};
 use nalgebra::{DMatrix, DVector};
 
+use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
+use crate::ballbar::{
+    RESOLVED_MM, changed, each_changed, field_u95_mm, grid_mm, no_outlier, open_error, too_few,
+};
 use crate::error::{CalibrationError, LETTERS};
-use crate::least_squares::{Estimate, solve};
+use crate::student::quantile;
 
 /// One reading on a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CircleReading {
     /// Run: readings of one run share the set-up of the fixed ball.
     pub run: usize,
-    /// Commanded position of the moving ball, mm.
-    pub commanded_mm: Vector,
-    /// Centre of the fixed ball as set up, mm.
+    /// What was commanded, with the direction in which each axis moved; 0 where unknown or standing.
+    pub command: Command,
+    /// Centre of the fixed ball as set up, machine coordinates, mm.
     pub centre_mm: Vector,
     /// Length read, mm.
     pub length_mm: f64,
-    /// Direction in which each axis moves: -1, +1, 0 where unknown or standing.
-    pub direction: [i8; 3],
 }
 
-/// A value with its standard uncertainty and its parameter in the estimate.
+/// A value with its standard uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
     /// mm or rad (or mm/mm).
     pub value: f64,
+    /// What the base has of it; 0 where the base cannot hold it.
+    pub base: f64,
     /// Standard uncertainty.
     pub uncertainty: f64,
     /// Half width of the 95 % interval.
@@ -35,24 +45,42 @@ pub struct Term {
 /// What circles say.
 #[derive(Clone, Debug)]
 pub struct CircleCalibration {
-    /// EC0Y (plane XY), EB0Z (ZX), EA0Z (YZ), ISO 230-1 signs, rad, where that plane was measured.
+    /// EC0Y (plane XY), EB0Z (ZX), EA0Z (YZ), ISO 230-1 signs, rad, where that plane was measured: the base's and its change.
     pub squareness_rad: [Option<Term>; 3],
-    /// Scale of the first minus scale of the second axis of the plane, in the same order of planes (X-Y, Z-X, Y-Z).
+    /// Scale of the first minus scale of the second axis of the plane, beyond what the base has, in the same order of
+    /// planes (X-Y, Z-X, Y-Z).
     pub mismatch: [Option<Term>; 3],
-    /// How much further each axis stands after coming from above than from below, mm, where directions are given.
+    /// Sum of the three mismatches, which is zero on every machine, where all three planes were measured.
+    pub closure: Option<Term>,
+    /// How much further each axis stands after coming from above than from below, mm, where directions are given: the base's at
+    /// the centre of the circles and its change.
     pub backlash_mm: [Option<Term>; 3],
-    /// The least squares behind them.
+    /// What the deviation keeps at 95 % of the places of the base's volume, by what was fitted, mm.
+    pub uncertainty_mm: f64,
+    /// The adjustment behind them.
     pub estimate: Estimate,
 }
 
 /// First and second axis of the planes XY, ZX, YZ.
 const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 0], [1, 2]];
 
+/// Squareness of the planes.
+const SQUARENESS: [&str; 3] = ["EC0Y", "EB0Z", "EA0Z"];
+
+/// A closure or a play this unlikely is no accident.
+const CONTRADICTION_CHANCE: f64 = 1e-6;
+
+/// [`RESOLVED_MM`] over an arm of 100 mm.
+const RESOLVED_RATIO: f64 = 1e-6;
+
+/// Half the widths of the central differences: rad or mm/mm, and mm.
+const STEPS: [f64; 2] = [1e-5, 1e-2];
+
 /// Plane of a run: the two axes that move.
 fn plane(readings: &[CircleReading], run: usize) -> Result<usize, CalibrationError> {
     let own = || readings.iter().filter(|r| r.run == run);
     let span = |i: usize| {
-        let values = || own().map(|r| r.commanded_mm[i]);
+        let values = || own().map(|r| r.command.linear_mm[i]);
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
     };
     let moving: Vec<usize> = (0..3).filter(|&i| span(i) > 1e-3).collect();
@@ -65,101 +93,222 @@ fn plane(readings: &[CircleReading], run: usize) -> Result<usize, CalibrationErr
     })
 }
 
-/// Fits all runs together.
-///
-/// Unknown per run: where the fixed ball really is in the plane, and the bar's length. So scales are known only against one
-/// another: what both axes have in common looks like another length of the bar.
-///
-/// # Errors
-/// [`CalibrationError`] for runs that are no circles in a plane, and for what the readings leave open.
-pub fn calibrate(readings: &[CircleReading]) -> Result<CircleCalibration, CalibrationError> {
-    let runs = readings.iter().map(|r| r.run + 1).max().unwrap_or(0);
-    let planes: Vec<usize> = (0..runs).map(|run| plane(readings, run)).collect::<Result<_, _>>()?;
-    // Parameters: squareness and mismatch of the planes there are, backlash of the axes with directions, then 3 a run.
-    let mut names: Vec<String> = Vec::new();
-    let mut at = [[None; 3]; 3];
-    for plane in 0..3 {
-        if planes.contains(&plane) {
-            let [u, v] = PLANES[plane].map(|i| LETTERS[i]);
-            at[0][plane] = Some(names.len());
-            names.push(["EC0Y", "EB0Z", "EA0Z"][plane].to_owned());
-            at[1][plane] = Some(names.len());
-            names.push(format!("scale {u}-{v}"));
-        }
-    }
-    for axis in 0..3 {
-        let both = |sign: i8| readings.iter().any(|r| r.direction[axis] == sign);
-        if both(1) && both(-1) {
-            at[2][axis] = Some(names.len());
-            names.push(format!("backlash {}", LETTERS[axis]));
-        }
-    }
-    let shared = names.len();
-    for _ in 0..runs {
-        names.extend(["centre", "centre", "length"].map(str::to_owned));
-    }
-    if readings.len() <= names.len() {
-        return Err(CalibrationError::TooFew(format!(
-            "{} readings for {} unknowns",
-            readings.len(),
-            names.len()
-        )));
-    }
-    let mut design = DMatrix::zeros(readings.len(), names.len());
-    let mut right = DVector::zeros(readings.len());
-    for (row, r) in readings.iter().enumerate() {
-        let arm = r.commanded_mm - r.centre_mm;
-        let length = arm.norm();
-        let unit = arm / length;
-        let own = planes[r.run];
-        let [u, v] = PLANES[own];
-        right[row] = r.length_mm - length;
-        // XY: dx = -EC0Y·y; ZX: dx = EB0Z·z; YZ: dy = -EA0Z·z.
-        let shear = match own {
-            0 => -unit.x * arm.y,
-            1 => unit.x * arm.z,
-            _ => -unit.y * arm.z,
+/// Where each parameter stands.
+struct Layout {
+    /// By plane.
+    squareness: [Option<usize>; 3],
+    /// By plane.
+    mismatch: [Option<usize>; 3],
+    /// By axis.
+    play: [Option<usize>; 3],
+    /// First of the three of run 0: fixed ball along the two axes of the plane, length of the bar.
+    setup: usize,
+    names: Vec<String>,
+}
+
+impl Layout {
+    fn new(readings: &[CircleReading], planes: &[usize]) -> Self {
+        let mut names: Vec<String> = Vec::new();
+        let mut place = |name: String| {
+            names.push(name);
+            names.len() - 1
         };
-        if let Some(k) = at[0][own] {
-            design[(row, k)] = shear;
-        }
-        if let Some(k) = at[1][own] {
-            design[(row, k)] = 0.5 * (unit[u] * arm[u] - unit[v] * arm[v]);
+        let (mut squareness, mut mismatch, mut play) = ([None; 3], [None; 3], [None; 3]);
+        for plane in (0..3).filter(|plane| planes.contains(plane)) {
+            let [u, v] = PLANES[plane].map(|i| LETTERS[i]);
+            squareness[plane] = Some(place(SQUARENESS[plane].to_owned()));
+            mismatch[plane] = Some(place(format!("scale {u}-{v}")));
         }
         for axis in 0..3 {
-            if let Some(k) = at[2][axis] {
-                design[(row, k)] = -0.5 * f64::from(r.direction[axis]) * unit[axis];
+            let both = |sign: i8| readings.iter().any(|r| r.command.direction[axis] == sign);
+            if both(1) && both(-1) {
+                play[axis] = Some(place(format!("backlash {}", LETTERS[axis])));
             }
         }
-        let base = shared + 3 * r.run;
-        design[(row, base)] = -unit[u];
-        design[(row, base + 1)] = -unit[v];
-        design[(row, base + 2)] = 1.0;
+        let setup = names.len();
+        for _ in planes {
+            names.extend(
+                ["the fixed ball's place", "the fixed ball's place", "the bar's length"].map(str::to_owned),
+            );
+        }
+        Self { squareness, mismatch, play, setup, names }
     }
-    let estimate = solve(&design, &right, None).map_err(|open| {
-        let text: Vec<String> = open
-            .iter()
-            .map(|c| {
-                (0..names.len())
-                    .filter(|&k| c[k].abs() > 0.05)
-                    .map(|k| names[k].clone())
-                    .collect::<Vec<_>>()
-                    .join(" from ")
-            })
-            .collect();
-        CalibrationError::Unobservable(text.join("; "))
-    })?;
-    let term = |k: Option<usize>| {
-        k.map(|k| Term {
-            value: estimate.values[k],
-            uncertainty: estimate.standard_uncertainty(k),
-            half_width_95: estimate.half_width_95(k),
+
+    fn steps(&self) -> Vec<f64> {
+        let angles = self.setup - self.play.iter().flatten().count();
+        (0..self.names.len()).map(|k| if k < angles { STEPS[0] } else { STEPS[1] }).collect()
+    }
+
+    /// The machine with the parameters' squareness and play.
+    fn machine(&self, base: &WithEffects, x: &DVector<f64>) -> WithEffects {
+        let of = |k: Option<usize>| k.map_or(0.0, |k| x[k]);
+        changed(base, |description| {
+            description.squareness.ec0y_rad += of(self.squareness[0]);
+            description.squareness.eb0z_rad += of(self.squareness[1]);
+            description.squareness.ea0z_rad += of(self.squareness[2]);
+            for (axis, data) in description.linear.iter_mut().enumerate() {
+                data.backlash_mm += of(self.play[axis]);
+            }
         })
+    }
+}
+
+/// Fits all runs together; `machines` are the one base, under the conditions of each run.
+///
+/// Unknown per run: where the fixed ball really is in the plane, and the bar's length. So scales are known only against one
+/// another: what both axes have in common looks like another length of the bar. Across the plane nothing shows where the
+/// fixed ball stands: it is taken to stand where the base's errors would have put it.
+///
+/// # Errors
+/// [`CalibrationError`] for runs that are no circles in a plane, for what the readings leave open, and for readings that
+/// contradict one another: one far from all others, scales that do not add up, play that is negative everywhere.
+///
+/// # Panics
+/// Where a reading's run has no machine.
+pub fn calibrate(
+    readings: &[CircleReading],
+    machines: &[WithEffects],
+) -> Result<CircleCalibration, CalibrationError> {
+    let planes: Vec<usize> = (0..machines.len()).map(|run| plane(readings, run)).collect::<Result<_, _>>()?;
+    let layout = Layout::new(readings, &planes);
+    too_few(readings.len(), layout.names.len())?;
+    // Where the base's errors move the circle as a whole, its fixed ball has moved with it.
+    let carried: Vec<Vector> = machines
+        .iter()
+        .enumerate()
+        .map(|(run, machine)| {
+            let own = || readings.iter().filter(|r| r.run == run);
+            own().map(|r| machine.error_mm(&r.command)).sum::<Vector>() / own().count() as f64
+        })
+        .collect();
+    // Two thirds of the parameters are set-up, which the machine does not know: its errors are kept.
+    let kept: RefCell<Option<(DVector<f64>, Vec<Vector>)>> = RefCell::new(None);
+    let forward = |x: &DVector<f64>| {
+        let own = x.rows(0, layout.setup).into_owned();
+        let mut kept = kept.borrow_mut();
+        let errors = match kept.take() {
+            Some((known, errors)) if known == own => errors,
+            _ => {
+                let machines = each_changed(machines, |base| layout.machine(base, x));
+                readings.iter().map(|r| machines[r.run].error_mm(&r.command)).collect()
+            }
+        };
+        let lengths = DVector::from_iterator(
+            readings.len(),
+            readings.iter().zip(&errors).map(|(r, error_mm)| {
+                let plane = planes[r.run];
+                let [u, v] = PLANES[plane];
+                let nominal = r.command.linear_mm + machines[r.run].base().nominal_tool(&r.command);
+                let mut arm = nominal - r.centre_mm;
+                let half = 0.5 * layout.mismatch[plane].map_or(0.0, |k| x[k]);
+                let stretched = [half * arm[u], -half * arm[v]];
+                arm += error_mm - carried[r.run];
+                let own = layout.setup + 3 * r.run;
+                arm[u] += stretched[0] - x[own];
+                arm[v] += stretched[1] - x[own + 1];
+                arm.norm() + x[own + 2]
+            }),
+        );
+        *kept = Some((own, errors));
+        lengths
     };
-    Ok(CircleCalibration {
-        squareness_rad: at[0].map(term),
-        mismatch: at[1].map(term),
-        backlash_mm: at[2].map(term),
+    let lengths = DVector::from_iterator(readings.len(), readings.iter().map(|r| r.length_mm));
+    let problem = Problem {
+        readings: &lengths,
+        noise: Noise::Common,
+        forward: &forward,
+        jacobian: Jacobian::Numerical { steps: &layout.steps() },
+        gauge: &DMatrix::zeros(0, layout.names.len()),
+        settled: 1e-9,
+    };
+    let estimate = adjust(&problem, &DVector::zeros(layout.names.len()))
+        .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+    open_error(&estimate, &layout.names)?;
+    no_outlier(&estimate)?;
+    let term = |k: usize, base: f64| Term {
+        value: base + estimate.values[k],
+        base,
+        uncertainty: estimate.standard_uncertainty(k),
+        half_width_95: estimate.half_width_95(k),
+    };
+    let base = &machines[0];
+    let s = base.base().description().squareness;
+    let squareness = [s.ec0y_rad, s.eb0z_rad, s.ea0z_rad];
+    let squareness_rad = [0, 1, 2].map(|plane| layout.squareness[plane].map(|k| term(k, squareness[plane])));
+    let mismatch = layout.mismatch.map(|k| k.map(|k| term(k, 0.0)));
+    let middle =
+        Command { linear_mm: readings[0].centre_mm - readings[0].command.tool_mm, ..readings[0].command };
+    let backlash_mm =
+        [0, 1, 2].map(|axis| layout.play[axis].map(|k| term(k, base.reversal_mm(axis, &middle))));
+    let closure = closure(&estimate, layout.mismatch);
+    let calibration = CircleCalibration {
+        squareness_rad,
+        mismatch,
+        closure,
+        backlash_mm,
+        uncertainty_mm: uncertainty_mm(&estimate, &layout, base),
         estimate,
+    };
+    calibration.is_possible()?;
+    Ok(calibration)
+}
+
+/// Sum of the three mismatches.
+fn closure(estimate: &Estimate, mismatch: [Option<usize>; 3]) -> Option<Term> {
+    let mut row = DVector::zeros(estimate.values.len());
+    for k in mismatch {
+        row[k?] = 1.0;
+    }
+    let uncertainty = estimate.variance_of(&row).sqrt();
+    Some(Term {
+        value: row.dot(&estimate.values),
+        base: 0.0,
+        uncertainty,
+        half_width_95: estimate.coverage_factor_95() * uncertainty,
     })
+}
+
+/// All over the base's volume, coming from both sides.
+fn uncertainty_mm(estimate: &Estimate, layout: &Layout, base: &WithEffects) -> f64 {
+    let changed: Vec<usize> = layout.squareness.into_iter().chain(layout.play).flatten().collect();
+    let at = |linear_mm: Vector, side: i8| Command {
+        linear_mm,
+        rotary_rad: Vector::zeros(),
+        tool_mm: Vector::zeros(),
+        direction: [side; 3],
+    };
+    let commands: Vec<Command> =
+        grid_mm(&base.volume(), 5).into_iter().flat_map(|place| [at(place, -1), at(place, 1)]).collect();
+    let positions = |x: &DVector<f64>| {
+        let machine = layout.machine(base, x);
+        commands.iter().map(|c| c.linear_mm + machine.error_mm(c)).collect()
+    };
+    field_u95_mm(estimate, &positions, &changed, &layout.steps())
+}
+
+impl CircleCalibration {
+    /// That some machine can be like this.
+    fn is_possible(&self) -> Result<(), CalibrationError> {
+        let limit = quantile(CONTRADICTION_CHANCE, self.estimate.degrees_of_freedom);
+        if let Some(sum) = self.closure
+            && sum.value.abs() > (limit * sum.uncertainty).max(RESOLVED_RATIO)
+        {
+            return Err(CalibrationError::Contradicted(format!(
+                "the scales do not add up: X-Y, Z-X and Y-Z sum to {:.1} ± {:.1} um/m and not to 0",
+                sum.value * 1e6,
+                sum.half_width_95 * 1e6
+            )));
+        }
+        let seen: Vec<(char, &Term)> =
+            LETTERS.into_iter().zip(&self.backlash_mm).filter_map(|(l, t)| Some((l, t.as_ref()?))).collect();
+        if !seen.is_empty() && seen.iter().all(|(_, t)| t.value < -(limit * t.uncertainty).max(RESOLVED_MM)) {
+            let each: Vec<String> =
+                seen.iter().map(|(letter, t)| format!("{letter} {:.2} um", t.value * 1e3)).collect();
+            return Err(CalibrationError::Contradicted(format!(
+                "every axis would have negative play: {}",
+                each.join(", ")
+            )));
+        }
+        Ok(())
+    }
 }

@@ -1,25 +1,24 @@
-//! Location errors of an A/C table from ball-bar tests with one rotary axis turning: equations (47) to (49), after
-//! Zhang 2024.
+//! Location errors of a table's rotary axes from ball-bar tests in which one axis turns: equations (47) and (48).
 //!
-//! Positions are counted from the point where the two axes should cross. A is carried by the machine, C by A; a positive
-//! command turns the table, and what stands on it, right-handed about the axis.
+//! For any table: A and C, B and C, whichever carries the other, or a single axis. The length that is read is the distance of two
+//! balls as the workpiece sees them: the tool ball where the base's whole model puts it, the location errors of the table's axes
+//! changed; the other one where the bar put it at angle 0. Locations are those of the base's `centre_mm`, wherever the
+//! readings were taken.
 
-use machine_model::Vector;
-use machine_model::rotation::{around, small};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use machine_model::{Axis, Chain, Command, Engine, Range, Vector, WithEffects};
+use nalgebra::{DMatrix, DVector};
 use units::math;
 
+use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
+use crate::ballbar::{changed, each_changed, field_u95_mm, grid_mm, no_outlier, open_error, too_few};
 use crate::error::CalibrationError;
-use crate::least_squares::{Estimate, solve};
 
 /// What turns in a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turning {
-    /// The A axis; C stands at 0.
-    A,
-    /// The C axis; A stands at 0.
-    C,
-    /// The spindle: shows where the tool ball sits against the spindle's axis.
+    /// An axis of the table.
+    Axis(Axis),
+    /// The spindle, about Z: shows where the tool ball sits against the spindle's axis.
     Spindle,
 }
 
@@ -28,226 +27,252 @@ pub enum Turning {
 pub struct Test {
     /// What turns.
     pub turning: Turning,
-    /// Tool ball without its offset from the spindle axis, mm from the crossing point.
-    pub tool_ball_mm: Vector,
-    /// Workpiece ball minus tool ball at angle 0, mm.
+    /// Where everything stands; the angle of what turns is not used.
+    pub command: Command,
+    /// Workpiece ball minus tool ball at angle 0 of what turns, mm, directions of the linear axes.
     pub bar_mm: Vector,
     /// Angle, rad, and length read, mm.
     pub readings: Vec<(f64, f64)>,
 }
 
-/// Names of the location errors, in the order of [`Piges`].
-pub const NAMES: [&str; 8] = ["EY0A", "EZ0A", "EB0A", "EC0A", "EX0C", "EY0C", "EA0C", "EB0C"];
-
-/// Location errors of A and C: mm for EY0A EZ0A EX0C EY0C, rad for EB0A EC0A EA0C EB0C; order of [`NAMES`].
-pub type Piges = [f64; 8];
-
-/// True for the entries of [`Piges`] that are lengths.
-#[must_use]
-pub fn is_length(index: usize) -> bool {
-    matches!(index, 0 | 1 | 4 | 5)
+/// A location error of a rotary axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// The axis.
+    pub axis: Axis,
+    /// A shift (mm) or a tilt (rad).
+    pub is_length: bool,
+    /// Direction along or around which: 0 X, 1 Y, 2 Z.
+    pub direction: usize,
 }
 
-/// Length of the bar by the exact chain: equation (47).
-///
-/// * `cup_mm` – tool ball against the spindle axis at spindle angle 0: eX, eY
-#[must_use]
-pub fn length_mm(test: &Test, piges: &Piges, cup_mm: [f64; 2], angle_rad: f64) -> f64 {
-    let cup = Vector::new(cup_mm[0], cup_mm[1], 0.0);
-    let tool_at_zero = test.tool_ball_mm + cup;
-    let work_at_zero = tool_at_zero + test.bar_mm;
-    let [y_a, z_a, b_a, c_a, x_c, y_c, a_c, b_c] = *piges;
-    let (tilt_a, shift_a) = (small(&Vector::new(0.0, b_a, c_a)), Vector::new(0.0, y_a, z_a));
-    let (tilt_c, shift_c) = (small(&Vector::new(a_c, b_c, 0.0)), Vector::new(x_c, y_c, 0.0));
-    let turned = |carrier: &Matrix3<f64>, at: &Vector, direction: usize| {
-        // carrier·R·carrier⁻¹ about `at`: where the table takes the workpiece ball.
-        at + carrier * around(direction, angle_rad) * carrier.transpose() * (work_at_zero - at)
-    };
-    let (tool, work) = match test.turning {
-        Turning::Spindle => (test.tool_ball_mm + around(2, angle_rad) * cup, work_at_zero),
-        Turning::A => (tool_at_zero, turned(&tilt_a, &shift_a, 0)),
-        Turning::C => (tool_at_zero, turned(&(tilt_a * tilt_c), &(shift_a + tilt_a * shift_c), 2)),
-    };
-    (work - tool).norm()
-}
+impl Location {
+    /// The four of an axis: `EY0A EZ0A EB0A EC0A` …
+    fn of(axis: Axis) -> impl Iterator<Item = Self> {
+        [true, false].into_iter().flat_map(move |is_length| {
+            (0..3).filter(move |direction| *direction != axis.direction()).map(move |direction| Self {
+                axis,
+                is_length,
+                direction,
+            })
+        })
+    }
 
-/// Change of length by the published first-order formulas (19) to (22), mm; `None` for tests that are none of the four.
-#[must_use]
-pub fn published_change_mm(test: &Test, piges: &Piges, cup_mm: [f64; 2], angle_rad: f64) -> Option<f64> {
-    let (cosine, sine) = (math::cos(angle_rad), math::sin(angle_rad));
-    let [a, b] = coefficients(test, piges, cup_mm)?;
-    Some(a * (cosine - 1.0) + b * sine)
-}
-
-/// Coefficients of cos and sin in (19) to (22).
-fn coefficients(test: &Test, piges: &Piges, cup_mm: [f64; 2]) -> Option<[f64; 2]> {
-    let [y_a, z_a, b_a, c_a, x_c, y_c, a_c, b_c] = *piges;
-    let [e_x, e_y] = cup_mm;
-    let lever = lever_mm(test)?;
-    match test.turning {
-        Turning::A => Some([e_y - y_a - lever * c_a, lever * b_a - z_a]),
-        Turning::C => Some([x_c - e_x + lever * (b_a + b_c), y_a + y_c - e_y - lever * a_c]),
-        Turning::Spindle => None,
+    /// Its symbol: `EX0C`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let letter = Axis::ALL[self.direction + if self.is_length { 0 } else { 3 }];
+        format!("E{letter}0{}", self.axis)
     }
 }
 
-/// The lever of one of the four tests: X of the tool ball for A, its Z for C, everything else in place.
-fn lever_mm(test: &Test) -> Option<f64> {
-    let zero = |v: f64| v.abs() < 1e-6;
-    let (t, bar) = (&test.tool_ball_mm, &test.bar_mm);
-    match test.turning {
-        Turning::A if zero(t.y) && zero(t.z) && zero(bar.x) && zero(bar.z) && bar.y < 0.0 => Some(t.x),
-        Turning::C if zero(t.x) && zero(t.y) && zero(bar.y) && zero(bar.z) && bar.x > 0.0 => Some(t.z),
-        _ => None,
-    }
+/// A location error as found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Which.
+    pub location: Location,
+    /// The base's and its change, mm or rad.
+    pub value: f64,
+    /// The base's.
+    pub base: f64,
+    /// Half width of the 95 % interval.
+    pub half_width_95: f64,
 }
 
 /// What the tests say.
 #[derive(Clone, Debug)]
 pub struct RotaryCalibration {
-    /// The location errors.
-    pub piges: Piges,
-    /// Tool ball against the spindle axis, mm.
+    /// The location errors of the axes that turned.
+    pub locations: Vec<Found>,
+    /// Tool ball against the spindle axis, mm: eX, eY.
     pub cup_mm: [f64; 2],
-    /// The least squares behind them: parameters 0 to 7 the location errors, 8 and 9 the cup, then a length a test.
+    /// Half widths of their 95 % intervals.
+    pub cup_half_width_95_mm: [f64; 2],
+    /// What the deviation keeps at 95 % of the places of the base's volume, at any angles, by what was fitted, mm.
+    pub uncertainty_mm: f64,
+    /// The lengths that the machine so found would have given, mm, a list a test.
+    pub predicted_mm: Vec<Vec<f64>>,
+    /// The adjustment behind them: the location errors' changes, the cup, then a length a test.
     pub estimate: Estimate,
-    /// The same by the published sequence, where the four tests and the spindle turn are there.
-    pub sequential: Option<(Piges, [f64; 2])>,
-    /// Largest difference between the published formulas and the exact chain at the estimate, mm.
-    pub approximation_mm: Option<f64>,
 }
 
-/// All location errors and the cup offset together: equation (48).
+/// Half the widths of the central differences: mm and rad.
+const STEPS: [f64; 2] = [1e-2, 1e-5];
+
+/// A location error beyond is no error of a machine: 5 mm, 50 mrad.
+const LARGEST: [f64; 2] = [5.0, 0.05];
+
+/// Angles of each axis at which the field is looked at.
+const ANGLES: usize = 6;
+
+/// Lengths of one test by the whole model, without the bar's own error: equation (47).
+fn lengths_mm(machine: &WithEffects, test: &Test, cup_mm: [f64; 2]) -> Vec<f64> {
+    let at = |angle_rad: f64| {
+        let mut command = test.command;
+        let mut spindle_rad = 0.0;
+        match test.turning {
+            Turning::Axis(axis) => command.rotary_rad[axis.direction()] = angle_rad,
+            Turning::Spindle => spindle_rad = angle_rad,
+        }
+        let (sine, cosine) = math::sin_cos(spindle_rad);
+        let [x, y] = cup_mm;
+        command.tool_mm += Vector::new(cosine * x - sine * y, sine * x + cosine * y, 0.0);
+        command
+    };
+    let zero = at(0.0);
+    let fixed = machine.predict(&zero).position_mm + machine.base().real_table_turn(&zero) * test.bar_mm;
+    test.readings.iter().map(|(angle, _)| (machine.predict(&at(*angle)).position_mm - fixed).norm()).collect()
+}
+
+/// What the base would read, the tool ball on the spindle's axis, mm: a list a test.
 ///
 /// # Errors
-/// [`CalibrationError::Unobservable`] with the names of what the tests leave open; [`CalibrationError::TooFew`].
-pub fn calibrate(tests: &[Test]) -> Result<RotaryCalibration, CalibrationError> {
-    let rows: usize = tests.iter().map(|t| t.readings.len()).sum();
-    let columns = 10 + tests.len();
-    if rows <= columns {
-        return Err(CalibrationError::TooFew(format!("{rows} readings for {columns} unknowns")));
+/// [`CalibrationError::Axes`] for an axis that is none of the table.
+///
+/// # Panics
+/// Where a test has no machine.
+pub fn expected_mm(tests: &[Test], machines: &[WithEffects]) -> Result<Vec<Vec<f64>>, CalibrationError> {
+    only_of_the_table(tests, &machines[0].base().description().chain)?;
+    Ok(tests.iter().zip(machines).map(|(test, machine)| lengths_mm(machine, test, [0.0; 2])).collect())
+}
+
+/// Refuses tests of an axis that does not turn the table.
+fn only_of_the_table(tests: &[Test], chain: &Chain) -> Result<(), CalibrationError> {
+    for test in tests {
+        let Turning::Axis(axis) = test.turning else { continue };
+        if chain.head().contains(&axis) {
+            return Err(CalibrationError::Axes(format!(
+                "{axis} turns the tool on {chain}; these tests are of axes that turn the table"
+            )));
+        }
+        if !chain.table().contains(&axis) {
+            return Err(CalibrationError::Axes(format!("{axis} turns, which is not in {chain}")));
+        }
     }
-    let mut parameters = DVector::<f64>::zeros(columns);
-    let model = |p: &DVector<f64>| {
-        let piges: Piges = std::array::from_fn(|k| p[k]);
-        let all = tests.iter().enumerate().flat_map(|(k, test)| {
-            test.readings
-                .iter()
-                .map(move |(angle, _)| length_mm(test, &piges, [p[8], p[9]], *angle) + p[10 + k])
+    Ok(())
+}
+
+/// The machine with changed location errors.
+fn machine(base: &WithEffects, locations: &[Location], x: &DVector<f64>) -> WithEffects {
+    changed(base, |description| {
+        for (k, location) in locations.iter().enumerate() {
+            let axis = &mut description.rotary[location.axis.direction()];
+            let vector = if location.is_length { &mut axis.shift_mm } else { &mut axis.tilt_rad };
+            vector[location.direction] += x[k];
+        }
+    })
+}
+
+/// Fits all tests together; `machines` are the one base, under the conditions of each test.
+///
+/// Unknown besides the location errors of the axes that turned: where the tool ball sits in the spindle (the same in all tests), and the
+/// length of the bar in each test. How far the tool ball stands along the spindle is taken as the tool's length says; an axis of the
+/// table that turned in no test keeps what the base says of it.
+///
+/// # Errors
+/// [`CalibrationError::Axes`] for an axis that is none of the table, [`CalibrationError::Unobservable`] with the names of
+/// what the tests leave open, [`CalibrationError::TooFew`]; [`CalibrationError::Outlier`] and [`CalibrationError::Contradicted`] for
+/// readings that are none of this table.
+///
+/// # Panics
+/// Where a test has no machine.
+pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalibration, CalibrationError> {
+    only_of_the_table(tests, &machines[0].base().description().chain)?;
+    let turned = |axis: &Axis| tests.iter().any(|t| t.turning == Turning::Axis(*axis));
+    let locations: Vec<Location> =
+        Axis::ALL.into_iter().filter(|axis| turned(axis)).flat_map(Location::of).collect();
+    let cup = locations.len();
+    let setup = cup + 2;
+    let mut names: Vec<String> = locations.iter().map(Location::name).collect();
+    names.extend(["eX", "eY"].map(str::to_owned));
+    names.extend(tests.iter().map(|_| "the bar's length".to_owned()));
+    let rows = tests.iter().map(|t| t.readings.len()).sum();
+    too_few(rows, names.len())?;
+    let predicted = |x: &DVector<f64>| -> Vec<Vec<f64>> {
+        let machines = each_changed(machines, |base| machine(base, &locations, x));
+        let each = tests.iter().zip(&machines).enumerate().map(|(k, (test, machine))| {
+            let lengths = lengths_mm(machine, test, [x[cup], x[cup + 1]]);
+            lengths.into_iter().map(|length| length + x[setup + k]).collect()
         });
-        DVector::from_iterator(rows, all)
+        each.collect()
     };
+    let forward = |x: &DVector<f64>| DVector::from_vec(predicted(x).concat());
     let read = DVector::from_iterator(rows, tests.iter().flat_map(|t| t.readings.iter().map(|r| r.1)));
-    let mut last = None;
-    // The model is linear but for products of errors: the third step changes nothing that is printed.
-    for _ in 0..4 {
-        let base = model(&parameters);
-        let mut design = DMatrix::zeros(rows, columns);
-        for k in 0..columns {
-            // Steps of 0.1 µm per 100 mm: far above rounding, far below curvature.
-            let step = if k < 8 && !is_length(k) { 1e-6 } else { 1e-4 };
-            let mut moved = parameters.clone();
-            moved[k] += step;
-            let up = model(&moved);
-            moved[k] -= 2.0 * step;
-            design.set_column(k, &((up - model(&moved)) / (2.0 * step)));
-        }
-        let estimate = solve(&design, &(&read - &base), None).map_err(|open| unobservable(&open))?;
-        parameters += &estimate.values;
-        last = Some(estimate);
-    }
-    let Some(mut estimate) = last else { return Err(CalibrationError::TooFew("no readings".to_owned())) };
-    estimate.residuals = &read - model(&parameters);
-    let free = rows - columns;
-    estimate.sigma = (estimate.residuals.norm_squared() / free as f64).sqrt();
-    estimate.values = parameters.clone();
-    let piges: Piges = std::array::from_fn(|k| parameters[k]);
-    let cup_mm = [parameters[8], parameters[9]];
-    let approximation = |test: &Test| -> Option<f64> {
-        let at_zero = length_mm(test, &piges, cup_mm, 0.0);
-        let mut worst = 0.0_f64;
-        for (angle, _) in &test.readings {
-            let exact = length_mm(test, &piges, cup_mm, *angle) - at_zero;
-            worst = worst.max((exact - published_change_mm(test, &piges, cup_mm, *angle)?).abs());
-        }
-        Some(worst)
+    let step = |k: usize| STEPS[usize::from(locations.get(k).is_some_and(|l| !l.is_length))];
+    let steps: Vec<f64> = (0..names.len()).map(step).collect();
+    let problem = Problem {
+        readings: &read,
+        noise: Noise::Common,
+        forward: &forward,
+        jacobian: Jacobian::Numerical { steps: &steps },
+        gauge: &DMatrix::zeros(0, names.len()),
+        settled: 1e-9,
     };
+    let estimate = adjust(&problem, &DVector::zeros(names.len()))
+        .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+    open_error(&estimate, &names)?;
+    no_outlier(&estimate)?;
+    let x = &estimate.values;
+    let found: Vec<Found> = locations
+        .iter()
+        .enumerate()
+        .map(|(k, location)| {
+            let axis = &machines[0].base().description().rotary[location.axis.direction()];
+            let base = if location.is_length { axis.shift_mm } else { axis.tilt_rad }[location.direction];
+            Found { location: *location, value: base + x[k], base, half_width_95: estimate.half_width_95(k) }
+        })
+        .collect();
+    if let Some(wild) = found.iter().find(|f| f.value.abs() > LARGEST[usize::from(!f.location.is_length)]) {
+        let (size, unit) =
+            if wild.location.is_length { (wild.value, "mm") } else { (wild.value * 1e3, "mrad") };
+        return Err(CalibrationError::Contradicted(format!(
+            "{} would be {size:.1} {unit}: no table is so far from its place",
+            wild.location.name()
+        )));
+    }
     Ok(RotaryCalibration {
-        piges,
-        cup_mm,
-        sequential: sequential(tests),
-        approximation_mm: tests.iter().filter_map(approximation).reduce(f64::max),
+        locations: found,
+        cup_mm: [x[cup], x[cup + 1]],
+        cup_half_width_95_mm: [estimate.half_width_95(cup), estimate.half_width_95(cup + 1)],
+        uncertainty_mm: uncertainty_mm(&estimate, &locations, &steps, &machines[0]),
+        predicted_mm: predicted(x),
         estimate,
     })
 }
 
-/// Names of the parameters with a share in an open combination.
-fn unobservable(open: &[DVector<f64>]) -> CalibrationError {
-    let mut texts = Vec::new();
-    for combination in open {
-        let names: Vec<&str> = (0..combination.len())
-            .filter(|&k| combination[k].abs() > 0.05)
-            .map(|k| {
-                NAMES.get(k).copied().unwrap_or_else(|| ["eX", "eY", "the bar's length"][(k - 8).min(2)])
+/// All over the volume, the table's axes at angles all over their travel.
+fn uncertainty_mm(estimate: &Estimate, locations: &[Location], steps: &[f64], base: &WithEffects) -> f64 {
+    let description = base.base().description();
+    let angles = |axis: Axis| {
+        let Range { low, high } = description.rotary[axis.direction()].travel_rad;
+        let turn = std::f64::consts::TAU;
+        let (low, high) = if high - low < turn { (low, high) } else { (0.0, turn) };
+        (0..ANGLES).map(move |k| low + (high - low) * (k as f64 + 0.5) / ANGLES as f64)
+    };
+    let mut commands: Vec<Command> = grid_mm(&base.volume(), 3)
+        .into_iter()
+        .map(|linear_mm| Command {
+            linear_mm,
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::zeros(),
+            direction: [0; 3],
+        })
+        .collect();
+    for axis in description.chain.table() {
+        let turned = |command: &Command| {
+            let command = *command;
+            angles(*axis).map(move |angle| {
+                let mut turned = command;
+                turned.rotary_rad[axis.direction()] = angle;
+                turned
             })
-            .collect();
-        let mut unique = names;
-        unique.dedup();
-        texts.push(unique.join(" from "));
+        };
+        commands = commands.iter().flat_map(turned).collect();
     }
-    CalibrationError::Unobservable(texts.join("; "))
-}
-
-/// Least-squares coefficients of `[cos sin 1]`, mm.
-fn harmonic(test: &Test) -> Option<[f64; 2]> {
-    let rows = test.readings.len();
-    let design = DMatrix::from_fn(rows, 3, |i, k| match k {
-        0 => math::cos(test.readings[i].0),
-        1 => math::sin(test.readings[i].0),
-        _ => 1.0,
-    });
-    let right = DVector::from_fn(rows, |i, _| test.readings[i].1);
-    solve(&design, &right, None).ok().map(|fit| [fit.values[0], fit.values[1]])
-}
-
-/// Cup offset from the spindle turn as published, (23) to (26): from the reading at 0, the largest and the smallest.
-fn published_cup(test: &Test) -> Option<[f64; 2]> {
-    let by = |better: fn(f64, f64) -> bool| {
-        test.readings.iter().copied().reduce(|a, b| if better(b.1, a.1) { b } else { a })
+    let positions = |x: &DVector<f64>| {
+        let machine = machine(base, locations, x);
+        commands.iter().map(|c| machine.predict(c).position_mm).collect()
     };
-    let (longest, shortest) = (by(|a, b| a > b)?, by(|a, b| a < b)?);
-    let start = test.readings.iter().find(|r| r.0.abs() < 1e-9)?.1;
-    let radius = 0.5 * (longest.1 - shortest.1);
-    if radius <= 0.0 {
-        return Some([0.0; 2]);
-    }
-    let reach = shortest.1 + radius;
-    let cosine =
-        ((radius * radius + start * start - reach * reach) / (2.0 * radius * start)).clamp(-1.0, 1.0);
-    let sine = (1.0 - cosine * cosine).sqrt();
-    let turn = shortest.0.rem_euclid(std::f64::consts::TAU);
-    // The shortest length stands where the ball points to the bar (+X): the ball was at minus that angle.
-    let above = turn > std::f64::consts::PI;
-    Some([-radius * cosine, if above { radius * sine } else { -radius * sine }])
-}
-
-/// The published sequence: A at the crossing, A beside it, C at the crossing, C above it; (19) to (26).
-fn sequential(tests: &[Test]) -> Option<(Piges, [f64; 2])> {
-    let find = |turning: Turning, beside: bool| {
-        tests.iter().find(|t| t.turning == turning && lever_mm(t).is_some_and(|l| (l.abs() > 1.0) == beside))
-    };
-    let cup = published_cup(tests.iter().find(|t| t.turning == Turning::Spindle && t.bar_mm.x > 0.0)?)?;
-    let [e_x, e_y] = cup;
-    let [a1, b1] = harmonic(find(Turning::A, false)?)?;
-    let second = find(Turning::A, true)?;
-    let ([a2, b2], lever_a) = (harmonic(second)?, lever_mm(second)?);
-    let [a3, b3] = harmonic(find(Turning::C, false)?)?;
-    let fourth = find(Turning::C, true)?;
-    let ([a4, b4], lever_c) = (harmonic(fourth)?, lever_mm(fourth)?);
-    let (y_a, z_a) = (e_y - a1, -b1);
-    let (c_a, b_a) = ((e_y - y_a - a2) / lever_a, (b2 + z_a) / lever_a);
-    let (x_c, y_c) = (a3 + e_x, b3 - y_a + e_y);
-    let b_c = (a4 - x_c + e_x) / lever_c - b_a;
-    let a_c = (y_a + y_c - e_y - b4) / lever_c;
-    Some(([y_a, z_a, b_a, c_a, x_c, y_c, a_c, b_c], cup))
+    let changed: Vec<usize> = (0..locations.len()).collect();
+    field_u95_mm(estimate, &positions, &changed, steps)
 }

@@ -1,33 +1,10 @@
 //! Machines of known truth, made by a generator that shares no code with the crate under test.
 
-use calibration::linear_ballbar::{self, CircleReading};
-use calibration::rotary_ballbar::{self, NAMES, Test, Turning, is_length};
 use calibration::tracker::{Frame, calibrate};
 use calibration::volumetric::{self, Options, Point, PointReading};
-use calibration::{CalibrationError, MeanTraverse, Reading, quantile_95};
-use gap_lab::calibration::{TableTruth, Turns, ball_bar, circles, traverses, volume_points};
+use calibration::{MeanTraverse, Reading, quantile_95};
+use gap_lab::calibration::{traverses, volume_points};
 use machine_model::{Chain, Vector};
-
-/// Rows of the generator as tests of the crate.
-fn tests_of(rows: &[gap_lab::calibration::BarRow]) -> Vec<Test> {
-    let mut tests: Vec<Test> = Vec::new();
-    for row in rows {
-        if row.test == tests.len() {
-            tests.push(Test {
-                turning: match row.turns {
-                    Turns::A => Turning::A,
-                    Turns::C => Turning::C,
-                    Turns::Spindle => Turning::Spindle,
-                },
-                tool_ball_mm: Vector::from(row.tool_ball_mm),
-                bar_mm: Vector::from(row.bar_mm),
-                readings: Vec::new(),
-            });
-        }
-        tests[row.test].readings.push((row.angle_deg.to_radians(), row.length_mm));
-    }
-    tests
-}
 
 /// Counts how often each parameter's interval holds the truth.
 struct Coverage {
@@ -53,96 +30,6 @@ impl Coverage {
             assert!(off <= slack, "{what} {k}: {inside} of {}", self.runs);
         }
     }
-}
-
-#[test]
-fn exact_readings_give_the_table_back() {
-    let truth = TableTruth::random(1, 0);
-    let rows = ball_bar(&truth, 1, 0, 0.0, 5.0, 1);
-    let found = rotary_ballbar::calibrate(&tests_of(&rows)).unwrap();
-    for (k, name) in NAMES.iter().enumerate() {
-        let (value, wanted) = (found.piges[k] * if is_length(k) { 1e3 } else { 1e6 }, truth.piges[k]);
-        // The order of two small rotations: 2e-4 squared, times 100 mm.
-        assert!((value - wanted).abs() < 0.05, "{name}: {value} {wanted}");
-    }
-    assert!((found.cup_mm[0] * 1e3 - truth.cup_um[0]).abs() < 0.01);
-    // The published sequence leaves out products of errors: micrometres at 200 µm.
-    let (published, _) = found.sequential.unwrap();
-    let worst = (0..8)
-        .filter(|k| is_length(*k))
-        .map(|k| (published[k] * 1e3 - truth.piges[k]).abs())
-        .fold(0.0, f64::max);
-    assert!(worst > 1e-3 && worst < 5.0, "{worst}");
-    assert!(found.approximation_mm.unwrap() < 5e-3, "{:?}", found.approximation_mm);
-}
-
-#[test]
-fn the_table_of_the_paper_is_found_through_noise_of_0_3_um() {
-    // Largest position error 203.5 µm, cup -40.3 and -76.5 µm, readings every 5°, two runs.
-    let mut truth = TableTruth::random(2, 0);
-    truth.piges[4] = 203.5;
-    truth.cup_um = [-40.3, -76.5];
-    let (mut square_um, mut square_urad) = (0.0, 0.0);
-    let mut coverage = Coverage::new(8);
-    for index in 0..150 {
-        let found = rotary_ballbar::calibrate(&tests_of(&ball_bar(&truth, 2, index, 0.3, 5.0, 2))).unwrap();
-        let scale = |k: usize| if is_length(k) { 1e3 } else { 1e6 };
-        coverage.count((0..8).map(|k| {
-            (found.piges[k] * scale(k), found.estimate.half_width_95(k) * scale(k), truth.piges[k])
-        }));
-        for (k, name) in NAMES.iter().enumerate() {
-            let off = found.piges[k] * scale(k) - truth.piges[k];
-            *(if is_length(k) { &mut square_um } else { &mut square_urad }) += off * off / (4.0 * 150.0);
-            assert!(!is_length(k) || off.abs() < 0.5, "{name}: {off} um");
-        }
-    }
-    assert!(f64::sqrt(square_um) < 0.15 && f64::sqrt(square_urad) < 1.0, "{square_um} {square_urad}");
-    coverage.check("location error");
-}
-
-#[test]
-fn a_missing_spindle_turn_is_named() {
-    let rows = ball_bar(&TableTruth::random(3, 0), 3, 0, 0.3, 5.0, 1);
-    let tests: Vec<Test> = tests_of(&rows).into_iter().filter(|t| t.turning != Turning::Spindle).collect();
-    let error = rotary_ballbar::calibrate(&tests).unwrap_err();
-    assert!(
-        matches!(&error, CalibrationError::Unobservable(m) if m.contains("eX") && m.contains("EX0C")),
-        "{error}"
-    );
-}
-
-#[test]
-fn circles_give_squareness_mismatch_and_backlash() {
-    let mut coverage = Coverage::new(9);
-    for index in 0..150 {
-        let (rows, truth) = circles(4, index, 0.5, 3.0);
-        let readings: Vec<CircleReading> = rows
-            .iter()
-            .map(|r| CircleReading {
-                run: r.run,
-                commanded_mm: Vector::from(r.commanded_mm),
-                centre_mm: Vector::from(r.centre_mm),
-                length_mm: r.length_mm,
-                direction: r.direction,
-            })
-            .collect();
-        let found = linear_ballbar::calibrate(&readings).unwrap();
-        let s = truth.scale_um_m;
-        let mismatch = [s[0] - s[1], s[2] - s[0], s[1] - s[2]];
-        let all = |terms: [Option<linear_ballbar::Term>; 3], scale: f64, wanted: [f64; 3]| {
-            [0, 1, 2].map(|k| {
-                let term = terms[k].expect("all planes were measured");
-                (term.value * scale, term.half_width_95 * scale, wanted[k])
-            })
-        };
-        coverage.count(
-            all(found.squareness_rad, 1e6, truth.squareness_urad)
-                .into_iter()
-                .chain(all(found.mismatch, 1e6, mismatch))
-                .chain(all(found.backlash_mm, 1e3, truth.backlash_um)),
-        );
-    }
-    coverage.check("circle");
 }
 
 #[test]

@@ -1,34 +1,39 @@
 //! `vpost calibrate ballbar`.
 
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use calibration::linear_ballbar::{self, CircleCalibration, CircleReading};
-use calibration::rotary_ballbar::{self, NAMES, RotaryCalibration, Test, Turning, is_length};
+use calibration::CalibrationError;
+use calibration::linear_ballbar::{self, CircleCalibration};
+use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Vector};
-use machine_profile::Calibrated;
+use machine_model::effects::{Conditions, EffectTerm};
+use machine_model::{
+    Axis, Chain, Command, Description, Engine, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
+    WithEffects,
+};
+use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::file;
 use crate::message::{Failure, Messages};
 use crate::settings::triple;
+use crate::{conditions, file};
 
-use super::codes::{AXES, UNSAID, failure, question};
+use super::bar_readings::{FAR, Measured, Readings};
+use super::bar_report::{before_and_after, circle_report, rotary_report};
+use super::codes::{AXES, CONTRADICTED, OUTLIER, UNSAID, failure, question};
 use super::output::{Output, Target, warn};
-use super::sheet::Sheet;
 
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
 pub struct Ballbar {
-    /// Readings (CSV): run, x_mm … z_mm of the moving ball, bx_mm … bz_mm of the other at angle 0, length_mm, and a_deg, c_deg,
-    /// spindle_deg or dir_x … dir_z.
+    /// Readings (CSV): run, x_mm … z_mm of the moving ball, bx_mm … bz_mm of the other at angle 0, length_mm, and a_deg, b_deg,
+    /// c_deg, spindle_deg or dir_x … dir_z.
     #[arg(value_name = "READINGS.csv", required = true)]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub target: Target,
-    /// Where the axes of A and C should cross, machine coordinates, mm; default: as the base profile has them.
+    /// A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no centre_mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub crossing: Option<String>,
     /// The same tests after a compensation: a table before and after.
@@ -36,359 +41,378 @@ pub struct Ballbar {
     pub after: Option<PathBuf>,
 }
 
-const COLUMNS: [&str; 18] = [
-    "run",
-    "repeat",
-    "x_mm",
-    "y_mm",
-    "z_mm",
-    "bx_mm",
-    "by_mm",
-    "bz_mm",
-    "length_mm",
-    "a_deg",
-    "b_deg",
-    "c_deg",
-    "spindle_deg",
-    "dir_x",
-    "dir_y",
-    "dir_z",
-    "temp_c",
-    "note",
-];
-
-/// What a file holds.
-struct Readings {
-    tests: Vec<Test>,
-    circles: Vec<CircleReading>,
-    temperatures: Vec<f64>,
+/// The machine that readings are predicted with, before any change.
+struct Base {
+    description: Description,
+    /// Without conditions; `None` for a machine of which only the chain is known.
+    profile: Option<Profile>,
+    tool_mm: Vector,
+    /// Axes whose centre_mm is to be written.
+    centred: Vec<Axis>,
 }
 
-/// One row: run, tool ball, other ball, angles of A, B, C and spindle, length, directions.
-struct Line {
-    run: String,
-    ball: Vector,
-    other: Vector,
-    angles: [f64; 4],
-    length_mm: f64,
-    direction: [i8; 3],
-}
+/// Places nearer than this are one, mm.
+const SAME_MM: f64 = 1e-3;
 
-fn read(path: &Path, crossing: Option<Vector>, ignore: &[String]) -> Result<Readings, Failure> {
-    let sheet = Sheet::read(path, &COLUMNS, ignore)?;
-    sheet.need(
-        &["run", "x_mm", "y_mm", "z_mm", "bx_mm", "by_mm", "bz_mm", "length_mm"],
-        "a reading of a ball bar is a length between two balls",
-    )?;
-    let mut lines: Vec<Line> = Vec::new();
-    let mut temperatures = Vec::new();
-    for row in sheet.rows() {
-        let angle = |column: &str| row.number(column).map(|v| v.unwrap_or(0.0).to_radians());
-        lines.push(Line {
-            run: row.text("run"),
-            ball: Vector::from(row.three(["x_mm", "y_mm", "z_mm"])?),
-            other: Vector::from(row.three(["bx_mm", "by_mm", "bz_mm"])?),
-            angles: [angle("a_deg")?, angle("b_deg")?, angle("c_deg")?, angle("spindle_deg")?],
-            length_mm: row.needed("length_mm")?,
-            direction: [row.sign("dir_x")?, row.sign("dir_y")?, row.sign("dir_z")?],
-        });
-        temperatures.extend(row.number("temp_c")?);
-    }
-    plausible(&sheet.name, &lines)?;
-    let mut runs: Vec<&str> = lines.iter().map(|l| l.run.as_str()).collect();
-    runs.dedup();
-    runs.sort_unstable();
-    runs.dedup();
-    let (mut tests, mut circles) = (Vec::new(), Vec::new());
-    let mut circle = 0;
-    for run in runs {
-        let own: Vec<&Line> = lines.iter().filter(|l| l.run == run).collect();
-        let moves = |of: &dyn Fn(&Line) -> f64| own.iter().any(|l| (of(l) - of(own[0])).abs() > 1e-9);
-        let turning: Vec<usize> = (0..4).filter(|&k| moves(&|l| l.angles[k])).collect();
-        let linear = (0..3).any(|i| moves(&|l| l.ball[i]));
-        let refuse = |message: String, help: &str| {
-            Failure::usage(
-                Diagnostic::error(AXES, format!("{}, run `{run}`: {message}", sheet.name)).help(help),
-            )
-        };
-        match (turning.as_slice(), linear) {
-            ([], true) => {
-                circles.extend(own.iter().map(|l| CircleReading {
-                    run: circle,
-                    commanded_mm: l.ball,
-                    centre_mm: l.other,
-                    length_mm: l.length_mm,
-                    direction: l.direction,
-                }));
-                circle += 1;
-            }
-            ([one], false) => {
-                let turning = match one {
-                    0 => Turning::A,
-                    2 => Turning::C,
-                    3 => Turning::Spindle,
-                    _ => {
-                        return Err(refuse(
-                            "B turns; the method is one for tables of A and C".to_owned(),
-                            "leave the run out",
-                        ));
-                    }
-                };
-                let Some(crossing) = crossing else {
-                    return Err(question(
-                        "where should the axes of A and C cross?",
-                        "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of both axes",
-                    ));
-                };
-                tests.push(Test {
-                    turning,
-                    tool_ball_mm: own[0].ball - crossing,
-                    bar_mm: own[0].other - own[0].ball,
-                    readings: own.iter().map(|l| (l.angles[*one], l.length_mm)).collect(),
-                });
-            }
-            ([], false) => {
-                return Err(refuse("nothing moves".to_owned(), "a run turns one axis or moves two"));
-            }
-            _ => {
-                return Err(refuse(
-                    "linear and rotary axes move, or two rotary ones".to_owned(),
-                    "turn one axis a run; the others stand",
+/// An axis that went less far stood, mm.
+const SHORTEST_MM: f64 = 1.0;
+
+impl Base {
+    /// From `-m`, or the chain alone: the axes then go as far as the balls stood.
+    fn new(arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<Self, Failure> {
+        let Some(path) = &shared.machine else {
+            // Where no rotary axis turns, the order of perfect axes makes no difference.
+            let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
+            let Some(chain) = arguments.target.chain.as_deref().or(any) else {
+                return Err(question(
+                    "which axis of the table carries which?",
+                    "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
                 ));
+            };
+            let chain = Chain::parse(chain).map_err(|error| {
+                Failure::option(
+                    format!("`--chain {chain}`: {error}"),
+                    "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
+                )
+            })?;
+            let [low, high] = readings.span_mm();
+            let linear = [0, 1, 2].map(|i| {
+                // An axis that stood has no length; the model wants one.
+                let high = high[i].max(low[i] + SAME_MM);
+                LinearAxis::perfect(Range { low: low[i], high })
+            });
+            let rotary = [0; 3].map(|_| RotaryAxis::perfect(Vector::zeros()));
+            let description = Description { chain, linear, rotary, squareness: Squareness::default() };
+            return Ok(Self { description, profile: None, tool_mm: Vector::zeros(), centred: Vec::new() });
+        };
+        let profile = crate::profile::load(path)?.profile;
+        let tool_mm = Vector::from(profile.default_tool_mm);
+        Ok(Self {
+            description: profile.description.clone(),
+            profile: Some(profile),
+            tool_mm,
+            centred: Vec::new(),
+        })
+    }
+
+    /// Settles where the axes that turned are: by the profile, or by `--crossing` where it does not say.
+    fn pivots(&mut self, arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<(), Failure> {
+        let crossing = match &arguments.crossing {
+            Some(text) => Some((text, Vector::from(triple("--crossing", text, text, "0,0,0")?))),
+            None => None,
+        };
+        let text = match &shared.machine {
+            Some(path) => ProfileText::parse(&String::from_utf8_lossy(&file::read(path)?)),
+            None => None,
+        };
+        for axis in self.description.chain.table().to_vec() {
+            let own = &mut self.description.rotary[axis.direction()];
+            let letter = axis.letter().to_string();
+            let said = text.as_ref().is_some_and(|text| text.says(&["rotary", &letter, "centre_mm"]));
+            match crossing {
+                Some((text, at)) if said => {
+                    let mut beside = at - own.centre_mm;
+                    beside[axis.direction()] = 0.0;
+                    if beside.norm() > SAME_MM {
+                        let [x, y, z] = own.centre_mm.into();
+                        let message = format!(
+                            "`--crossing {text}` lies {:.3} mm beside the axis of {axis}, which goes through centre_mm = [{x}, {y}, {z}]",
+                            beside.norm()
+                        );
+                        let help = "leave `--crossing` out, or correct centre_mm in the profile";
+                        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+                    }
+                }
+                Some((_, at)) => {
+                    own.centre_mm = at;
+                    self.centred.push(axis);
+                }
+                None if !said && readings.turn(axis) => {
+                    return Err(question(
+                        format!("where is the axis of {axis}? its location errors count from there"),
+                        "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
+                    ));
+                }
+                None => {}
             }
         }
+        Ok(())
     }
-    Ok(Readings { tests, circles, temperatures })
+
+    fn machine_without_effects(&self) -> Result<RigidBody, Failure> {
+        RigidBody::new(self.description.clone())
+            .map_err(|error| question(error.to_string(), "run `vpost profile check` on the base"))
+    }
+
+    /// The machine under these conditions.
+    fn machine(&self, conditions: Conditions) -> Result<WithEffects, Failure> {
+        let effects: Vec<EffectTerm> = match &self.profile {
+            Some(profile) => profile.effect_terms(false).map_err(|error| conditions::failure(&error))?,
+            None => Vec::new(),
+        };
+        WithEffects::new(self.machine_without_effects()?, effects, conditions)
+            .map_err(|error| conditions::failure(&error.into()))
+    }
+
+    /// The machine of each run, at the temperature of its readings.
+    fn machines(
+        &self,
+        temperatures_c: &[Option<f64>],
+        target: &Target,
+        shared: &Shared,
+    ) -> Result<Vec<WithEffects>, Failure> {
+        let given = conditions::conditions(shared)?;
+        let each = temperatures_c.iter().map(|read_c| {
+            let mut own = given;
+            if let Some(measured_c) = target.temperature.or(*read_c) {
+                own.temp_c = own.temp_c.map(|said_c| said_c.or(Some(measured_c)));
+            }
+            self.machine(own)
+        });
+        each.collect()
+    }
+
+    /// Refuses readings at places that the base does not know.
+    fn knows(&self, name: &str, machine: &WithEffects, command: &Command) -> Result<(), Failure> {
+        if self.profile.is_none() {
+            return Ok(());
+        }
+        let volume = machine.volume();
+        for (i, axis) in Axis::ALL[..3].iter().enumerate() {
+            let (at, range) = (command.linear_mm[i], volume.0[i]);
+            if at < range.low - SAME_MM || at > range.high + SAME_MM {
+                let message = format!(
+                    "run `{name}`: {axis} at {at:.3} mm lies outside what the base profile knows, {:.3} to {:.3} mm",
+                    range.low, range.high
+                );
+                let help = "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates";
+                return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+            }
+        }
+        Ok(())
+    }
 }
 
-/// Lengths must be near what the balls' places say.
-fn plausible(name: &str, lines: &[Line]) -> Result<(), Failure> {
-    let ratio = |l: &Line| l.length_mm / (l.other - l.ball).norm();
-    if let Some(l) = lines.iter().find(|l| (ratio(l) - 1.0).abs() > 0.05) {
-        let message = format!(
-            "{name}, run `{}`: a length of {} mm, where the balls are {:.3} mm apart",
-            l.run,
-            l.length_mm,
-            (l.other - l.ball).norm()
-        );
-        return Err(Failure::usage(
-            Diagnostic::error(super::codes::UNITS, message)
-                .help("give the whole length in mm, not its change; and both balls' places at angle 0"),
-        ));
+/// Tests with the machines that predict them.
+struct Table {
+    tests: Measured<Test>,
+    machines: Vec<WithEffects>,
+}
+
+impl Table {
+    fn new(base: &Base, readings: &Readings, target: &Target, shared: &Shared) -> Result<Self, Failure> {
+        let body = base.machine_without_effects()?;
+        let tests = readings.tests(base.tool_mm, &|command| body.nominal_tool(command));
+        let machines = base.machines(&tests.temperatures_c, target, shared)?;
+        Ok(Self { tests, machines })
     }
-    Ok(())
+
+    fn calibrate(&self, base: &Base, readings: &Readings) -> Result<RotaryCalibration, Failure> {
+        let tests = &self.tests.what;
+        for ((test, name), machine) in tests.iter().zip(&self.tests.names).zip(&self.machines) {
+            base.knows(name, machine, &test.command)?;
+        }
+        let expected = rotary_ballbar::expected_mm(tests, &self.machines).map_err(|error| refusal(&error))?;
+        let read = tests.iter().flat_map(|test| &test.readings);
+        for (reading, (expected_mm, (angle, length_mm))) in expected.iter().flatten().zip(read).enumerate() {
+            if (length_mm - expected_mm).abs() > FAR * expected_mm {
+                let message = format!(
+                    "at {:.1} degrees the balls would be {expected_mm:.3} mm apart on this table, not {length_mm} mm",
+                    angle.to_degrees()
+                );
+                let help = "which axis turned? check the columns of the angles, centre_mm and the places of both balls";
+                return Err(readings.refuse(CONTRADICTED, self.tests.place(reading), message, help));
+            }
+        }
+        rotary_ballbar::calibrate(tests, &self.machines)
+            .map_err(|error| located(&error, readings, |reading| self.tests.place(reading)))
+    }
 }
 
 /// `vpost calibrate ballbar`
 pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let base = shared.machine.as_deref().map(crate::profile::load).transpose()?.map(|loaded| loaded.profile);
-    let crossing = match &arguments.crossing {
-        Some(text) => Some(Vector::from(triple("--crossing", text, text, "0,0,0")?)),
-        None => base.as_ref().map(|b| {
-            let [a, _, c] = &b.description.rotary;
-            Vector::new(c.centre_mm.x, a.centre_mm.y, a.centre_mm.z)
-        }),
-    };
-    let ignore = &arguments.target.ignore_column;
-    let mut all = Readings { tests: Vec::new(), circles: Vec::new(), temperatures: Vec::new() };
-    for path in &arguments.files {
-        let own = read(path, crossing, ignore)?;
-        let offset = all.circles.iter().map(|c| c.run + 1).max().unwrap_or(0);
-        all.tests.extend(own.tests);
-        all.circles.extend(own.circles.into_iter().map(|c| CircleReading { run: c.run + offset, ..c }));
-        all.temperatures.extend(own.temperatures);
-    }
-    let fail = |error: calibration::CalibrationError| failure("", &[], &error);
-    let rotary =
-        if all.tests.is_empty() { None } else { Some(rotary_ballbar::calibrate(&all.tests).map_err(fail)?) };
-    let circles = if all.circles.is_empty() {
-        None
-    } else {
-        Some(linear_ballbar::calibrate(&all.circles).map_err(fail)?)
-    };
+    let target = &arguments.target;
+    let readings = Readings::read(&arguments.files, &target.ignore_column)?;
+    let mut base = Base::new(arguments, shared, &readings)?;
     let mut out = String::new();
-    // Writing to a String cannot fail.
-    if let Some(found) = &rotary {
-        let _ = rotary_report(&mut out, found);
+    let mut rotary = None;
+    if readings.turn_something() {
+        base.pivots(arguments, shared, &readings)?;
+        let table = Table::new(&base, &readings, target, shared)?;
+        let found = table.calibrate(&base, &readings)?;
+        // Writing to a String cannot fail.
+        let _ = rotary_report(&mut out, &found, &table.tests.what, &base.description);
         if let Some(path) = &arguments.after {
-            let after = rotary_ballbar::calibrate(&read(path, crossing, ignore)?.tests).map_err(fail)?;
-            let _ = before_and_after(&mut out, found, &after);
+            let readings = Readings::read(std::slice::from_ref(path), &target.ignore_column)?;
+            let after = Table::new(&base, &readings, target, shared)?.calibrate(&base, &readings)?;
+            let _ = before_and_after(&mut out, &found, &after);
         }
+        rotary = Some(found);
     }
+    let circles = circles(&base, &readings, target, shared)?;
     if let Some(found) = &circles {
         let _ = circle_report(&mut out, found);
     }
     file::print(out.as_bytes())?;
-    if arguments.target.output.is_none() && arguments.target.against.is_none() {
+    if target.output.is_none() && target.against.is_none() {
         return Ok(());
     }
-    let mut output = Output::start(&arguments.target, shared)?;
+    let mut output = Output::start(target, shared)?;
+    if base.profile.is_none() {
+        travel(&mut output, &readings)?;
+    }
     if let Some(found) = &rotary {
-        for (k, name) in NAMES.iter().enumerate() {
-            let axis = &name[3..];
-            let (key, scale) =
-                if is_length(k) { (format!("{name}_um"), 1e3) } else { (format!("{name}_urad"), 1e6) };
-            output.text.set_number(&["rotary", axis, &key], found.piges[k] * scale, 3);
-        }
+        write_locations(&mut output, found, &base);
     }
     if let Some(found) = &circles {
-        write_circles(&mut output, found, &all.circles, messages);
+        write_circles(&mut output, found, messages);
     }
     let sigma = rotary
         .iter()
         .map(|r| r.estimate.sigma)
         .chain(circles.iter().map(|c| c.estimate.sigma))
         .fold(0.0, f64::max);
-    let temperature_c = (!all.temperatures.is_empty())
-        .then(|| all.temperatures.iter().sum::<f64>() / all.temperatures.len() as f64);
+    let before_um = base.profile.as_ref().and_then(|p| p.calibrated.as_ref()).and_then(|c| c.uncertainty_um);
+    let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|c| c.uncertainty_mm)];
+    // What was not measured is as uncertain as it was.
+    let squares = parts.iter().flatten().map(|u| u * u * 1e6).sum::<f64>() + before_um.map_or(0.0, |u| u * u);
+    let temperatures: Vec<f64> = readings.temperatures_c().collect();
+    let temperature_c =
+        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
     output.calibrated(
-        &arguments.target,
+        target,
         messages,
-        Calibrated { temperature_c, repeatability_um: Some(sigma * 1e3), ..Calibrated::default() },
+        Calibrated {
+            temperature_c,
+            repeatability_um: Some(sigma * 1e3),
+            uncertainty_um: Some(squares.sqrt()),
+            ..Calibrated::default()
+        },
     )?;
-    output.write(&arguments.target, messages)
+    output.write(target, messages)
 }
 
-fn write_circles(
-    output: &mut Output,
-    found: &CircleCalibration,
-    readings: &[CircleReading],
-    messages: &Messages,
-) {
-    let range = |axis: usize| {
-        let values = || readings.iter().map(|r| r.commanded_mm[axis]);
-        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
+fn circles(
+    base: &Base,
+    readings: &Readings,
+    target: &Target,
+    shared: &Shared,
+) -> Result<Option<CircleCalibration>, Failure> {
+    let body = base.machine_without_effects()?;
+    let circles = readings.circles(base.tool_mm, &|command| body.nominal_tool(command));
+    if circles.what.is_empty() {
+        return Ok(None);
+    }
+    let machines = base.machines(&circles.temperatures_c, target, shared)?;
+    for reading in &circles.what {
+        base.knows(&circles.names[reading.run], &machines[reading.run], &reading.command)?;
+    }
+    linear_ballbar::calibrate(&circles.what, &machines)
+        .map(Some)
+        .map_err(|error| located(&error, readings, |reading| circles.place(reading)))
+}
+
+/// What to say of readings that give no profile; an outlier where it stands.
+fn located(
+    error: &CalibrationError,
+    readings: &Readings,
+    place: impl Fn(usize) -> (usize, usize),
+) -> Failure {
+    let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
+    let help = "measure it again, or leave it out; readings moved by a row look like this as well";
+    readings.refuse(OUTLIER, place(*point), message.clone(), help)
+}
+
+fn refusal(error: &CalibrationError) -> Failure {
+    let help = match error {
+        CalibrationError::Axes(_) => "is `-m` (or `--chain`) the machine that was measured?",
+        CalibrationError::Unobservable(_) => {
+            "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt"
+        }
+        CalibrationError::Contradicted(_) => {
+            "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar"
+        }
+        _ => return failure("", &[], error),
     };
-    let held = output.squareness_held([0, 1, 2].map(range));
-    let held = [held.ec0y_rad, held.eb0z_rad, held.ea0z_rad];
+    let code = match error {
+        CalibrationError::Axes(_) => AXES,
+        CalibrationError::Contradicted(_) => CONTRADICTED,
+        _ => super::codes::OPEN,
+    };
+    Failure::Refused(vec![crate::message::Report {
+        source: None,
+        diagnostics: vec![Diagnostic::error(code, error.to_string()).help(help)],
+    }])
+}
+
+/// The travel of a machine of which only the chain is known: as far as the balls of circles stood.
+fn travel(output: &mut Output, readings: &Readings) -> Result<(), Failure> {
+    let [low, high] = readings.span_mm();
+    for (i, axis) in Axis::ALL[..3].iter().enumerate() {
+        if readings.turn_something() || high[i] - low[i] < SHORTEST_MM {
+            return Err(question(
+                format!("how far does {axis} go? these readings do not say it"),
+                "give `-m PROFILE.toml` with travel_mm of X, Y and Z (`vpost profile new` starts one)",
+            ));
+        }
+        let key = ["axis", &axis.letter().to_string(), "travel_mm"];
+        output.text.set_range(&key, [low[i], high[i]], 6);
+    }
+    Ok(())
+}
+
+fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) {
+    for axis in &base.centred {
+        let centre = base.description.rotary[axis.direction()].centre_mm.into();
+        output.text.set_triple(&["rotary", &axis.letter().to_string(), "centre_mm"], centre, 6);
+    }
+    for f in &found.locations {
+        let (unit, scale) = if f.location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
+        let key = format!("{}_{unit}", f.location.name());
+        output.text.set_number(&["rotary", &f.location.axis.letter().to_string(), &key], f.value * scale, 3);
+    }
+}
+
+fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Messages) {
     for (k, key) in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"].into_iter().enumerate() {
         if let Some(term) = found.squareness_rad[k] {
-            output.text.set_number(&["squareness", key], (term.value - held[k]) * 1e6, 3);
+            output.text.set_number(&["squareness", key], term.value * 1e6, 3);
         }
     }
     for axis in &Axis::ALL[..3] {
         let Some(term) = found.backlash_mm[axis.direction()] else { continue };
-        let two = output
-            .base
-            .as_ref()
-            .is_some_and(|b| b.description.linear[axis.direction()].errors_negative.is_some());
-        if two {
+        let base = output.base.as_ref().map(|base| base.description.linear[axis.direction()].clone());
+        let (before_mm, change_mm) = (base.as_ref().map_or(0.0, |b| b.backlash_mm), term.value - term.base);
+        let Some(LinearAxis { errors: Some(positive), errors_negative: Some(negative), .. }) = base else {
+            let key = ["axis", &axis.letter().to_string(), "backlash_um"];
+            output.text.set_number(&key, (before_mm + change_mm) * 1e3, 3);
+            continue;
+        };
+        // Two tables hold the reversal between them: each takes half of the change.
+        for (key, tables, half_mm) in [("errors", positive, -0.5), ("errors_negative", negative, 0.5)] {
+            let nodes = tables.nodes();
+            let mut functions: [Option<Vec<f64>>; 6] =
+                std::array::from_fn(|k| Some(nodes.iter().map(|q| tables.at(*q)[k]).collect()));
+            if let Some(along) = &mut functions[axis.direction()] {
+                along.iter_mut().for_each(|value| *value += half_mm * change_mm);
+            }
+            output.errors(*axis, key, nodes, &functions);
+        }
+    }
+    for (name, term) in super::bar_report::SCALES.into_iter().zip(found.mismatch) {
+        if let Some(term) = term.filter(|t| t.value.abs() > t.half_width_95.max(SEEN_RATIO)) {
             let message = format!(
-                "the tables of {axis} for both directions hold its reversal already: {:.2} um is not written",
-                term.value * 1e3
+                "scale {name} of {:.1} um/m is not written: a bar does not say which of the two axes it is",
+                term.value * 1e6
             );
             warn(
                 messages,
                 Diagnostic::warning(UNSAID, message)
-                    .help("measure the tables again if they are older than the circle"),
+                    .help("measure the positioning of both axes with an interferometer"),
             );
-        } else {
-            output.text.set_number(&["axis", &axis.letter().to_string(), "backlash_um"], term.value * 1e3, 3);
         }
     }
 }
 
-fn rotary_report(out: &mut String, found: &RotaryCalibration) -> std::fmt::Result {
-    writeln!(
-        out,
-        "location errors of A and C, {} readings, {:.3} um left (standard deviation)",
-        found.estimate.residuals.len(),
-        found.estimate.sigma * 1e3
-    )?;
-    writeln!(out, "          joint fit        95 %   in sequence")?;
-    for (k, name) in NAMES.iter().enumerate() {
-        let (scale, unit) = if is_length(k) { (1e3, "um") } else { (1e6, "urad") };
-        let sequential = found
-            .sequential
-            .map_or_else(|| "         -".to_owned(), |(p, _)| format!("{:>10.3}", p[k] * scale));
-        writeln!(
-            out,
-            "  {name}  {:>10.3} ± {:>8.3} {sequential} {unit}",
-            found.piges[k] * scale,
-            found.estimate.half_width_95(k) * scale
-        )?;
-    }
-    for (k, name) in ["eX", "eY"].into_iter().enumerate() {
-        let sequential = found
-            .sequential
-            .map_or_else(|| "         -".to_owned(), |(_, c)| format!("{:>10.3}", c[k] * 1e3));
-        writeln!(
-            out,
-            "  {name}    {:>10.3} ± {:>8.3} {sequential} um (tool ball against the spindle axis)",
-            found.cup_mm[k] * 1e3,
-            found.estimate.half_width_95(8 + k) * 1e3
-        )?;
-    }
-    if let Some(off) = found.approximation_mm {
-        writeln!(
-            out,
-            "  the first-order formulas of the sequence leave the exact chain by up to {:.3} um",
-            off * 1e3
-        )?;
-    }
-    Ok(())
-}
-
-/// Table 4 of Zhang 2024: location errors before and after the compensation of the four positions.
-fn before_and_after(
-    out: &mut String,
-    before: &RotaryCalibration,
-    after: &RotaryCalibration,
-) -> std::fmt::Result {
-    writeln!(out, "\n            before      after")?;
-    let mut largest = [0.0_f64; 2];
-    for (k, name) in NAMES.iter().enumerate() {
-        let (scale, unit) = if is_length(k) { (1e3, "um") } else { (1e6, "urad") };
-        writeln!(out, "  {name}  {:>9.2}  {:>9.2} {unit}", before.piges[k] * scale, after.piges[k] * scale)?;
-        if is_length(k) {
-            largest[0] = largest[0].max(before.piges[k].abs() * scale);
-            largest[1] = largest[1].max(after.piges[k].abs() * scale);
-        }
-    }
-    writeln!(out, "  largest position error {:.1} -> {:.1} um", largest[0], largest[1])
-}
-
-fn circle_report(out: &mut String, found: &CircleCalibration) -> std::fmt::Result {
-    writeln!(
-        out,
-        "circles, {} readings, {:.3} um left (standard deviation)",
-        found.estimate.residuals.len(),
-        found.estimate.sigma * 1e3
-    )?;
-    for (name, term) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        if let Some(t) = term {
-            writeln!(out, "  {name}        {:>9.2} ± {:.2} urad", t.value * 1e6, t.half_width_95 * 1e6)?;
-        }
-    }
-    for (name, term) in ["X-Y", "Z-X", "Y-Z"].into_iter().zip(found.mismatch) {
-        if let Some(t) = term {
-            writeln!(
-                out,
-                "  scale {name}   {:>9.2} ± {:.2} um/m (one axis against the other: a bar sees no common scale)",
-                t.value * 1e6,
-                t.half_width_95 * 1e6
-            )?;
-        }
-    }
-    if let [Some(a), Some(b), Some(c)] = found.mismatch {
-        let closure = (a.value + b.value + c.value) * 1e6;
-        let u = (a.half_width_95 * a.half_width_95
-            + b.half_width_95 * b.half_width_95
-            + c.half_width_95 * c.half_width_95)
-            .sqrt()
-            * 1e6;
-        writeln!(out, "  closure     {closure:>9.2} ± {u:.2} um/m (the three must add up to 0)")?;
-    }
-    for (axis, term) in Axis::ALL.iter().zip(found.backlash_mm) {
-        match term {
-            Some(t) => {
-                writeln!(out, "  backlash {axis}  {:>9.2} ± {:.2} um", t.value * 1e3, t.half_width_95 * 1e3)?
-            }
-            None => writeln!(
-                out,
-                "  backlash {axis}  not seen: no reading says the direction of {axis} both ways"
-            )?,
-        }
-    }
-    Ok(())
-}
+/// A mismatch below is not worth a word: 5 µm in a metre.
+const SEEN_RATIO: f64 = 5e-6;

@@ -23,12 +23,16 @@ pub(super) const RUNS: Code = Code(1104);
 pub(super) const OPEN: Code = Code(1105);
 /// Something only the user can say.
 pub(super) const QUESTION: Code = Code(1106);
+/// A reading that does not belong to the others.
+pub(super) const OUTLIER: Code = Code(1107);
 /// Warning: runs or targets are missing.
 pub(super) const MISSING: Code = Code(1108);
 /// Warning: the uncertainty is more than half of what it corrects.
 pub(super) const DOUBTFUL: Code = Code(1109);
 /// Warning: something the profile should say is not known.
 pub(super) const UNSAID: Code = Code(1110);
+/// Readings that contradict one another, the base, or every machine of this kind.
+pub(super) const CONTRADICTED: Code = Code(1113);
 
 /// What to say of measurements that give no profile, and what to do.
 pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
@@ -42,6 +46,10 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
         }
         CalibrationError::Runs(_) => (RUNS, "every run must pass every target; leave an incomplete run out"),
         CalibrationError::TooFew(_) => (OPEN, "measure more points"),
+        CalibrationError::Outlier { .. } => (OUTLIER, "measure it again, or take the row out"),
+        CalibrationError::Contradicted(_) => {
+            (CONTRADICTED, "measure again what the message names, or leave it out")
+        }
         CalibrationError::Unobservable(_) => {
             (OPEN, "measure where they differ: another tool length, other positions of the other axes")
         }

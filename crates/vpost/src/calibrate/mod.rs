@@ -4,6 +4,8 @@
 
 mod against;
 mod ballbar;
+mod bar_readings;
+mod bar_report;
 mod codes;
 mod formats;
 mod interferometer;
@@ -41,7 +43,7 @@ pub enum CalibrateCommand {
     Interferometer(interferometer::Interferometer),
     /// Points anywhere in the volume, of a tracker or a tracking interferometer: all rigid-body terms.
     Volumetric(volumetric::Volumetric),
-    /// Ball bar: location errors of an A/C table, or squareness, scale mismatch and backlash of linear axes.
+    /// Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes.
     Ballbar(ballbar::Ballbar),
 }
 

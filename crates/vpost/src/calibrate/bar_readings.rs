@@ -1,0 +1,273 @@
+//! Readings of a ball bar: files to circles and tests.
+
+use std::path::PathBuf;
+
+use calibration::linear_ballbar::CircleReading;
+use calibration::rotary_ballbar::{Test, Turning};
+use diagnostic::{Code, Diagnostic};
+use machine_model::{Axis, Command, Vector};
+
+use crate::message::Failure;
+
+use super::codes::{AXES, UNITS};
+use super::sheet::{Row, Sheet};
+
+const COLUMNS: [&str; 18] = [
+    "run",
+    "repeat",
+    "x_mm",
+    "y_mm",
+    "z_mm",
+    "bx_mm",
+    "by_mm",
+    "bz_mm",
+    "length_mm",
+    "a_deg",
+    "b_deg",
+    "c_deg",
+    "spindle_deg",
+    "dir_x",
+    "dir_y",
+    "dir_z",
+    "temp_c",
+    "note",
+];
+
+/// Columns of angles: A, B, C, spindle.
+const ANGLES: [&str; 4] = ["a_deg", "b_deg", "c_deg", "spindle_deg"];
+
+/// One row.
+struct Line {
+    /// File and row in it.
+    place: (usize, usize),
+    /// Tool ball, then the other, mm.
+    balls: [Vector; 2],
+    /// A, B, C, spindle, degrees.
+    angles_deg: [f64; 4],
+    length_mm: f64,
+    direction: [i8; 3],
+}
+
+/// Readings that share a set-up.
+struct Run {
+    name: String,
+    lines: Vec<Line>,
+    temperatures_c: Vec<f64>,
+}
+
+/// What a run moves.
+enum Moves {
+    /// Two linear axes.
+    Linear,
+    /// One of [`ANGLES`].
+    Turning(usize),
+}
+
+/// What the files hold.
+pub(super) struct Readings {
+    sheets: Vec<Sheet>,
+    runs: Vec<(Run, Moves)>,
+}
+
+/// Runs of one kind, as the adjustment takes them, and where each reading stands.
+pub(super) struct Measured<T> {
+    /// Circles' readings, or tests.
+    pub(super) what: Vec<T>,
+    /// Names of the runs.
+    pub(super) names: Vec<String>,
+    /// Mean temperature of each run, °C.
+    pub(super) temperatures_c: Vec<Option<f64>>,
+    places: Vec<(usize, usize)>,
+}
+
+impl Readings {
+    /// Reads the files; a run is one of its own file.
+    pub(super) fn read(files: &[PathBuf], ignore: &[String]) -> Result<Self, Failure> {
+        let mut sheets = Vec::new();
+        let mut runs: Vec<(Run, Moves)> = Vec::new();
+        for (file, path) in files.iter().enumerate() {
+            let sheet = Sheet::read(path, &COLUMNS, ignore)?;
+            sheet.need(
+                &["run", "x_mm", "y_mm", "z_mm", "bx_mm", "by_mm", "bz_mm", "length_mm"],
+                "a reading of a ball bar is a length between two balls",
+            )?;
+            let mut own: Vec<Run> = Vec::new();
+            for (number, row) in sheet.rows().enumerate() {
+                let name = row.text("run");
+                let at = own.iter().position(|run| run.name == name).unwrap_or_else(|| {
+                    own.push(Run { name, lines: Vec::new(), temperatures_c: Vec::new() });
+                    own.len() - 1
+                });
+                let line = line(&row, (file, number))?;
+                own[at].temperatures_c.extend(row.number("temp_c")?);
+                own[at].lines.push(line);
+            }
+            for run in own {
+                let moves = run.moves(&sheet.name)?;
+                runs.push((run, moves));
+            }
+            sheets.push(sheet);
+        }
+        Ok(Self { sheets, runs })
+    }
+
+    /// True where an axis of A, B, C or the spindle turns.
+    pub(super) fn turn_something(&self) -> bool {
+        self.runs.iter().any(|(_, moves)| matches!(moves, Moves::Turning(_)))
+    }
+
+    /// True where this axis turns.
+    pub(super) fn turn(&self, axis: Axis) -> bool {
+        self.runs.iter().any(|(_, moves)| matches!(moves, Moves::Turning(k) if *k == axis.direction()))
+    }
+
+    /// Temperatures of all readings that have one, °C.
+    pub(super) fn temperatures_c(&self) -> impl Iterator<Item = f64> + '_ {
+        self.runs.iter().flat_map(|(run, _)| run.temperatures_c.iter().copied())
+    }
+
+    /// Lowest and highest place of either ball.
+    pub(super) fn span_mm(&self) -> [Vector; 2] {
+        let balls = self.runs.iter().flat_map(|(run, _)| run.lines.iter().flat_map(|line| line.balls));
+        let start = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
+        balls.fold(start, |[low, high], ball| [low.inf(&ball), high.sup(&ball)])
+    }
+
+    /// The circles; `tool_mm` turns with the head: from the command's angles to the vector.
+    pub(super) fn circles(
+        &self,
+        tool_mm: Vector,
+        turned: &dyn Fn(&Command) -> Vector,
+    ) -> Measured<CircleReading> {
+        let mut all = Measured::new();
+        for (run, _) in self.runs.iter().filter(|(_, moves)| matches!(moves, Moves::Linear)) {
+            let number = all.names.len();
+            all.names.push(run.name.clone());
+            all.temperatures_c.push(run.temperature_c());
+            for line in &run.lines {
+                all.what.push(CircleReading {
+                    run: number,
+                    command: line.command(tool_mm, turned),
+                    centre_mm: line.balls[1],
+                    length_mm: line.length_mm,
+                });
+                all.places.push(line.place);
+            }
+        }
+        all
+    }
+
+    /// The tests in which one axis or the spindle turns.
+    pub(super) fn tests(&self, tool_mm: Vector, turned: &dyn Fn(&Command) -> Vector) -> Measured<Test> {
+        let mut all = Measured::new();
+        for (run, moves) in &self.runs {
+            let Moves::Turning(one) = *moves else { continue };
+            all.names.push(run.name.clone());
+            all.temperatures_c.push(run.temperature_c());
+            let first = &run.lines[0];
+            all.what.push(Test {
+                turning: Axis::ALL.get(3 + one).map_or(Turning::Spindle, |axis| Turning::Axis(*axis)),
+                command: first.command(tool_mm, turned),
+                bar_mm: first.balls[1] - first.balls[0],
+                readings: run.lines.iter().map(|l| (l.angles_deg[one].to_radians(), l.length_mm)).collect(),
+            });
+            all.places.extend(run.lines.iter().map(|line| line.place));
+        }
+        all
+    }
+
+    /// A refusal that points at the length of one reading.
+    pub(super) fn refuse(&self, code: Code, place: (usize, usize), message: String, help: &str) -> Failure {
+        let (file, number) = place;
+        match self.sheets[file].rows().nth(number) {
+            Some(row) => row.refuse(code, "length_mm", message, help),
+            None => Failure::usage(Diagnostic::error(code, message).help(help)),
+        }
+    }
+}
+
+impl<T> Measured<T> {
+    fn new() -> Self {
+        Self { what: Vec::new(), names: Vec::new(), temperatures_c: Vec::new(), places: Vec::new() }
+    }
+
+    /// File and row of a reading, counted over all runs.
+    pub(super) fn place(&self, reading: usize) -> (usize, usize) {
+        self.places[reading]
+    }
+}
+
+fn line(row: &Row<'_>, place: (usize, usize)) -> Result<Line, Failure> {
+    let balls =
+        [row.three(["x_mm", "y_mm", "z_mm"])?, row.three(["bx_mm", "by_mm", "bz_mm"])?].map(Vector::from);
+    let mut angles_deg = [0.0; 4];
+    for (angle, column) in angles_deg.iter_mut().zip(ANGLES) {
+        *angle = row.number(column)?.unwrap_or(0.0);
+    }
+    let length_mm = row.needed("length_mm")?;
+    let apart_mm = (balls[1] - balls[0]).norm();
+    // Lengths must be near what the balls' places say.
+    if (length_mm - apart_mm).abs() > FAR * apart_mm {
+        let message = format!("a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart");
+        let help = "give the whole length in mm, not its change; and both balls' places at angle 0";
+        return Err(row.refuse(UNITS, "length_mm", message, help));
+    }
+    let direction = [row.sign("dir_x")?, row.sign("dir_y")?, row.sign("dir_z")?];
+    Ok(Line { place, balls, angles_deg, length_mm, direction })
+}
+
+/// No bar is so much longer or shorter than its balls stand apart.
+pub(super) const FAR: f64 = 0.05;
+
+impl Line {
+    fn command(&self, tool_mm: Vector, turned: &dyn Fn(&Command) -> Vector) -> Command {
+        let [a, b, c, _] = self.angles_deg.map(f64::to_radians);
+        let mut command = Command {
+            linear_mm: self.balls[0],
+            rotary_rad: Vector::new(a, b, c),
+            tool_mm,
+            direction: self.direction,
+        };
+        command.linear_mm -= turned(&command);
+        command
+    }
+}
+
+impl Run {
+    fn temperature_c(&self) -> Option<f64> {
+        let all = &self.temperatures_c;
+        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+    }
+
+    fn moves(&self, file: &str) -> Result<Moves, Failure> {
+        let first = &self.lines[0];
+        let moves = |of: &dyn Fn(&Line) -> f64| self.lines.iter().any(|l| (of(l) - of(first)).abs() > 1e-9);
+        let turning: Vec<usize> = (0..4).filter(|&k| moves(&|l| l.angles_deg[k])).collect();
+        let linear = (0..3).any(|i| moves(&|l| l.balls[0][i]));
+        let refuse = |code, message: String, help: &str| {
+            let message = format!("{file}, run `{}`: {message}", self.name);
+            Err(Failure::usage(Diagnostic::error(code, message).help(help)))
+        };
+        match (turning.as_slice(), linear) {
+            ([], true) => Ok(Moves::Linear),
+            ([one], false) => {
+                let values = || self.lines.iter().map(|l| l.angles_deg[*one]);
+                let span =
+                    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+                // A turn or half a turn in radians is no round number of degrees.
+                let turns = [std::f64::consts::TAU, std::f64::consts::PI];
+                if turns.iter().any(|turn| (span - turn).abs() < 1e-3) {
+                    let message = format!("{} goes over {span:.4}: a turn in radians", ANGLES[*one]);
+                    return refuse(UNITS, message, "give degrees");
+                }
+                Ok(Moves::Turning(*one))
+            }
+            ([], false) => refuse(AXES, "nothing moves".to_owned(), "a run turns one axis or moves two"),
+            _ => refuse(
+                AXES,
+                "linear and rotary axes move, or two rotary ones".to_owned(),
+                "turn one axis a run; the others stand",
+            ),
+        }
+    }
+}
