@@ -2,7 +2,11 @@
 //!
 //! Deviations are actual minus target position. Everything is in the unit of the deviations, mm or rad.
 
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use units::math;
+
 use crate::error::CalibrationError;
+use crate::student::quantile_95;
 
 /// Repeated runs over the same targets.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -26,7 +30,7 @@ pub struct Approach {
     pub repeatability: f64,
 }
 
-/// A value and half the width of its 95 % interval, k = 2.
+/// A value and half the width of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertain {
     /// The value.
@@ -100,11 +104,72 @@ fn approach(runs: &[Vec<f64>], target: usize) -> Option<Approach> {
     Some(Approach { mean, deviation, repeatability: 4.0 * deviation })
 }
 
+/// A variance and the degrees of freedom it is known with.
+#[derive(Clone, Copy)]
+struct Variance {
+    value: f64,
+    freedom: f64,
+}
+
+impl Variance {
+    const ZERO: Self = Self { value: 0.0, freedom: f64::INFINITY };
+
+    fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, ..self }
+    }
+
+    /// Of a sum of independent parts: Welch–Satterthwaite.
+    fn sum(parts: &[Self]) -> Self {
+        let value: f64 = parts.iter().map(|p| p.value).sum();
+        let uncertain: f64 = parts.iter().map(|p| p.value * p.value / p.freedom).sum();
+        let freedom = if uncertain > 0.0 { value * value / uncertain } else { f64::INFINITY };
+        Self { value, freedom }
+    }
+
+    /// Half width of the 95 % interval: t(95 %) instead of k = 2, which five runs do not carry.
+    fn half_width_95(self) -> f64 {
+        // Whole degrees of freedom, rounded down: the wider interval.
+        let freedom =
+            (self.freedom.is_finite() && self.freedom < 1e6).then(|| (self.freedom as usize).max(1));
+        if self.value > 0.0 { quantile_95(freedom) * self.value.sqrt() } else { 0.0 }
+    }
+}
+
+/// Chance below which the standard deviations of the targets are not taken for samples of one.
+const UNEQUAL: f64 = 0.01;
+
+/// How well the scatter of one reading is known, target by target: equation (39).
+///
+/// Where the scatter of all targets and directions may be one and the same (Bartlett 1937), it is pooled: a target that happens to
+/// scatter little does not make its own figure look certain. Otherwise each has its own.
+fn scatters(all: &[Option<(Approach, usize)>]) -> Vec<Variance> {
+    // One run says nothing of the scatter.
+    let own = |a: &Option<(Approach, usize)>| match a {
+        Some((a, n)) if *n > 1 => Variance { value: a.deviation * a.deviation, freedom: (n - 1) as f64 },
+        _ => Variance::ZERO,
+    };
+    let each: Vec<Variance> = all.iter().map(own).collect();
+    let known: Vec<Variance> = each.iter().copied().filter(|v| v.freedom.is_finite()).collect();
+    let freedom: f64 = known.iter().map(|v| v.freedom).sum();
+    if known.len() < 2 || known.iter().any(|v| v.value <= 0.0) {
+        return each;
+    }
+    let pooled = known.iter().map(|v| v.freedom * v.value).sum::<f64>() / freedom;
+    let groups = known.len() as f64;
+    let correction =
+        1.0 + (known.iter().map(|v| 1.0 / v.freedom).sum::<f64>() - 1.0 / freedom) / (3.0 * (groups - 1.0));
+    let statistic = (freedom * math::ln(pooled)
+        - known.iter().map(|v| v.freedom * math::ln(v.value)).sum::<f64>())
+        / correction;
+    let chance = ChiSquared::new(groups - 1.0).map_or(0.0, |chi| chi.sf(statistic));
+    if chance < UNEQUAL { each } else { vec![Variance { value: pooled, freedom }; all.len()] }
+}
+
 /// A limit of a range: its value, the variance of what it is made of, and where it is.
 #[derive(Clone, Copy)]
 struct Limit {
     value: f64,
-    variance: f64,
+    variance: Variance,
     position: f64,
 }
 
@@ -113,8 +178,9 @@ fn range(limits: &[(Limit, Limit)], relative: f64) -> Option<Uncertain> {
     let top = limits.iter().map(|l| l.0).max_by(|a, b| a.value.total_cmp(&b.value))?;
     let bottom = limits.iter().map(|l| l.1).min_by(|a, b| a.value.total_cmp(&b.value))?;
     let instrument = relative * (top.position - bottom.position);
-    let variance = top.variance + bottom.variance + instrument * instrument;
-    Some(Uncertain { value: top.value - bottom.value, expanded: 2.0 * variance.sqrt() })
+    let known = Variance { value: instrument * instrument, freedom: f64::INFINITY };
+    let variance = Variance::sum(&[top.variance, bottom.variance, known]);
+    Some(Uncertain { value: top.value - bottom.value, expanded: variance.half_width_95() })
 }
 
 /// Evaluates runs: equation (38); the uncertainties are equation (39).
@@ -122,7 +188,8 @@ fn range(limits: &[(Limit, Limit)], relative: f64) -> Option<Uncertain> {
 /// * `relative` – relative standard uncertainty of the instrument (1e-6 is 1 µm/m): length-proportional, not seen in repeats
 ///
 /// Uncertainties: of a mean s/√n, of s itself s/√(2(n-1)), carried through the formula at the targets that make the
-/// extreme. That an extreme is sought among many targets, which makes it larger than its expectation, is not in them.
+/// extreme, times t(95 %) for the degrees of freedom of s; s is pooled over the targets where they may all scatter alike. That an
+/// extreme is sought among many targets, which makes it larger than its expectation, is not in them.
 ///
 /// # Errors
 /// [`CalibrationError::Runs`] where runs do not pass all targets; [`CalibrationError::TooFew`] below two targets or without runs.
@@ -169,21 +236,31 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         })
         .collect();
     let counts = [runs.positive.len(), runs.negative.len()];
-    let of_mean = |a: &Approach, n: usize| a.deviation * a.deviation / n as f64;
-    let of_deviation = |a: &Approach, n: usize| {
-        if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 }
+    let sides = |side: usize| {
+        targets.iter().map(move |t| {
+            let own = if side == 0 { t.positive } else { t.negative };
+            own.map(|a| (a, counts[side]))
+        })
+    };
+    let all = scatters(&sides(0).chain(sides(1)).collect::<Vec<_>>());
+    let scatter = [&all[..count], &all[count..]];
+    let of_mean = |side: usize, i: usize| scatter[side][i].times(1.0 / counts[side].max(1) as f64);
+    let of_deviation = |side: usize, i: usize| {
+        scatter[side][i].times(if counts[side] > 1 { 0.5 / (counts[side] as f64 - 1.0) } else { 0.0 })
     };
     let pick = |t: &Target, side: usize| if side == 0 { t.positive } else { t.negative };
     let limits = |sides: &[usize], spread: f64| -> Vec<(Limit, Limit)> {
         let mut all = Vec::new();
         for &side in sides {
-            for t in &targets {
+            for (i, t) in targets.iter().enumerate() {
                 if let Some(a) = pick(t, side) {
                     let n = counts[side];
-                    let variance = of_mean(&a, n) + spread * spread * of_deviation(&a, n);
+                    // Mean and deviation come from the same scatter.
+                    let of_both =
+                        1.0 / n as f64 + if n > 1 { 0.5 * spread * spread / (n as f64 - 1.0) } else { 0.0 };
                     let limit = |sign: f64| Limit {
                         value: a.mean + sign * spread * a.deviation,
-                        variance,
+                        variance: scatter[side][i].times(of_both),
                         position: t.position,
                     };
                     all.push((limit(1.0), limit(-1.0)));
@@ -193,37 +270,44 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         all
     };
     let direction = |side: usize| -> Option<Direction> {
-        let worst = targets
+        let (i, worst) = targets
             .iter()
-            .filter_map(|t| pick(t, side))
-            .max_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
-        let u = of_deviation(&worst, counts[side]).sqrt();
+            .enumerate()
+            .filter_map(|(i, t)| Some((i, pick(t, side)?)))
+            .max_by(|a, b| a.1.deviation.total_cmp(&b.1.deviation))?;
+        let expanded = of_deviation(side, i).times(16.0).half_width_95();
         Some(Direction {
-            repeatability: Uncertain { value: worst.repeatability, expanded: 2.0 * 4.0 * u },
+            repeatability: Uncertain { value: worst.repeatability, expanded },
             systematic: range(&limits(&[side], 0.0), relative)?,
             accuracy: range(&limits(&[side], 2.0), relative)?,
         })
     };
     let few = || CalibrationError::TooFew("no target was read in either direction".to_owned());
-    let worst = targets.iter().max_by(|a, b| a.repeatability.total_cmp(&b.repeatability)).ok_or_else(few)?;
+    let (at, worst) = targets
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.repeatability.total_cmp(&b.1.repeatability))
+        .ok_or_else(few)?;
     let means: Vec<(Limit, Limit)> = targets
         .iter()
-        .map(|t| {
-            let parts =
-                [t.positive.map(|a| of_mean(&a, counts[0])), t.negative.map(|a| of_mean(&a, counts[1]))];
-            let given = parts.iter().flatten().count().max(1) as f64;
-            let variance = parts.iter().flatten().sum::<f64>() / (given * given);
+        .enumerate()
+        .map(|(i, t)| {
+            let parts: Vec<Variance> =
+                (0..2).filter(|side| pick(t, *side).is_some()).map(|side| of_mean(side, i)).collect();
+            let given = parts.len().max(1) as f64;
+            let variance = Variance::sum(&parts).times(1.0 / (given * given));
             let limit = Limit { value: t.mean, variance, position: t.position };
             (limit, limit)
         })
         .collect();
     let reversal = targets
         .iter()
-        .filter_map(|t| Some((t.reversal?, t.positive?, t.negative?)))
-        .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
-        .map(|(b, up, down)| Uncertain {
+        .enumerate()
+        .filter_map(|(i, t)| Some((i, t.reversal?)))
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .map(|(i, b)| Uncertain {
             value: b.abs(),
-            expanded: 2.0 * (of_mean(&up, counts[0]) + of_mean(&down, counts[1])).sqrt(),
+            expanded: Variance::sum(&[of_mean(0, i), of_mean(1, i)]).half_width_95(),
         });
     let given: Vec<f64> = targets.iter().filter_map(|t| t.reversal).collect();
     Ok(Evaluation {
@@ -234,32 +318,25 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         mean_reversal: (!given.is_empty()).then(|| given.iter().sum::<f64>() / given.len() as f64),
         repeatability: Uncertain {
             value: worst.repeatability,
-            expanded: repeatability_uncertainty(worst, counts),
+            expanded: {
+                // Of one direction 4s, of both 2s↑ + 2s↓ + |B|.
+                let one = (0..2)
+                    .find(|side| pick(worst, *side).is_some_and(|a| a.repeatability >= worst.repeatability));
+                match one {
+                    Some(side) => of_deviation(side, at).times(16.0),
+                    None => Variance::sum(&[
+                        of_deviation(0, at).times(4.0),
+                        of_deviation(1, at).times(4.0),
+                        of_mean(0, at),
+                        of_mean(1, at),
+                    ]),
+                }
+                .half_width_95()
+            },
         },
         systematic: range(&limits(&[0, 1], 0.0), relative).ok_or_else(few)?,
         mean_range: range(&means, relative).ok_or_else(few)?,
         accuracy: range(&limits(&[0, 1], 2.0), relative).ok_or_else(few)?,
         targets,
     })
-}
-
-/// Expanded uncertainty of R where it is R_i of this target.
-fn repeatability_uncertainty(target: &Target, counts: [usize; 2]) -> f64 {
-    let parts = [(target.positive, counts[0]), (target.negative, counts[1])];
-    let of_deviation = |a: &Approach, n: usize| {
-        if n > 1 { a.deviation * a.deviation / (2.0 * (n as f64 - 1.0)) } else { 0.0 }
-    };
-    // Of one direction 4s, of both 2s↑ + 2s↓ + |B|.
-    for (approach, n) in &parts {
-        if let Some(a) = approach
-            && a.repeatability >= target.repeatability
-        {
-            return 2.0 * 4.0 * of_deviation(a, *n).sqrt();
-        }
-    }
-    let variance: f64 = parts
-        .iter()
-        .filter_map(|(a, n)| a.map(|a| 4.0 * of_deviation(&a, *n) + a.deviation * a.deviation / *n as f64))
-        .sum();
-    2.0 * variance.sqrt()
 }

@@ -295,3 +295,14 @@ pub fn size(text: &str) -> Result<f64, String> {
         .filter(|v| *v > 0.0 && *v <= 1e6)
         .ok_or_else(|| "expected a number above 0, at most 1000000".to_owned())
 }
+
+/// A size of an option that may be zero.
+///
+/// # Errors
+/// What was expected.
+pub fn size_or_zero(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|v| *v >= 0.0 && *v <= 1e6)
+        .ok_or_else(|| "expected a number from 0 to 1000000".to_owned())
+}

@@ -58,7 +58,7 @@ pub struct Interferometer {
     #[arg(long, value_enum, default_value_t = Between::Linear)]
     pub interpolation: Between,
     /// Relative standard uncertainty of the instrument, µm/m.
-    #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5, value_parser = crate::arguments::size)]
+    #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5, value_parser = crate::arguments::size_or_zero)]
     pub u_um_per_m: f64,
 }
 
