@@ -13,6 +13,7 @@ pub mod functions;
 pub mod iso230_2;
 mod least_squares;
 pub mod linear_ballbar;
+pub mod measured_line;
 pub mod rotary_ballbar;
 pub mod rotary_sequence;
 mod student;

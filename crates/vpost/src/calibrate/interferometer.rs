@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use calibration::functions::{self, Function, FunctionReading, refined, without_slope};
+use calibration::functions::{self, Function, refined};
 use calibration::iso230_2;
+use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
 use clap::{Args, ValueEnum};
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Interpolation, Table};
+use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
 
 use crate::arguments::Shared;
@@ -14,23 +15,25 @@ use crate::file;
 use crate::message::{Failure, Messages};
 use crate::settings;
 
-use super::codes::{MISSING, UNITS, UNSAID, failure, question};
-use super::formats::{self, Reference, Series, Values};
+use super::axis_change::Session;
+use super::codes::{UNSAID, failure, question};
+use super::formats::{self, Origin, Reference, Series, Values};
 use super::output::{Output, Target, warn};
-use super::squareness;
+use super::squareness::Asked;
+use super::{iso_report, plausibility, squareness};
 
 /// `vpost calibrate interferometer FILES… -o PROFILE`
 #[derive(Debug, Args)]
 pub struct Interferometer {
     /// Files with runs or tables. Where a file does not say what it holds: FILE=EXX:um.
-    #[arg(value_name = "FILE[=SYMBOL[:UNIT]]", required = true)]
+    #[arg(value_name = "FILE[=SYMBOL[:UNIT]]", required_unless_present = "squareness")]
     pub files: Vec<String>,
     #[command(flatten)]
     pub target: Target,
     /// What the numbers of a control's table are.
     #[arg(long, value_enum)]
     pub values: Option<Values>,
-    /// Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5.
+    /// Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5; what is left out stays as it is.
     #[arg(long, value_name = "XY=…,ZX=…,YZ=…", allow_hyphen_values = true)]
     pub squareness: Option<String>,
     /// What a positive squareness means to the instrument.
@@ -118,6 +121,59 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     // Whether they are needed depends on what the files hold; whether they can be read does not.
     triple("--through", arguments.through.as_deref())?;
     triple("--optics", arguments.optics.as_deref())?;
+    let (mut all, angles_read) = read(arguments)?;
+    let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
+    let mut out = String::new();
+    let mut axes: [Functions; 3] = Default::default();
+    for series in &all {
+        plausibility::units(series, messages)?;
+        let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
+        let function = functions::function(&series.readings).map_err(|e| fail(&e))?;
+        if function.count > 1 {
+            let runs = functions::runs(&series.readings).map_err(|e| fail(&e))?;
+            plausibility::copies(series, &runs, &function, messages)?;
+            if function.scatter.is_some() && series.function == series.axis.direction() {
+                let found = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
+                out.push_str(&iso_report::lines(&series.name(), &found, 1e3, "um"));
+                plausibility::conditions_of_the_standard(&series.name(), &found, messages);
+            }
+        }
+        if writes {
+            plausibility::reversal(series, &function)?;
+        }
+        axes[series.axis.direction()][series.function] = Some(function);
+    }
+    let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
+    summary(&mut out, &axes);
+    if !writes {
+        return file::print(out.as_bytes());
+    }
+    let mut output = Output::start(&arguments.target, shared)?;
+    let chain = output.chain(&arguments.target)?;
+    to_the_line(arguments, &chain, &mut all)?;
+    let session = Session::new(arguments, shared, &output, &chain, &all)?;
+    let uncertainty_mm = change(arguments, &mut output, &session, &all, &asked, &mut out, messages)?;
+    file::print(out.as_bytes())?;
+    if arguments.interpolation == Between::Monotone {
+        output.text.set_text(&["interpolation"], "monotone");
+    }
+    output.travel(session.spans(), messages);
+    let scatter = (0..3).filter_map(|i| axes[i][i].as_ref()?.scatter).reduce(f64::max);
+    output.calibrated(
+        &arguments.target,
+        messages,
+        Calibrated {
+            temperature_c: mean_temperature(&all),
+            repeatability_um: scatter.map(|s| s * 1e3),
+            uncertainty_um: uncertainty_mm.map(|u| u * 1e3),
+            ..Calibrated::default()
+        },
+    )?;
+    output.write(&arguments.target, messages)
+}
+
+/// Every function of every file, and the angles between axes that a file gives.
+fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), Failure> {
     let mut all: Vec<Series> = Vec::new();
     let mut angles_read: Option<[f64; 3]> = None;
     for spec in &arguments.files {
@@ -127,134 +183,100 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
             // Further runs of the same function may come in a file of their own.
             let same = |s: &&mut Series| s.axis == series.axis && s.function == series.function;
             match all.iter_mut().find(same) {
-                Some(known) => {
-                    let file = series.source.clone();
-                    known.readings.extend(
-                        series
-                            .readings
-                            .into_iter()
-                            .map(|r| FunctionReading { run: format!("{file}:{}", r.run), ..r }),
-                    );
-                }
+                Some(known) => known.append(series),
                 None => all.push(series),
             }
         }
     }
-    let mut out = String::new();
-    let mut axes: [Functions; 3] = Default::default();
-    for series in &all {
-        plausible(series, messages);
-        let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
-        let function = functions::function(&series.readings).map_err(|e| fail(&e))?;
-        let name = format!("E{}{}", Axis::ALL[series.function], series.axis);
-        if function.count > 1 {
-            let runs = functions::runs(&series.readings).map_err(|e| fail(&e))?;
-            if function.scatter.is_some() && series.function == series.axis.direction() {
-                let found = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
-                out.push_str(&super::iso_report::lines(&name, &found, 1e3, "um"));
-                conditions_of_the_standard(&name, &found, messages);
-            }
+    Ok((all, angles_read))
+}
+
+/// Mean of what the files say, °C.
+fn mean_temperature(all: &[Series]) -> Option<f64> {
+    let said: Vec<f64> = all.iter().flat_map(|s| s.temperatures_c.iter().flatten()).copied().collect();
+    (!said.is_empty()).then(|| said.iter().sum::<f64>() / said.len() as f64)
+}
+
+/// Writes the changed axes and angles into the profile; half width of the 95 % interval at the far corner, mm.
+fn change(
+    arguments: &Interferometer,
+    output: &mut Output,
+    session: &Session,
+    all: &[Series],
+    asked: &Asked,
+    out: &mut String,
+    messages: &Messages,
+) -> Result<Option<f64>, Failure> {
+    let temperature_c = arguments.target.temperature;
+    let keep = arguments.straightness_slopes == Some(Slopes::Keep);
+    // Angles beside the curves as they are belong to a model; so do a control's tables.
+    let model = |axis: Axis| {
+        (keep && asked.is_given()) || all.iter().any(|s| s.axis == axis && s.origin != Origin::Instrument)
+    };
+    let mut changes: [Functions; 3] = Default::default();
+    let mut made: [Option<AxisOnNodes>; 3] = Default::default();
+    for axis in Axis::ALL.into_iter().take(3).filter(|axis| all.iter().any(|s| s.axis == *axis)) {
+        let zero = session.zero(axis, model(axis));
+        let without_slopes = match zero {
+            Zero::Model => arguments.straightness_slopes == Some(Slopes::Remove),
+            Zero::Base | Zero::New => !keep,
+        };
+        let own = session.change(axis, all, Gauge { zero, without_slopes }, temperature_c)?;
+        let mut changed = session.changed(axis, &own)?;
+        if arguments.directions == Directions::Mean {
+            changed = changed.averaged(axis.direction());
         }
-        axes[series.axis.direction()][series.function] = Some(function);
-    }
-    let angles = squareness::from_the_user(arguments, angles_read, &axes)?;
-    if arguments.target.output.is_none() && arguments.target.against.is_none() {
-        summary(&mut out, &axes);
-        return file::print(out.as_bytes());
-    }
-    let mut output = Output::start(&arguments.target, shared)?;
-    let chain = output.chain(&arguments.target)?;
-    if all.iter().any(|s| s.reference_asked) {
-        to_the_line(arguments, &chain, &mut axes)?;
-    }
-    if let Some(angles) = angles {
-        for (key, value) in
-            [("EC0Y_urad", angles.ec0y_rad), ("EB0Z_urad", angles.eb0z_rad), ("EA0Z_urad", angles.ea0z_rad)]
-        {
-            output.text.set_number(&["squareness", key], value * 1e6, 3);
+        write_axis(output, arguments, axis, &changed)?;
+        write_line(output, arguments, session, axis, &own, messages);
+        if zero == Zero::Base {
+            changed_lines(out, axis, &own);
         }
-    } else if output.base.is_none() {
+        changes[axis.direction()] = own;
+        made[axis.direction()] = Some(changed);
+    }
+    let before = session.squareness_before();
+    let values = |s: Squareness| [s.ec0y_rad, s.eb0z_rad, s.ea0z_rad];
+    let found = if keep || Axis::ALL.into_iter().take(3).any(model) {
+        let [c, b, a] = values(before);
+        [asked.rad[0].unwrap_or(c), asked.rad[1].unwrap_or(b), asked.rad[2].unwrap_or(a)]
+    } else {
+        values(session.squareness(&made, asked, mean_temperature(all).or(temperature_c))?)
+    };
+    for (k, key) in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"].into_iter().enumerate() {
+        // Half a nanoradian is what is written.
+        if asked.rad[k].is_some() || (found[k] - values(before)[k]).abs() > 5e-10 {
+            output.text.set_number(&["squareness", key], found[k] * 1e6, 3);
+        }
+    }
+    if !asked.is_given() && session.is_new() {
         warn(
             messages,
             Diagnostic::warning(
                 UNSAID,
-                "tables of single axes say nothing of the angles between them: squareness is taken as 0",
+                "readings of single axes say nothing of the angles between them: the measured lines are taken as square",
             )
-            .help("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`"),
+            .help("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m"),
         );
     }
-    summary(&mut out, &axes);
-    file::print(out.as_bytes())?;
-    for (axis, functions) in axes.iter().enumerate() {
-        write_axis(&mut output, arguments, Axis::ALL[axis], functions, messages)?;
-    }
-    if arguments.interpolation == Between::Monotone {
-        output.text.set_text(&["interpolation"], "monotone");
-    }
-    let scatter = (0..3).filter_map(|i| axes[i][i].as_ref()?.scatter).reduce(f64::max);
-    output.calibrated(
-        &arguments.target,
-        messages,
-        Calibrated {
-            repeatability_um: scatter.map(|s| s * 1e3),
-            uncertainty_um: far_corner(&axes, arguments.u_um_per_m * 1e-6).map(|u| u * 1e3),
-            ..Calibrated::default()
-        },
-    )?;
-    output.write(&arguments.target, messages)
+    Ok(far_corner(session, &changes, arguments.u_um_per_m * 1e-6).map(|own| {
+        // What was not measured is as uncertain as the base says.
+        let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
+        let base = output.base.as_ref().and_then(|base| base.calibrated.as_ref()?.uncertainty_um);
+        let base_mm = if whole { 0.0 } else { base.unwrap_or(0.0) * 1e-3 };
+        own.hypot(base_mm)
+    }))
 }
 
-/// Deviations that are much too small or too large for their unit.
-fn plausible(series: &Series, messages: &Messages) {
-    let mut sizes: Vec<f64> = series.readings.iter().map(|r| r.value.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
-    let name = format!("E{}{}", Axis::ALL[series.function], series.axis);
-    // 0.05 µm and 0.05 µrad; 0.5 mm and 5 mrad.
-    let (low, high) = if series.function < 3 { (5e-5, 0.5) } else { (5e-8, 5e-3) };
-    if large > 0.0 && large < low && sizes.len() > 3 {
-        let message = format!(
-            "{}: nine readings of ten of {name} are below {}: are they in a larger unit than said?",
-            series.source,
-            if series.function < 3 { "0.05 um" } else { "0.05 urad" }
-        );
-        warn(
-            messages,
-            Diagnostic::warning(UNITS, message)
-                .help("few machines are that good: check µm against mm, µrad against arc seconds"),
-        );
-    } else if large > high {
-        let message = format!(
-            "{}: readings of {name} reach {:.0} {}: are they in a smaller unit than said?",
-            series.source,
-            large * if series.function < 3 { 1e3 } else { 1e6 },
-            if series.function < 3 { "um" } else { "urad" }
-        );
-        warn(
-            messages,
-            Diagnostic::warning(UNITS, message).help("check µm against mm and nm, µrad against arc seconds"),
-        );
-    }
-}
-
-/// What ISO 230-2 asks of a test.
-fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
-    let length = found.targets[found.targets.len() - 1].position - found.targets[0].position;
-    let mut short = Vec::new();
-    if found.runs.iter().any(|n| *n < 5) {
-        short.push(format!("{} and {} runs instead of five in each direction", found.runs[0], found.runs[1]));
-    }
-    let least = if length < 1000.0 { 5.0 } else { 5.0 * length / 1000.0 };
-    if (found.targets.len() as f64) < least {
-        short.push(format!("{} targets over {length} mm instead of {least:.0}", found.targets.len()));
-    }
-    if !short.is_empty() {
-        let message =
-            format!("{name} is evaluated after ISO 230-2 but was not measured so: {}", short.join("; "));
-        warn(
-            messages,
-            Diagnostic::warning(MISSING, message).help("do not quote the figures as those of the standard"),
-        );
+/// What changed against the base.
+fn changed_lines(out: &mut String, axis: Axis, change: &Functions) {
+    for (f, function) in change.iter().enumerate() {
+        let Some(function) = function else { continue };
+        let (scale, unit) = if f < 3 { (1e3, "um") } else { (1e6, "urad") };
+        let values = || function.directions.iter().flatten().chain([&function.mean]).flatten();
+        let low = values().copied().fold(f64::INFINITY, f64::min) * scale;
+        let high = values().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "E{}{axis}  {low:.3} … {high:.3} {unit} against the base", Axis::ALL[f]);
     }
 }
 
@@ -262,15 +284,15 @@ fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages
 fn to_the_line(
     arguments: &Interferometer,
     chain: &machine_model::Chain,
-    axes: &mut [Functions; 3],
+    all: &mut Vec<Series>,
 ) -> Result<(), Failure> {
     let bed = chain.to_string();
     let carries = |axis: Axis| bed.find(axis.letter()) < bed.find('b');
-    let concerned: Vec<Axis> = Axis::ALL[..3]
-        .iter()
-        .copied()
-        .filter(|a| carries(*a) && axes[a.direction()][3..].iter().any(Option::is_some))
-        .collect();
+    let has_angles = |axis: Axis| {
+        all.iter().any(|s| s.axis == axis && s.function >= 3 && s.origin == Origin::ControlAtCarriage)
+    };
+    let concerned: Vec<Axis> =
+        Axis::ALL.into_iter().take(3).filter(|axis| carries(*axis) && has_angles(*axis)).collect();
     if concerned.is_empty() {
         return Ok(());
     }
@@ -287,54 +309,62 @@ fn to_the_line(
     if reference == Reference::Line {
         return Ok(());
     }
-    for axis in concerned.into_iter().map(Axis::direction) {
+    for axis in concerned {
         // ε × q e: along the two directions across the axis.
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = ((axis.direction() + 1) % 3, (axis.direction() + 2) % 3);
         for (direction, angle, sign) in [(u, v, 1.0), (v, u, -1.0)] {
-            let Some(rotation) = axes[axis][3 + angle].clone() else { continue };
-            let table =
-                Table::new(rotation.positions_mm.clone(), rotation.mean.clone(), Interpolation::Linear);
-            let Ok(table) = table else { continue };
-            let own = axes[axis][direction].get_or_insert_with(|| Function {
-                positions_mm: rotation.positions_mm.clone(),
-                mean: vec![0.0; rotation.mean.len()],
-                directions: None,
-                scatter: None,
-                count: 1,
-            });
-            let positions = own.positions_mm.clone();
-            let move_all = |values: &mut Vec<f64>| {
-                for (value, q) in values.iter_mut().zip(&positions) {
-                    *value += sign * table.value(*q) * q;
+            let find = |function: usize| all.iter().position(|s| s.axis == axis && s.function == function);
+            let Some(rotation) = find(3 + angle).map(|at| all[at].clone()) else { continue };
+            let mut rows: Vec<(f64, f64)> =
+                rotation.readings.iter().map(|r| (r.position_mm, r.value)).collect();
+            rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (positions, values) = rows.into_iter().unzip();
+            let Ok(table) = Table::new(positions, values, Interpolation::Linear) else { continue };
+            let own = match find(direction) {
+                Some(at) => at,
+                None => {
+                    let mut flat = Series { function: direction, ..rotation.clone() };
+                    flat.readings.iter_mut().for_each(|r| r.value = 0.0);
+                    all.push(flat);
+                    all.len() - 1
                 }
             };
-            move_all(&mut own.mean);
-            if let Some(both) = &mut own.directions {
-                both.iter_mut().for_each(move_all);
+            for reading in &mut all[own].readings {
+                reading.value += sign * table.value(reading.position_mm) * reading.position_mm;
             }
         }
     }
     Ok(())
 }
 
-/// Half width of the 95 % interval of the deviation at the far end, mm: means of repeats, levers and the instrument.
-fn far_corner(axes: &[Functions; 3], relative: f64) -> Option<f64> {
-    let length = |i: usize| {
-        let positions = axes[i].iter().flatten().map(|f| &f.positions_mm);
-        positions.map(|p| p[p.len() - 1] - p[0]).fold(0.0, f64::max)
+/// Half width of the 95 % interval of the deviation at the far corner, mm: means of repeats, their arms from where the lines cross, and
+/// the instrument's scale.
+fn far_corner(session: &Session, changes: &[Functions; 3], relative: f64) -> Option<f64> {
+    let order = session.carried();
+    let reach = |axis: usize| {
+        let (targets, at) = (&session.targets_mm[axis], session.lines[axis].at_mm[axis]);
+        targets.iter().map(|q| (q - at).abs()).fold(0.0, f64::max)
     };
-    let reach = (0..3).map(|i| length(i) * length(i)).sum::<f64>().sqrt();
     let mut variance = 0.0;
     let mut known = false;
-    for (axis, functions) in axes.iter().enumerate() {
+    for (axis, functions) in changes.iter().enumerate() {
         for (f, function) in functions.iter().enumerate() {
-            let Some(Function { scatter: Some(scatter), count, .. }) = function else { continue };
+            let Some(Function { scatter: Some(scatter), count, positions_mm, .. }) = function else {
+                continue;
+            };
             known = true;
-            let lever = if f < 3 { 1.0 } else { reach };
-            let u = scatter / (*count as f64).sqrt() * lever;
-            variance += u * u;
+            // A mean of one direction.
+            let sides = if function.as_ref().is_some_and(|f| f.directions.is_some()) { 2.0 } else { 1.0 };
+            let mean = scatter * scatter * sides / *count as f64;
+            if f < 3 {
+                variance += mean;
+            } else {
+                // Two directions across the axis of rotation; the angle counts from where the lines cross.
+                let arm = |k: usize| if k + 3 == f || !order[axis].contains(&k) { 0.0 } else { reach(k) };
+                variance += 2.0 * mean * (0..3).map(|k| arm(k) * arm(k)).sum::<f64>();
+            }
             if f == axis {
-                let own = relative * length(axis);
+                let own = relative * (positions_mm[positions_mm.len() - 1] - positions_mm[0]);
                 variance += own * own;
             }
         }
@@ -342,97 +372,73 @@ fn far_corner(axes: &[Functions; 3], relative: f64) -> Option<f64> {
     known.then(|| 2.0 * variance.sqrt())
 }
 
-/// Function values at other positions, straight between its own; the slope taken off where asked.
-fn sampled(values: &[f64], function: &Function, nodes: &[f64]) -> Option<Vec<f64>> {
-    let table = Table::new(function.positions_mm.clone(), values.to_vec(), Interpolation::Linear).ok()?;
-    Some(nodes.iter().map(|q| table.value(*q)).collect())
-}
-
+/// The axis' tables.
 fn write_axis(
     output: &mut Output,
     arguments: &Interferometer,
     axis: Axis,
-    functions: &Functions,
-    messages: &Messages,
+    changed: &AxisOnNodes,
 ) -> Result<(), Failure> {
-    let given = || functions.iter().flatten();
-    if given().next().is_none() {
-        return Ok(());
-    }
     let letter = axis.letter().to_string();
-    let low = given().map(|f| f.positions_mm[0]).fold(f64::NEG_INFINITY, f64::max);
-    let high = given().map(|f| f.positions_mm[f.positions_mm.len() - 1]).fold(f64::INFINITY, f64::min);
-    let mut nodes: Vec<f64> =
-        given().flat_map(|f| &f.positions_mm).copied().filter(|q| low <= *q && *q <= high).collect();
-    nodes.sort_by(f64::total_cmp);
-    nodes.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
-    if nodes.len() < 2 {
-        return Err(question(
-            format!("the functions of {axis} were measured over ranges without a common part"),
-            "leave one of them out",
-        ));
-    }
+    let nodes = &changed.nodes_mm;
     /// More than any control's table, and small enough for every text.
     const MOST_NODES: f64 = 1e5;
     if arguments.refine.is_some_and(|step| (nodes[nodes.len() - 1] - nodes[0]) / step > MOST_NODES) {
         let message = format!("`--refine` makes more than {MOST_NODES} rows for {axis}");
         return Err(Failure::option(message, "use a larger step"));
     }
-    let two = given().any(|f| f.directions.is_some());
-    let both = two && arguments.directions == Directions::Tables;
-    let remove = arguments.straightness_slopes == Some(Slopes::Remove);
-    let values = |f: usize, side: Option<usize>| -> Option<Vec<f64>> {
-        let function = functions[f].as_ref()?;
-        let own = match (side, &function.directions) {
-            (Some(side), Some(directions)) => &directions[side],
-            _ => &function.mean,
-        };
-        let straight = f < 3 && f != axis.direction();
-        let own = if remove && straight { without_slope(&function.positions_mm, own) } else { own.clone() };
-        sampled(&own, function, &nodes)
-    };
-    let put = |output: &mut Output, key: &str, side: Option<usize>| {
-        let all: [Option<Vec<f64>>; 6] = std::array::from_fn(|f| values(f, side));
+    let put = |output: &mut Output, key: &str, rows: &[Six]| {
+        let column = |k: usize| changed.given[k].then(|| rows.iter().map(|six| six[k]).collect::<Vec<f64>>());
+        let all: [Option<Vec<f64>>; 6] = std::array::from_fn(column);
         match arguments.refine {
-            None => output.errors(axis, key, &nodes, &all),
+            None => output.errors(axis, key, nodes, &all),
             Some(step) => {
-                let fine = |v: &Vec<f64>| refined(&nodes, v, step, arguments.interpolation.interpolation());
+                let fine = |v: &Vec<f64>| refined(nodes, v, step, arguments.interpolation.interpolation());
                 let made = all.each_ref().map(|v| v.as_ref().and_then(fine));
                 let positions = made.iter().flatten().next().map(|(p, _)| p.clone()).unwrap_or_default();
                 output.errors(axis, key, &positions, &made.map(|m| m.map(|(_, v)| v)));
             }
         }
     };
+    put(output, "errors", &changed.positive);
     output.text.remove(&["axis", &letter, "errors_negative"]);
     output.text.remove(&["axis", &letter, "backlash_um"]);
-    put(output, "errors", both.then_some(0));
-    if both {
-        put(output, "errors_negative", Some(1));
-    } else if two
-        && let Some(function) = &functions[axis.direction()]
-        && let Some([up, down]) = &function.directions
-    {
-        let mean: f64 = down.iter().zip(up).map(|(d, u)| d - u).sum::<f64>() / up.len() as f64;
-        output.text.set_number(&["axis", &letter, "backlash_um"], mean * 1e3, 3);
+    if let Some(negative) = &changed.negative {
+        put(output, "errors_negative", negative);
     }
-    let has_angles = functions[3..].iter().any(Option::is_some);
+    if changed.backlash_mm != 0.0 {
+        output.text.set_number(&["axis", &letter, "backlash_um"], changed.backlash_mm * 1e3, 4);
+    }
+    Ok(())
+}
+
+/// Where the axis was measured, unless its functions stay on the line of the base's.
+fn write_line(
+    output: &mut Output,
+    arguments: &Interferometer,
+    session: &Session,
+    axis: Axis,
+    change: &Functions,
+    messages: &Messages,
+) {
+    if session.keeps_line(axis) {
+        return;
+    }
+    let line = &session.lines[axis.direction()];
     if arguments.through.is_some() || arguments.optics.is_some() {
-        let through = triple("--through", arguments.through.as_deref())?;
-        let optics = triple("--optics", arguments.optics.as_deref())?;
-        let others: Vec<(char, f64)> =
-            (0..3).filter(|&k| k != axis.direction()).map(|k| (Axis::ALL[k].letter(), through[k])).collect();
-        output.text.set_measured_at(axis.letter(), &others, optics);
-    } else if has_angles && output.base.as_ref().is_none_or(|base| base.rows[axis.direction()].is_none()) {
+        let others = (0..3).filter(|&k| k != axis.direction());
+        let others: Vec<(char, f64)> = others.map(|k| (Axis::ALL[k].letter(), line.at_mm[k])).collect();
+        output.text.set_measured_at(axis.letter(), &others, line.optics_mm.into());
+    } else if change[3..].iter().any(Option::is_some) {
         warn(
             messages,
             Diagnostic::warning(UNSAID, format!("the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point"))
                 .help("its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`"),
         );
     }
-    Ok(())
 }
 
-fn triple(option: &str, text: Option<&str>) -> Result<[f64; 3], Failure> {
+pub(super) fn triple(option: &str, text: Option<&str>) -> Result<[f64; 3], Failure> {
     text.map_or(Ok([0.0; 3]), |text| settings::triple(option, text, text, "400,200,-50"))
 }
 

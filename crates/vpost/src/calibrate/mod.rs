@@ -3,6 +3,7 @@
 //! Files and formats are read here, the mathematics is in the crate `calibration`.
 
 mod against;
+mod axis_change;
 mod ballbar;
 mod bar_readings;
 mod bar_report;
@@ -11,6 +12,7 @@ mod formats;
 mod interferometer;
 mod iso_report;
 mod output;
+mod plausibility;
 mod sheet;
 mod squareness;
 mod tracker;

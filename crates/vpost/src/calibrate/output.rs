@@ -13,6 +13,7 @@ use crate::arguments::Shared;
 use crate::message::{Failure, Messages, Report, file_diagnostic};
 use crate::{file, profile};
 
+use super::axis_change::SHORTEST_MM;
 use super::codes::{UNSAID, question};
 
 /// What every calibration is told about the profile it makes.
@@ -157,6 +158,40 @@ impl Output {
         self.text.set_text(&["axis", &axis.letter().to_string(), key], &file);
     }
 
+    /// How far the axes go whose travel nothing says, mm: as far as they were commanded. One that only stood there is
+    /// known there alone.
+    pub(super) fn travel(&mut self, spans_mm: [[f64; 2]; 3], messages: &Messages) {
+        let mut stood = Vec::new();
+        for (axis, [low, high]) in Axis::ALL.into_iter().zip(spans_mm) {
+            let letter = axis.letter().to_string();
+            let said = |text: &ProfileText, key: &str| text.says(&["axis", &letter, key]);
+            let known = self.base.as_ref().map(|base| base.description.linear[axis.direction()].travel_mm);
+            if known.is_some_and(|range| range.high - range.low < 1.5 * SHORTEST_MM) && high > low {
+                self.text.remove(&["axis", &letter, "travel_mm"]);
+            }
+            if said(&self.text, "travel_mm") || said(&self.text, "errors") {
+                continue;
+            }
+            let half = 0.5 * SHORTEST_MM;
+            let range = if high > low { [low, high] } else { [low - half, high + half] };
+            self.text.set_range(&["axis", &letter, "travel_mm"], range, 6);
+            if high <= low {
+                stood.push(letter);
+            }
+        }
+        if !stood.is_empty() {
+            let message = format!(
+                "how far {} can go is not known: the profile holds where it stood, and corrects nothing elsewhere",
+                stood.join(" and ")
+            );
+            warn(
+                messages,
+                Diagnostic::warning(UNSAID, message)
+                    .help("measure it with -m this profile, or write its travel_mm into the profile"),
+            );
+        }
+    }
+
     /// What is known of the measurement; warns of what is not.
     pub(super) fn calibrated(
         &mut self,
@@ -166,7 +201,7 @@ impl Output {
     ) -> Result<(), Failure> {
         let calibrated = Calibrated {
             date: target.date.clone().or(measured.date),
-            temperature_c: target.temperature.or(measured.temperature_c),
+            temperature_c: self.temperature_c(target.temperature.or(measured.temperature_c)),
             instrument: target.instrument.clone().or(measured.instrument),
             repeatability_um: measured.repeatability_um.map(|v| (v * 1e3).round() / 1e3),
             uncertainty_um: measured.uncertainty_um.map(|v| (v * 1e3).round() / 1e3),
@@ -191,6 +226,15 @@ impl Output {
         }
         self.text.set_calibrated(&calibrated);
         Ok(())
+    }
+
+    /// The temperature at which the written tables hold, °C: that of the measurement; the base's where its effects say what a change
+    /// of temperature does, since their prediction was taken off, and where nobody said another.
+    fn temperature_c(&self, measured: Option<f64>) -> Option<f64> {
+        let base = self.base.as_ref();
+        let before = base.and_then(|base| base.calibrated.as_ref()?.temperature_c);
+        let thermal = base.is_some_and(|base| base.effects.iter().any(|e| e.id.starts_with("thermal.")));
+        if thermal { before } else { measured.or(before) }
     }
 
     /// The finished profile, read back as every other command will read it.

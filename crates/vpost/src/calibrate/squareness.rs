@@ -1,26 +1,40 @@
 //! Squareness as an instrument or a file gave it, and what must be asked of it.
 
-use calibration::functions::{self, SquarenessConvention, straight_line};
-use machine_model::{Axis, Squareness};
+use calibration::functions::{SquarenessConvention, straight_line};
+use machine_model::Axis;
 
 use crate::message::Failure;
 
+use super::axis_change::in_the_models_signs;
 use super::codes::question;
 use super::interferometer::{Convention, Functions, Interferometer};
 
-/// The squareness to write, in the model's signs; `None` where nobody gave one.
+/// Squareness that somebody read.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Asked {
+    /// EC0Y, EB0Z, EA0Z in the model's signs, rad; `None` where nobody gave one.
+    pub(super) rad: [Option<f64>; 3],
+}
+
+impl Asked {
+    pub(super) fn is_given(&self) -> bool {
+        self.rad.iter().any(Option::is_some)
+    }
+}
+
+/// The squareness that was read, in the model's signs.
 ///
 /// * `from_file_rad` – XY, ZX, YZ as a file had them
 pub(super) fn from_the_user(
     arguments: &Interferometer,
     from_file_rad: Option<[f64; 3]>,
     axes: &[Functions; 3],
-) -> Result<Option<Squareness>, Failure> {
+) -> Result<Asked, Failure> {
     let read_rad = match &arguments.squareness {
-        Some(text) => given(text)?.map(|urad| urad * 1e-6),
+        Some(text) => given(text)?.map(|urad| Some(urad? * 1e-6)),
         None => match from_file_rad {
-            Some(angles) => angles,
-            None => return Ok(None),
+            Some(angles) => angles.map(Some),
+            None => return Ok(Asked::default()),
         },
     };
     let convention = match arguments.squareness_convention {
@@ -43,12 +57,12 @@ pub(super) fn from_the_user(
             "add `--straightness-slopes remove` where the squareness holds it already, or `--straightness-slopes keep`",
         ));
     }
-    Ok(Some(functions::squareness(read_rad, convention)))
+    Ok(Asked { rad: in_the_models_signs(read_rad, convention) })
 }
 
-/// Three numbers of `XY=12,ZX=-3,YZ=5`, µrad.
-fn given(text: &str) -> Result<[f64; 3], Failure> {
-    let mut read = [0.0; 3];
+/// Numbers of `XY=12,ZX=-3,YZ=5`, µrad.
+fn given(text: &str) -> Result<[Option<f64>; 3], Failure> {
+    let mut read = [None; 3];
     for part in text.split(',') {
         let wrong = || {
             Failure::option(
@@ -61,7 +75,7 @@ fn given(text: &str) -> Result<[f64; 3], Failure> {
             .iter()
             .position(|known| name.trim().eq_ignore_ascii_case(known))
             .ok_or_else(wrong)?;
-        read[place] = value.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong)?;
+        read[place] = Some(value.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong)?);
     }
     Ok(read)
 }

@@ -4,7 +4,7 @@ use machine_model::Axis;
 
 use crate::message::Failure;
 
-use super::{Content, Series, Told, Values, numbers, reading, symbol, unreadable};
+use super::{Content, Origin, Series, Told, Values, numbers, reading, symbol, unreadable};
 
 /// LinuxCNC: nominal, forward, reverse.
 pub(super) fn triplets(name: &str, text: &str, told: &Told<'_>) -> Result<Series, Failure> {
@@ -17,7 +17,7 @@ pub(super) fn triplets(name: &str, text: &str, told: &Told<'_>) -> Result<Series
     }
     let values =
         told.values(name, "positions (COMP_FILE_TYPE = 0) or --values corrections (COMP_FILE_TYPE = 1)")?;
-    let mut readings = Vec::new();
+    let mut series = Series::new(axis, function, name, Origin::Control);
     for line in text.lines().map(str::trim).filter(|l| !l.is_empty() && !l.starts_with('#')) {
         let Some(Ok([nominal, forward, reverse])) = numbers(line).map(<[f64; 3]>::try_from) else { continue };
         let error = |v: f64| match values {
@@ -25,10 +25,10 @@ pub(super) fn triplets(name: &str, text: &str, told: &Told<'_>) -> Result<Series
             Values::Errors => v,
             Values::Corrections => -v,
         };
-        readings.push(reading("1", nominal, error(forward), 1));
-        readings.push(reading("1", nominal, error(reverse), -1));
+        series.readings.push(reading("1", nominal, error(forward), 1));
+        series.readings.push(reading("1", nominal, error(reverse), -1));
     }
-    Ok(Series { axis, function, readings, source: name.to_owned(), reference_asked: false })
+    Ok(series)
 }
 
 /// Heidenhain: AXISPOS, optionally BACKLASH (the value towards minus), and a column named by the axis that is compensated.
@@ -62,13 +62,7 @@ pub(super) fn heidenhain(name: &str, text: &str, told: &Told<'_>) -> Result<Vec<
             let Some(value) = cell(&compensated.to_string()) else { continue };
             let function = compensated.direction();
             if !found.iter().any(|s| s.function == function) {
-                found.push(Series {
-                    axis,
-                    function,
-                    readings: Vec::new(),
-                    source: name.to_owned(),
-                    reference_asked: false,
-                });
+                found.push(Series::new(axis, function, name, Origin::Control));
             }
             let Some(series) = found.iter_mut().find(|s| s.function == function) else { continue };
             let backlash = cell("BACKLASH").filter(|_| function == axis.direction());
@@ -139,13 +133,7 @@ pub(super) fn isg(name: &str, text: &str) -> Result<Content, Failure> {
             };
             let same = |s: &Series| s.axis == own && s.function == function;
             if !found.iter().any(same) {
-                found.push(Series {
-                    axis: own,
-                    function,
-                    readings: Vec::new(),
-                    source: name.to_owned(),
-                    reference_asked: true,
-                });
+                found.push(Series::new(own, function, name, Origin::ControlAtCarriage));
             }
             if let Some(series) = found.iter_mut().find(|s| same(s)) {
                 series.readings.push(reading("1", cells[0], *value, 0));

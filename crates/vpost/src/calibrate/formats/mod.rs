@@ -41,6 +41,17 @@ pub enum Reference {
     Carriage,
 }
 
+/// What kind of numbers a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::calibrate) enum Origin {
+    /// What an instrument read, from its own zero and against its own straightedge.
+    Instrument,
+    /// Functions of a control's model.
+    Control,
+    /// The same, at the carriage maybe (ISG).
+    ControlAtCarriage,
+}
+
 /// Readings of one error function.
 #[derive(Debug, Clone)]
 pub(in crate::calibrate) struct Series {
@@ -48,10 +59,37 @@ pub(in crate::calibrate) struct Series {
     /// 0 to 5: EX EY EZ EA EB EC.
     pub(in crate::calibrate) function: usize,
     pub(in crate::calibrate) readings: Vec<FunctionReading>,
+    /// Temperature at each reading, °C, where the file says it; empty where it never does.
+    pub(in crate::calibrate) temperatures_c: Vec<Option<f64>>,
     /// Where the numbers came from.
     pub(in crate::calibrate) source: String,
-    /// The format tables a carriage's errors, maybe (ISG).
-    pub(in crate::calibrate) reference_asked: bool,
+    pub(in crate::calibrate) origin: Origin,
+}
+
+impl Series {
+    pub(in crate::calibrate) fn new(axis: Axis, function: usize, source: &str, origin: Origin) -> Self {
+        let source = source.to_owned();
+        Self { axis, function, readings: Vec::new(), temperatures_c: Vec::new(), source, origin }
+    }
+
+    /// `EXX`.
+    pub(in crate::calibrate) fn name(&self) -> String {
+        format!("E{}{}", Axis::ALL[self.function], self.axis)
+    }
+
+    /// Temperature at a reading, °C.
+    pub(in crate::calibrate) fn temperature_c(&self, reading: usize) -> Option<f64> {
+        self.temperatures_c.get(reading).copied().flatten()
+    }
+
+    /// Further runs of the same function, from a file of their own.
+    pub(in crate::calibrate) fn append(&mut self, other: Series) {
+        self.temperatures_c.resize(self.readings.len(), None);
+        self.temperatures_c.extend((0..other.readings.len()).map(|k| other.temperature_c(k)));
+        let file = other.source;
+        let renamed = other.readings.into_iter();
+        self.readings.extend(renamed.map(|r| FunctionReading { run: format!("{file}:{}", r.run), ..r }));
+    }
 }
 
 /// What a file holds.
@@ -223,11 +261,12 @@ fn own_csv(name: &str, bytes: Vec<u8>, ignore: &[String]) -> Result<Vec<Series>,
         else {
             continue;
         };
-        let mut readings = Vec::new();
+        let mut series = Series::new(axis, function, name, Origin::Instrument);
         for row in sheet.rows() {
             if let Some(value) = row.number(column)? {
                 let run = row.text("run");
-                readings.push(reading(
+                series.temperatures_c.push(row.number("temp_c")?);
+                series.readings.push(reading(
                     if run.is_empty() { "1" } else { &run },
                     row.needed("position_mm")?,
                     value * factor,
@@ -235,7 +274,7 @@ fn own_csv(name: &str, bytes: Vec<u8>, ignore: &[String]) -> Result<Vec<Series>,
                 ));
             }
         }
-        found.push(Series { axis, function, readings, source: name.to_owned(), reference_asked: false });
+        found.push(series);
     }
     if found.is_empty() {
         return Err(question(

@@ -6,7 +6,7 @@ use machine_model::Axis;
 use crate::calibrate::codes::{AXES, RUNS};
 use crate::message::Failure;
 
-use super::{Series, Told, numbers, reading, unreadable};
+use super::{Origin, Series, Told, numbers, reading, unreadable};
 
 /// Renishaw's RTL text.
 pub(super) fn rtl(name: &str, text: &str, told: &Told<'_>) -> Result<Series, Failure> {
@@ -89,7 +89,7 @@ pub(super) fn rtl(name: &str, text: &str, told: &Told<'_>) -> Result<Series, Fai
             .help("the measurement was broken off, or the file is damaged: export complete runs"),
         ));
     }
-    let mut readings = Vec::new();
+    let mut series = Series::new(axis, function, name, Origin::Instrument);
     for run in 1..=found {
         let own: Vec<_> = rows.iter().filter(|r| r.0 == run).collect();
         // A run passes the targets in one direction: the order of its rows says which.
@@ -109,10 +109,10 @@ pub(super) fn rtl(name: &str, text: &str, told: &Told<'_>) -> Result<Series, Fai
                 ));
             };
             // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
-            readings.push(reading(&((run + 1) / 2).to_string(), position, value * factor, direction));
+            series.readings.push(reading(&((run + 1) / 2).to_string(), position, value * factor, direction));
         }
     }
-    Ok(Series { axis, function, readings, source: name.to_owned(), reference_asked: false })
+    Ok(series)
 }
 
 /// A target column and one column a run, separated by tabs, semicolons or commas. Directions: from `+`/`-`, `forward`/`reverse`
@@ -154,7 +154,7 @@ pub(super) fn columns_of_runs(name: &str, text: &str, told: &Told<'_>) -> Result
             }
         })
         .collect();
-    let mut readings = Vec::new();
+    let mut series = Series::new(axis, function, name, Origin::Instrument);
     for (number, line) in rows {
         let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
         let target = cells[0].parse::<f64>().map_err(|_| {
@@ -175,8 +175,8 @@ pub(super) fn columns_of_runs(name: &str, text: &str, told: &Told<'_>) -> Result
                 )
             })?;
             let direction = directions.get(k).copied().unwrap_or(1);
-            readings.push(reading(&k.div_ceil(2).to_string(), target, value * factor, direction));
+            series.readings.push(reading(&k.div_ceil(2).to_string(), target, value * factor, direction));
         }
     }
-    Ok(Series { axis, function, readings, source: name.to_owned(), reference_asked: false })
+    Ok(series)
 }

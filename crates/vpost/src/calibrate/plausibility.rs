@@ -1,0 +1,147 @@
+//! Mistakes that an interferometer's readings themselves contradict, and what ISO 230-2 asks of a test.
+
+use calibration::functions::Function;
+use calibration::iso230_2::{self, Runs};
+use diagnostic::Diagnostic;
+
+use crate::message::{Failure, Messages};
+
+use super::codes::{AXES, MISSING, RUNS, UNITS};
+use super::formats::{Origin, Series};
+use super::output::{short, warn};
+
+/// Deviations that are much too small or too large for their unit.
+///
+/// # Errors
+/// Readings of an instrument that nine times in ten are below what any machine's are.
+pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure> {
+    let mut sizes: Vec<f64> = series.readings.iter().map(|r| r.value.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
+    let name = series.name();
+    // 0.05 µm and 0.05 µrad; 0.5 mm and 5 mrad.
+    let (low, high) = if series.function < 3 { (5e-5, 0.5) } else { (5e-8, 5e-3) };
+    if large > 0.0 && large < low && sizes.len() > 3 {
+        let message = format!(
+            "{}: nine readings of ten of {name} are below {}: are they in a larger unit than said?",
+            series.source,
+            if series.function < 3 { "0.05 um" } else { "0.05 urad" }
+        );
+        let diagnostic = |d: Diagnostic| {
+            d.help("no machine is that good: check µm against mm, µrad against arc seconds; leave out a column that holds nothing (--ignore-column)")
+        };
+        if series.origin == Origin::Instrument {
+            return Err(Failure::usage(diagnostic(Diagnostic::error(UNITS, message))));
+        }
+        warn(messages, diagnostic(Diagnostic::warning(UNITS, message)));
+    } else if large > high {
+        let message = format!(
+            "{}: readings of {name} reach {:.0} {}: are they in a smaller unit than said?",
+            series.source,
+            large * if series.function < 3 { 1e3 } else { 1e6 },
+            if series.function < 3 { "um" } else { "urad" }
+        );
+        warn(
+            messages,
+            Diagnostic::warning(UNITS, message).help("check µm against mm and nm, µrad against arc seconds"),
+        );
+    }
+    Ok(())
+}
+
+/// Below this no instrument tells two readings apart, mm and rad.
+const FINEST: f64 = 1e-5;
+const FINEST_RAD: f64 = 1e-8;
+
+/// Runs that agree to the last digit.
+///
+/// # Errors
+/// They do, but the two directions do not keep their distance: one run was written several times.
+pub(super) fn copies(
+    series: &Series,
+    runs: &Runs,
+    function: &Function,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let same = |all: &[Vec<f64>]| all.windows(2).all(|pair| pair[0] == pair[1]);
+    let repeated = runs.positive.len().max(runs.negative.len()) > 1;
+    if !(repeated && same(&runs.positive) && same(&runs.negative)) {
+        return Ok(());
+    }
+    let message = format!("{}: all runs of {} are the same to the last digit", series.source, series.name());
+    let apart = function.directions.as_ref().map_or(0.0, |[up, down]| {
+        let differences = || up.iter().zip(down).map(|(u, d)| u - d);
+        differences().fold(f64::MIN, f64::max) - differences().fold(f64::MAX, f64::min)
+    });
+    let (finest, scale, unit) =
+        if series.function < 3 { (FINEST, 1e3, "um") } else { (FINEST_RAD, 1e6, "urad") };
+    if apart > finest {
+        let message = format!(
+            "{message}, while the difference of the directions wanders by {} {unit} from target to target: was one run written several times?",
+            short(apart * scale, 3)
+        );
+        return Err(Failure::usage(
+            Diagnostic::error(RUNS, message).help("give runs that were each measured, or one run alone"),
+        ));
+    }
+    warn(
+        messages,
+        Diagnostic::warning(MISSING, message).help(
+            "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
+        ),
+    );
+    Ok(())
+}
+
+/// Reversal values that no lost motion has.
+///
+/// # Errors
+/// At every target the axis stands further behind a motion towards plus than behind one towards minus.
+pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failure> {
+    let Some([up, down]) = &function.directions else { return Ok(()) };
+    if series.function != series.axis.direction() {
+        return Ok(());
+    }
+    let values: Vec<f64> = up.iter().zip(down).map(|(u, d)| u - d).collect();
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    // Three standard uncertainties of the mean of all targets, and at every one of them.
+    let uncertainty = function.scatter.unwrap_or(0.0) * (4.0 / (function.count as f64 * n)).sqrt();
+    if values.iter().any(|b| *b <= 0.0) || mean <= f64::max(3.0 * uncertainty, LEAST_MM) {
+        return Ok(());
+    }
+    let message = format!(
+        "{}: at every target {} stands further when it comes from below than from above, by {} um on average: lost motion is the other way round",
+        series.source,
+        series.axis,
+        short(mean * 1e3, 3)
+    );
+    Err(Failure::usage(Diagnostic::error(AXES, message).help(
+        "were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement",
+    )))
+}
+
+/// A reversal value below this is none, mm.
+const LEAST_MM: f64 = 1e-4;
+
+/// What ISO 230-2 asks of a test.
+pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
+    let length = found.targets[found.targets.len() - 1].position - found.targets[0].position;
+    let mut missing = Vec::new();
+    if found.runs.iter().any(|n| *n < 5) {
+        missing
+            .push(format!("{} and {} runs instead of five in each direction", found.runs[0], found.runs[1]));
+    }
+    let least = if length < 1000.0 { 5.0 } else { 5.0 * length / 1000.0 };
+    if (found.targets.len() as f64) < least {
+        missing.push(format!("{} targets over {length} mm instead of {least:.0}", found.targets.len()));
+    }
+    if !missing.is_empty() {
+        let message =
+            format!("{name} is evaluated after ISO 230-2 but was not measured so: {}", missing.join("; "));
+        warn(
+            messages,
+            Diagnostic::warning(MISSING, message).help("do not quote the figures as those of the standard"),
+        );
+    }
+}
