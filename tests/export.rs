@@ -162,6 +162,39 @@ fn a_lattice_comes_back_as_a_machine() {
         text.lines().nth(5).and_then(|l| l.rsplit(',').next()?.parse().ok()).expect("a number")
     };
     assert!((last(&errors) + last(&corrections)).abs() < 1e-9 && last(&errors) != 0.0);
+    // And come back as the same machine.
+    let again = folder.path().join("again.toml");
+    calibrate(&["volumetric", &file, "--nodes", "9", "--holdout-every", "7"], &again);
+    for axis in ["x", "y", "z"] {
+        let table = |profile: &str| {
+            std::fs::read(folder.path().join(profile).join(format!("{axis}.csv"))).expect("a table")
+        };
+        assert_eq!(table("made"), table("again"), "{axis}");
+    }
+}
+
+#[test]
+fn what_a_form_does_not_hold_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (format, words) in [
+        ("linuxcnc", ["monotone interpolation", "straightness"]),
+        ("isg", ["monotone interpolation", "where X was measured"]),
+        ("csv", ["--interpolation monotone", "where Z was measured"]),
+        ("lattice", ["monotone interpolation", "between the lattice's points"]),
+    ] {
+        let said = messages(&export(format, folder.path(), &[]));
+        assert!(words.iter().all(|word| said.contains(word)), "{format}: {said}");
+    }
+    // Lost motion without a table is written, too.
+    let profile = folder.path().join("play.toml");
+    let axes = "[axis.X]\ntravel_mm = [0, 100]\nbacklash_um = 6.0\n[axis.Y]\ntravel_mm = [0, 100]\n[axis.Z]\ntravel_mm = [0, 100]\n";
+    std::fs::write(&profile, format!("format = 1\nname = \"play\"\nchain = \"[w X Y b Z t]\"\n{axes}"))
+        .expect("written");
+    let out = folder.path().to_str().expect("plain");
+    let output = run(&["profile", "export", profile.to_str().expect("plain"), "--format", "csv", "-O", out]);
+    assert!(output.status.success(), "{}", messages(&output));
+    let table = std::fs::read_to_string(folder.path().join("x.csv")).expect("written");
+    assert_eq!(table, "run,dir,position_mm,EXX_um\n1,1,0,-3\n1,1,100,-3\n1,-1,0,3\n1,-1,100,3\n");
 }
 
 #[test]

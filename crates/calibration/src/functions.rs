@@ -33,6 +33,8 @@ pub struct Function {
     pub scatter: Option<f64>,
     /// Readings behind the smallest mean.
     pub count: usize,
+    /// The directions keep one distance at all targets ([`crate::measured_line::settle_directions`]).
+    pub one_reversal: bool,
 }
 
 /// Targets nearer than this are one, mm.
@@ -109,6 +111,7 @@ pub fn function(readings: &[FunctionReading]) -> Result<Function, CalibrationErr
         directions: up.zip(down).map(|(u, d)| [u, d]),
         scatter: (free > 0).then(|| (squares / free as f64).sqrt()),
         count: runs.positive.len() + runs.negative.len(),
+        one_reversal: false,
     })
 }
 
@@ -121,13 +124,6 @@ pub fn straight_line(positions: &[f64], values: &[f64]) -> (f64, f64) {
     let common: f64 = positions.iter().zip(values).map(|(p, v)| (p - q) * (v - e)).sum();
     let slope = if spread > 0.0 { common / spread } else { 0.0 };
     (slope, e - slope * q)
-}
-
-/// The same function without its slope, turned about its first position: what of a straightness is no angle.
-#[must_use]
-pub fn without_slope(positions: &[f64], values: &[f64]) -> Vec<f64> {
-    let (slope, _) = straight_line(positions, values);
-    positions.iter().zip(values).map(|(p, v)| v - slope * (p - positions[0])).collect()
 }
 
 /// A finer table at an equal step from the first position on, the last position included: straight lines as in Tables

@@ -170,7 +170,11 @@ fn scatters(all: &[Option<(Approach, usize)>]) -> Vec<Variance> {
 struct Limit {
     value: f64,
     variance: Variance,
+    /// The part of the variance that is the deviation's.
+    of_deviation: Variance,
     position: f64,
+    /// Target and direction.
+    place: usize,
 }
 
 /// Largest minus smallest, with the uncertainty of the two and of the instrument over the distance between them.
@@ -179,7 +183,12 @@ fn range(limits: &[(Limit, Limit)], relative: f64) -> Option<Uncertain> {
     let bottom = limits.iter().map(|l| l.1).min_by(|a, b| a.value.total_cmp(&b.value))?;
     let instrument = relative * (top.position - bottom.position);
     let known = Variance { value: instrument * instrument, freedom: f64::INFINITY };
-    let variance = Variance::sum(&[top.variance, bottom.variance, known]);
+    let variance = if top.place == bottom.place {
+        // x̄ + 2s - (x̄ - 2s): one deviation twice, and no mean.
+        top.of_deviation.times(4.0)
+    } else {
+        Variance::sum(&[top.variance, bottom.variance, known])
+    };
     Some(Uncertain { value: top.value - bottom.value, expanded: variance.half_width_95() })
 }
 
@@ -254,14 +263,15 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
         for &side in sides {
             for (i, t) in targets.iter().enumerate() {
                 if let Some(a) = pick(t, side) {
-                    let n = counts[side];
                     // Mean and deviation come from the same scatter.
-                    let of_both =
-                        1.0 / n as f64 + if n > 1 { 0.5 * spread * spread / (n as f64 - 1.0) } else { 0.0 };
+                    let n = counts[side] as f64;
+                    let of_deviation = if n > 1.0 { 0.5 * spread * spread / (n - 1.0) } else { 0.0 };
                     let limit = |sign: f64| Limit {
                         value: a.mean + sign * spread * a.deviation,
-                        variance: scatter[side][i].times(of_both),
+                        variance: scatter[side][i].times(1.0 / n + of_deviation),
+                        of_deviation: scatter[side][i].times(of_deviation),
                         position: t.position,
+                        place: side * count + i,
                     };
                     all.push((limit(1.0), limit(-1.0)));
                 }
@@ -296,7 +306,13 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
                 (0..2).filter(|side| pick(t, *side).is_some()).map(|side| of_mean(side, i)).collect();
             let given = parts.len().max(1) as f64;
             let variance = Variance::sum(&parts).times(1.0 / (given * given));
-            let limit = Limit { value: t.mean, variance, position: t.position };
+            let limit = Limit {
+                value: t.mean,
+                variance,
+                of_deviation: Variance::ZERO,
+                position: t.position,
+                place: i,
+            };
             (limit, limit)
         })
         .collect();

@@ -9,7 +9,12 @@ use machine_model::{
     WithEffects,
 };
 
+use nalgebra::DMatrix;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::field;
 use crate::functions::{Function, straight_line};
+use crate::student::quantile_95;
 
 /// Where an axis was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +121,34 @@ pub fn apply_gauge(change: &mut [Option<Function>; 6], line: &MeasuredLine, gaug
     }
 }
 
+/// Chance below which the distance of two directions is taken to change from target to target.
+const UNEQUAL: f64 = 0.01;
+
+/// Where the two directions keep their distance from target to target, as far as their scatter lets one say (F test, 1 %), they keep it
+/// exactly: one reversal value from all targets is known better than one a target.
+///
+/// * `runs` – runs up and down
+pub fn settle_directions(function: &mut Function, runs: [usize; 2]) {
+    let (Some([up, down]), Some(scatter)) = (&mut function.directions, function.scatter) else { return };
+    let differences: Vec<f64> = up.iter().zip(down.iter()).map(|(u, d)| u - d).collect();
+    let n = differences.len() as f64;
+    let mean = differences.iter().sum::<f64>() / n;
+    let of_one = scatter * scatter * (1.0 / runs[0] as f64 + 1.0 / runs[1] as f64);
+    let squares: f64 = differences.iter().map(|d| (d - mean) * (d - mean)).sum();
+    let freedom = n * (runs[0] + runs[1]).saturating_sub(2) as f64;
+    if !(of_one > 0.0 && n > 1.0 && freedom > 0.0) {
+        return;
+    }
+    let ratio = squares / ((n - 1.0) * of_one);
+    let chance = FisherSnedecor::new(n - 1.0, freedom).map_or(0.0, |f| f.sf(ratio));
+    if chance >= UNEQUAL {
+        for ((u, d), m) in up.iter_mut().zip(down.iter_mut()).zip(&function.mean) {
+            (*u, *d) = (m + 0.5 * mean, m - 0.5 * mean);
+        }
+        function.one_reversal = true;
+    }
+}
+
 /// Straight between targets, the nearer end's value beyond them.
 fn between(positions: &[f64], values: &[f64], q: f64) -> f64 {
     let k = positions.partition_point(|p| *p <= q).clamp(1, positions.len() - 1);
@@ -162,6 +195,20 @@ impl AxisOnNodes {
         let rows = || positive.iter().chain(negative.iter().flatten());
         let given = std::array::from_fn(|k| given[k] || rows().any(|six| six[k] != 0.0));
         Self { nodes_mm, positive, negative, backlash_mm, given }
+    }
+
+    /// Without some of the functions, in either direction: they are to be replaced.
+    #[must_use]
+    pub fn without(mut self, axis: usize, functions: [bool; 6]) -> Self {
+        for six in self.positive.iter_mut().chain(self.negative.iter_mut().flatten()) {
+            for (value, _) in six.iter_mut().zip(functions).filter(|(_, replaced)| *replaced) {
+                *value = 0.0;
+            }
+        }
+        if functions[axis] {
+            self.backlash_mm = 0.0;
+        }
+        self
     }
 
     /// Adds a change that was read along a line `arm_mm` away from where the axis' own arms begin: `e += d - ε × arm`, equation (58).
@@ -264,4 +311,98 @@ pub fn squareness_for<E>(
         found.ea0z_rad += wanted_rad[2] - a;
     }
     Ok(found)
+}
+
+/// Places along each axis at which a field's uncertainty is looked at.
+const PLACES: usize = 5;
+
+/// Half width that 95 % of the volume's points keep, mm, their common frame taken off: equation (51c) with the noise of (58). `None`
+/// where no function was repeated.
+///
+/// * `order` – chain order of the axes, workpiece first
+/// * `targets_mm` – of each axis, as far as its line goes
+/// * `relative` – standard uncertainty of the instrument's length, relative
+#[must_use]
+pub fn field_u95_mm(
+    lines: &[MeasuredLine; 3],
+    order: [usize; 3],
+    targets_mm: &[Vec<f64>; 3],
+    changes: &[[Option<Function>; 6]; 3],
+    relative: f64,
+) -> Option<f64> {
+    let places: [[f64; PLACES]; 3] = std::array::from_fn(|axis| {
+        let (low, high) = (targets_mm[axis][0], targets_mm[axis][targets_mm[axis].len() - 1]);
+        std::array::from_fn(|i| low + (high - low) * i as f64 / (PLACES - 1) as f64)
+    });
+    let points: Vec<[usize; 3]> = (0..PLACES * PLACES * PLACES)
+        .map(|k| [k % PLACES, k / PLACES % PLACES, k / (PLACES * PLACES)])
+        .collect();
+    let at = |point: &[usize; 3]| Vector::from_fn(|axis, _| places[axis][point[axis]]);
+    // A value at each place of each function, and a scale an axis.
+    let count = 18 * PLACES + 3;
+    let mut displacements = DMatrix::zeros(3 * points.len(), count);
+    let mut covariance = DMatrix::zeros(count, count);
+    let mut freedom = usize::MAX;
+    for (axis, functions) in changes.iter().enumerate() {
+        for (f, function) in functions.iter().enumerate() {
+            let Some(function) = function else { continue };
+            let Some(scatter) = function.scatter else { continue };
+            // Each direction has half of the readings, unless they keep one distance.
+            let sides = if function.directions.is_some() && !function.one_reversal { 2 } else { 1 };
+            let nodes = function.positions_mm.len();
+            let runs = if function.directions.is_some() { 2 } else { 1 };
+            freedom = freedom.min(nodes * function.count.saturating_sub(runs));
+            let first = (6 * axis + f) * PLACES;
+            let seen = noise_at(&places[axis], function, &lines[axis], f);
+            let variance = scatter * scatter * f64::from(sides) / function.count as f64;
+            covariance
+                .view_mut((first, first), (PLACES, PLACES))
+                .copy_from(&(&seen * seen.transpose() * variance));
+            for (row, point) in points.iter().enumerate() {
+                let mut way = Vector::zeros();
+                way[f % 3] = 1.0;
+                if f >= 3 {
+                    let mut arm = Vector::zeros();
+                    for later in order.into_iter().skip_while(|k| *k != axis).skip(1) {
+                        arm[later] = at(point)[later] - lines[axis].at_mm[later];
+                    }
+                    way = way.cross(&arm);
+                }
+                displacements.view_mut((3 * row, first + point[axis]), (3, 1)).copy_from(&way);
+            }
+        }
+        if functions[axis].is_some() {
+            let own = 18 * PLACES + axis;
+            covariance[(own, own)] = relative * relative;
+            for (row, point) in points.iter().enumerate() {
+                displacements[(3 * row + axis, own)] = at(point)[axis];
+            }
+        }
+    }
+    if freedom == usize::MAX {
+        return None;
+    }
+    let commands: Vec<Vector> = points.iter().map(at).collect();
+    let spreads = field::spreads(&commands, displacements, &covariance);
+    let factor = quantile_95(Some(freedom.max(1))) / quantile_95(None);
+    Some(field::quantile_of_points(&spreads) * factor)
+}
+
+/// What the means at the targets contribute to the function at places, the gauge taken off: one row a place.
+fn noise_at(places: &[f64], function: &Function, line: &MeasuredLine, f: usize) -> DMatrix<f64> {
+    let positions = &function.positions_mm;
+    let n = positions.len();
+    let mut seen = DMatrix::zeros(places.len(), n);
+    for target in 0..n {
+        let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == target))).collect();
+        let (slope, zero) = match f {
+            _ if f == line.axis => (0.0, 0.0),
+            0..3 => straight_line(positions, &unit),
+            _ => (0.0, between(positions, &unit, line.at_mm[line.axis])),
+        };
+        for (row, q) in places.iter().enumerate() {
+            seen[(row, target)] = between(positions, &unit, *q) - zero - slope * q;
+        }
+    }
+    seen
 }

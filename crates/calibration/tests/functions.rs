@@ -1,8 +1,6 @@
 //! Error functions of one axis: directions, slopes, conventions, finer tables.
 
-use calibration::functions::{
-    FunctionReading, SquarenessConvention, function, refined, squareness, straight_line, without_slope,
-};
+use calibration::functions::{FunctionReading, SquarenessConvention, function, refined, squareness};
 use machine_model::Interpolation;
 
 fn reading(run: &str, position_mm: f64, value: f64, direction: i8) -> FunctionReading {
@@ -41,14 +39,6 @@ fn tables_4_5_to_4_7_are_straight_lines_between_the_targets() {
     assert_eq!(fine.last(), Some(&40.0));
     assert!(made.iter().all(|v| (-1.0 - 1e-12..=1.0 + 1e-12).contains(v)));
     assert!(refined(&positions, &values, 0.0, Interpolation::Linear).is_none());
-}
-
-#[test]
-fn a_slope_is_taken_off_about_the_first_target() {
-    let positions = [100.0, 200.0, 300.0];
-    let values = [0.001, 0.003, 0.005];
-    assert!((straight_line(&positions, &values).0 - 2e-5).abs() < 1e-18);
-    assert!(without_slope(&positions, &values).iter().all(|v| (v - 0.001).abs() < 1e-15));
 }
 
 #[test]

@@ -186,6 +186,14 @@ fn accuracy_is_covered_where_both_extremes_fall_on_one_target() {
 }
 
 #[test]
+fn accuracy_that_is_one_targets_four_deviations_is_as_uncertain_as_its_repeatability() {
+    // The target at 15 mm scatters by 57.6 µm downwards: A and R are four times that, and so is what is not known of it.
+    let found = evaluate(&runs(&readings("psi_2021")).unwrap(), 0.0).unwrap();
+    assert!((found.accuracy.value - found.repeatability.value).abs() < 1e-12);
+    assert!((found.accuracy.expanded / found.repeatability.expanded - 1.0).abs() < 1e-9);
+}
+
+#[test]
 fn runs_with_other_targets_are_named() {
     let mut all = readings("psi_2021");
     all.remove(7);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use diagnostic::{Code, Diagnostic};
-use machine_model::{Axis, Command, PathModel, Six, Vector};
+use machine_model::{Axis, Command, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
 use crate::calibrate::short;
@@ -72,9 +72,18 @@ fn six(profile: &Profile, axis: usize, q: f64, direction: i8) -> Six {
     values
 }
 
-/// Places at which an axis' tables have nodes.
+/// Places at which an axis' tables have nodes, those of both directions; the ends of an axis that has lost motion alone.
 fn nodes(profile: &Profile, axis: usize) -> Vec<f64> {
-    profile.rows[axis].as_ref().map_or_else(Vec::new, |rows| rows.positions.clone())
+    let data = &profile.description.linear[axis];
+    let tables = || [&data.errors, &data.errors_negative].into_iter().flatten();
+    let mut places: Vec<f64> = tables().flat_map(|t| t.nodes()).copied().collect();
+    if places.is_empty() && data.backlash_mm != 0.0 {
+        places = vec![data.travel_mm.low, data.travel_mm.high];
+    }
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    places.retain(|q| tables().all(|t| t.range().low <= *q && *q <= t.range().high));
+    places
 }
 
 /// True where motion towards minus differs from motion towards plus.
@@ -83,11 +92,34 @@ fn has_two_directions(profile: &Profile, axis: usize) -> bool {
     data.errors_negative.is_some() || data.backlash_mm != 0.0
 }
 
-/// Functions of an axis that have a column.
+/// Functions of an axis that say something.
 fn given(profile: &Profile, axis: usize) -> Vec<usize> {
-    let rows = profile.rows[axis].as_ref();
-    rows.map_or_else(Vec::new, |rows| {
-        (0..6).filter(|&k| rows.given[k] || (k == axis && has_two_directions(profile, axis))).collect()
+    let data = &profile.description.linear[axis];
+    let columns = profile.rows[axis].as_ref().map_or([false; 6], |rows| rows.given);
+    let negative = data.errors_negative.as_ref().map_or([0.0; 6], |tables| tables.largest(tables.range()));
+    (0..6)
+        .filter(|&k| columns[k] || negative[k] != 0.0 || (k == axis && has_two_directions(profile, axis)))
+        .collect()
+}
+
+/// Where the axes were measured, for forms that hold functions along the measured lines and not where those ran.
+fn lines_lost(profile: &Profile) -> Vec<String> {
+    let letters = (0..3).filter(|&axis| {
+        let data = &profile.description.linear[axis];
+        data.errors.is_some()
+            && (data.measured_tool_mm != Vector::zeros() || data.measured_at_mm != Vector::zeros())
+    });
+    letters.map(|axis| format!("where {} was measured (measured_at_mm)", Axis::ALL[axis].letter())).collect()
+}
+
+/// What lies between the nodes, where that is no straight line.
+fn curves_lost(profile: &Profile, format: Format) -> Option<String> {
+    (profile.interpolation == Interpolation::Monotone).then(|| {
+        let back = match format {
+            Format::Csv => " (read it back with `--interpolation monotone`)",
+            Format::Linuxcnc | Format::Isg | Format::Lattice => "",
+        };
+        format!("the profile's monotone interpolation: between its points it goes straight{back}")
     })
 }
 
@@ -106,6 +138,7 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         Format::Csv => own(&profile, &arguments.folder)?,
     };
     let mut lost = lost;
+    lost.extend(curves_lost(&profile, arguments.format));
     lost.extend(rotary_lost(&profile, arguments.format));
     if !profile.effects.is_empty() {
         lost.push("the profile's [[effect]] entries".to_owned());
@@ -168,11 +201,6 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         if has_two_directions(profile, axis) {
             lost.push(format!("the direction of motion of {letter}"));
         }
-        if profile.description.linear[axis].measured_tool_mm != Vector::zeros()
-            || profile.description.linear[axis].measured_at_mm != Vector::zeros()
-        {
-            lost.push(format!("where {letter} was measured (measured_at_mm)"));
-        }
         let names: Vec<String> = functions.iter().map(|k| format!("E{}{letter}", Axis::ALL[*k])).collect();
         let _ = writeln!(text, "{letter} {}", names.join(" "));
         for q in nodes(profile, axis) {
@@ -191,6 +219,7 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         short(s.ea0z_rad, 12)
     );
     file::write(&folder.join("errors.isg"), text.as_bytes())?;
+    lost.extend(lines_lost(profile));
     Ok(lost)
 }
 
@@ -239,6 +268,18 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure
         lost.push("the direction of motion".to_owned());
     }
     lost.push("other tools than the default one".to_owned());
+    let missed = (0..3).filter(|&axis| {
+        let inside = |q: &f64| volume.0[axis].low < *q && *q < volume.0[axis].high;
+        let on_plane = |q: f64| places[axis].iter().any(|place| (place - q).abs() < 1e-6);
+        nodes(profile, axis).into_iter().filter(inside).any(|q| !on_plane(q))
+    });
+    let missed: Vec<String> = missed.map(|axis| Axis::ALL[axis].letter().to_string()).collect();
+    if !missed.is_empty() {
+        lost.push(format!(
+            "what the tables of {} do between the lattice's points (their nodes lie elsewhere: `--step`)",
+            missed.join(", ")
+        ));
+    }
     Ok(lost)
 }
 
@@ -265,5 +306,7 @@ fn own(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         }
         file::write(&folder.join(format!("{}.csv", letter.to_ascii_lowercase())), text.as_bytes())?;
     }
-    Ok(vec!["squareness, tools and offsets: they stand in the profile".to_owned()])
+    let mut lost = vec!["squareness, tools and offsets: they stand in the profile".to_owned()];
+    lost.extend(lines_lost(profile));
+    Ok(lost)
 }

@@ -1,8 +1,9 @@
 //! What an interferometer read, against everything the base says: the change of each axis, and of the angles between them.
 
-use calibration::functions::{self, Function, FunctionReading, SquarenessConvention};
+use calibration::functions::{self, Function, FunctionReading};
 use calibration::measured_line::{
-    AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, squareness_for,
+    AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm, settle_directions,
+    squareness_for,
 };
 use diagnostic::Diagnostic;
 use machine_model::effects::{Conditions, EffectTerm};
@@ -170,6 +171,14 @@ impl Session {
             for (_, data) in description.linear.iter_mut().enumerate().filter(|(other, _)| *other != k) {
                 (data.errors, data.errors_negative, data.backlash_mm) = (None, None, 0.0);
             }
+            let read = std::array::from_fn(|f| all.iter().any(|s| s.axis == axis && s.function == f));
+            let data = &mut description.linear[k];
+            let given = self.given[k].unwrap_or_default();
+            let left = AxisOnNodes::new(data, k, given, tables_nodes(data), false).without(k, read);
+            data.backlash_mm = left.backlash_mm;
+            if let Some(left) = left.axis(data, self.interpolation) {
+                *data = left;
+            }
         }
         let mut change: [Option<Function>; 6] = Default::default();
         let mut machines: Vec<(Option<f64>, WithEffects)> = Vec::new();
@@ -191,24 +200,32 @@ impl Session {
                 });
             }
             let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
-            change[series.function] = Some(functions::function(&rest).map_err(|error| fail(&error))?);
+            let runs = functions::runs(&rest).map_err(|error| fail(&error))?;
+            let mut function = functions::function(&rest).map_err(|error| fail(&error))?;
+            settle_directions(&mut function, [runs.positive.len(), runs.negative.len()]);
+            change[series.function] = Some(function);
         }
         apply_gauge(&mut change, &self.lines[k], gauge);
         Ok(change)
     }
 
-    /// The axis as it is written: the base's functions with the change.
+    /// The axis as it is written: the base's functions with the change; those of a model in their place, as far as they go.
     ///
     /// # Errors
     /// Functions that have no range in common.
-    pub(super) fn changed(&self, axis: Axis, change: &[Option<Function>; 6]) -> Result<AxisOnNodes, Failure> {
+    pub(super) fn changed(
+        &self,
+        axis: Axis,
+        change: &[Option<Function>; 6],
+        zero: Zero,
+    ) -> Result<AxisOnNodes, Failure> {
         let k = axis.direction();
         let data = &self.description.linear[k];
         let mut nodes = tables_nodes(data);
         let targets = &self.targets_mm[k];
         nodes.extend(targets);
         rising(&mut nodes);
-        if let Some(known) = self.known_mm[k] {
+        if let (Some(known), Zero::Base) = (self.known_mm[k], zero) {
             let (low, high) = (known.low.min(targets[0]), known.high.max(targets[targets.len() - 1]));
             nodes.retain(|q| low <= *q && *q <= high);
         } else {
@@ -227,6 +244,9 @@ impl Session {
         }
         let two = change.iter().flatten().any(|f| f.directions.is_some());
         let mut made = AxisOnNodes::new(data, k, self.given[k].unwrap_or_default(), nodes, two);
+        if zero == Zero::Model {
+            made = made.without(k, change.each_ref().map(Option::is_some));
+        }
         made.add(change, self.lines[k].arm_mm(&self.description));
         Ok(made)
     }
@@ -262,10 +282,10 @@ impl Session {
         self.description.squareness
     }
 
-    /// Of each axis, which axes it carries towards the tool.
-    pub(super) fn carried(&self) -> [Vec<usize>; 3] {
+    /// Half width that 95 % of the volume's points keep, mm.
+    pub(super) fn field_u95_mm(&self, changes: &[[Option<Function>; 6]; 3], relative: f64) -> Option<f64> {
         let order = self.description.chain.linear().map(Axis::direction);
-        std::array::from_fn(|axis| order.into_iter().skip_while(|k| *k != axis).skip(1).collect())
+        field_u95_mm(&self.lines, order, &self.targets_mm, changes, relative)
     }
 
     /// True where the angles between two axes cannot be known from what was read so far.
@@ -385,14 +405,3 @@ fn inside_travel(
 
 /// Targets may stand on the last step of the travel, mm.
 const SLACK_MM: f64 = 0.01;
-
-/// Signs of the model for what an instrument calls squareness, plane by plane.
-pub(super) fn in_the_models_signs(
-    read_rad: [Option<f64>; 3],
-    convention: SquarenessConvention,
-) -> [Option<f64>; 3] {
-    let Squareness { ec0y_rad, eb0z_rad, ea0z_rad } =
-        functions::squareness(read_rad.map(Option::unwrap_or_default), convention);
-    let all = [ec0y_rad, eb0z_rad, ea0z_rad];
-    std::array::from_fn(|k| read_rad[k].map(|_| all[k]))
-}

@@ -18,7 +18,7 @@ use crate::settings;
 use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
 use super::formats::{self, Origin, Reference, Series, Values};
-use super::output::{Output, Target, warn};
+use super::output::{Output, Target, short, warn};
 use super::squareness::Asked;
 use super::{iso_report, plausibility, squareness};
 
@@ -197,7 +197,7 @@ fn mean_temperature(all: &[Series]) -> Option<f64> {
     (!said.is_empty()).then(|| said.iter().sum::<f64>() / said.len() as f64)
 }
 
-/// Writes the changed axes and angles into the profile; half width of the 95 % interval at the far corner, mm.
+/// Writes the changed axes and angles into the profile; half width that 95 % of the volume's points keep, mm.
 fn change(
     arguments: &Interferometer,
     output: &mut Output,
@@ -215,6 +215,7 @@ fn change(
     };
     let mut changes: [Functions; 3] = Default::default();
     let mut made: [Option<AxisOnNodes>; 3] = Default::default();
+    let mut on_base: Vec<Axis> = Vec::new();
     for axis in Axis::ALL.into_iter().take(3).filter(|axis| all.iter().any(|s| s.axis == *axis)) {
         let zero = session.zero(axis, model(axis));
         let without_slopes = match zero {
@@ -222,7 +223,7 @@ fn change(
             Zero::Base | Zero::New => !keep,
         };
         let own = session.change(axis, all, Gauge { zero, without_slopes }, temperature_c)?;
-        let mut changed = session.changed(axis, &own)?;
+        let mut changed = session.changed(axis, &own, zero)?;
         if arguments.directions == Directions::Mean {
             changed = changed.averaged(axis.direction());
         }
@@ -230,6 +231,7 @@ fn change(
         write_line(output, arguments, session, axis, &own, messages);
         if zero == Zero::Base {
             changed_lines(out, axis, &own);
+            on_base.push(axis);
         }
         changes[axis.direction()] = own;
         made[axis.direction()] = Some(changed);
@@ -242,10 +244,16 @@ fn change(
     } else {
         values(session.squareness(&made, asked, mean_temperature(all).or(temperature_c))?)
     };
-    for (k, key) in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"].into_iter().enumerate() {
+    if !on_base.is_empty() {
+        zeros(out, session, &on_base, keep);
+    }
+    for (k, name) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().enumerate() {
         // Half a nanoradian is what is written.
         if asked.rad[k].is_some() || (found[k] - values(before)[k]).abs() > 5e-10 {
-            output.text.set_number(&["squareness", key], found[k] * 1e6, 3);
+            output.text.set_number(&["squareness", &format!("{name}_urad")], found[k] * 1e6, 3);
+            let why = if asked.rad[k].is_some() { "was read" } else { "is in the base" };
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{name}  {:.3} urad: the angle between the lines {why}", found[k] * 1e6);
         }
     }
     if !asked.is_given() && session.is_new() {
@@ -258,13 +266,29 @@ fn change(
             .help("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m"),
         );
     }
-    Ok(far_corner(session, &changes, arguments.u_um_per_m * 1e-6).map(|own| {
+    Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
         // What was not measured is as uncertain as the base says.
         let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
         let base = output.base.as_ref().and_then(|base| base.calibrated.as_ref()?.uncertainty_um);
         let base_mm = if whole { 0.0 } else { base.unwrap_or(0.0) * 1e-3 };
         own.hypot(base_mm)
     }))
+}
+
+/// What the set-up hides, and what was taken for it.
+fn zeros(out: &mut String, session: &Session, on_base: &[Axis], keep_slopes: bool) {
+    let slopes = if keep_slopes { "" } else { ", no slope across its axis" };
+    let place = |axis: &Axis| {
+        let k = axis.direction();
+        format!("{axis} {}", short(session.lines[k].at_mm[k], 3))
+    };
+    let places: Vec<String> = on_base.iter().map(place).collect();
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        out,
+        "by definition the change is 0 in length on average{slopes}, and in angle at {}: the instrument's set-up hides it",
+        places.join(", ")
+    );
 }
 
 /// What changed against the base.
@@ -335,41 +359,6 @@ fn to_the_line(
         }
     }
     Ok(())
-}
-
-/// Half width of the 95 % interval of the deviation at the far corner, mm: means of repeats, their arms from where the lines cross, and
-/// the instrument's scale.
-fn far_corner(session: &Session, changes: &[Functions; 3], relative: f64) -> Option<f64> {
-    let order = session.carried();
-    let reach = |axis: usize| {
-        let (targets, at) = (&session.targets_mm[axis], session.lines[axis].at_mm[axis]);
-        targets.iter().map(|q| (q - at).abs()).fold(0.0, f64::max)
-    };
-    let mut variance = 0.0;
-    let mut known = false;
-    for (axis, functions) in changes.iter().enumerate() {
-        for (f, function) in functions.iter().enumerate() {
-            let Some(Function { scatter: Some(scatter), count, positions_mm, .. }) = function else {
-                continue;
-            };
-            known = true;
-            // A mean of one direction.
-            let sides = if function.as_ref().is_some_and(|f| f.directions.is_some()) { 2.0 } else { 1.0 };
-            let mean = scatter * scatter * sides / *count as f64;
-            if f < 3 {
-                variance += mean;
-            } else {
-                // Two directions across the axis of rotation; the angle counts from where the lines cross.
-                let arm = |k: usize| if k + 3 == f || !order[axis].contains(&k) { 0.0 } else { reach(k) };
-                variance += 2.0 * mean * (0..3).map(|k| arm(k) * arm(k)).sum::<f64>();
-            }
-            if f == axis {
-                let own = relative * (positions_mm[positions_mm.len() - 1] - positions_mm[0]);
-                variance += own * own;
-            }
-        }
-    }
-    known.then(|| 2.0 * variance.sqrt())
 }
 
 /// The axis' tables.

@@ -16,6 +16,8 @@ pub(super) struct Sheet {
     pub(super) name: String,
     bytes: Vec<u8>,
     header: Vec<String>,
+    /// Columns that hold what a control adds instead of what the machine does: the same with the other sign.
+    corrections: Vec<usize>,
     records: Vec<csv::ByteRecord>,
     header_position: Option<csv::Position>,
 }
@@ -65,12 +67,27 @@ impl Sheet {
             return Err(Failure::refused(name, &bytes, vec![diagnostic]));
         }
         let first = all.remove(0);
-        let header: Vec<String> = first.iter().map(text).collect();
+        let mut header: Vec<String> = first.iter().map(text).collect();
+        // A lattice of corrections (`profile export --lattice corrections`) is one of errors with the other sign.
+        let mut corrections = Vec::new();
+        for (at, column) in header.iter_mut().enumerate() {
+            let error = match column.as_str() {
+                "cx_um" => "dx_um",
+                "cy_um" => "dy_um",
+                "cz_um" => "dz_um",
+                _ => continue,
+            };
+            if known.contains(&error) && !ignore.contains(column) {
+                corrections.push(at);
+                error.clone_into(column);
+            }
+        }
         let sheet = Self {
             name: name.to_owned(),
             bytes,
             header_position: first.position().cloned(),
             header,
+            corrections,
             records: all,
         };
         for (at, column) in sheet.header.iter().enumerate() {
@@ -156,7 +173,10 @@ impl Row<'_> {
             return Ok(None);
         }
         match field.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
+            Ok(value) if value.is_finite() => {
+                let negative = self.place(column).is_some_and(|at| self.sheet.corrections.contains(&at));
+                Ok(Some(if negative { -value } else { value }))
+            }
             _ => Err(self.refuse(
                 FIELD,
                 column,

@@ -1,11 +1,10 @@
 //! Squareness as an instrument or a file gave it, and what must be asked of it.
 
-use calibration::functions::{SquarenessConvention, straight_line};
-use machine_model::Axis;
+use calibration::functions::{self, SquarenessConvention, straight_line};
+use machine_model::{Axis, Squareness};
 
 use crate::message::Failure;
 
-use super::axis_change::in_the_models_signs;
 use super::codes::question;
 use super::interferometer::{Convention, Functions, Interferometer};
 
@@ -96,4 +95,12 @@ fn steepest(axes: &[Functions; 3]) -> Option<(String, f64)> {
         }
     }
     worst
+}
+
+/// Signs of the model for what an instrument calls squareness, plane by plane.
+fn in_the_models_signs(read_rad: [Option<f64>; 3], convention: SquarenessConvention) -> [Option<f64>; 3] {
+    let Squareness { ec0y_rad, eb0z_rad, ea0z_rad } =
+        functions::squareness(read_rad.map(Option::unwrap_or_default), convention);
+    let all = [ec0y_rad, eb0z_rad, ea0z_rad];
+    std::array::from_fn(|k| read_rad[k].map(|_| all[k]))
 }
