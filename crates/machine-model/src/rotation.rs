@@ -41,6 +41,21 @@ pub fn small(rotation_rad: &Vector) -> Matrix3<f64> {
     Matrix3::from_columns(&[column(Vector::x()), column(Vector::y()), column(Vector::z())])
 }
 
+/// `exp([ε]×)` for any ε: Rodrigues' formula.
+///
+/// * `rotation_rad` – rotation vector ε, rad
+#[must_use]
+pub fn of_any_size(rotation_rad: &Vector) -> Matrix3<f64> {
+    let angle = rotation_rad.norm();
+    if angle < LARGEST_SMALL_ANGLE_RAD {
+        return small(rotation_rad);
+    }
+    let axis = rotation_rad / angle;
+    let (sin, cos) = math::sin_cos(angle);
+    let cross = axis.cross_matrix();
+    Matrix3::identity() + cross * sin + cross * cross * (1.0 - cos)
+}
+
 /// Rotation by any angle around the axis of `direction` (0 X, 1 Y, 2 Z), right-handed.
 #[must_use]
 pub fn around(direction: usize, angle_rad: f64) -> Matrix3<f64> {
@@ -65,6 +80,15 @@ mod tests {
                 vector[direction] = angle;
                 assert!((small(&vector) - around(direction, angle)).norm() < 5e-14);
             }
+        }
+    }
+
+    #[test]
+    fn large_and_small_angles_agree() {
+        for angle in [0.05, 0.099_999, 0.100_001, 1.0, 3.0] {
+            let vector = Vector::new(2.0, -1.0, 0.5).normalize() * angle;
+            let exact = nalgebra::Rotation3::new(vector);
+            assert!((of_any_size(&vector) - exact.matrix()).norm() < 1e-13, "{angle}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! Forward: where the machine really goes.
 
 use diagnostic::{Code, Diagnostic};
-use machine_model::{Engine, EngineId, Vector};
+use machine_model::{Engine, EngineId, Vector, rotation};
 
 use crate::arguments::{Outside, Predict, Shared};
 use crate::conditions::{conditions, failure};
@@ -63,8 +63,9 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
             }
         };
         if arguments.include_setup {
-            // The measuring frame turns and shifts what it measures: p' = p + shift + rotation × p.
-            let moved = Vector::from(setup.shift_mm) + Vector::from(setup.rotation_rad).cross(&position);
+            // The measuring frame turns and shifts what it measures: p' = R p + shift, by any angle.
+            let turn = rotation::of_any_size(&Vector::from(setup.rotation_rad));
+            let moved = turn * position + Vector::from(setup.shift_mm) - position;
             position += moved;
             error += moved;
         }
