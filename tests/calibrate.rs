@@ -39,31 +39,29 @@ fn tracker(cube: u32, more: &[&str], folder: &Path) -> (Output, PathBuf) {
 }
 
 #[test]
-fn the_small_cube_is_refused_with_its_number_and_nothing_is_written() {
+fn chords_of_the_small_cube_are_refused_to_the_engines_that_carry_chords() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (output, profile) = tracker(48, &["--chain", "[w X Y b Z t]"], folder.path());
+    let known = ["--chain", "[w X Y b Z t]"];
+    let tangential = [&known[..], &["--engine", "tangential-static"]].concat();
+    let (output, profile) = tracker(48, &tangential, folder.path());
     assert_eq!(output.status.code(), Some(1));
     let said = messages(&output);
     assert!(said.contains("VP1103") && said.contains("±230 um") && said.contains("181 um"), "{said}");
     assert!(!profile.exists());
-    // What the message offers works.
-    let (output, profile) = tracker(48, &["--chain", "[w X Y b Z t]", "--chord-mm", "6"], folder.path());
-    assert!(output.status.success(), "{}", messages(&output));
-    assert!(profile.exists());
+    // What the message offers works, and positions that add do without.
+    for more in [[&tangential[..], &["--chord-mm", "6"]].concat(), known.to_vec()] {
+        let (output, profile) = tracker(48, &more, folder.path());
+        assert!(output.status.success(), "{}", messages(&output));
+        assert!(profile.exists());
+    }
 }
 
-#[test]
-fn a_tracker_s_profile_corrects_a_program() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (output, profile) = tracker(315, &["--chain", "[w X Y b Z t]", "-d", "linuxcnc"], folder.path());
-    assert!(output.status.success(), "{}", messages(&output));
-    let profile = profile.to_str().expect("a plain name");
-    let points = folder.path().join("points.csv");
+/// With the set-up, the model says what the tracker read at the ends of the three traverses of the cube of 315 mm.
+fn reads_back(profile: &str, folder: &Path) {
+    let points = folder.join("points.csv");
     std::fs::write(&points, "x_mm,y_mm,z_mm\n315,0,0\n0,315,0\n0,0,315\n").expect("written");
     let points = points.to_str().expect("a plain name");
-    // With the set-up, the model says what the tracker read at the ends of the three traverses.
-    let predicted = run(&["predict", points, "-m", profile, "--include-setup"]);
-    let predicted = text(&predicted);
+    let predicted = text(&run(&["predict", points, "-m", profile, "--include-setup"]));
     let read = [
         [315.0866714, 0.1545825, 0.0476017],
         [0.1667192, 315.2554775, 0.0821639],
@@ -72,10 +70,18 @@ fn a_tracker_s_profile_corrects_a_program() {
     for (line, measured) in predicted.lines().skip(1).zip(read) {
         let cells: Vec<f64> = line.split(',').map(|c| c.parse().expect("a number")).collect();
         for i in 0..3 {
-            // Rotation times error is left: 0.5 mrad of 0.3 mm.
             assert!((cells[3 + i] - measured[i]).abs() < 3e-4, "{line}");
         }
     }
+}
+
+#[test]
+fn a_tracker_s_profile_corrects_a_program() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (output, profile) = tracker(315, &["--chain", "[w X Y b Z t]", "-d", "linuxcnc"], folder.path());
+    assert!(output.status.success(), "{}", messages(&output));
+    let profile = profile.to_str().expect("a plain name");
+    reads_back(profile, folder.path());
     let program = folder.path().join("part.ngc");
     std::fs::write(&program, "G21 G90 G54 G17\nG0 X10 Y10 Z10\nG1 X200 Y150 Z50 F500\nG1 X20\nM2\n")
         .expect("written");
@@ -88,27 +94,19 @@ fn a_tracker_s_profile_corrects_a_program() {
 }
 
 #[test]
-fn a_base_profile_keeps_its_tables_and_counts_slopes_once() {
+fn a_base_profile_is_changed_and_counts_slopes_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let (output, profile) = tracker(315, &["-m", "machine-profiles/stan_s500.toml"], folder.path());
     assert!(output.status.success(), "{}", messages(&output));
     let made = std::fs::read_to_string(&profile).expect("it was written");
-    // docs/decisions.md: the tracker's angles less what the tables' slopes hold.
+    // docs/decisions.md: the tracker's angles less what the tables' slopes hold, as the base has them from the same cube.
     for (key, wanted) in [("EC0Y_urad", -1180.0), ("EB0Z_urad", 401.3), ("EA0Z_urad", -564.7)] {
         let line = made.lines().find(|line| line.starts_with(key)).expect("it is there");
         let value: f64 = line.split('=').nth(1).and_then(|v| v.trim().parse().ok()).expect("a number");
-        assert!((value - wanted).abs() < 0.06, "{line}");
+        assert!((value - wanted).abs() < 1.5, "{line}");
     }
-    assert!(made.contains("errors        = \"made/interferometer_x.csv\""), "{made}");
     assert!(made.contains("# STAN S500"), "comments stay: {made}");
-    let again =
-        run(&["predict", "samples/points/tangential_targets.csv", "-m", profile.to_str().expect("plain")]);
-    let before =
-        run(&["predict", "samples/points/tangential_targets.csv", "-m", "machine-profiles/stan_s500.toml"]);
-    let number = |output: &Output| -> f64 {
-        text(output).lines().nth(1).and_then(|l| l.rsplit(',').next()?.parse().ok()).expect("a number")
-    };
-    assert!((number(&again) - number(&before)).abs() < 0.02, "{} {}", number(&again), number(&before));
+    reads_back(profile.to_str().expect("plain"), folder.path());
     // The same machine, measured the same way, has not changed.
     let (output, _) = tracker(
         315,

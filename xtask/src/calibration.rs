@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use calibration::linear_ballbar::{self, CircleReading};
 use calibration::rotary_ballbar::{self, Test, Turning};
 use calibration::tracker::{Frame, calibrate};
-use calibration::volumetric::{self, Point, PointReading};
-use calibration::{MeanTraverse, Reading, quantile_95};
+use calibration::volumetric;
+use calibration::{Base, MeanTraverse, Point, PointReading, Reading, quantile_95};
 use clap::Args;
 use gap_lab::calibration::{
     BarRow, CircleRow, PointRow, TableTruth, Turns, ball_bar, circles, traverses, volume_points,
@@ -244,34 +244,32 @@ fn tracker(seed: u64, index: u64) -> anyhow::Result<Vec<Found>> {
 /// Rows of the generator as points.
 fn points(rows: &[PointRow]) -> Vec<Point> {
     rows.iter()
-        .map(|r| Point {
-            run: r.run,
-            commanded_mm: Vector::from(r.commanded_mm),
-            tool_mm: Vector::from(r.tool_mm),
-            reading: PointReading::Deviation(r.deviation_um.map(|d| Some(d * 1e-3))),
-            uncertainty_mm: None,
+        .map(|r| {
+            let reading = PointReading::Deviation(r.deviation_um.map(|d| Some(d * 1e-3)));
+            Point::new(r.run, Vector::from(r.commanded_mm), Vector::from(r.tool_mm), reading)
         })
         .collect()
 }
 
+/// The truth is what the same places say without noise: the fit has a gauge of its own.
 fn volume(seed: u64, index: u64) -> anyhow::Result<Vec<Found>> {
-    let (rows, truth) = volume_points(seed, index, 1.0, 150);
-    let chain = Chain::parse("[w X Y b Z t]")?;
+    let base = Base::bare(Chain::parse("[w X Y b Z t]")?);
     let options = volumetric::Options { nodes: 4, holdout_every: 0 };
-    let found = volumetric::calibrate(&points(&rows), &chain, options)?;
+    let fit = |noise: f64| volumetric::calibrate(&points(&volume_points(seed, index, noise, 150).0), &base, options);
+    let (found, exact) = (fit(1.0)?, fit(0.0)?);
     let mut all = Vec::new();
-    for f in &found.functions {
+    for (f, truth) in found.functions.iter().zip(&exact.functions) {
         let (scale, unit) = if f.function < 3 { (1e3, "µm") } else { (1e6, "µrad") };
-        for node in (0..4).filter(|&node| f.half_widths_95[node] > 0.0) {
+        for node in 0..4 {
             let direction = ['X', 'Y', 'Z', 'A', 'B', 'C'][f.function];
             let name = format!("E{direction}{} node {node}, {unit}", ['X', 'Y', 'Z'][f.axis]);
-            let wanted = truth.values[f.axis][node][f.function];
+            let wanted = truth.values[node] * scale;
             all.push((name, f.values[node] * scale, f.half_widths_95[node] * scale, wanted));
         }
     }
     for (k, name) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().enumerate() {
-        let (value, half) = found.squareness_rad[k].ok_or_else(|| anyhow::anyhow!("{name} was not found"))?;
-        all.push((format!("{name}, µrad"), value * 1e6, half * 1e6, truth.squareness_urad[k]));
+        let ((value, half), (truth, _)) = (found.squareness_rad[k], exact.squareness_rad[k]);
+        all.push((format!("{name}, µrad"), value * 1e6, half * 1e6, truth * 1e6));
     }
     Ok(all)
 }

@@ -128,8 +128,8 @@ pub struct Estimate {
     pub residuals: DVector<f64>,
     /// Part of each reading's own variance that stays in its residual, 0 to 1.
     pub redundancy_numbers: DVector<f64>,
-    /// Residuals over their own standard deviation; where sigma comes from the residuals, from those of the other readings
-    /// (externally studentised). Zero where nothing controls the reading.
+    /// Residuals over their own standard deviation, sigma from the other readings' residuals (externally studentised) or,
+    /// where it was given, the larger of the two. Zero where nothing controls the reading.
     pub standardised: DVector<f64>,
 }
 
@@ -357,10 +357,9 @@ impl Factored {
             if r < LEAST_REDUNDANCY || redundancy < 2 {
                 return 0.0;
             }
-            let others = match degrees_of_freedom {
-                None => 1.0,
-                Some(free) => ((squares - rest[i] * rest[i] / r).max(0.0) / (free - 1) as f64).sqrt(),
-            };
+            // Without this reading: an outlier must not hide behind the scatter that it makes.
+            let scatter = ((squares - rest[i] * rest[i] / r).max(0.0) / (redundancy - 1) as f64).sqrt();
+            let others = if degrees_of_freedom.is_none() { scatter.max(1.0) } else { scatter };
             if rest[i] == 0.0 { 0.0 } else { rest[i] / (others * r.sqrt()) }
         });
         let residuals = DVector::from_fn(rows, |i, _| rest[i] / problem.noise.weight(i));

@@ -1,13 +1,14 @@
 //! Has the machine changed? Two calibrations compared beyond what they are uncertain of: equation (37).
 
-use machine_model::{Command, RigidBody, Vector, Volume};
+use machine_model::{Command, Description, PathModel, RigidBody, Vector, Volume};
 
-use crate::tracker::rigid_displacement;
+use crate::error::CalibrationError;
+use crate::rigid_motion::RigidMotion;
 
 /// How the errors of two calibrations differ over a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
-    /// Largest difference of the two error fields, mm, after a rigid displacement was taken off.
+    /// Largest difference of the two error fields, mm, after the rigid motion between their frames was taken off.
     pub largest_mm: f64,
     /// Command where it is, mm.
     pub at_mm: Vector,
@@ -15,27 +16,36 @@ pub struct Change {
     pub difference_mm: Vector,
     /// Root mean square over the volume, mm.
     pub rms_mm: f64,
-    /// Half width of the 95 % interval of a difference, mm; `None` where a calibration does not say how well it is known.
+    /// The difference that 95 % of the points keep, mm.
+    pub p95_mm: f64,
+    /// What 95 % of the points keep where nothing has changed, mm; `None` where a calibration does not say how well it is known.
     pub uncertainty_mm: Option<f64>,
 }
 
+/// A machine that has not changed shows this many times what is stated in one comparison of a hundred: the errors of a calibration
+/// hang together over the volume, and a field of about ten independent unknowns has χ²(99 %, 10)/10 = 2.3 = 1.5² times its mean
+/// square.
+const ONE_IN_A_HUNDRED: f64 = 1.5;
+
 impl Change {
-    /// True where the difference exceeds its uncertainty; `None` where that is not known.
+    /// True where the fields differ by more than one comparison of a hundred unchanged machines does; `None` where the
+    /// uncertainty is not known.
     #[must_use]
     pub fn is_beyond_uncertainty(&self) -> Option<bool> {
-        self.uncertainty_mm.map(|u| self.largest_mm > u)
+        self.uncertainty_mm.map(|u| self.p95_mm > ONE_IN_A_HUNDRED * u)
     }
 }
 
 /// Grid points per axis.
 const GRID: usize = 7;
 
-/// Compares two machines over the volume both know.
+/// Compares two machines over the volume both know, coming from both sides.
 ///
-/// A shift and a small rotation are taken off first: each calibration has its own frame, and a frame is no error.
+/// The rigid motion that brings one nearest to the other is taken off first: each calibration has its own frame, and a frame is no
+/// error.
 ///
 /// * `tool_mm` – tool vector at which they are compared
-/// * `uncertainties_mm` – half widths of the 95 % intervals of old and new at the far corner
+/// * `uncertainties_mm` – of old and new: what 95 % of the volume's points keep (51c)
 ///
 /// `None` where the two volumes have nothing in common.
 #[must_use]
@@ -46,37 +56,57 @@ pub fn compare(
     tool_mm: Vector,
     uncertainties_mm: [Option<f64>; 2],
 ) -> Option<Change> {
-    use machine_model::PathModel;
-    if volume.0.iter().any(|range| range.low.partial_cmp(&range.high) != Some(std::cmp::Ordering::Less)) {
+    let empty =
+        |range: &machine_model::Range| range.low.partial_cmp(&range.high) != Some(std::cmp::Ordering::Less);
+    if volume.0.iter().any(|range| empty(range) || !(range.high - range.low).is_finite()) {
         return None;
     }
     let node = |axis: usize, k: usize| {
         let range = volume.0[axis];
         range.low + (range.high - range.low) * k as f64 / (GRID - 1) as f64
     };
+    let sides: &[i8] = if old.depends_on_direction() || new.depends_on_direction() { &[1, -1] } else { &[0] };
     let mut commands = Vec::new();
-    for i in 0..GRID {
-        for j in 0..GRID {
-            for k in 0..GRID {
-                commands.push(Vector::new(node(0, i), node(1, j), node(2, k)));
-            }
+    for side in sides {
+        for k in 0..GRID * GRID * GRID {
+            let linear_mm =
+                Vector::new(node(0, k % GRID), node(1, k / GRID % GRID), node(2, k / GRID / GRID));
+            commands.push(Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: [*side; 3] });
         }
     }
-    let error = |model: &RigidBody, at: &Vector| {
-        model.error_mm(&Command { linear_mm: *at, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3] })
+    let places = |model: &RigidBody| -> Vec<Vector> {
+        commands.iter().map(|c| model.predict(c).position_mm).collect()
     };
-    let differences: Vec<Vector> = commands.iter().map(|at| error(new, at) - error(old, at)).collect();
-    let moved: Vec<Vector> = commands.iter().zip(&differences).map(|(at, d)| at + d).collect();
-    let (shift, turn) = rigid_displacement(&commands, &moved)?;
-    let left: Vec<Vector> =
-        commands.iter().zip(&differences).map(|(at, d)| d - shift - turn.cross(at)).collect();
+    let (from, to) = (places(old), places(new));
+    let motion = RigidMotion::nearest(&from, &to);
+    let left: Vec<Vector> = from.iter().zip(&to).map(|(a, b)| b - motion.apply(a)).collect();
     let worst = (0..left.len()).max_by(|a, b| left[*a].norm().total_cmp(&left[*b].norm()))?;
     let [a, b] = uncertainties_mm;
     Some(Change {
         largest_mm: left[worst].norm(),
-        at_mm: commands[worst],
+        at_mm: commands[worst].linear_mm,
         difference_mm: left[worst],
         rms_mm: (left.iter().map(Vector::norm_squared).sum::<f64>() / left.len() as f64).sqrt(),
+        p95_mm: p95(&left),
         uncertainty_mm: a.zip(b).map(|(a, b)| (a * a + b * b).sqrt()),
     })
+}
+
+/// What 95 % of the lengths keep.
+fn p95(vectors: &[Vector]) -> f64 {
+    let mut lengths: Vec<f64> = vectors.iter().map(Vector::norm).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths.get((lengths.len() * 95).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0)
+}
+
+/// What 95 % of the places deviate by at most from an ideal machine in the best frame, mm.
+pub(crate) fn departure_p95_mm(machine: &Description, commands: &[Command]) -> Result<f64, CalibrationError> {
+    let machine =
+        RigidBody::new(machine.clone()).map_err(|error| CalibrationError::Axes(error.to_string()))?;
+    let places = commands.iter().map(|c| machine.predict(c));
+    let (real, ideal): (Vec<Vector>, Vec<Vector>) =
+        places.map(|p| (p.position_mm, p.position_mm - p.error_mm)).unzip();
+    let motion = RigidMotion::nearest(&ideal, &real);
+    let left: Vec<Vector> = ideal.iter().zip(&real).map(|(a, b)| b - motion.apply(a)).collect();
+    Ok(p95(&left))
 }

@@ -13,7 +13,10 @@ pub mod functions;
 pub mod iso230_2;
 mod least_squares;
 pub mod linear_ballbar;
+mod machine_change;
 pub mod measured_line;
+mod mistakes;
+pub mod rigid_motion;
 pub mod rotary_ballbar;
 pub mod rotary_sequence;
 mod student;
@@ -23,5 +26,6 @@ pub mod volumetric;
 
 pub use error::CalibrationError;
 pub use least_squares::{Estimate, solve};
+pub use machine_change::{Base, ChangedAxis, Point, PointReading, RowOrigin, SetUp};
 pub use student::{quantile, quantile_95};
 pub use traverse::{MeanTraverse, Node, Noise, Reading};

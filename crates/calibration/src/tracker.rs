@@ -3,13 +3,15 @@
 //! A tracker that follows a point sees where it goes, not how the carriage turns: angles (roll, pitch, yaw) are not in
 //! three traverses, and so nothing is known of what happens beside the measured lines with other tool vectors.
 
-use machine_model::{Squareness, Vector};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use machine_model::{Description, Squareness, Vector};
+use nalgebra::Matrix3;
 
 use crate::error::{CalibrationError, LETTERS};
-use crate::least_squares::solve;
+use crate::machine_change::{Base, ChangedAxis, Plan, Point, SetUp, find};
+use crate::mistakes;
 use crate::student::quantile_95;
 use crate::traverse::{MeanTraverse, Noise};
+use crate::volumetric::{field_commands, inside, plays};
 
 /// Instrument and machine frame may differ by this much before the difference is a question, rad.
 const LARGEST_FRAME_TURN_RAD: f64 = 0.01;
@@ -45,17 +47,6 @@ pub struct Line {
     pub uncertainty: Vector,
 }
 
-/// One axis in the terms of ISO 230-1, machine frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AxisErrors {
-    /// Commands, mm.
-    pub positions_mm: Vec<f64>,
-    /// Positioning and straightness at each command, mm: what the squareness does not already say.
-    pub errors_mm: Vec<Vector>,
-    /// Standard uncertainty at each command, mm.
-    pub uncertainty_mm: Vec<Vector>,
-}
-
 /// What chords of this length do at the far corner: equation (36).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarCorner {
@@ -71,6 +62,8 @@ pub struct FarCorner {
     pub direction_u95_rad: f64,
     /// Usual length of a chord, mm.
     pub chord_mm: f64,
+    /// From standard uncertainties of this measurement to half widths of 95 % intervals.
+    pub coverage_factor: f64,
 }
 
 /// What the uncertainty at the far corner means.
@@ -120,12 +113,6 @@ pub struct TrackerCalibration {
     pub squareness: Squareness,
     /// Their standard uncertainties, rad, in the order EC0Y, EB0Z, EA0Z.
     pub squareness_uncertainty_rad: [f64; 3],
-    /// Positioning and straightness of X, Y, Z in the machine frame: X along the X line, Y in its plane with Z out of it.
-    pub axes: [AxisErrors; 3],
-    /// Measuring frame against machine frame: measured = machine + shift + rotation × machine.
-    pub setup_shift_mm: Vector,
-    /// Rotation of the same, rad.
-    pub setup_rotation_rad: Vector,
     /// What the chords are good for.
     pub far_corner: FarCorner,
 }
@@ -164,8 +151,10 @@ pub fn calibrate(traverses: [MeanTraverse; 3], frame: Frame) -> Result<TrackerCa
         Frame::Fitted => {
             let lines = [0, 1, 2].map(|i| line(&traverses[i]).slope);
             let turn = nearest_rotation(&Matrix3::from_columns(&lines))?;
+            let squares = turn.transpose().map(|c| c * c);
             for node in traverses.iter_mut().flat_map(|t| &mut t.nodes) {
                 node.measured_mm = turn.transpose() * node.measured_mm;
+                node.uncertainty_mm = (squares * node.uncertainty_mm.map(|u| u * u)).map(f64::sqrt);
             }
             turn
         }
@@ -173,21 +162,11 @@ pub fn calibrate(traverses: [MeanTraverse; 3], frame: Frame) -> Result<TrackerCa
     let lines = [0, 1, 2].map(|i| line(&traverses[i]));
     check_frame(&lines)?;
     let cosines = [0, 1, 2].map(|i| cosines(&traverses[i]));
-    let s = |axis: usize, component: usize| lines[axis].slope[component];
     let u = |axis: usize, component: usize| lines[axis].uncertainty[component];
-    let squareness = Squareness {
-        ec0y_rad: -(s(1, 0) + s(0, 1)),
-        eb0z_rad: s(2, 0) + s(0, 2),
-        ea0z_rad: -(s(2, 1) + s(1, 2)),
-    };
+    let [x, y, z] = [0, 1, 2].map(|i| lines[i].slope.normalize());
+    let squareness = Squareness { ec0y_rad: -x.dot(&y), eb0z_rad: x.dot(&z), ea0z_rad: -y.dot(&z) };
     let both = |a: f64, b: f64| (a * a + b * b).sqrt();
     let squareness_uncertainty_rad = [both(u(1, 0), u(0, 1)), both(u(2, 0), u(0, 2)), both(u(2, 1), u(1, 2))];
-    // Equation (34): the rotation that lays X along its line and Y into the plane.
-    let turn = Vector::new(-s(1, 2), s(0, 2), -s(0, 1));
-    let tilts = squareness.tilts();
-    let axes = [0, 1, 2].map(|i| axis_errors(&traverses[i], origin_mm[i], &turn, &tilts[i]));
-    let zero: Vector = traverses[0].at(origin_mm.x);
-    let setup_shift_mm = zero - origin_mm + turn.cross(&origin_mm);
     let far_corner = far_corner(&traverses, &origin_mm);
     Ok(TrackerCalibration {
         traverses,
@@ -197,9 +176,6 @@ pub fn calibrate(traverses: [MeanTraverse; 3], frame: Frame) -> Result<TrackerCa
         cosines,
         squareness,
         squareness_uncertainty_rad,
-        axes,
-        setup_shift_mm,
-        setup_rotation_rad: -turn,
         far_corner,
     })
 }
@@ -302,21 +278,6 @@ fn check_frame(lines: &[Line; 3]) -> Result<(), CalibrationError> {
     Ok(())
 }
 
-/// Deviations of one axis in the machine frame, the squareness taken off: equation (35).
-fn axis_errors(traverse: &MeanTraverse, origin: f64, turn: &Vector, tilt: &Vector) -> AxisErrors {
-    let zero = traverse.at(origin);
-    let mut along = Vector::zeros();
-    let mut out = AxisErrors { positions_mm: Vec::new(), errors_mm: Vec::new(), uncertainty_mm: Vec::new() };
-    for node in &traverse.nodes {
-        along[traverse.axis] = node.commanded_mm - origin;
-        let seen = node.measured_mm - zero - along + turn.cross(&along);
-        out.positions_mm.push(node.commanded_mm);
-        out.errors_mm.push(seen - tilt * node.commanded_mm);
-        out.uncertainty_mm.push(node.uncertainty_mm);
-    }
-    out
-}
-
 /// Equation (36).
 fn far_corner(traverses: &[MeanTraverse; 3], origin_mm: &Vector) -> FarCorner {
     let factor = match traverses[0].noise {
@@ -360,32 +321,64 @@ fn far_corner(traverses: &[MeanTraverse; 3], origin_mm: &Vector) -> FarCorner {
         chord_u95_mm: factor * chords.sqrt(),
         direction_u95_rad: factor * direction,
         chord_mm,
+        coverage_factor: factor,
     }
 }
 
-/// Rigid displacement (shift and small rotation) that brings `from` nearest to `to`, first order.
+/// The machine that the traverses change the base into.
+#[derive(Clone, Debug)]
+pub struct TrackerMachine {
+    /// The tables of the changed machine.
+    pub axes: [ChangedAxis; 3],
+    /// The changed machine.
+    pub description: Description,
+    /// How the instrument stood.
+    pub setups: Vec<Option<SetUp>>,
+    /// Reversal value of X, Y, Z and the half width of its 95 % interval, mm; `None` where not read from both sides.
+    pub play_mm: [Option<(f64, f64)>; 3],
+    /// Half width that 95 % of the volume's points keep, mm: equation (51c).
+    pub field_u95_mm: f64,
+    /// What 95 % of the volume's points deviate by at most, as found, from an ideal machine in the best frame, mm.
+    pub field_p95_mm: f64,
+    /// Readings minus the changed machine, RMS, mm.
+    pub rms_mm: f64,
+}
+
+/// Fits positioning, straightness and play of the three axes to all readings: equation (51) with the nodes of the traverses and
+/// without angles, which three lines do not show.
 ///
-/// Used to compare measurements of different set-ups: a frame is no error of the machine. `None` where the points lie
-/// on one line.
-#[must_use]
-pub fn rigid_displacement(from_mm: &[Vector], to_mm: &[Vector]) -> Option<(Vector, Vector)> {
-    let rows = 3 * from_mm.len();
-    let mut design = DMatrix::zeros(rows, 6);
-    let mut right = DVector::zeros(rows);
-    for (k, (from, to)) in from_mm.iter().zip(to_mm).enumerate() {
-        for turn in 0..3 {
-            let mut unit = Vector::zeros();
-            unit[turn] = 1.0;
-            let moved = unit.cross(from);
-            for i in 0..3 {
-                design[(3 * k + i, 3 + turn)] = moved[i];
-            }
-        }
-        for i in 0..3 {
-            design[(3 * k + i, i)] = 1.0;
-            right[3 * k + i] = to[i] - from[i];
-        }
-    }
-    let values = solve(&design, &right, None).ok()?.values;
-    Some((Vector::new(values[0], values[1], values[2]), Vector::new(values[3], values[4], values[5])))
+/// * `points` – readings of all traverses, one run, from [`crate::PointReading::Position`]
+///
+/// # Errors
+/// [`CalibrationError`]: places outside the base's volume, a mirror image, an outlier, play of the wrong sign.
+pub fn machine(
+    points: &[Point],
+    base: &Base,
+    found: &TrackerCalibration,
+    frame: Frame,
+) -> Result<TrackerMachine, CalibrationError> {
+    inside(points, base)?;
+    let turned = frame == Frame::Fitted;
+    let still = Plan { nodes_mm: Default::default(), functions: 0, turned };
+    mistakes::plausible(points, base, &find(points, base, &still, None)?)?;
+    let nodes = |t: &MeanTraverse| t.nodes.iter().map(|node| node.commanded_mm).collect();
+    let plan = Plan { nodes_mm: found.traverses.each_ref().map(nodes), functions: 3, turned };
+    // A line read once shows its scatter by its roughness only.
+    let rough = found.traverses.iter().filter(|t| t.noise == Noise::Roughness).map(|t| t.scatter_mm.amax());
+    let change = find(points, base, &plan, rough.reduce(f64::max))?;
+    mistakes::outlier(points, &change)?;
+    let play_mm = plays(base, &change);
+    mistakes::play(&play_mm)?;
+    let groups = field_commands(points, &change);
+    let (axes, description, setups) = change.changed(base);
+    let commands: Vec<_> = groups.iter().flatten().copied().collect();
+    Ok(TrackerMachine {
+        axes,
+        field_u95_mm: change.layout.field_u95_mm(base, &change.estimate, &groups)?,
+        field_p95_mm: crate::change::departure_p95_mm(&description, &commands)?,
+        description,
+        setups,
+        play_mm,
+        rms_mm: change.estimate.rms(),
+    })
 }

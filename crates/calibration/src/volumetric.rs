@@ -1,100 +1,58 @@
-//! All rigid-body terms from points anywhere in the volume: equation (51).
+//! All rigid-body terms from points anywhere in the volume: equations (51) to (51c).
 
-use machine_model::{Chain, Vector};
-use nalgebra::{DMatrix, DVector};
+use machine_model::{Command, Description, Engine, PathModel, Vector};
 
+use crate::adjustment::Estimate;
 use crate::error::{CalibrationError, LETTERS};
-use crate::least_squares::{Estimate, solve};
+use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, RowOrigin, SetUp, find};
+use crate::mistakes;
 
-/// What was read at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PointReading {
-    /// Measured minus commanded per component, mm; `None` where not measured.
-    Deviation([Option<f64>; 3]),
-    /// Distance from a station, mm, and where the station is thought to be, mm.
-    Distance {
-        /// Reading.
-        length_mm: f64,
-        /// Station, machine coordinates.
-        station_mm: Vector,
-    },
-}
-
-/// One measured point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// Run: points of one run share the instrument's set-up.
-    pub run: usize,
-    /// Commands of the linear axes, mm.
-    pub commanded_mm: Vector,
-    /// Gauge point to the point that was measured, mm.
-    pub tool_mm: Vector,
-    /// What was read.
-    pub reading: PointReading,
-    /// Standard uncertainty of the reading, mm, where known.
-    pub uncertainty_mm: Option<f64>,
-}
-
-/// One group of parameters: an error function, an angle between axes, or a run's set-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Group {
-    /// Axis and function (0 to 5: EX EY EZ EA EB EC).
-    Function(usize, usize),
-    /// EC0Y, EB0Z, EA0Z.
-    Squareness(usize),
-    /// Set-up of a run.
-    Run(usize),
-}
-
-impl Group {
-    fn name(self) -> String {
-        match self {
-            Self::Function(axis, f) => format!("E{}{}", ['X', 'Y', 'Z', 'A', 'B', 'C'][f], LETTERS[axis]),
-            Self::Squareness(k) => ["EC0Y", "EB0Z", "EA0Z"][k].to_owned(),
-            Self::Run(_) => "the set-up".to_owned(),
-        }
-    }
-}
-
-/// A parameter: its group and, for functions, its node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Parameter {
-    group: Group,
-    part: usize,
-}
-
-/// One error function as found.
+/// The change of one error function as found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundFunction {
     /// 0 X, 1 Y, 2 Z.
     pub axis: usize,
     /// 0 to 5: EX EY EZ EA EB EC.
     pub function: usize,
-    /// Values at the nodes of the axis, mm or rad.
+    /// Change against the base at the nodes of the axis, mm or rad; its gauge is that of [`calibrate`].
     pub values: Vec<f64>,
-    /// Half widths of their 95 % intervals; 0 where a value is 0 by definition.
+    /// Half widths of their 95 % intervals.
     pub half_widths_95: Vec<f64>,
 }
 
 /// What the points say.
 #[derive(Clone, Debug)]
 pub struct VolumetricCalibration {
-    /// Nodes of X, Y, Z, mm.
+    /// Nodes of the change of X, Y, Z, mm.
     pub nodes_mm: [Vec<f64>; 3],
-    /// The functions that could be determined.
+    /// The change, function by function.
     pub functions: Vec<FoundFunction>,
-    /// EC0Y, EB0Z, EA0Z and the half widths of their 95 % intervals, rad; `None` where open.
-    pub squareness_rad: [Option<(f64, f64)>; 3],
-    /// Terms that the points cannot tell from others and that were left at 0: term, and what it looks like.
+    /// EC0Y, EB0Z, EA0Z of the changed machine and the half widths of their 95 % intervals, rad.
+    pub squareness_rad: [(f64, f64); 3],
+    /// Reversal value of X, Y, Z in the middle and the half width of its 95 % interval, mm; `None` where not read from both
+    /// sides.
+    pub play_mm: [Option<(f64, f64)>; 3],
+    /// Terms that the points cannot tell from others and that stay as in the base: term, and what it looks like.
     pub open: Vec<(String, String)>,
-    /// Root mean square of the readings that were fitted: before (set-ups taken off) and after, mm.
+    /// The tables of the changed machine.
+    pub axes: [ChangedAxis; 3],
+    /// The changed machine.
+    pub description: Description,
+    /// How the instrument stood, by run.
+    pub setups: Vec<Option<SetUp>>,
+    /// Root mean square of what the base leaves of the readings and of what the changed machine leaves, set-ups taken
+    /// off, mm.
     pub fitted_rms_mm: [f64; 2],
-    /// The same of the readings that were held out, and how many those were; `None` where none were.
+    /// The same of readings that were held out of a fit, and how many points those were; `None` where none were.
     pub holdout: Option<([f64; 2], usize)>,
-    /// Half width of the 95 % interval of the deviation at the far corner, mm.
-    pub far_corner_u95_mm: f64,
-    /// The least squares behind it.
+    /// True where the held-out readings are no better for the fit, and not because nothing has changed.
+    pub refuted: bool,
+    /// Half width that 95 % of the volume's points keep, mm: equation (51c).
+    pub field_u95_mm: f64,
+    /// The least squares behind it, of all readings.
     pub estimate: Estimate,
+    /// Which reading each of its rows is.
+    pub rows: Vec<RowOrigin>,
 }
 
 /// How to fit.
@@ -102,148 +60,126 @@ pub struct VolumetricCalibration {
 pub struct Options {
     /// Nodes per axis, at least 2.
     pub nodes: usize,
-    /// Every so-manieth point is held out; 0 for none.
+    /// Every so-manieth point is held out of a first fit; 0 for none.
     pub holdout_every: usize,
 }
 
-/// The problem: chain, nodes, points, parameters.
-struct Problem<'p> {
-    order: [usize; 3],
-    nodes: [Vec<f64>; 3],
-    points: &'p [Point],
-    parameters: Vec<Parameter>,
-    stations: Vec<Vector>,
-}
-
-/// Fits every rigid-body term: equation (51).
+/// Fits the change of every rigid-body term: equation (51).
 ///
-/// By definition, so that nothing is counted twice: positioning and angles are 0 at the first node, straightness at both
-/// ends; the slope of a straightness is squareness. Terms that the points cannot tell from others are left out, last axes
-/// and angles first, and named.
+/// The gauge, so that nothing is counted twice: positioning and straightness change by nothing in the mean over their nodes,
+/// neither do the angles of the two axes next to the workpiece; EYX, EZX and EZY change by no slope (the line of X is
+/// X, Y lies in the plane); slopes of EXY, EXZ and EYZ are squareness. The set-ups take the rest. Terms that the points cannot
+/// tell from others stay as in the base, last axes and angles first, and are named. The result is judged by held-out points,
+/// then taken from all.
 ///
 /// # Errors
-/// [`CalibrationError::TooFew`]; [`CalibrationError::Units`] where deviations are no geometric errors.
+/// [`CalibrationError`]: places outside the base's volume, too few of them, numbers in another unit than they claim, an outlier,
+/// play of the wrong sign, and mistakes after whose repair the readings fit far better ([`mistakes`]).
 pub fn calibrate(
     points: &[Point],
-    chain: &Chain,
+    base: &Base,
     options: Options,
 ) -> Result<VolumetricCalibration, CalibrationError> {
+    inside(points, base)?;
+    let still = Plan { nodes_mm: Default::default(), functions: 0, turned: true };
+    let before = find(points, base, &still, None)?;
+    mistakes::plausible(points, base, &before)?;
+    let plan = Plan { nodes_mm: nodes(points, options.nodes)?, functions: 6, turned: true };
+    let found = find(points, base, &plan, None)?;
+    mistakes::contradicted(points, base, &plan)?;
+    let unknowns = found.rows.len() - found.estimate.redundancy;
+    // A tenth more readings than unknowns: below it no residual shows a mistake.
+    if found.estimate.redundancy * 10 < found.rows.len() {
+        return Err(CalibrationError::TooFew(format!(
+            "{} readings for {unknowns} unknowns",
+            found.rows.len()
+        )));
+    }
+    mistakes::outlier(points, &found)?;
+    let play_mm = plays(base, &found);
+    mistakes::play(&play_mm)?;
     let held = |k: usize| options.holdout_every > 1 && k % options.holdout_every == options.holdout_every - 1;
-    let fitted: Vec<Point> = points.iter().enumerate().filter(|(k, _)| !held(*k)).map(|(_, p)| *p).collect();
-    let unseen: Vec<Point> = points.iter().enumerate().filter(|(k, _)| held(*k)).map(|(_, p)| *p).collect();
-    plausible(points)?;
-    let nodes = nodes(&fitted, options.nodes)?;
-    let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
-    let mut stations = vec![Vector::zeros(); runs];
-    for p in points {
-        if let PointReading::Distance { station_mm, .. } = p.reading {
-            stations[p.run] = station_mm;
-        }
+    let (unseen, seen): (Vec<_>, Vec<_>) = points.iter().copied().enumerate().partition(|(k, _)| held(*k));
+    let [unseen, seen] = [unseen, seen].map(|all| all.into_iter().map(|(_, p)| p).collect::<Vec<Point>>());
+    let (mut holdout, mut refuted) = (None, false);
+    if !unseen.is_empty() && unseen.iter().all(|p| seen.iter().any(|q| q.run == p.run)) {
+        let rms = |found: &Found| Ok(root_mean_square(found.rest(&unseen, base)?.as_slice()));
+        let first = find(&seen, base, &plan, None)?;
+        let errors: [f64; 2] = [rms(&find(&seen, base, &still, None)?)?, rms(&first)?];
+        holdout = Some((errors, unseen.len()));
+        // Where nothing has changed a fit adds noise, and no more than that.
+        let noise =
+            first.estimate.rms() * (first.rows.len() as f64 / first.estimate.redundancy.max(1) as f64).sqrt();
+        let expected = noise * (1.0 + unknowns as f64 / first.rows.len() as f64).sqrt();
+        refuted = errors[1] >= errors[0] && (!base.is_known || errors[1] > 2.0 * expected);
     }
-    let order = chain.linear().map(machine_model::Axis::direction);
-    let mut problem =
-        Problem { order, parameters: parameters(&nodes, runs, &fitted), nodes, points: &fitted, stations };
-    let mut open = Vec::new();
-    let mut estimate;
-    // Stations are found with the machine: a few steps, each linear.
-    let steps = if fitted.iter().any(|p| matches!(p.reading, PointReading::Distance { .. })) { 4 } else { 1 };
-    let mut step = 0;
-    loop {
-        let (design, right) = problem.system(problem.points);
-        if design.nrows() <= problem.parameters.len() {
-            return Err(CalibrationError::TooFew(format!(
-                "{} readings for {} unknowns",
-                design.nrows(),
-                problem.parameters.len()
-            )));
-        }
-        let weighted = fitted.iter().all(|p| p.uncertainty_mm.is_some());
-        match solve(&design, &right, weighted.then_some(1.0)) {
-            Ok(found) => {
-                estimate = found;
-                step += 1;
-                if step >= steps {
-                    break;
-                }
-                for (k, p) in problem.parameters.iter().enumerate() {
-                    if let Group::Run(run) = p.group
-                        && p.part < 3
-                    {
-                        problem.stations[run][p.part] += estimate.values[k];
-                    }
-                }
-            }
-            Err(combinations) => {
-                let (term, rivals) = problem.leave_out(&combinations)?;
-                open.push((term, rivals));
-            }
-        }
-    }
-    let before = |points: &[Point]| problem.rms(points, &estimate, true);
-    let after = |points: &[Point]| problem.rms(points, &estimate, false);
-    let holdout = (!unseen.is_empty()).then(|| ([before(&unseen), after(&unseen)], unseen.len()));
-    let functions = problem.functions(&estimate);
-    let squareness_rad = [0, 1, 2].map(|k| {
-        let at = problem.parameters.iter().position(|p| p.group == Group::Squareness(k))?;
-        Some((estimate.values[at], estimate.half_width_95(at)))
-    });
+    let (axes, description, setups) = found.changed(base);
     Ok(VolumetricCalibration {
-        functions,
-        squareness_rad,
-        open,
-        fitted_rms_mm: [before(&fitted), after(&fitted)],
+        functions: functions(&found),
+        squareness_rad: found.squareness(base),
+        play_mm,
+        axes,
+        description,
+        fitted_rms_mm: [before.estimate.rms(), found.estimate.rms()],
         holdout,
-        far_corner_u95_mm: problem.far_corner(&estimate),
-        nodes_mm: problem.nodes,
-        estimate,
+        refuted,
+        field_u95_mm: found.layout.field_u95_mm(base, &found.estimate, &field_commands(points, &found))?,
+        nodes_mm: plan.nodes_mm,
+        open: found.open,
+        setups,
+        rows: found.rows,
+        estimate: found.estimate,
     })
 }
 
-/// Deviations of centimetres are no geometric errors, and neither are lengths that are off by a factor.
-fn plausible(points: &[Point]) -> Result<(), CalibrationError> {
-    let mut sizes: Vec<f64> = points
-        .iter()
-        .flat_map(|p| match p.reading {
-            PointReading::Deviation(d) => d.into_iter().flatten().map(f64::abs).collect::<Vec<_>>(),
-            PointReading::Distance { length_mm, station_mm } => {
-                vec![(length_mm - (p.commanded_mm + p.tool_mm - station_mm).norm()).abs() / 10.0]
-            }
-        })
-        .collect();
-    sizes.sort_by(f64::total_cmp);
-    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-    let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
-    if median > 3.0 {
-        return Err(CalibrationError::Units(format!(
-            "half of the deviations exceed {median:.1} mm: units or frames do not fit"
-        )));
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Every commanded place must lie where the base knows the machine.
+pub(crate) fn inside(points: &[Point], base: &Base) -> Result<(), CalibrationError> {
+    /// Rounding of commands in a file.
+    const ROUNDING_MM: f64 = 1e-3;
+    let machine = base.machine()?;
+    let volume = machine.volume();
+    for (axis, range) in volume.0.iter().enumerate() {
+        let beyond = |p: &&Point| {
+            let q = p.command.linear_mm[axis];
+            q < range.low - ROUNDING_MM || q > range.high + ROUNDING_MM
+        };
+        if let Some(first) = points.iter().find(beyond) {
+            return Err(CalibrationError::Axes(format!(
+                "{} of {} places lie outside the base's volume, as {} at {} mm, which it knows from {} to {} mm: is it the profile of another machine?",
+                points.iter().filter(beyond).count(),
+                points.len(),
+                LETTERS[axis],
+                first.command.linear_mm[axis],
+                range.low,
+                range.high
+            )));
+        }
     }
-    if large < 5e-5 && sizes.len() > 3 {
-        return Err(CalibrationError::Units(format!(
-            "nine deviations of ten are below {:.4} um: are they in mm where um was said?",
-            large * 1e3
-        )));
+    match points.iter().find_map(|p| machine.rotary_inside(&p.command).err()) {
+        Some(error) => Err(CalibrationError::Axes(error.to_string())),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Equal steps over what the points cover, or the planes of a lattice.
 fn nodes(points: &[Point], count: usize) -> Result<[Vec<f64>; 3], CalibrationError> {
     let mut out: [Vec<f64>; 3] = Default::default();
     for (axis, own) in out.iter_mut().enumerate() {
-        let values = || points.iter().map(|p| p.commanded_mm[axis]);
-        let (low, high) =
-            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-        if high.partial_cmp(&(low + 1e-3)) != Some(std::cmp::Ordering::Greater) {
+        let mut places: Vec<f64> = points.iter().map(|p| p.command.linear_mm[axis]).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
+        let (Some(low), Some(high)) = (places.first().copied(), places.last().copied()) else { continue };
+        if places.len() < 2 {
             return Err(CalibrationError::TooFew(format!(
                 "{} does not move in the measurements",
                 LETTERS[axis]
             )));
         }
         // On a lattice a table can have no more nodes than the lattice has planes.
-        let mut places: Vec<f64> = values().collect();
-        places.sort_by(f64::total_cmp);
-        places.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
         if places.len() <= count.max(2) {
             *own = places;
             continue;
@@ -254,186 +190,94 @@ fn nodes(points: &[Point], count: usize) -> Result<[Vec<f64>; 3], CalibrationErr
     Ok(out)
 }
 
-/// Every parameter that a machine has, with the definitions of [`calibrate`].
-fn parameters(nodes: &[Vec<f64>; 3], runs: usize, points: &[Point]) -> Vec<Parameter> {
-    let mut all = Vec::new();
-    for (axis, own) in nodes.iter().enumerate() {
-        let last = own.len() - 1;
-        for f in 0..6 {
-            let straight = f < 3 && f != axis;
-            let range = if straight { 1..last } else { 1..last + 1 };
-            all.extend(range.map(|part| Parameter { group: Group::Function(axis, f), part }));
-        }
-    }
-    all.extend((0..3).map(|k| Parameter { group: Group::Squareness(k), part: 0 }));
-    for run in (0..runs).filter(|run| points.iter().any(|p| p.run == *run)) {
-        let distances =
-            points.iter().any(|p| p.run == run && matches!(p.reading, PointReading::Distance { .. }));
-        // A station has a place and a zero of its length; a frame has a shift.
-        all.extend((0..if distances { 4 } else { 3 }).map(|part| Parameter { group: Group::Run(run), part }));
-    }
-    all
+fn functions(found: &Found) -> Vec<FoundFunction> {
+    let of = |(group, range): &(Group, std::ops::Range<usize>)| match *group {
+        Group::Function(axis, function) => Some(FoundFunction {
+            axis,
+            function,
+            values: range.clone().map(|k| found.values[k]).collect(),
+            half_widths_95: range.clone().map(|k| found.estimate.half_width_95(k)).collect(),
+        }),
+        _ => None,
+    };
+    found.layout.groups.iter().filter_map(of).collect()
 }
 
-/// Value of the hat function of a node at `q`.
-fn hat(nodes: &[f64], node: usize, q: f64) -> f64 {
-    let q = q.clamp(nodes[0], nodes[nodes.len() - 1]);
-    let rise = |from: f64, to: f64| (q - from) / (to - from);
-    if q <= nodes[node] {
-        if node == 0 { 1.0 } else { rise(nodes[node - 1], nodes[node]).max(0.0) }
-    } else if node + 1 == nodes.len() {
-        1.0
-    } else {
-        rise(nodes[node + 1], nodes[node]).max(0.0)
-    }
+/// Reversal values in the middle of each axis, mm, with the half widths of their 95 % intervals.
+pub(crate) fn plays(base: &Base, found: &Found) -> [Option<(f64, f64)>; 3] {
+    let machine = base.machine().ok();
+    [0, 1, 2].map(|axis| {
+        let parameter = found.layout.at(Group::Play(axis))?.start;
+        let middle =
+            found.layout.plan.nodes_mm.each_ref().map(|nodes| 0.5 * (nodes[0] + nodes[nodes.len() - 1]));
+        let command = Command {
+            linear_mm: Vector::from(middle),
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::zeros(),
+            direction: [0; 3],
+        };
+        let before = machine.as_ref().map_or(0.0, |machine| machine.reversal_mm(axis, &command));
+        Some((before + found.values[parameter], found.estimate.half_width_95(parameter)))
+    })
 }
 
-impl Problem<'_> {
-    /// Displacement by a unit of each machine parameter at a command, first order; run parameters give zero.
-    fn displacement(&self, parameter: &Parameter, q: &Vector, tool: &Vector) -> Vector {
-        match parameter.group {
-            Group::Function(axis, f) => {
-                let mut unit = Vector::zeros();
-                unit[f % 3] = 1.0;
-                let size = hat(&self.nodes[axis], parameter.part, q[axis]);
-                if size == 0.0 || f < 3 {
-                    return unit * size;
+/// Where the field is judged: a grid over the nodes for the tools that were measured with, from both sides where they were told
+/// apart; tools of one run share a frame.
+pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command>> {
+    const GRID: usize = 5;
+    /// More tools than this are represented by as many of them.
+    const TOOLS: usize = 6;
+    let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
+    // Tool and group; a run with two tools joins their groups.
+    let mut tools: Vec<(Vector, usize)> = Vec::new();
+    for run in 0..runs {
+        let mut joined: Option<usize> = None;
+        for p in points.iter().filter(|p| p.run == run) {
+            let known = tools.iter().position(|(tool, _)| (tool - p.command.tool_mm).norm() < 1e-6);
+            let at = known.unwrap_or_else(|| {
+                tools.push((p.command.tool_mm, tools.len()));
+                tools.len() - 1
+            });
+            let (own, group) = (tools[at].1, joined.unwrap_or(tools[at].1));
+            for (_, other) in &mut tools {
+                if *other == own {
+                    *other = group;
                 }
-                let mut lever = *tool;
-                let place = self.order.iter().position(|a| *a == axis).unwrap_or(2);
-                for later in &self.order[place + 1..] {
-                    lever[*later] += q[*later];
-                }
-                unit.cross(&lever) * size
             }
-            Group::Squareness(0) => Vector::new(-q.y, 0.0, 0.0),
-            Group::Squareness(1) => Vector::new(q.z, 0.0, 0.0),
-            Group::Squareness(_) => Vector::new(0.0, -q.z, 0.0),
-            Group::Run(_) => Vector::zeros(),
+            joined = Some(group);
         }
     }
-
-    /// Design and observations of some points.
-    fn system(&self, points: &[Point]) -> (DMatrix<f64>, DVector<f64>) {
-        let mut rows: Vec<(Vec<f64>, f64)> = Vec::new();
-        for p in points {
-            let weight = p.uncertainty_mm.map_or(1.0, |u| 1.0 / u);
-            let all: Vec<Vector> =
-                self.parameters.iter().map(|k| self.displacement(k, &p.commanded_mm, &p.tool_mm)).collect();
-            let own = |k: &Parameter| k.group == Group::Run(p.run);
-            match p.reading {
-                PointReading::Deviation(d) => {
-                    for (i, value) in d.iter().enumerate() {
-                        let Some(value) = value else { continue };
-                        let row = self.parameters.iter().zip(&all).map(|(k, v)| {
-                            weight * if own(k) { f64::from(u8::from(k.part == i)) } else { v[i] }
+    let every = tools.len().div_ceil(TOOLS).max(1);
+    let kept: Vec<(Vector, usize)> = tools.into_iter().step_by(every).collect();
+    let sides: &[i8] =
+        if (0..3).any(|axis| found.layout.at(Group::Play(axis)).is_some()) { &[1, -1] } else { &[0] };
+    let at = |axis: usize, k: usize| {
+        let nodes = &found.layout.plan.nodes_mm[axis];
+        nodes[0] + (nodes[nodes.len() - 1] - nodes[0]) * k as f64 / (GRID - 1) as f64
+    };
+    let mut groups: Vec<usize> = kept.iter().map(|(_, group)| *group).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    groups
+        .into_iter()
+        .map(|group| {
+            let mut commands = Vec::new();
+            for (tool_mm, _) in kept.iter().filter(|(_, own)| *own == group) {
+                for side in sides {
+                    for k in 0..GRID * GRID * GRID {
+                        let linear_mm =
+                            Vector::new(at(0, k % GRID), at(1, k / GRID % GRID), at(2, k / GRID / GRID));
+                        let rotary_rad = Vector::zeros();
+                        commands.push(Command {
+                            linear_mm,
+                            rotary_rad,
+                            tool_mm: *tool_mm,
+                            direction: [*side; 3],
                         });
-                        rows.push((row.collect(), weight * value));
                     }
                 }
-                PointReading::Distance { length_mm, .. } => {
-                    let arm = p.commanded_mm + p.tool_mm - self.stations[p.run];
-                    let length = arm.norm();
-                    let unit = arm / length;
-                    let row = self.parameters.iter().zip(&all).map(|(k, v)| {
-                        weight
-                            * match (own(k), k.part) {
-                                (true, 3) => 1.0,
-                                (true, part) => -unit[part],
-                                _ => unit.dot(v),
-                            }
-                    });
-                    rows.push((row.collect(), weight * (length_mm - length)));
-                }
             }
-        }
-        let design = DMatrix::from_fn(rows.len(), self.parameters.len(), |i, k| rows[i].0[k]);
-        (design, DVector::from_fn(rows.len(), |i, _| rows[i].1))
-    }
-
-    /// Takes out one group that stands in an open combination, and says what it looked like.
-    fn leave_out(&mut self, combinations: &[DVector<f64>]) -> Result<(String, String), CalibrationError> {
-        let share = |group: Group| -> f64 {
-            let own = |c: &DVector<f64>| -> f64 {
-                self.parameters
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, p)| p.group == group)
-                    .map(|(k, _)| c[k] * c[k])
-                    .sum()
-            };
-            combinations.iter().map(own).fold(0.0, f64::max)
-        };
-        let mut groups: Vec<Group> = self.parameters.iter().map(|p| p.group).collect();
-        groups.dedup();
-        let place = |axis: usize| self.order.iter().position(|a| *a == axis).unwrap_or(0);
-        // What a correction can do without soonest: angles of the axis nearest the tool.
-        let rank = |g: &Group| match g {
-            Group::Function(axis, f) if *f >= 3 => 10 + place(*axis),
-            Group::Function(axis, _) => place(*axis),
-            Group::Squareness(_) => 5,
-            Group::Run(_) => 0,
-        };
-        let concerned: Vec<Group> = groups.iter().copied().filter(|g| share(*g) > 1e-3).collect();
-        let victim = concerned.iter().copied().filter(|g| !matches!(g, Group::Run(_))).max_by_key(rank);
-        let Some(victim) = victim else {
-            return Err(CalibrationError::Unobservable(
-                "the set-ups of the runs from one another".to_owned(),
-            ));
-        };
-        let rivals: Vec<String> = concerned.iter().filter(|g| **g != victim).map(|g| g.name()).collect();
-        self.parameters.retain(|p| p.group != victim);
-        let mut unique = rivals;
-        unique.dedup();
-        Ok((victim.name(), unique.join(", ")))
-    }
-
-    /// Root mean square over points, mm, unweighted: of what is left, or of everything but the set-ups.
-    fn rms(&self, points: &[Point], estimate: &Estimate, before: bool) -> f64 {
-        let plain: Vec<Point> = points.iter().map(|p| Point { uncertainty_mm: None, ..*p }).collect();
-        let (design, right) = self.system(&plain);
-        let mut values = estimate.values.clone();
-        for (value, p) in values.iter_mut().zip(&self.parameters) {
-            let run = matches!(p.group, Group::Run(_));
-            // Stations have been moved to where they are; only the zero of the length is left.
-            let moved = run
-                && p.part < 3
-                && points.iter().any(|q| matches!(q.reading, PointReading::Distance { .. }));
-            if (before && !run) || moved {
-                *value = 0.0;
-            }
-        }
-        let left = right - design * values;
-        (left.norm_squared() / left.len().max(1) as f64).sqrt()
-    }
-
-    fn functions(&self, estimate: &Estimate) -> Vec<FoundFunction> {
-        let mut out: Vec<FoundFunction> = Vec::new();
-        for (k, p) in self.parameters.iter().enumerate() {
-            let Group::Function(axis, function) = p.group else { continue };
-            if out.last().is_none_or(|f| (f.axis, f.function) != (axis, function)) {
-                let zeros = vec![0.0; self.nodes[axis].len()];
-                out.push(FoundFunction { axis, function, values: zeros.clone(), half_widths_95: zeros });
-            }
-            if let Some(last) = out.last_mut() {
-                last.values[p.part] = estimate.values[k];
-                last.half_widths_95[p.part] = estimate.half_width_95(k);
-            }
-        }
-        out
-    }
-
-    /// Half width of the 95 % interval at the corner farthest from the first nodes, without tool.
-    fn far_corner(&self, estimate: &Estimate) -> f64 {
-        let corner = Vector::from_fn(|i, _| self.nodes[i][self.nodes[i].len() - 1]);
-        let columns: Vec<Vector> =
-            self.parameters.iter().map(|p| self.displacement(p, &corner, &Vector::zeros())).collect();
-        let variance: f64 = (0..3)
-            .map(|i| {
-                let row = DVector::from_fn(columns.len(), |k, _| columns[k][i]);
-                (row.transpose() * &estimate.covariance * &row)[(0, 0)]
-            })
-            .sum();
-        crate::student::quantile_95(estimate.degrees_of_freedom) * variance.max(0.0).sqrt()
-    }
+            commands
+        })
+        .collect()
 }

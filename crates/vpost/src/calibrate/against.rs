@@ -37,8 +37,9 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
     let at: Vec<String> = change.at_mm.iter().map(|v| short(*v, 3)).collect();
     let d = change.difference_mm * 1e3;
     let mut text = format!(
-        "\nagainst {name}: errors differ by {:.1} um RMS, at most {:.1} um at ({}) mm: x {:+.1} y {:+.1} z {:+.1} um; frames taken off\n",
+        "\nagainst {name}: errors differ by {:.2} um RMS, {:.2} um at 95 % of the points, at most {:.2} um at ({}) mm: x {:+.2} y {:+.2} z {:+.2} um; frames taken off\n",
         change.rms_mm * 1e3,
+        change.p95_mm * 1e3,
         change.largest_mm * 1e3,
         at.join(", "),
         d.x,
@@ -47,11 +48,14 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
     );
     let verdict = match (change.is_beyond_uncertainty(), change.uncertainty_mm) {
         (Some(true), Some(u)) => format!(
-            "  the machine has changed: the two are uncertain of ±{:.1} um together (95 %)\n",
+            "  the machine has changed: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
             u * 1e3
         ),
         (Some(false), Some(u)) => {
-            format!("  no change is shown: the two are uncertain of ±{:.1} um together (95 %)\n", u * 1e3)
+            format!(
+                "  no change is shown: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
+                u * 1e3
+            )
         }
         _ => "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n".to_owned(),
     };

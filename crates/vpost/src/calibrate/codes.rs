@@ -39,7 +39,7 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
     let (code, help) = match error {
         CalibrationError::Axes(_) => (
             AXES,
-            "give the files in the order X, Y, Z, in a right-handed frame; `--frame fit` turns an instrument's frame",
+            "compare axes, signs and order of the columns with what the message says; frames are right-handed",
         ),
         CalibrationError::Units(_) => {
             (UNITS, "the column's name says its unit: convert the numbers or rename the column")

@@ -4,9 +4,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use calibration::functions::straight_line;
+use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Chain, Squareness};
+use machine_model::effects::{Conditions, EffectKind};
+use machine_model::{Axis, Chain, Command, Description, Squareness, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
@@ -112,6 +114,73 @@ impl Output {
                 "write the axes as in `--chain \"[w X Y b Z t]\"`",
             )
         })
+    }
+
+    /// The machine that readings are compared with: the base's own model, or an ideal one of the chain.
+    pub(super) fn measured_from(&self, target: &Target) -> Result<Base, Failure> {
+        Ok(match &self.base {
+            Some(base) => Base {
+                description: base.description.clone(),
+                interpolation: base.interpolation,
+                is_known: true,
+            },
+            None => Base::bare(self.chain(target)?),
+        })
+    }
+
+    /// What the base's effects beyond its tables do at a command under these conditions, mm, workpiece frame.
+    pub(super) fn by_effects_mm(
+        &self,
+        command: &Command,
+        conditions: &Conditions,
+    ) -> Result<Vector, Failure> {
+        let Some(base) = self.base.as_ref().filter(|base| !base.effects.is_empty()) else {
+            return Ok(Vector::zeros());
+        };
+        let machine = base.machine(conditions).map_err(|error| crate::conditions::failure(&error))?;
+        Ok(machine.predict(command).position_mm - machine.base().predict(command).position_mm)
+    }
+
+    /// Writes the axes of a changed machine; what the base says beside them stays.
+    pub(super) fn changed(&mut self, base: &Base, axes: &[ChangedAxis; 3], machine: &Description) {
+        for (axis, own) in axes.iter().enumerate() {
+            let name = Axis::ALL[axis];
+            let letter = name.letter().to_string();
+            for (key, rows) in [("errors", Some(&own.errors)), ("errors_negative", own.negative.as_ref())] {
+                let Some(rows) = rows else { continue };
+                let column = |f: usize| own.given[f].then(|| rows.iter().map(|row| row[f]).collect());
+                self.errors(name, key, &own.positions_mm, &std::array::from_fn(column));
+            }
+            let linear = &machine.linear[axis];
+            if linear.backlash_mm != 0.0 {
+                self.text.set_number(&["axis", &letter, "backlash_um"], linear.backlash_mm * 1e3, 4);
+            }
+            if !base.is_known {
+                let others: Vec<(char, f64)> = (0..3)
+                    .filter(|&k| k != axis)
+                    .map(|k| (Axis::ALL[k].letter(), linear.measured_at_mm[k]))
+                    .collect();
+                self.text.set_measured_at(name.letter(), &others, linear.measured_tool_mm.into());
+            }
+        }
+        if !base.is_known {
+            self.text.set_text(&["interpolation"], "linear");
+        }
+        let angles = machine.squareness;
+        for (key, value) in
+            [("EC0Y_urad", angles.ec0y_rad), ("EB0Z_urad", angles.eb0z_rad), ("EA0Z_urad", angles.ea0z_rad)]
+        {
+            self.text.set_number(&["squareness", key], value * 1e6, 4);
+        }
+    }
+
+    /// Writes how the instrument stood, where it stood in one place only; takes out how an earlier one did.
+    pub(super) fn set_up(&mut self, setups: &[Option<SetUp>]) {
+        self.text.remove(&["setup"]);
+        if let [Some(SetUp::Frame(motion))] = setups {
+            self.text.set_triple(&["setup", "shift_mm"], motion.shift_mm.into(), 7);
+            self.text.set_triple(&["setup", "rotation_urad"], (motion.rotation_rad() * 1e6).into(), 4);
+        }
     }
 
     /// The angles between axes that slopes of the base's straightness tables already hold, over these ranges of X, Y, Z. A slope is
@@ -233,7 +302,8 @@ impl Output {
     fn temperature_c(&self, measured: Option<f64>) -> Option<f64> {
         let base = self.base.as_ref();
         let before = base.and_then(|base| base.calibrated.as_ref()?.temperature_c);
-        let thermal = base.is_some_and(|base| base.effects.iter().any(|e| e.id.starts_with("thermal.")));
+        let terms = base.and_then(|base| base.effect_terms(false).ok()).unwrap_or_default();
+        let thermal = terms.iter().any(|term| matches!(term.kind(), EffectKind::Thermal(_)));
         if thermal { before } else { measured.or(before) }
     }
 

@@ -3,18 +3,19 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use calibration::tracker::{Frame, TrackerCalibration, Verdict, calibrate};
-use calibration::{MeanTraverse, Noise, Reading};
+use calibration::tracker::{Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine};
+use calibration::{CalibrationError, MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Vector};
+use machine_model::{Axis, Command, Vector};
 use machine_profile::Calibrated;
 
 use crate::arguments::Shared;
+use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
 
-use super::codes::{DOUBTFUL, MISSING, UNFIT, failure, question};
+use super::codes::{DOUBTFUL, MISSING, OUTLIER, UNFIT, failure, question};
 use super::output::{Output, Target, short, warn};
 use super::sheet::Sheet;
 
@@ -26,8 +27,8 @@ pub struct Tracker {
     pub traverses: Vec<PathBuf>,
     #[command(flatten)]
     pub target: Target,
-    /// The instrument's frame: aligned to the machine, or to be turned until the lines lie along the axes.
-    #[arg(long, value_enum, default_value_t = FrameName::AsMeasured)]
+    /// The instrument's frame: turned until the lines lie along the axes, or aligned to the machine and taken as it is.
+    #[arg(long, value_enum, default_value_t = FrameName::Fit)]
     pub frame: FrameName,
     /// Standard uncertainty of one reading, µm; default: from the repeats, or from the roughness of the lines.
     #[arg(long = "u-um", value_name = "UM", value_parser = crate::arguments::size)]
@@ -41,8 +42,8 @@ pub struct Tracker {
     /// Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the signs.
     #[arg(long)]
     pub as_published: bool,
-    /// Put the tracker's positioning and straightness in place of tables that the base profile has.
-    #[arg(long)]
+    /// Accepted for scripts: what was measured always changes the tables of the base profile.
+    #[arg(long, hide = true)]
     pub replace_tables: bool,
 }
 
@@ -76,8 +77,8 @@ const COLUMNS: [&str; 18] = [
     "temp_c",
 ];
 
-/// Readings of one file and the temperatures beside them.
-fn readings(sheet: &Sheet, axis: usize) -> Result<(Vec<Reading>, Vec<f64>), Failure> {
+/// Readings of one file, the temperature beside each.
+fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, Failure> {
     let own = sheet.has("commanded_x_mm");
     let (commanded, measured) = if own {
         (
@@ -92,16 +93,15 @@ fn readings(sheet: &Sheet, axis: usize) -> Result<(Vec<Reading>, Vec<f64>), Fail
         "a traverse has the commanded and the measured position of all three axes",
     )?;
     let direction = ["dir_x", "dir_y", "dir_z"][axis];
-    let (mut all, mut temperatures) = (Vec::new(), Vec::new());
-    for row in sheet.rows() {
-        all.push(Reading {
+    let reading = |row: super::sheet::Row<'_>| {
+        let reading = Reading {
             commanded_mm: Vector::from(row.three(commanded)?),
             measured_mm: Vector::from(row.three(measured)?),
             direction: row.sign(direction)?,
-        });
-        temperatures.extend(row.number("temp_c")?);
-    }
-    Ok((all, temperatures))
+        };
+        Ok((reading, row.number("temp_c")?))
+    };
+    sheet.rows().map(reading).collect()
 }
 
 /// `vpost calibrate tracker`
@@ -112,19 +112,55 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
             "give micrometres above zero",
         ));
     }
-    let mut traverses = Vec::new();
-    let mut temperatures = Vec::new();
+    let mut output = if arguments.target.output.is_some()
+        || arguments.target.against.is_some()
+        || shared.machine.is_some()
+        || arguments.target.chain.is_some()
+    {
+        Some(Output::start(&arguments.target, shared)?)
+    } else {
+        None
+    };
+    let said = conditions(shared)?;
+    let given_mm = arguments.u_um.map(|u| u * 1e-3);
+    let (mut traverses, mut points, mut sheets, mut temperatures) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (axis, path) in arguments.traverses.iter().enumerate() {
         let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
-        let (readings, warm) = readings(&sheet, axis)?;
-        temperatures.extend(warm);
-        let mean = MeanTraverse::new(axis, &readings, arguments.u_um.map(|u| u * 1e-3))
+        let rows = readings(&sheet, axis)?;
+        let readings: Vec<Reading> = rows.iter().map(|(reading, _)| *reading).collect();
+        let mean = MeanTraverse::new(axis, &readings, given_mm)
             .map_err(|error| failure(&sheet.name, &file::read(path).unwrap_or_default(), &error))?;
         warn_of_gaps(&sheet.name, &mean, messages);
         traverses.push(match arguments.chord_mm {
             Some(chord) => mean.thinned(chord),
             None => mean,
         });
+        if let Some(output) = &output {
+            let tool_mm =
+                output.base.as_ref().map_or(Vector::zeros(), |base| Vector::from(base.default_tool_mm));
+            for (reading, warm) in &rows {
+                let mut direction = [0; 3];
+                direction[axis] = reading.direction;
+                let command = Command {
+                    linear_mm: reading.commanded_mm,
+                    rotary_rad: Vector::zeros(),
+                    tool_mm,
+                    direction,
+                };
+                let mut here = said;
+                here.temp_c = here.temp_c.map(|known| warm.or(arguments.target.temperature).or(known));
+                points.push(Point {
+                    run: 0,
+                    command,
+                    by_effects_mm: output.by_effects_mm(&command, &here)?,
+                    reading: PointReading::Position(reading.measured_mm.data.0[0].map(Some)),
+                    uncertainty_mm: given_mm,
+                });
+            }
+        }
+        temperatures.extend(rows.iter().filter_map(|(_, warm)| *warm));
+        sheets.push(sheet);
     }
     let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else {
         return Err(Failure::option("three traverses are needed", "give X.csv Y.csv Z.csv"));
@@ -134,27 +170,46 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         FrameName::Fit => Frame::Fitted,
     };
     let found = calibrate(traverses, frame).map_err(|error| failure("", &[], &error))?;
-    file::print(report(&found, arguments)?.as_bytes())?;
-    judge(&found, messages)?;
+    let Some(output) = &mut output else {
+        file::print(report(&found, None, arguments)?.as_bytes())?;
+        return judge_chords(&found, shared, messages);
+    };
+    let base = output.measured_from(&arguments.target)?;
+    let changed = machine(&points, &base, &found, frame).map_err(|error| refused(&sheets, &error))?;
+    file::print(report(&found, Some(&changed), arguments)?.as_bytes())?;
+    judge(&changed, base.is_known, messages)?;
+    judge_chords(&found, shared, messages)?;
     if arguments.target.output.is_none() && arguments.target.against.is_none() {
         return Ok(());
     }
-    let temperature_c =
-        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
-    let mut output = Output::start(&arguments.target, shared)?;
-    write_profile(&mut output, &found, arguments.replace_tables, arguments.as_published);
+    write_profile(output, &found, arguments.as_published);
+    output.changed(&base, &changed.axes, &changed.description);
+    output.set_up(&changed.setups);
+    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
     let scatter = found.traverses.iter().map(|t| t.scatter_mm.max()).fold(0.0, f64::max);
     output.calibrated(
         &arguments.target,
         messages,
         Calibrated {
-            temperature_c,
+            temperature_c: mean(&temperatures),
             repeatability_um: Some(scatter * 1e3),
-            uncertainty_um: Some(found.far_corner.positions_u95_mm * 1e3),
+            uncertainty_um: Some(changed.field_u95_mm * 1e3),
             ..Calibrated::default()
         },
     )?;
     output.write(&arguments.target, messages)
+}
+
+/// What contradicts the readings, an outlier at its row.
+fn refused(sheets: &[Sheet], error: &CalibrationError) -> Failure {
+    let row = match error {
+        CalibrationError::Outlier { point, .. } => sheets.iter().flat_map(Sheet::rows).nth(*point),
+        _ => None,
+    };
+    match row {
+        Some(row) => row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out"),
+        None => failure("", &[], error),
+    }
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
@@ -182,11 +237,39 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
     }
 }
 
-/// Refuses chords that cannot carry a correction, with the number that condemns them.
-fn judge(found: &TrackerCalibration, messages: &Messages) -> Result<(), Failure> {
-    let far = &found.far_corner;
-    let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
+/// Refuses a field that is known worse than it deviates.
+fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Result<(), Failure> {
+    let um = |mm: f64| short(mm * 1e3, 1);
+    let field = format!(
+        "the field is known to ±{} um (95 % of the volume's points), the deviations found are {} um",
+        um(changed.field_u95_mm),
+        um(changed.field_p95_mm)
+    );
+    let help = "measure each node more often";
+    // A base corrects whatever it did before; without one a correction has to be better than none.
+    if !has_base && changed.field_u95_mm > changed.field_p95_mm {
+        let message = format!("these traverses cannot carry a correction: {field}");
+        return Err(Failure::Refused(vec![Report {
+            source: None,
+            diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
+        }]));
+    }
+    if !has_base && changed.field_u95_mm > 0.5 * changed.field_p95_mm {
+        warn(messages, Diagnostic::warning(DOUBTFUL, field).help(help));
+    }
+    Ok(())
+}
+
+/// Refuses chords that cannot carry a correction, for the engines that carry one through the volume.
+fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let um = |mm: f64| format!("{:.0}", mm * 1e3);
+    let far = &found.far_corner;
+    let tangential = shared.engine.as_deref().is_some_and(|name| name.starts_with("tangential"));
+    if !tangential || far.verdict() == Verdict::Sound {
+        return Ok(());
+    }
+    let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
+    let needed = (far.sufficient_chord_mm() / far.chord_mm).ceil() * far.chord_mm;
     let message = format!(
         "a chord of {} mm knows its direction to ±{:.0} urad (95 %), which is ±{} um at the far corner ({corner}); the deviation found there is {} um",
         short(far.chord_mm, 3),
@@ -194,25 +277,19 @@ fn judge(found: &TrackerCalibration, messages: &Messages) -> Result<(), Failure>
         um(far.chord_u95_mm),
         um(far.deviation_mm)
     );
-    let needed = (far.sufficient_chord_mm() / far.chord_mm).ceil() * far.chord_mm;
     let help = format!(
         "measure each node more often, or use longer chords: with these readings `--chord-mm {}` halves it",
         short(needed, 3)
     );
-    match far.verdict() {
-        Verdict::Sound => Ok(()),
-        Verdict::Doubtful => {
-            warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
-            Ok(())
-        }
-        Verdict::Unfit => Err(Failure::Refused(vec![Report {
-            source: None,
-            diagnostics: vec![
-                Diagnostic::error(UNFIT, format!("these traverses cannot carry a correction: {message}"))
-                    .help(help),
-            ],
-        }])),
+    if far.verdict() == Verdict::Doubtful {
+        warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+        return Ok(());
     }
+    let message = format!("these traverses cannot carry a correction by chords: {message}");
+    Err(Failure::Refused(vec![Report {
+        source: None,
+        diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
+    }]))
 }
 
 /// The interval tables: directions of every interval with their standard uncertainties.
@@ -229,8 +306,9 @@ fn cosines(found: &TrackerCalibration, as_published: bool) -> String {
     text
 }
 
-fn write_profile(output: &mut Output, found: &TrackerCalibration, replace: bool, as_published: bool) {
-    let names: [String; 3] = [0, 1, 2].map(|axis| {
+/// The traverses in the machine's directions, for the engines that work on them.
+fn write_profile(output: &mut Output, found: &TrackerCalibration, as_published: bool) {
+    for axis in 0..3 {
         let traverse = &found.traverses[axis];
         let mut text = String::from(
             "commanded_x_mm,commanded_y_mm,commanded_z_mm,measured_x_mm,measured_y_mm,measured_z_mm\n",
@@ -244,66 +322,27 @@ fn write_profile(output: &mut Output, found: &TrackerCalibration, replace: bool,
             text.push('\n');
         }
         let letter = ["x", "y", "z"][axis];
-        output.table(&format!("tracker_{letter}.csv"), text.into_bytes())
-    });
+        let name = output.table(&format!("tracker_{letter}.csv"), text.into_bytes());
+        output.text.set_text(&["tracker", letter], &name);
+    }
     output.table("cosines.csv", cosines(found, as_published).into_bytes());
-    for (letter, name) in ["x", "y", "z"].into_iter().zip(&names) {
-        output.text.set_text(&["tracker", letter], name);
-    }
-    let has_tables =
-        !replace && output.base.as_ref().is_some_and(|base| base.rows.iter().any(Option::is_some));
-    let mut squareness = found.squareness;
-    if has_tables {
-        let ends = |axis: usize| {
-            let nodes = &found.traverses[axis].nodes;
-            (nodes[0].commanded_mm, nodes[nodes.len() - 1].commanded_mm)
-        };
-        let held = output.squareness_held([0, 1, 2].map(ends));
-        squareness.ec0y_rad -= held.ec0y_rad;
-        squareness.eb0z_rad -= held.eb0z_rad;
-        squareness.ea0z_rad -= held.ea0z_rad;
-    } else {
-        for (axis, errors) in found.axes.iter().enumerate() {
-            let function = |k: usize| Some(errors.errors_mm.iter().map(|e| e[k]).collect());
-            let functions = [function(0), function(1), function(2), None, None, None];
-            output.errors(Axis::ALL[axis], "errors", &errors.positions_mm, &functions);
-            let letter = Axis::ALL[axis].letter();
-            output.text.remove(&["axis", &letter.to_string(), "errors_negative"]);
-            output.text.remove(&["axis", &letter.to_string(), "backlash_um"]);
-            if let Some(reversal) = found.traverses[axis].reversal_mm {
-                // The nodes are means of both directions; the profile counts from above minus from below.
-                output.text.set_number(
-                    &["axis", &letter.to_string(), "backlash_um"],
-                    -reversal[axis] * 1e3,
-                    3,
-                );
-            }
-            let others: Vec<(char, f64)> =
-                (0..3).filter(|&k| k != axis).map(|k| (Axis::ALL[k].letter(), found.origin_mm[k])).collect();
-            output.text.set_measured_at(letter, &others, [0.0; 3]);
-        }
-        output.text.set_triple(&["setup", "shift_mm"], found.setup_shift_mm.into(), 7);
-        output.text.set_triple(&["setup", "rotation_urad"], (found.setup_rotation_rad * 1e6).into(), 4);
-    }
-    for (key, value) in [
-        ("EC0Y_urad", squareness.ec0y_rad),
-        ("EB0Z_urad", squareness.eb0z_rad),
-        ("EA0Z_urad", squareness.ea0z_rad),
-    ] {
-        output.text.set_number(&["squareness", key], value * 1e6, 2);
-    }
 }
 
-fn report(found: &TrackerCalibration, arguments: &Tracker) -> Result<String, Failure> {
+fn report(
+    found: &TrackerCalibration,
+    changed: Option<&TrackerMachine>,
+    arguments: &Tracker,
+) -> Result<String, Failure> {
     let mut out = String::new();
     // Writing to a String cannot fail.
-    let _ = write_report(&mut out, found, arguments)?;
+    let _ = write_report(&mut out, found, changed, arguments)?;
     Ok(out)
 }
 
 fn write_report(
     out: &mut String,
     found: &TrackerCalibration,
+    changed: Option<&TrackerMachine>,
     arguments: &Tracker,
 ) -> Result<std::fmt::Result, Failure> {
     let k = arguments.interval;
@@ -355,36 +394,25 @@ fn write_report(
             )?;
         }
         writeln!(out, "  r01        {:.6} {:.6} {:.6} mm", r01.x, r01.y, r01.z)?;
-        writeln!(out, "\nISO 230-1, machine frame (X along its line, Y in the plane)")?;
+        let factor = found.far_corner.coverage_factor;
+        writeln!(out, "\nISO 230-1, lines through the common point; 95 %")?;
         for (axis, line) in found.lines.iter().enumerate() {
             let letter = Axis::ALL[axis].letter();
             writeln!(
                 out,
                 "  scale {letter}    {:+.1} ± {:.1} um/m",
-                (line.slope[axis] - 1.0) * 1e6,
-                2.0 * line.uncertainty[axis] * 1e6
+                (line.slope.norm() - 1.0) * 1e6,
+                factor * line.uncertainty[axis] * 1e6
             )?;
         }
         let s = found.squareness;
         let angles = [("EC0Y", s.ec0y_rad), ("EB0Z", s.eb0z_rad), ("EA0Z", s.ea0z_rad)];
         for ((name, angle), u) in angles.into_iter().zip(found.squareness_uncertainty_rad) {
-            writeln!(out, "  {name}       {:+.1} ± {:.1} urad", angle * 1e6, 2.0 * u * 1e6)?;
+            writeln!(out, "  {name}       {:+.1} ± {:.1} urad", angle * 1e6, factor * u * 1e6)?;
         }
-        for (axis, errors) in found.axes.iter().enumerate() {
-            let letter = Axis::ALL[axis].letter();
-            for direction in 0..3 {
-                let values = || errors.errors_mm.iter().map(|e| e[direction] * 1e3);
-                let (low, high) =
-                    (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-                writeln!(out, "  E{}{letter}        {low:.1} … {high:.1} um", Axis::ALL[direction])?;
-            }
+        if let Some(changed) = changed {
+            write_machine(out, changed)?;
         }
-        let r = found.setup_rotation_rad * 1e6;
-        writeln!(
-            out,
-            "  frame      measuring against machine frame: x {:.1} y {:.1} z {:.1} urad",
-            r.x, r.y, r.z
-        )?;
         writeln!(out, "  not seen   EA., EB., EC. of every axis: a tracker follows a point, not a carriage")?;
         let far = &found.far_corner;
         let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
@@ -402,4 +430,34 @@ fn write_report(
         )
     };
     Ok(text(out))
+}
+
+fn write_machine(out: &mut String, changed: &TrackerMachine) -> std::fmt::Result {
+    writeln!(out, "\nmachine (X along its line, Y in its plane), tables without the angles above")?;
+    for (axis, own) in changed.axes.iter().enumerate() {
+        let letter = Axis::ALL[axis].letter();
+        for direction in 0..3 {
+            let values = || own.errors.iter().map(|row| row[direction] * 1e3);
+            let (low, high) =
+                (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            writeln!(out, "  E{}{letter}        {low:.1} … {high:.1} um", Axis::ALL[direction])?;
+        }
+        if let Some((value, half)) = changed.play_mm[axis] {
+            writeln!(out, "  play {letter}     {:.2} ± {:.2} um", value * 1e3, half * 1e3)?;
+        }
+    }
+    if let [Some(SetUp::Frame(motion))] = changed.setups.as_slice() {
+        let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
+        writeln!(
+            out,
+            "  set-up     shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad of the instrument",
+            t.x, t.y, t.z, r.x, r.y, r.z
+        )?;
+    }
+    writeln!(
+        out,
+        "  field      known to ±{:.2} um at 95 % of the points of the volume, frames taken off; deviations found {:.2} um",
+        changed.field_u95_mm * 1e3,
+        changed.field_p95_mm * 1e3
+    )
 }

@@ -4,18 +4,21 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use calibration::volumetric::{Options, Point, PointReading, VolumetricCalibration, calibrate};
+use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
+use calibration::{CalibrationError, Point, PointReading, SetUp};
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Vector};
+use machine_model::{Axis, Command, Vector};
 use machine_profile::Calibrated;
+use units::Angle;
 
 use crate::arguments::Shared;
+use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
 
-use super::codes::{UNFIT, failure, question};
-use super::output::{Output, Target};
+use super::codes::{DOUBTFUL, FIELD, OUTLIER, UNFIT, failure, question};
+use super::output::{Output, Target, warn};
 use super::sheet::{Row, Sheet};
 
 /// `vpost calibrate volumetric FILES… -o PROFILE`
@@ -34,11 +37,14 @@ pub struct Volumetric {
     pub holdout_every: usize,
 }
 
-const COLUMNS: [&str; 25] = [
+const COLUMNS: [&str; 30] = [
     "run",
     "x_mm",
     "y_mm",
     "z_mm",
+    "a_deg",
+    "b_deg",
+    "c_deg",
     "dx_um",
     "dy_um",
     "dz_um",
@@ -59,17 +65,25 @@ const COLUMNS: [&str; 25] = [
     "repeat",
     "temp_c",
     "time_s",
+    "load_kg",
+    "feed_mm_min",
     "note",
 ];
 
-/// `vpost calibrate volumetric`
-pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let mut points: Vec<Point> = Vec::new();
+/// The points of all files and where each of them stands.
+struct Read {
+    points: Vec<Point>,
+    sheets: Vec<Sheet>,
+    /// Sheet and row of each point.
+    places: Vec<(usize, usize)>,
+    temperatures: Vec<f64>,
+}
+
+fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read, Failure> {
+    let mut all =
+        Read { points: Vec::new(), sheets: Vec::new(), places: Vec::new(), temperatures: Vec::new() };
     let mut runs: BTreeMap<String, usize> = BTreeMap::new();
-    let mut temperatures = Vec::new();
-    let mut output = Output::start(&arguments.target, shared)?;
-    let chain = output.chain(&arguments.target)?;
-    let default_tool = output.base.as_ref().map_or([0.0; 3], |base| base.default_tool_mm);
+    let said = conditions(shared)?;
     for path in &arguments.files {
         let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
         sheet.need(&["x_mm", "y_mm", "z_mm"], "the commanded position of all three axes is needed")?;
@@ -79,96 +93,167 @@ pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) 
                 "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
             ));
         }
-        for row in sheet.rows() {
+        if sheet.has("length_mm") {
+            sheet.need(
+                &["bx_mm", "by_mm", "bz_mm"],
+                "a distance needs the place of its station, to a few millimetres",
+            )?;
+        }
+        for (line, row) in sheet.rows().enumerate() {
             let name = format!("{}:{}", sheet.name, row.text("run"));
             let next = runs.len();
             let run = *runs.entry(name).or_insert(next);
-            points.push(point(&row, run, default_tool)?);
-            temperatures.extend(row.number("temp_c")?);
+            let mut point = point(&row, run, output)?;
+            let mut here = said;
+            let warm = row.number("temp_c")?.or(arguments.target.temperature);
+            here.temp_c = here.temp_c.map(|known| warm.or(known));
+            here.time_s = row.number("time_s")?.or(here.time_s);
+            here.load_kg = row.number("load_kg")?.or(here.load_kg);
+            here.feed_mm_min = row.number("feed_mm_min")?.or(here.feed_mm_min);
+            point.by_effects_mm = output.by_effects_mm(&point.command, &here)?;
+            all.temperatures.extend(row.number("temp_c")?);
+            all.places.push((all.sheets.len(), line));
+            all.points.push(point);
         }
+        all.sheets.push(sheet);
     }
+    let stated = all.points.iter().filter(|p| p.uncertainty_mm.is_some()).count();
+    if stated > 0 && stated < all.points.len() {
+        return Err(question(
+            format!("{stated} of {} readings state their uncertainty, the others do not", all.points.len()),
+            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+        ));
+    }
+    Ok(all)
+}
+
+fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
+    let commanded = row.three(["x_mm", "y_mm", "z_mm"])?;
+    let mut tool = output.base.as_ref().map_or([0.0; 3], |base| base.default_tool_mm);
+    for (own, column) in tool.iter_mut().zip(["tool_x_mm", "tool_y_mm", "tool_z_mm"]) {
+        *own = row.number(column)?.unwrap_or(*own);
+    }
+    let three = |columns: [&str; 3], unit: f64| -> Result<[Option<f64>; 3], Failure> {
+        let mut all = [None; 3];
+        for (own, column) in all.iter_mut().zip(columns) {
+            *own = row.number(column)?.map(|v| v * unit);
+        }
+        Ok(all)
+    };
+    let positions = three(["xm_mm", "ym_mm", "zm_mm"], 1.0)?;
+    let reading = if let Some(length_mm) = row.number("length_mm")? {
+        PointReading::Distance {
+            length_mm,
+            station_mm: Vector::from(row.three(["bx_mm", "by_mm", "bz_mm"])?),
+        }
+    } else if positions.iter().any(Option::is_some) {
+        PointReading::Position(positions)
+    } else {
+        PointReading::Deviation(three(["dx_um", "dy_um", "dz_um"], 1e-3)?)
+    };
+    let angles = three(["a_deg", "b_deg", "c_deg"], 1.0)?;
+    let command = Command {
+        linear_mm: Vector::from(commanded),
+        rotary_rad: Vector::from(angles.map(|deg| deg.map_or(0.0, |deg| Angle::from_deg(deg).rad()))),
+        tool_mm: Vector::from(tool),
+        direction: [row.sign("dir_x")?, row.sign("dir_y")?, row.sign("dir_z")?],
+    };
+    let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
+    if uncertainty_mm.is_some_and(|u| u <= 0.0) {
+        return Err(row.refuse(
+            FIELD,
+            "u_um",
+            "an uncertainty is above zero".to_owned(),
+            "give the standard uncertainty in um",
+        ));
+    }
+    Ok(Point { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm })
+}
+
+/// `vpost calibrate volumetric`
+pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let mut output = Output::start(&arguments.target, shared)?;
+    let base = output.measured_from(&arguments.target)?;
+    let read = read(arguments, shared, &output)?;
     let options = Options { nodes: arguments.nodes, holdout_every: arguments.holdout_every };
-    let found = calibrate(&points, &chain, options).map_err(|error| failure("", &[], &error))?;
+    let found = calibrate(&read.points, &base, options).map_err(|error| refused(&read, &error))?;
     file::print(report(&found).as_bytes())?;
-    if let Some(([before, after], count)) = found.holdout
-        && after >= before
-    {
-        let message = format!(
-            "{count} points that the fit did not see get no better by it: {:.2} um RMS before, {:.2} um after",
-            before * 1e3,
-            after * 1e3
-        );
-        return Err(Failure::Refused(vec![Report {
-            source: None,
-            diagnostics: vec![
-                Diagnostic::error(UNFIT, message).help("measure more points, or fit less: `--nodes 3`"),
-            ],
-        }]));
-    }
-    write_profile(&mut output, &found);
-    let temperature_c =
-        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
+    judge(&found, messages)?;
+    output.changed(&base, &found.axes, &found.description);
+    output.set_up(&found.setups);
+    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
     output.calibrated(
         &arguments.target,
         messages,
         Calibrated {
-            temperature_c,
-            repeatability_um: Some(found.fitted_rms_mm[1] * 1e3),
-            uncertainty_um: Some(found.far_corner_u95_mm * 1e3),
+            temperature_c: mean(&read.temperatures),
+            repeatability_um: Some(found.estimate.rms() * 1e3),
+            uncertainty_um: Some(found.field_u95_mm * 1e3),
             ..Calibrated::default()
         },
     )?;
     output.write(&arguments.target, messages)
 }
 
-fn point(row: &Row<'_>, run: usize, default_tool: [f64; 3]) -> Result<Point, Failure> {
-    let commanded = row.three(["x_mm", "y_mm", "z_mm"])?;
-    let mut tool = default_tool;
-    for (own, column) in tool.iter_mut().zip(["tool_x_mm", "tool_y_mm", "tool_z_mm"]) {
-        *own = row.number(column)?.unwrap_or(*own);
-    }
-    let reading = if let Some(length_mm) = row.number("length_mm")? {
-        PointReading::Distance {
-            length_mm,
-            station_mm: Vector::from(row.three(["bx_mm", "by_mm", "bz_mm"])?),
+/// What contradicts the readings, an outlier at its row.
+fn refused(read: &Read, error: &CalibrationError) -> Failure {
+    let row = match error {
+        CalibrationError::Outlier { point, .. } => {
+            let (sheet, line) = read.places[*point];
+            read.sheets[sheet].rows().nth(line)
         }
-    } else {
-        let mut deviation = [None; 3];
-        for i in 0..3 {
-            deviation[i] = row.number(["dx_um", "dy_um", "dz_um"][i])?.map(|um| um * 1e-3);
-            if let Some(measured) = row.number(["xm_mm", "ym_mm", "zm_mm"][i])? {
-                deviation[i] = Some(measured - commanded[i] - tool[i]);
-            }
-        }
-        PointReading::Deviation(deviation)
+        _ => None,
     };
-    Ok(Point {
-        run,
-        commanded_mm: Vector::from(commanded),
-        tool_mm: Vector::from(tool),
-        reading,
-        uncertainty_mm: row.number("u_um")?.map(|u| u * 1e-3),
-    })
+    match row {
+        Some(row) => row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out"),
+        None => failure("", &[], error),
+    }
 }
 
-fn write_profile(output: &mut Output, found: &VolumetricCalibration) {
-    for axis in 0..3 {
-        let mut functions: [Option<Vec<f64>>; 6] = Default::default();
-        for f in found.functions.iter().filter(|f| f.axis == axis) {
-            functions[f.function] = Some(f.values.clone());
-        }
-        output.errors(Axis::ALL[axis], "errors", &found.nodes_mm[axis], &functions);
-        let letter = Axis::ALL[axis].letter();
-        output.text.remove(&["axis", &letter.to_string(), "errors_negative"]);
-        let others: Vec<(char, f64)> =
-            (0..3).filter(|&k| k != axis).map(|k| (Axis::ALL[k].letter(), 0.0)).collect();
-        output.text.set_measured_at(letter, &others, [0.0; 3]);
+/// Refuses what held-out readings refute; warns where the readings scatter more than they state.
+fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failure> {
+    let refuse = |message: String, help: &str| {
+        let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
+        Err(Failure::Refused(vec![Report { source: None, diagnostics }]))
+    };
+    let misfit = found.estimate.misfit;
+    let stated = found.estimate.degrees_of_freedom.is_none();
+    if let Some(([before, after], count)) = found.holdout
+        && found.refuted
+    {
+        let message = format!(
+            "{count} points that the fit did not see get no better by it: {:.2} um RMS before, {:.2} um after",
+            before * 1e3,
+            after * 1e3
+        );
+        return refuse(message, "measure more points, or fit less: `--nodes 3`");
     }
-    output.text.set_text(&["interpolation"], "linear");
-    for (key, term) in ["EC0Y_urad", "EB0Z_urad", "EA0Z_urad"].into_iter().zip(found.squareness_rad) {
-        output.text.set_number(&["squareness", key], term.map_or(0.0, |(value, _)| value * 1e6), 3);
+    if stated && misfit > CONTRADICTION {
+        return refuse(
+            format!(
+                "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states"
+            ),
+            "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
+        );
     }
+    if stated && misfit > ROUGH {
+        let message = format!(
+            "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much"
+        );
+        warn(
+            messages,
+            Diagnostic::warning(DOUBTFUL, message)
+                .help("give more `--nodes`, or state what the readings really scatter"),
+        );
+    }
+    Ok(())
 }
+
+/// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
+const CONTRADICTION: f64 = 10.0;
+
+/// Above this the stated uncertainty does not explain what is left.
+const ROUGH: f64 = 1.5;
 
 fn report(found: &VolumetricCalibration) -> String {
     let mut out = String::new();
@@ -178,7 +263,7 @@ fn report(found: &VolumetricCalibration) -> String {
 }
 
 fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Result {
-    writeln!(out, "term   from … to, largest half width of the 95 % intervals")?;
+    writeln!(out, "change from … to, largest half width of the 95 % intervals")?;
     for f in &found.functions {
         let (scale, unit) = if f.function < 3 { (1e3, "um") } else { (1e6, "urad") };
         let low = f.values.iter().copied().fold(f64::INFINITY, f64::min) * scale;
@@ -191,28 +276,56 @@ fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Re
             Axis::ALL[f.axis]
         )?;
     }
-    for (name, term) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        if let Some((value, half)) = term {
-            writeln!(out, "{name}   {:.2} ± {:.2} urad", value * 1e6, half * 1e6)?;
+    writeln!(out, "machine")?;
+    for (name, (value, half)) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
+        writeln!(out, "{name}   {:.2} ± {:.2} urad", value * 1e6, half * 1e6)?;
+    }
+    for (axis, play) in found.play_mm.iter().enumerate() {
+        if let Some((value, half)) = play {
+            writeln!(out, "play {} {:.2} ± {:.2} um", Axis::ALL[axis], value * 1e3, half * 1e3)?;
         }
     }
     for (term, rivals) in &found.open {
         if rivals.is_empty() {
-            writeln!(out, "{term:<6} open: the points say nothing of it; taken as 0")?;
+            writeln!(out, "{term:<6} open: the points say nothing of it; as in the base")?;
         } else {
-            writeln!(out, "{term:<6} open: these points cannot tell it from {rivals}; taken as 0")?;
+            writeln!(out, "{term:<6} open: these points cannot tell it from {rivals}; as in the base")?;
         }
     }
     if found.open.iter().any(|(term, _)| matches!(term.chars().nth(1), Some('A' | 'B' | 'C'))) {
         writeln!(
             out,
-            "       angles need other tool vectors, or other positions of the axes behind, to be seen"
+            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen"
         )?;
+    }
+    writeln!(
+        out,
+        "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness"
+    )?;
+    for (run, setup) in found.setups.iter().enumerate() {
+        match setup {
+            Some(SetUp::Frame(motion)) => {
+                let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
+                writeln!(
+                    out,
+                    "set-up {run}: shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad",
+                    t.x, t.y, t.z, r.x, r.y, r.z
+                )?;
+            }
+            Some(SetUp::Station { place_mm: p, zero_mm }) => {
+                writeln!(out, "station {run}: {:.4} {:.4} {:.4} mm, zero {zero_mm:.4} mm", p.x, p.y, p.z)?;
+            }
+            None => {}
+        }
     }
     let [before, after] = found.fitted_rms_mm.map(|v| v * 1e3);
     writeln!(out, "fitted {before:.2} -> {after:.2} um RMS ({} readings)", found.estimate.residuals.len())?;
     if let Some(([before, after], count)) = found.holdout {
         writeln!(out, "unseen {:.2} -> {:.2} um RMS ({count} points)", before * 1e3, after * 1e3)?;
     }
-    writeln!(out, "far corner known to ±{:.2} um (95 %)", found.far_corner_u95_mm * 1e3)
+    writeln!(
+        out,
+        "field known to ±{:.2} um at 95 % of the points of the volume, frames taken off",
+        found.field_u95_mm * 1e3
+    )
 }
