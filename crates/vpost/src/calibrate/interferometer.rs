@@ -271,7 +271,7 @@ fn change(
         let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
         let base = output.base.as_ref().and_then(|base| base.calibrated.as_ref()?.uncertainty_um);
         let base_mm = if whole { 0.0 } else { base.unwrap_or(0.0) * 1e-3 };
-        own.hypot(base_mm)
+        units::math::hypot(own, base_mm)
     }))
 }
 
