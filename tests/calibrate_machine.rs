@@ -129,7 +129,7 @@ fn points_of_a_volume_become_tables_that_unseen_points_confirm() {
         ],
         again.path(),
     );
-    let report = text(&output);
+    let report = text_of(&output);
     assert!(output.status.success(), "{report}{}", messages(&output));
     let fitted = report.lines().find(|line| line.starts_with("fitted")).expect("a fit");
     let numbers: Vec<f64> = fitted.split_whitespace().filter_map(|w| w.parse().ok()).collect();

@@ -81,6 +81,7 @@ fn hot_path(c: &mut Criterion) {
         incremental: false,
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         arc_centres_absolute: false,
         letters: Letters::axes([true; 3]),
         tool_mm: [0.0; 3],

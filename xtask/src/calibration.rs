@@ -255,7 +255,9 @@ fn points(rows: &[PointRow]) -> Vec<Point> {
 fn volume(seed: u64, index: u64) -> anyhow::Result<Vec<Found>> {
     let base = Base::bare(Chain::parse("[w X Y b Z t]")?);
     let options = volumetric::Options { nodes: 4, holdout_every: 0 };
-    let fit = |noise: f64| volumetric::calibrate(&points(&volume_points(seed, index, noise, 150).0), &base, options);
+    let fit = |noise: f64| {
+        volumetric::calibrate(&points(&volume_points(seed, index, noise, 150).0), &base, options)
+    };
     let (found, exact) = (fit(1.0)?, fit(0.0)?);
     let mut all = Vec::new();
     for (f, truth) in found.functions.iter().zip(&exact.functions) {

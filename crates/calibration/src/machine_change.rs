@@ -434,9 +434,10 @@ fn described(
 ) -> Description {
     let mut description = Description { squareness, ..base.description.clone() };
     for (axis, (own, linear)) in axes.iter().zip(&mut description.linear).enumerate() {
-        let tables = |rows: &Vec<Six>| tables_of(&own.positions_mm, rows, base.interpolation);
-        linear.errors = tables(&own.errors);
-        linear.errors_negative = own.negative.as_ref().and_then(tables);
+        let [errors, negative] = [Some(&own.errors), own.negative.as_ref()]
+            .map(|rows| tables_of(&own.positions_mm, rows?, base.interpolation));
+        linear.errors = errors;
+        linear.errors_negative = negative;
         if own.negative.is_none() {
             linear.backlash_mm += layout.play(values, axis);
         }

@@ -149,6 +149,7 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         letters,
         whole: [false; 3],
         named: [true; 3],
+        reframed: [false; 3],
         tool_mm: [0.0, 0.0, -120.0],
         centre_words: true,
         arc_radius_tolerance_mm: 0.02,

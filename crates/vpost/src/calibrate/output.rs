@@ -3,12 +3,11 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use calibration::functions::straight_line;
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
 use diagnostic::Diagnostic;
 use machine_model::effects::{Conditions, EffectKind};
-use machine_model::{Axis, Chain, Command, Description, Squareness, Vector};
+use machine_model::{Axis, Chain, Command, Description, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
@@ -180,29 +179,6 @@ impl Output {
         if let [Some(SetUp::Frame(motion))] = setups {
             self.text.set_triple(&["setup", "shift_mm"], motion.shift_mm.into(), 7);
             self.text.set_triple(&["setup", "rotation_urad"], (motion.rotation_rad() * 1e6).into(), 4);
-        }
-    }
-
-    /// The angles between axes that slopes of the base's straightness tables already hold, over these ranges of X, Y, Z. A slope is
-    /// counted once: what is held is taken off an angle that was measured (docs/decisions.md).
-    pub(super) fn squareness_held(&self, ranges_mm: [(f64, f64); 3]) -> Squareness {
-        let slope = |axis: usize, towards: usize| -> f64 {
-            let Some(rows) = self.base.as_ref().and_then(|base| base.rows[axis].as_ref()) else { return 0.0 };
-            let (low, high) = ranges_mm[axis];
-            let inside = |q: f64| low - 1e-9 <= q && q <= high + 1e-9;
-            let (positions, values): (Vec<f64>, Vec<f64>) = rows
-                .positions
-                .iter()
-                .zip(&rows.rows)
-                .filter(|(q, _)| inside(**q))
-                .map(|(q, row)| (*q, row[towards]))
-                .unzip();
-            if positions.len() < 2 { 0.0 } else { straight_line(&positions, &values).0 }
-        };
-        Squareness {
-            ec0y_rad: -(slope(1, 0) + slope(0, 1)),
-            eb0z_rad: slope(2, 0) + slope(0, 2),
-            ea0z_rad: -(slope(2, 1) + slope(1, 2)),
         }
     }
 
