@@ -22,7 +22,7 @@ fn description() -> Description {
                 size * (1.0 + (k as f64) - u * (f as f64) + 3.0 * u * u * (1.0 - u) * ((f + k) % 3) as f64)
             };
             let values = nodes.iter().map(|q| wave(*q)).collect();
-            Some(Table::new(nodes.clone(), values, Interpolation::Linear).unwrap())
+            Some(Table::new(nodes.clone(), values, Interpolation::Linear).expect("a fair machine"))
         });
         LinearAxis {
             errors: AxisTables::new(&tables),
@@ -33,7 +33,7 @@ fn description() -> Description {
         }
     };
     Description {
-        chain: Chain::parse("[w Y X b Z t]").unwrap(),
+        chain: Chain::parse("[w Y X b Z t]").expect("a fair machine"),
         linear: std::array::from_fn(axis),
         rotary: std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros())),
         squareness: Squareness { ec0y_rad: 40e-6, eb0z_rad: -25e-6, ea0z_rad: 10e-6 },
@@ -41,7 +41,12 @@ fn description() -> Description {
 }
 
 fn machine(description: &Description) -> WithEffects {
-    WithEffects::new(RigidBody::new(description.clone()).unwrap(), Vec::new(), Conditions::default()).unwrap()
+    WithEffects::new(
+        RigidBody::new(description.clone()).expect("a fair machine"),
+        Vec::new(),
+        Conditions::default(),
+    )
+    .expect("a fair machine")
 }
 
 fn line(axis: usize) -> MeasuredLine {
@@ -65,7 +70,7 @@ fn change(truth: &Description, base: &Description, axis: usize) -> [Option<Funct
                 readings.push(FunctionReading { run: "1".to_owned(), position_mm, value, direction });
             }
         }
-        Some(function(&readings).unwrap())
+        Some(function(&readings).expect("a fair machine"))
     });
     apply_gauge(&mut all, &line, Gauge { zero: Zero::Base, without_slopes: true });
     all
@@ -76,8 +81,8 @@ fn what_has_not_changed_comes_back_as_zero() {
     let base = description();
     for axis in 0..3 {
         for (f, function) in change(&base, &base, axis).iter().enumerate() {
-            let function = function.as_ref().unwrap();
-            let both = function.directions.as_ref().unwrap();
+            let function = function.as_ref().expect("a fair machine");
+            let both = function.directions.as_ref().expect("a fair machine");
             // A picometre and a nanoradian: products of errors.
             let limit = if f < 3 { 1e-9 } else { 1e-11 };
             assert!(both.iter().flatten().all(|v| v.abs() < limit), "{axis} {f} {both:?}");
@@ -91,12 +96,12 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
     let mut truth = base.clone();
     // Y turns about X and Z more than before, and its angles are not zero where the lines cross.
     let more = |q: f64| -> Six { [1e-3, 2e-3, 0.0, 2e-7 * (q - 100.0), 1e-5, 1e-7 * q] };
-    let nodes: Vec<f64> = base.linear[1].errors.as_ref().unwrap().nodes().to_vec();
+    let nodes: Vec<f64> = base.linear[1].errors.as_ref().expect("a fair machine").nodes().to_vec();
     let mut changed = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes.clone(), false);
     for (q, six) in nodes.iter().zip(&mut changed.positive) {
         *six = std::array::from_fn(|k| six[k] + more(*q)[k]);
     }
-    truth.linear[1] = changed.axis(&base.linear[1], Interpolation::Linear).unwrap();
+    truth.linear[1] = changed.axis(&base.linear[1], Interpolation::Linear).expect("a fair machine");
     let lines = [0, 1, 2].map(line);
     let targets: [Vec<f64>; 3] = std::array::from_fn(|_| (0..9).map(|i| 50.0 * f64::from(i)).collect());
     let read = angles_between(&lines, &targets, &machine(&truth));
@@ -105,11 +110,11 @@ fn a_change_goes_onto_the_line_of_the_base_and_the_lines_keep_their_angles() {
     let mut made = AxisOnNodes::new(&base.linear[1], 1, [true; 6], nodes, true);
     made.add(&change(&truth, &base, 1), line(1).arm_mm(&base));
     let mut found = base.clone();
-    found.linear[1] = made.axis(&base.linear[1], Interpolation::Linear).unwrap();
+    found.linear[1] = made.axis(&base.linear[1], Interpolation::Linear).expect("a fair machine");
     found.squareness = squareness_for(&lines, &targets, read, base.squareness, |squareness| {
         Ok::<_, ()>(machine(&Description { squareness, ..found.clone() }))
     })
-    .unwrap();
+    .expect("a fair machine");
     // A constant angle of Y and what it does to the direction of Z are one thing; the field is what counts: distances.
     let (a, b) = (machine(&truth), machine(&found));
     let corners: Vec<Vector> = (0..8)
@@ -152,12 +157,12 @@ fn one_reversal_value_where_the_scatter_allows_no_more() {
                 }
             }
         }
-        let mut found = function(&readings).unwrap();
+        let mut found = function(&readings).expect("a fair machine");
         settle_directions(&mut found, [5, 5]);
         found
     };
     let even = with(1e-5);
-    let [up, down] = even.directions.as_ref().unwrap();
+    let [up, down] = even.directions.as_ref().expect("a fair machine");
     assert!(even.one_reversal);
     assert!(up.iter().zip(down).all(|(u, d)| (d - u - 6.04e-3).abs() < 1e-9), "{up:?} {down:?}");
     assert!(!with(2e-3).one_reversal);
