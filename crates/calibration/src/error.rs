@@ -35,3 +35,15 @@ pub enum CalibrationError {
     #[error("the measurements cannot tell {0}")]
     Unobservable(String),
 }
+
+impl CalibrationError {
+    /// The same, its point counted among those of which these were kept.
+    pub(crate) fn with_points(self, kept: &[usize]) -> Self {
+        match self {
+            Self::Outlier { point, message } => {
+                Self::Outlier { point: kept.get(point).copied().unwrap_or(point), message }
+            }
+            other => other,
+        }
+    }
+}

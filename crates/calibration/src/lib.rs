@@ -26,6 +26,6 @@ pub mod volumetric;
 
 pub use error::CalibrationError;
 pub use least_squares::{Estimate, solve};
-pub use machine_change::{Base, ChangedAxis, Point, PointReading, RowOrigin, SetUp};
+pub use machine_change::{Base, ChangedAxis, Point, PointReading, SetUp};
 pub use student::{quantile, quantile_95};
 pub use traverse::{MeanTraverse, Node, Noise, Reading};

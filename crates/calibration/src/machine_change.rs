@@ -153,7 +153,7 @@ pub struct ChangedAxis {
 
 /// One reading as a row of the adjustment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RowOrigin {
+pub(crate) struct RowOrigin {
     /// Index of the point.
     pub point: usize,
     /// 0 X, 1 Y, 2 Z; `None` for a distance.
@@ -434,10 +434,10 @@ fn described(
 ) -> Description {
     let mut description = Description { squareness, ..base.description.clone() };
     for (axis, (own, linear)) in axes.iter().zip(&mut description.linear).enumerate() {
-        let [errors, negative] = [Some(&own.errors), own.negative.as_ref()]
-            .map(|rows| tables_of(&own.positions_mm, rows?, base.interpolation));
-        linear.errors = errors;
-        linear.errors_negative = negative;
+        linear.errors = tables_of(&own.positions_mm, &own.errors, base.interpolation);
+        let negative = own.negative.as_ref();
+        linear.errors_negative =
+            negative.and_then(|rows| tables_of(&own.positions_mm, rows, base.interpolation));
         if own.negative.is_none() {
             linear.backlash_mm += layout.play(values, axis);
         }
@@ -565,12 +565,7 @@ impl Layout {
 ///
 /// # Errors
 /// [`CalibrationError`], also where the readings do not settle a function that moves the tool itself.
-pub(crate) fn find(
-    points: &[Point],
-    base: &Base,
-    plan: &Plan,
-    sigma_mm: Option<f64>,
-) -> Result<Found, CalibrationError> {
+pub(crate) fn find(points: &[Point], base: &Base, plan: &Plan) -> Result<Found, CalibrationError> {
     /// Hundredths of a nanometre.
     const SETTLED_MM: f64 = 1e-8;
     const FIRST_STEPS: usize = 4;
@@ -588,8 +583,7 @@ pub(crate) fn find(
         )));
     }
     let readings = DVector::from_fn(rows.len(), |i, _| value(&points[rows[i].point], rows[i].component));
-    let known: Option<Vec<f64>> =
-        rows.iter().map(|row| points[row.point].uncertainty_mm.or(sigma_mm)).collect();
+    let known: Option<Vec<f64>> = rows.iter().map(|row| points[row.point].uncertainty_mm).collect();
     let noise = known.as_deref().map_or(Noise::Common, Noise::Known);
     let mut setups = first_setups(points, base, &geometry.ideal_mm, plan.turned)?;
     let mut gauge = layout.gauge(base);

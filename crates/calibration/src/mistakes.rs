@@ -10,6 +10,7 @@ use crate::adjustment::Outlier;
 use crate::error::{CalibrationError, LETTERS};
 use crate::machine_change::{Base, Found, Plan, Point, PointReading, find, ideal_places, seen_mm};
 use crate::rigid_motion::{RigidMotion, mirrored_rms_mm};
+use crate::volumetric::known_places;
 
 /// A good measurement loses a reading to this test once in so many.
 const FALSE_ALARM: f64 = 1e-5;
@@ -129,7 +130,7 @@ pub(crate) fn contradicted(points: &[Point], base: &Base, plan: &Plan) -> Result
     let thin = |all: Vec<Point>| -> Vec<Point> { all.into_iter().step_by(every).collect() };
     let misfit = |points: Vec<Point>, base: &Base| -> Option<(f64, usize)> {
         let plan = Plan { nodes_mm: fitting(plan, &points)?, ..plan.clone() };
-        let found = find(&thin(points), base, &plan, None).ok()?;
+        let found = find(&thin(points), base, &plan).ok()?;
         Some((found.estimate.misfit, found.estimate.redundancy))
     };
     let Some((own, free)) = misfit(points.to_vec(), base) else { return Ok(()) };
@@ -212,7 +213,7 @@ fn repairs(points: &[Point], base: &Base) -> Vec<Repair> {
         all.extend(other_chains(base).map(|(name, base)| (name, points.to_vec(), base)));
     }
     // A repair that moves places out of the base's volume is none.
-    all.retain(|(_, points, base)| crate::volumetric::inside(points, base).is_ok());
+    all.retain(|(_, points, base)| known_places(points, base).is_ok_and(|kept| kept.len() == points.len()));
     all
 }
 

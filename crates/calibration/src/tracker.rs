@@ -11,7 +11,7 @@ use crate::machine_change::{Base, ChangedAxis, Plan, Point, SetUp, find};
 use crate::mistakes;
 use crate::student::quantile_95;
 use crate::traverse::{MeanTraverse, Noise};
-use crate::volumetric::{field_commands, inside, plays};
+use crate::volumetric::{field_commands, known_places, plays};
 
 /// Instrument and machine frame may differ by this much before the difference is a question, rad.
 const LARGEST_FRAME_TURN_RAD: f64 = 0.01;
@@ -342,6 +342,8 @@ pub struct TrackerMachine {
     pub field_p95_mm: f64,
     /// Readings minus the changed machine, RMS, mm.
     pub rms_mm: f64,
+    /// Readings outside the base's volume, which were left out.
+    pub left_out: usize,
 }
 
 /// Fits positioning, straightness and play of the three axes to all readings: equation (51) with the nodes of the traverses and
@@ -357,16 +359,20 @@ pub fn machine(
     found: &TrackerCalibration,
     frame: Frame,
 ) -> Result<TrackerMachine, CalibrationError> {
-    inside(points, base)?;
+    let kept = known_places(points, base)?;
+    let left_out = points.len() - kept.len();
+    let points: &[Point] = &kept.iter().map(|k| points[*k]).collect::<Vec<Point>>();
     let turned = frame == Frame::Fitted;
     let still = Plan { nodes_mm: Default::default(), functions: 0, turned };
-    mistakes::plausible(points, base, &find(points, base, &still, None)?)?;
-    let nodes = |t: &MeanTraverse| t.nodes.iter().map(|node| node.commanded_mm).collect();
+    mistakes::plausible(points, base, &find(points, base, &still)?)?;
+    let read =
+        |t: &MeanTraverse, q: f64| points.iter().any(|p| (p.command.linear_mm[t.axis] - q).abs() < 1e-6);
+    let nodes = |t: &MeanTraverse| {
+        t.nodes.iter().map(|node| node.commanded_mm).filter(|q| read(t, *q)).collect::<Vec<f64>>()
+    };
     let plan = Plan { nodes_mm: found.traverses.each_ref().map(nodes), functions: 3, turned };
-    // A line read once shows its scatter by its roughness only.
-    let rough = found.traverses.iter().filter(|t| t.noise == Noise::Roughness).map(|t| t.scatter_mm.amax());
-    let change = find(points, base, &plan, rough.reduce(f64::max))?;
-    mistakes::outlier(points, &change)?;
+    let change = find(points, base, &plan)?;
+    mistakes::outlier(points, &change).map_err(|error| error.with_points(&kept))?;
     let play_mm = plays(base, &change);
     mistakes::play(&play_mm)?;
     let groups = field_commands(points, &change);
@@ -380,5 +386,6 @@ pub fn machine(
         setups,
         play_mm,
         rms_mm: change.estimate.rms(),
+        left_out,
     })
 }

@@ -4,7 +4,7 @@ use machine_model::{Command, Description, Engine, PathModel, Vector};
 
 use crate::adjustment::Estimate;
 use crate::error::{CalibrationError, LETTERS};
-use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, RowOrigin, SetUp, find};
+use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, SetUp, find};
 use crate::mistakes;
 
 /// The change of one error function as found.
@@ -49,10 +49,10 @@ pub struct VolumetricCalibration {
     pub refuted: bool,
     /// Half width that 95 % of the volume's points keep, mm: equation (51c).
     pub field_u95_mm: f64,
+    /// Points outside the base's volume, which were left out.
+    pub left_out: usize,
     /// The least squares behind it, of all readings.
     pub estimate: Estimate,
-    /// Which reading each of its rows is.
-    pub rows: Vec<RowOrigin>,
 }
 
 /// How to fit.
@@ -80,12 +80,14 @@ pub fn calibrate(
     base: &Base,
     options: Options,
 ) -> Result<VolumetricCalibration, CalibrationError> {
-    inside(points, base)?;
+    let kept = known_places(points, base)?;
+    let left_out = points.len() - kept.len();
+    let points: &[Point] = &kept.iter().map(|k| points[*k]).collect::<Vec<Point>>();
     let still = Plan { nodes_mm: Default::default(), functions: 0, turned: true };
-    let before = find(points, base, &still, None)?;
+    let before = find(points, base, &still)?;
     mistakes::plausible(points, base, &before)?;
     let plan = Plan { nodes_mm: nodes(points, options.nodes)?, functions: 6, turned: true };
-    let found = find(points, base, &plan, None)?;
+    let found = find(points, base, &plan)?;
     mistakes::contradicted(points, base, &plan)?;
     let unknowns = found.rows.len() - found.estimate.redundancy;
     // A tenth more readings than unknowns: below it no residual shows a mistake.
@@ -95,7 +97,7 @@ pub fn calibrate(
             found.rows.len()
         )));
     }
-    mistakes::outlier(points, &found)?;
+    mistakes::outlier(points, &found).map_err(|error| error.with_points(&kept))?;
     let play_mm = plays(base, &found);
     mistakes::play(&play_mm)?;
     let held = |k: usize| options.holdout_every > 1 && k % options.holdout_every == options.holdout_every - 1;
@@ -104,8 +106,8 @@ pub fn calibrate(
     let (mut holdout, mut refuted) = (None, false);
     if !unseen.is_empty() && unseen.iter().all(|p| seen.iter().any(|q| q.run == p.run)) {
         let rms = |found: &Found| Ok(root_mean_square(found.rest(&unseen, base)?.as_slice()));
-        let first = find(&seen, base, &plan, None)?;
-        let errors: [f64; 2] = [rms(&find(&seen, base, &still, None)?)?, rms(&first)?];
+        let first = find(&seen, base, &plan)?;
+        let errors: [f64; 2] = [rms(&find(&seen, base, &still)?)?, rms(&first)?];
         holdout = Some((errors, unseen.len()));
         // Where nothing has changed a fit adds noise, and no more than that.
         let noise =
@@ -127,7 +129,7 @@ pub fn calibrate(
         nodes_mm: plan.nodes_mm,
         open: found.open,
         setups,
-        rows: found.rows,
+        left_out,
         estimate: found.estimate,
     })
 }
@@ -136,32 +138,35 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Every commanded place must lie where the base knows the machine.
-pub(crate) fn inside(points: &[Point], base: &Base) -> Result<(), CalibrationError> {
+/// Indices of the points that lie where the base knows the machine: the others have nothing to be compared with.
+///
+/// # Errors
+/// [`CalibrationError::Axes`] where more than a third lie outside: a base of another machine.
+pub(crate) fn known_places(points: &[Point], base: &Base) -> Result<Vec<usize>, CalibrationError> {
     /// Rounding of commands in a file.
     const ROUNDING_MM: f64 = 1e-3;
     let machine = base.machine()?;
-    let volume = machine.volume();
-    for (axis, range) in volume.0.iter().enumerate() {
-        let beyond = |p: &&Point| {
-            let q = p.command.linear_mm[axis];
+    let beyond = |p: &Point| {
+        (0..3).find(|&axis| {
+            let (q, range) = (p.command.linear_mm[axis], machine.volume().0[axis]);
             q < range.low - ROUNDING_MM || q > range.high + ROUNDING_MM
-        };
-        if let Some(first) = points.iter().find(beyond) {
-            return Err(CalibrationError::Axes(format!(
-                "{} of {} places lie outside the base's volume, as {} at {} mm, which it knows from {} to {} mm: is it the profile of another machine?",
-                points.iter().filter(beyond).count(),
-                points.len(),
-                LETTERS[axis],
-                first.command.linear_mm[axis],
-                range.low,
-                range.high
-            )));
-        }
+        })
+    };
+    if let Some(error) = points.iter().find_map(|p| machine.rotary_inside(&p.command).err()) {
+        return Err(CalibrationError::Axes(error.to_string()));
     }
-    match points.iter().find_map(|p| machine.rotary_inside(&p.command).err()) {
-        Some(error) => Err(CalibrationError::Axes(error.to_string())),
-        None => Ok(()),
+    let kept: Vec<usize> = (0..points.len()).filter(|&k| beyond(&points[k]).is_none()).collect();
+    let outside = points.len() - kept.len();
+    match points.iter().find_map(|p| beyond(p).map(|axis| (p, axis))) {
+        Some((first, axis)) if 3 * outside > points.len() => Err(CalibrationError::Axes(format!(
+            "{outside} of {} places lie outside the base's volume, as {} at {} mm, which it knows from {} to {} mm: is it the profile of another machine?",
+            points.len(),
+            LETTERS[axis],
+            first.command.linear_mm[axis],
+            machine.volume().0[axis].low,
+            machine.volume().0[axis].high
+        ))),
+        _ => Ok(kept),
     }
 }
 

@@ -76,7 +76,7 @@ fn points(rows: &[gap_lab::calibration::PointRow]) -> Vec<Point> {
 }
 
 fn bare() -> Base {
-    Base::bare(Chain::parse("[w X Y b Z t]").unwrap())
+    Base::bare(Chain::parse("[w X Y b Z t]").expect("a chain"))
 }
 
 /// Every parameter of a calibration with its half width.

@@ -132,6 +132,8 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         let mean = MeanTraverse::new(axis, &readings, given_mm)
             .map_err(|error| failure(&sheet.name, &file::read(path).unwrap_or_default(), &error))?;
         warn_of_gaps(&sheet.name, &mean, messages);
+        // A line read once shows its scatter by its roughness only.
+        let rough_mm = (mean.noise == Noise::Roughness).then(|| mean.scatter_mm.norm() / 3f64.sqrt());
         traverses.push(match arguments.chord_mm {
             Some(chord) => mean.thinned(chord),
             None => mean,
@@ -155,7 +157,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
                     command,
                     by_effects_mm: output.by_effects_mm(&command, &here)?,
                     reading: PointReading::Position(reading.measured_mm.data.0[0].map(Some)),
-                    uncertainty_mm: given_mm,
+                    uncertainty_mm: given_mm.or(rough_mm),
                 });
             }
         }
@@ -445,6 +447,9 @@ fn write_machine(out: &mut String, changed: &TrackerMachine) -> std::fmt::Result
         if let Some((value, half)) = changed.play_mm[axis] {
             writeln!(out, "  play {letter}     {:.2} ± {:.2} um", value * 1e3, half * 1e3)?;
         }
+    }
+    if changed.left_out > 0 {
+        writeln!(out, "  {} readings lie outside the base's volume and were left out", changed.left_out)?;
     }
     if let [Some(SetUp::Frame(motion))] = changed.setups.as_slice() {
         let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);

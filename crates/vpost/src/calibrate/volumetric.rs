@@ -289,7 +289,10 @@ fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Re
         if rivals.is_empty() {
             writeln!(out, "{term:<6} open: the points say nothing of it; as in the base")?;
         } else {
-            writeln!(out, "{term:<6} open: these points cannot tell it from {rivals}; as in the base")?;
+            writeln!(
+                out,
+                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base"
+            )?;
         }
     }
     if found.open.iter().any(|(term, _)| matches!(term.chars().nth(1), Some('A' | 'B' | 'C'))) {
@@ -317,6 +320,9 @@ fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Re
             }
             None => {}
         }
+    }
+    if found.left_out > 0 {
+        writeln!(out, "{} points lie outside the base's volume and were left out", found.left_out)?;
     }
     let [before, after] = found.fitted_rms_mm.map(|v| v * 1e3);
     writeln!(out, "fitted {before:.2} -> {after:.2} um RMS ({} readings)", found.estimate.residuals.len())?;
