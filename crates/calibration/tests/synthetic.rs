@@ -2,7 +2,7 @@
 
 use calibration::tracker::{Frame, calibrate};
 use calibration::volumetric::{self, Options, VolumetricCalibration};
-use calibration::{Base, CalibrationError, MeanTraverse, Point, PointReading, Reading, quantile_95};
+use calibration::{Base, MeanTraverse, Point, PointReading, Reading, quantile_95};
 use gap_lab::calibration::{traverses, volume_points};
 use machine_model::{Chain, Vector};
 

@@ -68,8 +68,9 @@ pub(crate) fn by_centre(
     let from = [start[0] - centre[0], start[1] - centre[1]];
     let to = [end[0] - centre[0], end[1] - centre[1]];
     let (start_mm, end_mm) = (math::hypot(from[0], from[1]), math::hypot(to[0], to[1]));
-    // The end cannot be the centre either: its radius would differ by the whole start radius.
-    if start_mm < SAME_POINT_MM {
+    // From the centre no direction leads anywhere: how far the arc turns would be decided by the last bit. Of an arc of
+    // micrometres the tolerance of the radii would take it.
+    if start_mm.min(end_mm) < SAME_POINT_MM {
         return Err(Fault::NoRadius);
     }
     // The last term: what subtracting machine coordinates of metres leaves in binary.

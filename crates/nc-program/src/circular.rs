@@ -182,8 +182,13 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
     let centre = words.span(ARC_LETTERS);
     match fault {
         Fault::NoRadius => words
-            .refuse(codes::ARC_WORDS, "an arc about its own start", centre, format!("{one} and {two} are 0"))
-            .help(format!("write the distance from the start to the centre as {one} and {two}")),
+            .refuse(
+                codes::ARC_WORDS,
+                "an arc that starts or ends in its centre",
+                centre,
+                "no direction leads from there",
+            )
+            .help(format!("write the distance from the start to the centre as {one} and {two}, or a line")),
         Fault::RadiiDiffer { start_mm, end_mm, allowed_mm } => {
             let message = "the ends of the arc lie at different distances from its centre";
             let label = format!(
