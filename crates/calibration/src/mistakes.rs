@@ -14,6 +14,8 @@ use crate::volumetric::known_places;
 
 /// A good measurement loses a reading to this test once in so many.
 const FALSE_ALARM: f64 = 1e-5;
+/// What no instrument reads is no mistake of it, mm: readings that were computed leave their last digits.
+const LEAST_MM: f64 = 1e-4;
 
 /// Refuses numbers that are no geometric errors in the unit they claim.
 pub(crate) fn plausible(points: &[Point], base: &Base, before: &Found) -> Result<(), CalibrationError> {
@@ -77,8 +79,6 @@ pub(crate) fn outlier(points: &[Point], found: &Found) -> Result<(), Calibration
     let Some(Outlier { reading, residual, standardised, .. }) = found.estimate.outlier(FALSE_ALARM) else {
         return Ok(());
     };
-    // What no instrument reads is no mistake of it.
-    const LEAST_MM: f64 = 1e-4;
     if residual.abs() < LEAST_MM {
         return Ok(());
     }
@@ -128,18 +128,21 @@ pub(crate) fn contradicted(points: &[Point], base: &Base, plan: &Plan) -> Result
     const POINTS: usize = 300;
     let every = points.len().div_ceil(POINTS).max(1);
     let thin = |all: Vec<Point>| -> Vec<Point> { all.into_iter().step_by(every).collect() };
-    let misfit = |points: Vec<Point>, base: &Base| -> Option<(f64, usize)> {
+    let fit = |points: Vec<Point>, base: &Base| {
         let plan = Plan { nodes_mm: fitting(plan, &points)?, ..plan.clone() };
-        let found = find(&thin(points), base, &plan).ok()?;
-        Some((found.estimate.misfit, found.estimate.redundancy))
+        find(&thin(points), base, &plan).ok().map(|found| found.estimate)
     };
-    let Some((own, free)) = misfit(points.to_vec(), base) else { return Ok(()) };
+    let Some(estimate) = fit(points.to_vec(), base) else { return Ok(()) };
+    if estimate.residuals.iter().all(|residual| residual.abs() < LEAST_MM) {
+        return Ok(());
+    }
+    let (own, free) = (estimate.misfit, estimate.redundancy);
     // Ratio of two variances of as many degrees of freedom, one of a million by chance: five standard deviations of its
     // logarithm. Beyond a half more it is no matter of chance and shape alone.
     let limit = 1.5_f64.max(exp(5.0 * (4.0 / free.max(1) as f64).sqrt()));
     let mut best: Option<(f64, String)> = None;
     for (name, repaired, base) in repairs(points, base) {
-        let Some((misfit, _)) = misfit(repaired, &base) else { continue };
+        let Some(misfit) = fit(repaired, &base).map(|fit| fit.misfit) else { continue };
         if misfit * misfit * limit < own * own && best.as_ref().is_none_or(|(least, _)| misfit < *least) {
             best = Some((misfit, name));
         }

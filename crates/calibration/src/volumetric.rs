@@ -74,7 +74,7 @@ pub struct Options {
 ///
 /// # Errors
 /// [`CalibrationError`]: places outside the base's volume, too few of them, numbers in another unit than they claim, an outlier,
-/// play of the wrong sign, and mistakes after whose repair the readings fit far better ([`mistakes`]).
+/// play of the wrong sign, and mistakes after whose repair the readings fit far better.
 pub fn calibrate(
     points: &[Point],
     base: &Base,
