@@ -256,10 +256,20 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
     let kept: Vec<(Vector, usize)> = tools.into_iter().step_by(every).collect();
     let sides: &[i8] =
         if (0..3).any(|axis| found.layout.at(Group::Play(axis)).is_some()) { &[1, -1] } else { &[0] };
-    let at = |axis: usize, k: usize| {
-        let nodes = &found.layout.plan.nodes_mm[axis];
-        nodes[0] + (nodes[nodes.len() - 1] - nodes[0]) * k as f64 / (GRID - 1) as f64
-    };
+    // On nodes, where a function is known least: between two of them the noise of both is averaged.
+    let places = found.layout.plan.nodes_mm.each_ref().map(|nodes| {
+        let last = nodes.len() - 1;
+        let mut picked: Vec<usize> =
+            (0..GRID).map(|k| (2 * k * last + GRID - 1) / (2 * (GRID - 1))).collect();
+        picked.dedup();
+        picked.into_iter().map(|k| nodes[k]).collect::<Vec<f64>>()
+    });
+    let mut grid = Vec::new();
+    for x in &places[0] {
+        for y in &places[1] {
+            grid.extend(places[2].iter().map(|z| Vector::new(*x, *y, *z)));
+        }
+    }
     let mut groups: Vec<usize> = kept.iter().map(|(_, group)| *group).collect();
     groups.sort_unstable();
     groups.dedup();
@@ -269,17 +279,12 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
             let mut commands = Vec::new();
             for (tool_mm, _) in kept.iter().filter(|(_, own)| *own == group) {
                 for side in sides {
-                    for k in 0..GRID * GRID * GRID {
-                        let linear_mm =
-                            Vector::new(at(0, k % GRID), at(1, k / GRID % GRID), at(2, k / GRID / GRID));
-                        let rotary_rad = Vector::zeros();
-                        commands.push(Command {
-                            linear_mm,
-                            rotary_rad,
-                            tool_mm: *tool_mm,
-                            direction: [*side; 3],
-                        });
-                    }
+                    commands.extend(grid.iter().map(|linear_mm| Command {
+                        linear_mm: *linear_mm,
+                        rotary_rad: Vector::zeros(),
+                        tool_mm: *tool_mm,
+                        direction: [*side; 3],
+                    }));
                 }
             }
             commands
