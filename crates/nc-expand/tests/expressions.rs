@@ -175,7 +175,12 @@ proptest! {
     fn programs_of_flow_are_expanded_or_refused(picks in prop::collection::vec(0..16_usize, 1..20)) {
         let lines = ["#1=0", "#1=#1+1", "X#1", "IF[#1LT5]GOTO2", "N2 Y1.", "WHILE[#1LT9]DO1", "END1", "M98 P7",
             "M30", "O7", "M99", "G65 P7 A1.", "GOTO3", "N3 Z#2", "IF[#1EQ3]THEN #2=5", "%"];
-        let text: Vec<&str> = picks.iter().map(|pick| lines[*pick]).collect();
+        let mut text: Vec<&str> = picks.iter().map(|pick| lines[*pick]).collect();
+        // Behind the closing `%` nothing is a program's, and what stands there is refused by who executes it.
+        let mut percents = text.iter().enumerate().filter(|(_, line)| **line == "%");
+        if let Some((closing, _)) = percents.nth(1) {
+            text.truncate(closing + 1);
+        }
         let text = text.join("\n");
         if let Ok(plain) = common::expanded("fanuc", &text, &[], &[]) {
             // What comes out has no flow left.

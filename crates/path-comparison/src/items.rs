@@ -159,6 +159,8 @@ pub(crate) struct Positioning {
     places: [Option<Place>; 2],
     /// The machine's error there, mm.
     pub(crate) error_mm: f64,
+    /// How far aside the tool may end for axes that lie in their play, mm.
+    pub(crate) aside_mm: f64,
     /// G0, which is corrected, unlike the others.
     pub(crate) rapid: bool,
     /// Made by a cycle.
@@ -364,6 +366,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             let at = Vector::from(end.linear_mm);
             (at, self.error_mm(&common.command(at, rotary_rad)))
         });
+        let play_mm =
+            |at: &Vector, axis| self.model.reversal_mm(axis, &common.command(*at, rotary_rad)).max(0.0);
+        let aside_mm = match (&self.play, &error) {
+            (Some(_), Some((at, _))) => (0..3).map(|axis| play_mm(at, axis)).sum(),
+            _ => 0.0,
+        };
         let tip_mm = error.map(|(at, error)| at + error);
         let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
         let place = linear.map(|linear| place(&linear, &rotary_rad));
@@ -373,6 +381,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             tip_mm,
             places: [std::mem::replace(&mut self.place, place), place],
             error_mm: error.map_or(0.0, |(_, error)| error.norm()),
+            aside_mm,
             rapid: kind != Kind::Uncorrected,
             of_cycle: kind == Kind::OfCycle,
             line: common.line,
@@ -606,7 +615,7 @@ fn where_gone(way: &Way, from: f64, to: f64, axis: usize, mm: f64) -> f64 {
 
 /// Ends of a positioning move that are alike: where an axis goes, the tool ends there; one that stays may.
 pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
-    /// Nothing is cut there, and what lies in its play may be a little aside.
+    /// Nothing is cut there.
     const LIMITS: f64 = 4.0;
     /// Where an axis was left by its last correction the machine was off by no more, mm; or by twice what it is off here.
     const LEFT_MM: f64 = 1.0;
@@ -614,7 +623,8 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
         return false;
     }
     // A control does not correct the moves of a cycle: they are off by the machine's errors, there and where it began.
-    let near_mm = LIMITS * wanted.limit_mm + if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
+    let of_cycle_mm = if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
+    let near_mm = LIMITS * wanted.limit_mm + made.aside_mm + of_cycle_mm;
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
