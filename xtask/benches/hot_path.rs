@@ -8,7 +8,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use machine_model::{Command, EngineId, Vector};
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, PlainLine, Reader};
-use toolpath::{Feed, FeedRate, Frame, Motion, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Frame, Motion, Position, Shape};
 use units::decimal::{Spelling, write};
 
 const POINTS: usize = 4096;
@@ -98,7 +98,7 @@ fn hot_path(c: &mut Criterion) {
             end: at(ends[1]),
             shape: Shape::Line,
             rate: FeedRate::PerMinute,
-            may_split: true,
+            division: Division::Any,
         })
         .map(Motion::Feed)
         .collect();

@@ -6,6 +6,7 @@
 
 use machine_model::{Command, Vector};
 use smallvec::SmallVec;
+use toolpath::Division;
 
 use crate::corrector::{Corrected, CorrectionError, Corrector, Wording};
 use crate::curve::{Curve, SAME_PLACE_MM};
@@ -59,6 +60,8 @@ pub(crate) struct Whole {
     pub(crate) length_mm: f64,
     /// Rotary axes turn on the way.
     pub(crate) in_step: bool,
+    /// Whether lines may be put before it.
+    pub(crate) division: Division,
 }
 
 /// By how much further than it was already the tool may be off on the way from a place that was not corrected, mm.
@@ -92,6 +95,10 @@ impl<'m> Corrector<'m> {
         motion: &Whole,
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
+        if motion.division == Division::One {
+            // From where the axes stand the block holds or does not.
+            return Ok(());
+        }
         let (start, length_mm) = (part.at(0.0), motion.length_mm);
         let before_it = if start == motion.start { Before::Another } else { Before::Same };
         let tangent = if motion.in_step { Vector::zeros() } else { part.tangent(0.0) };
@@ -105,12 +112,19 @@ impl<'m> Corrector<'m> {
             self.approach_to(machine, wanted, start, block, length_mm, corrected)?;
             return Ok(());
         };
-        if !self.model.depends_on_direction() {
-            self.approach_to(machine, wanted, start, block, length_mm, corrected)?;
-            return Ok(());
-        }
         let from = Vector::new(x, y, z);
         let here = Command { linear_mm: from, ..machine.state };
+        if !self.model.depends_on_direction() {
+            let off_mm = (from - start + self.model.error_mm(&here)).norm();
+            if self.approach_to(machine, wanted, start, block, length_mm, corrected)?
+                && off_mm <= self.limit_mm(block)
+            {
+                // The tool stands beside the path, and is fed to it from there.
+                let told = &mut corrected.correction.after_mm;
+                *told = told.max(off_mm);
+            }
+            return Ok(());
+        }
         // A second approach at one place: what the first left along the path is not to be gone back over.
         let again = self.approached == Some(start);
         let tangent = if again { Vector::zeros() } else { tangent };

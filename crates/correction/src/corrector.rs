@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use machine_model::{Command, Everywhere, LANES, PathModel, Play, SolveError, Vector};
 use smallvec::SmallVec;
-use toolpath::{Feed, Motion, Partial, Shape};
+use toolpath::{Division, Feed, Motion, Partial, Shape};
 
 use crate::approach::Whole;
 use crate::curve::Curve;
@@ -540,9 +540,13 @@ impl<'m> Corrector<'m> {
             start: whole.at(0.0),
             length_mm: whole.length_mm(),
             in_step: feed.start.rotary_deg != feed.end.rotary_deg,
+            division: feed.division,
         };
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
+        if feed.division == Division::One && !alone {
+            return Err(self.turns_in_one_block(&whole, block, feed.end.rotary_deg));
+        }
         let (mut own_words, mut at_quarters_mm) = (true, None);
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
@@ -553,7 +557,7 @@ impl<'m> Corrector<'m> {
                 machine,
                 block,
                 alone: alone && corrected.pieces.is_empty(),
-                may_split: feed.may_split && self.guessed_own(block).is_none(),
+                may_split: feed.division == Division::Any && self.guessed_own(block).is_none(),
                 whole: motion,
                 nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
                 solved: None,
@@ -586,6 +590,14 @@ impl<'m> Corrector<'m> {
             None => self.before_mm(&whole, block, rotary_deg, largest_mm),
         };
         Ok(corrected)
+    }
+
+    /// Why a motion on whose way axes with play turn cannot stay one block: by their play the tool would be off.
+    fn turns_in_one_block(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> CorrectionError {
+        let state = self.state(block, rotary_deg);
+        let at = whole.turns().into_iter().map(|s| Command { linear_mm: whole.at(s), ..state });
+        let play_mm = at.flat_map(|at| [0, 1, 2].map(|axis| self.model.reversal_mm(axis, &at).abs()));
+        CorrectionError::MustNotSplit { distance_um: play_mm.fold(0.0, f64::max) * 1e3 }
     }
 
     /// A line to where the axes stand, with a word for each axis that the block names, or for the first that may have one.

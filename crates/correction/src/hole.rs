@@ -2,7 +2,7 @@
 
 use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, Hole};
+use toolpath::{CycleKind, Division, Hole};
 
 use crate::approach::Whole;
 use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS, Wording};
@@ -34,6 +34,8 @@ struct Kept {
     commanded: Curve,
     /// What the control counts its pecks along.
     pecks: Option<Curve>,
+    /// The axis along which it leaves the hole at feed, if it does.
+    feeds_out: Option<usize>,
     /// Where R is, axis command.
     r_mm: f64,
 }
@@ -43,14 +45,34 @@ impl Kept {
     fn verdict(&self, machine: &Machine<'_>, limit_mm: f64) -> Verdict {
         let Self { wanted, commanded, .. } = self;
         let verdict = Pair { wanted, commanded, in_step: false, begun: Begun::No }.verdict(machine, limit_mm);
-        if let (Verdict::Within(_), Some(pecks)) = (verdict, &self.pecks) {
-            let counted =
-                Pair { wanted, commanded: pecks, in_step: true, begun: Begun::No }.verdict(machine, limit_mm);
-            if matches!(counted, Verdict::Beyond { .. }) {
-                return counted;
+        let pecks = self.pecks.as_ref().map(|commanded| {
+            Pair { wanted, commanded, in_step: true, begun: Begun::No }.verdict(machine, limit_mm)
+        });
+        let worse = |one: Verdict, other: Verdict| match (one, other) {
+            (Verdict::Within(a), Verdict::Within(b)) => Verdict::Within(a.max(b)),
+            (Verdict::Beyond { s, distance_mm: a }, Verdict::Beyond { distance_mm: b, .. }) => {
+                Verdict::Beyond { s, distance_mm: a.max(b) }
             }
-        }
-        verdict
+            (beyond @ Verdict::Beyond { .. }, Verdict::Within(_)) | (Verdict::Within(_), beyond) => beyond,
+        };
+        let others = pecks.filter(|pecks| matches!(pecks, Verdict::Beyond { .. }));
+        others.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
+    }
+
+    /// The same for the way out of a hole that is left at feed, on a machine that goes out another way than it came in.
+    fn out_again(&self, machine: &Machine<'_>, limit_mm: f64) -> Option<Verdict> {
+        let normal = self.feeds_out.filter(|_| machine.model.depends_on_direction())?;
+        let mut out = machine.clone();
+        out.state.direction[normal] = -out.state.direction[normal];
+        // While its own play is taken up the tool is late on the hole's line, which is no deviation from it.
+        let bottom = Command { linear_mm: self.commanded.at(1.0), ..machine.state };
+        let turned = Command { direction: out.state.direction, ..bottom };
+        let late_mm = (machine.model.error_mm(&turned) - machine.model.error_mm(&bottom))[normal];
+        let late = Vector::ith(normal, late_mm);
+        let wanted = Curve::Line(self.wanted.at(1.0) + late, self.wanted.at(0.0) + late);
+        let commanded = Curve::Line(self.commanded.at(1.0), self.commanded.at(0.0));
+        let pair = Pair { wanted: &wanted, commanded: &commanded, in_step: false, begun: Begun::No };
+        Some(pair.verdict(&out, limit_mm))
     }
 
     fn with(self, correction: Correction) -> Corrected {
@@ -346,7 +368,9 @@ impl<'m> Corrector<'m> {
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
         let piece = Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 };
         let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
-        Kept { piece, untouched, wanted, commanded, pecks, r_mm: from[normal] }
+        let feeds = matches!(hole.cycle.kind, CycleKind::Bore | CycleKind::Synchronised);
+        let feeds_out = Some(normal).filter(|_| feeds && hole.bottom_mm != at_r[normal]);
+        Kept { piece, untouched, wanted, commanded, pecks, feeds_out, r_mm: from[normal] }
     }
 
     /// The cycle as the moves it is made of.
@@ -408,7 +432,12 @@ impl<'m> Corrector<'m> {
                 block,
                 alone: false,
                 may_split: true,
-                whole: Whole { start: place(from), length_mm: (bottom_mm - r_mm).abs(), in_step: false },
+                whole: Whole {
+                    start: place(from),
+                    length_mm: (bottom_mm - r_mm).abs(),
+                    in_step: false,
+                    division: Division::Any,
+                },
                 nominal_step: Vector::zeros(),
                 solved: None,
                 enclosed: None,
@@ -461,7 +490,31 @@ impl<'m> Corrector<'m> {
             corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
         }
         if hole.cycle.kind == CycleKind::Bore {
-            feed(self, bottom_mm, r_mm, corrected)?;
+            // Out again is a reversal like any other.
+            let out = Curve::Line(place(bottom_mm), place(r_mm));
+            self.turn_towards(&out.at(0.0), &out.at(1.0));
+            let mut machine =
+                Machine { state: Command { direction: self.direction, ..machine.state }, ..machine.clone() };
+            let whole = Whole {
+                start: out.at(0.0),
+                length_mm: out.length_mm(),
+                in_step: false,
+                division: Division::Any,
+            };
+            self.approach(&mut machine, &out, block, &whole, corrected)?;
+            let mut follow = Follow {
+                machine,
+                block,
+                alone: false,
+                may_split: true,
+                whole,
+                nominal_step: Vector::zeros(),
+                solved: None,
+                enclosed: None,
+                foreseen: false,
+                corrected,
+            };
+            self.follow_line(&mut follow, &out)?;
         }
         rapid(self, place(after(hole)), may, corrected)?;
         Ok(())

@@ -3,7 +3,7 @@
 use correction::{Block, CorrectionError, Corrector, Letters, Options, Outside};
 use machine_model::engines::TangentialInterval;
 use machine_model::{Engine, Traverse, Vector};
-use toolpath::{Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
 
 /// Straight axes but for Y, which turns by 1 mrad at 100 mm: the interval method, which extrapolates
 /// the second line back to the origin, jumps there.
@@ -62,7 +62,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         end: position(end),
         shape: Shape::Line,
         rate: FeedRate::PerMinute,
-        may_split: true,
+        division: Division::Any,
     };
     corrector.correct(&Motion::Feed(feed), &block).map(|corrected| corrected.pieces.len())
 }

@@ -6,7 +6,7 @@ use machine_model::{
     Move, PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
 };
 use proptest::prelude::*;
-use toolpath::{Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
 
 /// A model of which nothing is known everywhere: the short way is never taken.
 struct Bare(RigidBody);
@@ -126,7 +126,7 @@ proptest! {
                 end: at(steps),
                 shape: Shape::Line,
                 rate: FeedRate::PerMinute,
-                may_split: true,
+                division: Division::Any,
             };
             let [mut asked, mut foresees] = [short.clone(), short.clone()];
             let lines = asked.short_lines(&block, [0.0; 3]);
@@ -217,7 +217,7 @@ proptest! {
                         end: position(end),
                         shape: Shape::Line,
                         rate: FeedRate::PerMinute,
-                        may_split: true,
+                        division: Division::Any,
                     };
                     single.correct(&Motion::Feed(feed), &block).unwrap();
                 }

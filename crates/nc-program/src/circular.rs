@@ -7,7 +7,7 @@ use crate::arc::{self, Circle, Fault, Tolerance};
 use crate::codes;
 use crate::frames::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
-use crate::motion::{Motions, compensated, feed_rate, simultaneous};
+use crate::motion::{Motions, division, feed_rate, simultaneous};
 use crate::position::{end, require_frame, require_known};
 use crate::settings::Environment;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Letters, Outcome, Words};
@@ -84,8 +84,8 @@ pub(crate) fn circular(
     let sweep_rad = sweep_rad + whole.copysign(sweep_rad);
     let sweep_rad = if similarity.mirrored { -sweep_rad } else { sweep_rad };
     let shape = Shape::Arc(Arc { plane: state.plane, centre_mm, sweep_rad });
-    let may_split = !compensated(before, state) && !turning;
-    motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, may_split }));
+    let division = division(before, state, turning);
+    motions.push(Motion::Feed(Feed { start: from, end: to, shape, rate, division }));
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use diagnostic::Diagnostic;
 use nc_syntax::Span;
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Feed, FeedRate, Motion, Shape};
+use toolpath::{Division, Feed, FeedRate, Motion, Shape};
 
 use crate::circular::circular;
 use crate::codes;
@@ -233,13 +233,24 @@ fn straight(
         return Err(simultaneous(words));
     }
     let rate = feed_rate(words, state)?;
-    // Pieces of a block that also turns would each need their share of the turn.
-    let may_split = !compensated(before, state) && !turns;
-    motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, may_split }));
+    let division = division(before, state, turns);
+    motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, division }));
     Ok(())
 }
 
-/// G41 and G42 are in force before or after the block: neither its start-up nor its end may be split.
+/// What may become of a feed's block. Where G41 or G42 is in force before or after it, neither its start-up nor its end may
+/// be split.
+pub(crate) fn division(before: &Modal, state: &Modal, turns: bool) -> Division {
+    if compensated(before, state) {
+        Division::One
+    } else if turns {
+        Division::OneBehindLines
+    } else {
+        Division::Any
+    }
+}
+
+/// G41 or G42 is in force before or after a block.
 pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
     before.compensation == Compensation::On || state.compensation == Compensation::On
 }

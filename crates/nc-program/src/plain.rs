@@ -6,7 +6,7 @@
 
 use nc_syntax::dialect::{GCode, Numbers};
 use nc_syntax::{PlainLine, PlainWord};
-use toolpath::{Feed, FeedRate, Frame, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Frame, Position, Shape};
 
 use crate::interpreter::{Context, Interpreter, context};
 use crate::modal::{Axis, Compensation, Distance, FeedMode, Modal, MotionMode, Naming, Progress};
@@ -124,7 +124,13 @@ impl PlainFeeds {
     #[must_use]
     pub fn feed(&self, start_mm: [f64; 3], end_mm: [f64; 3]) -> Feed {
         let at = |linear_mm| Position { linear_mm, rotary_deg: self.rotary_deg };
-        Feed { start: at(start_mm), end: at(end_mm), shape: Shape::Line, rate: self.rate, may_split: true }
+        Feed {
+            start: at(start_mm),
+            end: at(end_mm),
+            shape: Shape::Line,
+            rate: self.rate,
+            division: Division::Any,
+        }
     }
 }
 

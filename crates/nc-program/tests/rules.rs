@@ -6,7 +6,7 @@ use common::{dialect, end, feed, motions, refusal, run, run_with, setup, uncorre
 use nc_program::modal::{MotionMode, Progress};
 use nc_program::{AfterChange, Setup};
 use nc_syntax::dialect::GCode;
-use toolpath::{FeedRate, Motion};
+use toolpath::{Division, FeedRate, Motion};
 
 const START: &str = "G90 G0 X0 Y0 Z10\n";
 
@@ -262,8 +262,10 @@ fn inverse_time_needs_f_on_each_feed() {
 #[test]
 fn compensation_keeps_its_blocks_whole() {
     let run = run("fanuc", &after("G1 X1.\nG41 D1 X2.\nX3.\nG40 X4.\nX5.\n"));
-    let splits: Vec<bool> = run.steps[1..].iter().map(|step| feed(&step.motions[0]).may_split).collect();
-    assert_eq!(splits, [true, false, false, false, true]);
+    let divisions: Vec<Division> =
+        run.steps[1..].iter().map(|step| feed(&step.motions[0]).division).collect();
+    let (any, one) = (Division::Any, Division::One);
+    assert_eq!(divisions, [any, one, one, one, any]);
     let on: Vec<bool> = run.steps[1..].iter().map(|step| step.context.compensation).collect();
     assert_eq!(on, [false, true, true, true, false]);
 }
@@ -275,8 +277,8 @@ fn rotary_axes_that_do_not_matter() {
     let run =
         run_with(dialect("fanuc"), &with_a, "G0 X1. Y2. Z3.\nG1 X5. A10. F10.\nG28 A0.\nG1 X6.\nA60.\n");
     assert!(run.refused.is_none(), "{:?}", run.refused);
-    assert!(!feed(&run.steps[1].motions[0]).may_split);
-    assert!(feed(&run.steps[3].motions[0]).may_split);
+    assert_eq!(feed(&run.steps[1].motions[0]).division, Division::OneBehindLines);
+    assert_eq!(feed(&run.steps[3].motions[0]).division, Division::Any);
 }
 
 #[test]

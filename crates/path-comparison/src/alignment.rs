@@ -58,13 +58,28 @@ pub(crate) enum Processes {
 pub(crate) struct Alignment<'m, I> {
     pub(crate) wanted: Items<'m, I>,
     approach: Option<Approach>,
-    /// Processes that differ and were said to.
-    excused: Vec<[Process; 2]>,
+    excused: Excused,
+}
+
+/// Processes that differ and were said to.
+#[derive(Default)]
+struct Excused {
+    pairs: Vec<[Process; 2]>,
+    /// Blocks under compensation are out of step.
+    blocks: bool,
+}
+
+impl Excused {
+    /// What of two processes is still compared.
+    fn pair(&self, wanted: &Process, commanded: &Process) -> [Process; 2] {
+        [wanted, commanded]
+            .map(|process| Process { compensated: process.compensated.filter(|_| !self.blocks), ..*process })
+    }
 }
 
 impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
     pub(crate) fn new(wanted: Items<'m, I>) -> Self {
-        Self { wanted, approach: None, excused: Vec::new() }
+        Self { wanted, approach: None, excused: Excused::default() }
     }
 
     pub(crate) fn are_alike(&self, wanted: &Process, commanded: &Process) -> bool {
@@ -73,7 +88,11 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
 
     /// Two processes differ, and that is said: from here on they are alike.
     pub(crate) fn excuse(&mut self, wanted: Process, commanded: Process) {
-        self.excused.push([wanted, commanded]);
+        self.excused.blocks |= wanted.compensated != commanded.compensated;
+        let pair = self.excused.pair(&wanted, &commanded);
+        if pair[0] != pair[1] {
+            self.excused.pairs.push(pair);
+        }
     }
 
     /// A run begins: the real path stands at a place. How far that is beside the programmed one, mm, where it is near.
@@ -243,8 +262,9 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
     }
 }
 
-fn alike(excused: &[[Process; 2]], wanted: &Process, commanded: &Process) -> bool {
-    wanted == commanded || excused.iter().any(|pair| pair == &[*wanted, *commanded])
+fn alike(excused: &Excused, wanted: &Process, commanded: &Process) -> bool {
+    let pair = excused.pair(wanted, commanded);
+    pair[0] == pair[1] || excused.pairs.contains(&pair)
 }
 
 /// One cell of the free space: `left` is what is reached of `wanted` at the start of `real`, `bottom` of `real` at the

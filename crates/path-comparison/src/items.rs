@@ -33,6 +33,15 @@ const MOST_PECKS: f64 = 10_000.0;
 pub(crate) struct Process {
     pub(crate) number: u32,
     pub(crate) feed: Option<f64>,
+    /// Of feeds in a row under cutter compensation the how-manieth: each is a process of its own.
+    pub(crate) compensated: Option<u32>,
+}
+
+impl Process {
+    /// Of what is no feed.
+    fn of_number(number: u32) -> Self {
+        Self { number, feed: None, compensated: None }
+    }
 }
 
 /// Which places of a motion's stretches are reached: from a stretch on, those of each.
@@ -232,6 +241,8 @@ pub(crate) struct Items<'m, I> {
     place: Option<Place>,
     counted: Counted,
     ready: VecDeque<Item>,
+    /// Feeds in a row under cutter compensation.
+    compensated: u32,
     /// Feed motions so far, a hole being one.
     pub(crate) feeds: usize,
     pub(crate) limit_mm: f64,
@@ -272,6 +283,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             place: None,
             counted,
             ready: VecDeque::new(),
+            compensated: 0,
             feeds: 0,
             limit_mm: 0.0,
         }
@@ -325,16 +337,18 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     }
 
     fn take(&mut self, step: &Step) {
-        let Step { act, line, process: number, limit_mm } = *step;
+        let Step { act, line, process: number, limit_mm, compensated } = *step;
         let (motion, tool_mm, feed, dwell) = match act {
             Act::Deed(deed) => {
-                let process = Process { number, feed: None };
+                let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
             Act::Motion { motion, tool_mm, feed, dwell } => (motion, tool_mm, feed, dwell),
         };
-        let process = Process { number, feed };
+        self.compensated = if compensated { self.compensated + 1 } else { 0 };
+        let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
+        let process = Process { number, feed, compensated: block };
         let common = Common { line, process, limit_mm, tool_mm: tool_mm.into(), dwell };
         self.feeds += usize::from(matches!(motion, Motion::Feed(_) | Motion::Hole(_)));
         match motion {
@@ -385,7 +399,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             rapid: kind != Kind::Uncorrected,
             of_cycle: kind == Kind::OfCycle,
             line: common.line,
-            process: Process { feed: None, ..common.process },
+            process: Process::of_number(common.process.number),
             limit_mm: common.limit_mm,
         })));
         self.at = end;
@@ -578,7 +592,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
         feed(self, &mut at, on_hole(bottom_mm), [true, false]);
         if let Some(number) = common.dwell.filter(|_| hole.cycle.kind != CycleKind::Synchronised) {
-            let process = Process { feed: None, ..common.process };
+            let process = Process::of_number(common.process.number);
             self.ready.push_back(Item::Deed(Deed { number, line: common.line, process }));
         }
         if hole.cycle.kind == CycleKind::Bore {

@@ -40,6 +40,8 @@ pub struct Step {
     pub process: u32,
     /// What counts as too far, mm; of the programmed step.
     pub limit_mm: f64,
+    /// G41 or G42 is in force before or after it: the control offsets block by block.
+    pub compensated: bool,
 }
 
 /// What a step does.
@@ -119,6 +121,8 @@ pub enum What {
     Process([u32; 2]),
     /// Another F is in force.
     Feed([Option<f64>; 2]),
+    /// Under cutter compensation, where the control offsets block by block, they are not the same block.
+    Compensated,
     /// Under G93 a motion takes so many times as long.
     Time(f64),
     /// A deed is not done, its number.

@@ -6,6 +6,7 @@ use crate::alignment::{Alignment, Begins, Processes, Reached};
 use crate::difference::{self, Found};
 use crate::items::{Counted, Feeding, Item, Items, Process, Role, ends_alike};
 use crate::stretch::{Place, Stretch};
+use crate::way::Way;
 use crate::{Comparison, Mismatch, Pecks, Step, Trace, Traces, What};
 
 /// So many differences are kept; a program that is off in one place may be off in thousands.
@@ -178,6 +179,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     fn piece(&mut self) -> bool {
         let Some(piece) = self.commanded.feed(0) else { return false };
         let short = piece.is_short();
+        let way_mm = piece.way.as_ref().map_or(0.0, Way::length_mm);
         let Feeding { line, process, minutes, .. } = *piece;
         let stretches = std::mem::take(&mut piece.stretches);
         let reached = self.stretches(&stretches, line, process);
@@ -190,7 +192,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             Reached::OnTheWay => self.result.approaches += 1,
             Reached::At(ahead, _) => {
                 if let Some(minutes) = minutes {
-                    self.compare_time(minutes, short, ahead, line);
+                    self.compare_time(minutes, way_mm, short, ahead, line);
                 }
             }
         }
@@ -227,17 +229,23 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     }
 
     /// Under G93 a motion is known by what it takes.
-    fn compare_time(&mut self, minutes: f64, short: bool, ahead: usize, line: u64) {
+    ///
+    /// * `way_mm` – the length that is commanded
+    fn compare_time(&mut self, minutes: f64, way_mm: f64, short: bool, ahead: usize, line: u64) {
         let Some((from, to)) = self.wanted_time() else { return };
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
         let (wanted_line, whole, short) = (feed.line, feed.minutes.unwrap_or(0.0), short || feed.is_short());
+        let minutes_per_mm = whole / feed.length_mm().max(feed.limit_mm);
         if self.time.made.is_nan() {
             self.time = Time { made: to, compared: to };
         }
         self.time.made += minutes;
         let since = (self.time.made - self.time.compared).abs().max(to - self.time.compared);
+        // What leads no farther, as while play is taken up, takes its time at the motion's speed.
+        let detour = (way_mm * minutes_per_mm - (to - self.time.compared).max(0.0)).max(0.0);
         // Of two motions about as long as the limit only one may count.
-        let room = SAME_TIME * since + NO_TIME * whole + if short { minutes.max(whole) } else { 0.0 };
+        let room =
+            SAME_TIME * since + NO_TIME * whole + detour + if short { minutes.max(whole) } else { 0.0 };
         if self.time.made < from - room || self.time.made > to + room {
             let wanted = (0.5 * (from + to) - self.time.compared).max(1e-12);
             let times = (self.time.made - self.time.compared) / wanted;
@@ -302,6 +310,9 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         }
         if wanted.feed != made.feed {
             self.mismatch(What::Feed([wanted.feed, made.feed]), wanted_line, line);
+        }
+        if wanted.compensated != made.compensated {
+            self.mismatch(What::Compensated, wanted_line, line);
         }
         self.alignment.excuse(wanted, made);
     }

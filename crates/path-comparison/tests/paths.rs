@@ -3,7 +3,7 @@
 use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector};
 use path_comparison::{Act, Comparison, Pecks, Step, Traces, compare};
 use proptest::prelude::*;
-use toolpath::{Arc, Feed, FeedRate, Motion, Plane, Position, Shape};
+use toolpath::{Arc, Division, Feed, FeedRate, Motion, Plane, Position, Shape};
 
 const LIMIT_MM: f64 = 0.002;
 
@@ -22,12 +22,12 @@ fn at(linear_mm: [f64; 3]) -> Position {
 }
 
 fn feed(start: [f64; 3], end: [f64; 3], shape: Shape) -> Feed {
-    Feed { start: at(start), end: at(end), shape, rate: FeedRate::PerMinute, may_split: true }
+    Feed { start: at(start), end: at(end), shape, rate: FeedRate::PerMinute, division: Division::Any }
 }
 
 fn step(feed: Feed, line: usize) -> Step {
     let act = Act::Motion { motion: Motion::Feed(feed), tool_mm: [0.0; 3], feed: Some(100.0), dwell: None };
-    Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM }
+    Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM, compensated: false }
 }
 
 fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {

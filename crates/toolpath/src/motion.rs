@@ -82,8 +82,20 @@ pub struct Feed {
     pub shape: Shape,
     /// How F is meant.
     pub rate: FeedRate,
-    /// False where the piece must stay one block: thread cutting, cutter compensation.
-    pub may_split: bool,
+    /// What may become of its block.
+    pub division: Division,
+}
+
+/// How many blocks a feed motion may become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Division {
+    /// As many as its path needs.
+    #[default]
+    Any,
+    /// One, behind lines that bring the axes to its start: of a rotary axis that turns meanwhile each piece would need its share.
+    OneBehindLines,
+    /// One and none besides: the control offsets block by block (G41, G42), and a line of micrometres would be offset too.
+    One,
 }
 
 /// What a drilling cycle does at the bottom and on the way back; what `correction` may rewrite as moves.

@@ -7,7 +7,7 @@ use correction::{
     PieceKind,
 };
 use machine_model::Vector;
-use toolpath::{Feed, FeedRate, Frame, Motion, Partial, Plane, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Frame, Motion, Partial, Plane, Position, Shape};
 
 pub(crate) fn letters(text: &str) -> Letters {
     let mut letters = Letters::default();
@@ -178,7 +178,7 @@ pub(crate) fn tried(
         end: position(end),
         shape,
         rate: FeedRate::PerMinute,
-        may_split: true,
+        division: Division::Any,
     });
     let corrected = corrector.correct(&motion, block)?;
     let (plane, centre) = match shape {

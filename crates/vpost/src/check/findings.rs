@@ -53,6 +53,9 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[String; 2]>
             let [here, there] = feeds.map(|f| f.map_or_else(|| "no F".to_owned(), |f| format!("F{f}")));
             in_force(*wanted, *made, &here, &there)
         }
+        What::Compensated => format!(
+            "under cutter compensation line {made} of the corrected program is not the block of line {wanted}: one was put in or left out, and the control offsets block by block"
+        ),
         What::Time(times) => format!(
             "line {made} of the corrected program takes {times:.2} times as long as line {wanted} says by F"
         ),

@@ -10,7 +10,7 @@ use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Reader};
 use path_comparison::{Act, Step};
 use smallvec::SmallVec;
-use toolpath::{Feed, FeedRate, Motion, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
 use crate::settings::Settings;
 
@@ -159,7 +159,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 self.feed
             };
             let act = Act::Motion { motion: *motion, tool_mm: context.tool_mm, feed, dwell };
-            self.ready.push(Step { act, line, process, limit_mm });
+            self.ready.push(Step { act, line, process, limit_mm, compensated: context.compensation });
         }
         says.behind.into_iter().for_each(|said| self.say(said, line, limit_mm));
     }
@@ -174,7 +174,7 @@ impl<'a, 'n> Program<'a, 'n> {
             Said::Deed(deed) => {
                 let process = self.number();
                 let act = Act::Deed(self.numbers.borrow_mut().of_deed(&deed));
-                self.ready.push(Step { act, line, process, limit_mm });
+                self.ready.push(Step { act, line, process, limit_mm, compensated: false });
             }
         }
     }
@@ -199,7 +199,7 @@ impl<'a, 'n> Program<'a, 'n> {
             && start.rotary_deg != end.rotary_deg;
         let feed = |start: Position, end: Position| {
             let rate = FeedRate::PerMinute;
-            Motion::Feed(Feed { start, end, shape: Shape::Line, rate, may_split: false })
+            Motion::Feed(Feed { start, end, shape: Shape::Line, rate, division: Division::OneBehindLines })
         };
         feeds.then(|| feed(start, end))
     }

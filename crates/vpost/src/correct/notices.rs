@@ -170,8 +170,8 @@ pub(crate) fn refusal(
             .at(whole, "here")
             .help("choose another engine with `--engine`"),
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
-            .at(whole, "this block cannot be split: cutter compensation or a thread is active")
-            .help("post with compensation computed in CAM, or accept more with `--tolerance`"),
+            .at(whole, "this block must stay one, with none before it: cutter compensation is active")
+            .help("post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on"),
         CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.to_string())
             .at(word(b'Q').unwrap_or(whole), "far below what a drill bites")
             .help("correct Q: it is the depth of one peck"),
