@@ -389,7 +389,12 @@ def judge_rapids(a, b, machine, verdict, behind_a_hole):
     allowed = RAPID_FACTOR * limit + (0.0 if sure else sum(machine.largest_play(k) for k in range(3)))
     still = b.get("still") or any(not m.rapid for m in b["motions"])
     if len(wanted) == len(got) and not cycle:
-        for one, two, m in zip(wanted, got, b["motions"]):
+        for one, two, programmed, m in zip(wanted, got, a["motions"], b["motions"]):
+            if one is not None and two is not None:
+                # A positioning block carries its own axes only: one that stands in both keeps its last correction.
+                both = (programmed, m)
+                stands = [all(each.start[k] is not None and each.start[k] == each.end[k] for each in both) for k in range(3)]
+                one = numpy.where(stands, two, one)
             if (one is None) != (two is None):
                 verdict.say(f"rapid: line {m.line} goes to a place that only one of the programs knows")
             elif one is not None and math.dist(one, two) > allowed:
