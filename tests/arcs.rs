@@ -1,8 +1,6 @@
 //! Arcs whose radii differ at start and end: judged as the control does, and written so that it takes them.
 
-mod common;
-
-use common::{messages, root, run};
+use crate::common::{messages, root, run};
 
 const CROOKED: &str = "tests/profiles/corpus.toml";
 

@@ -1,14 +1,10 @@
 //! `vpost batch` on one machine.
 
-mod common;
-#[path = "common/folders.rs"]
-mod folders;
-
 use std::path::Path;
 use std::process::Output;
 
-use common::{messages, root, run, vpost};
-use folders::{PROFILE, copy, program, release, temporaries, tree};
+use crate::common::{messages, root, run, vpost};
+use crate::folders::{PROFILE, copy, program, release, temporaries, tree};
 
 fn batch(input: &Path, output: &Path, more: &[&str]) -> Output {
     let mut command = vpost();

@@ -1,14 +1,10 @@
 //! `vpost batch plan`, `run` and `merge`: the same as one run, from any number of tasks.
 
-mod common;
-#[path = "common/folders.rs"]
-mod folders;
-
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use common::{messages, root, vpost};
-use folders::{PROFILE, program, release, temporaries, tree};
+use crate::common::{messages, root, vpost};
+use crate::folders::{PROFILE, program, release, temporaries, tree};
 
 /// A release, planned.
 struct Planned {

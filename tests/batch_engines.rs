@@ -5,16 +5,12 @@
 
 #![cfg(unix)]
 
-mod common;
-#[path = "common/folders.rs"]
-mod folders;
-
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::{messages, root, vpost};
-use folders::{PROFILE, release, temporaries, tree};
+use crate::common::{messages, root, vpost};
+use crate::folders::{PROFILE, release, temporaries, tree};
 
 /// A release that was planned, and a folder with a `vpost` for the scripts to find.
 struct Work {

@@ -3,18 +3,14 @@
 // Signals are those of POSIX.
 #![cfg(unix)]
 
-mod common;
-#[path = "common/folders.rs"]
-mod folders;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use common::vpost;
-use folders::{PROFILE, release, temporaries, tree};
+use crate::common::vpost;
+use crate::folders::{PROFILE, release, temporaries, tree};
 
 fn start(input: &Path, output: &Path) -> Child {
     let mut command = vpost();
@@ -103,7 +99,7 @@ fn killed_four_times_the_rerun_gives_the_same_bytes() {
 }
 
 #[test]
-#[ignore = "a minute; `cargo test -p vpost --test batch_kill -- --ignored --nocapture`"]
+#[ignore = "a minute; `cargo test -p vpost --test whole batch_kill:: -- --ignored --nocapture`"]
 fn killed_twenty_times_the_rerun_gives_the_same_bytes() {
     let _alone = ALONE.lock();
     println!("outputs that stood when a run of 60 was killed: {:?}", Release::new().kill(20));

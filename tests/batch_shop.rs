@@ -3,16 +3,12 @@
 
 #![cfg(unix)]
 
-mod common;
-#[path = "common/folders.rs"]
-mod folders;
-
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{messages, root, vpost};
-use folders::{PROFILE, program, temporaries, tree};
+use crate::common::{messages, root, vpost};
+use crate::folders::{PROFILE, program, temporaries, tree};
 
 fn batch(input: &Path, output: &Path) -> Command {
     let mut command = vpost();

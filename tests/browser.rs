@@ -3,12 +3,10 @@
 //! No console message, no request, no script that acts, prints to PDF. Where the browser is missing the tests say that they
 //! were skipped; with `CI` set they fail.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use common::{messages, root, run};
+use crate::common::{messages, root, run};
 
 /// The browser.
 fn chromium() -> Option<&'static str> {

@@ -1,11 +1,9 @@
 //! `vpost budget` through the whole program: figures, points, syntheses, refusals.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use common::{messages, run, vpost};
+use crate::common::{messages, run, vpost};
 use serde_json::Value;
 
 const STAN: &str = "machine-profiles/stan_s500.toml";
@@ -174,8 +172,8 @@ fn the_worst_signs_are_those_of_a_machine() {
     assert_eq!(number(&deviation(&said.json, "B(X)")["alone"]["M_um"]), 3.0);
     let signs = &found.json["signs_free"]["worst_case"]["signs"];
     let sign = |name: &str| number(&signs[name]);
-    let text = std::fs::read_to_string(common::root().join(VMC)).expect("reads");
-    let tables = common::root().join("machine-profiles/generic_vmc");
+    let text = std::fs::read_to_string(crate::common::root().join(VMC)).expect("reads");
+    let tables = crate::common::root().join("machine-profiles/generic_vmc");
     let folder = folder("signs");
     for axis in ["x", "y", "z"] {
         let table = std::fs::read_to_string(tables.join(format!("errors_{axis}.csv"))).expect("reads");
@@ -257,7 +255,7 @@ fn deviations_act_one_to_one_or_by_an_arm() {
     let points = "samples/budget/ball_points.csv";
     let found = budget("arms", &["-m", "samples/budget/ms300_like.toml", "--points", points]);
     assert_eq!(found.json["control_points"], 60);
-    let text = std::fs::read_to_string(common::root().join(points)).expect("reads");
+    let text = std::fs::read_to_string(crate::common::root().join(points)).expect("reads");
     let rows = text.lines().skip(1).map(|line| {
         let row: Vec<f64> = line.split(',').map(|v| v.parse().expect("a number")).collect();
         [row[0], row[1], row[2]]

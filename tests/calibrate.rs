@@ -1,11 +1,9 @@
 //! `vpost calibrate` from files to a profile that corrects programs.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use common::{messages, root, run, vpost};
+use crate::common::{messages, root, run, vpost};
 
 const STAN: &str = "machine-profiles/stan_s500";
 

@@ -1,11 +1,9 @@
 //! `vpost calibrate interferometer`: the files people have, and the questions that must be asked.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use common::{messages, run, vpost};
+use crate::common::{messages, run, vpost};
 
 struct Room {
     folder: tempfile::TempDir,
@@ -187,9 +185,9 @@ fn finer_tables_and_the_report_of_public_runs() {
 
 /// The generic mill with effects, its tables by their full names.
 fn mill_with_effects(room: &Room) -> String {
-    let text =
-        std::fs::read_to_string(common::root().join("machine-profiles/generic_vmc.toml")).expect("a profile");
-    let tables = common::root().join("machine-profiles/generic_vmc/");
+    let text = std::fs::read_to_string(crate::common::root().join("machine-profiles/generic_vmc.toml"))
+        .expect("a profile");
+    let tables = crate::common::root().join("machine-profiles/generic_vmc/");
     let text = text.replace("generic_vmc/", &tables.display().to_string());
     let more = "\n[[effect]]\nid = \"scale.X\"\nscale_um_per_m = 50.0\n[[effect]]\nid = \"thermal.X\"\nexpansion_um_per_m_k = 11.5\n";
     room.file("mill.toml", &(text + more))

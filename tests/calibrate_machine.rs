@@ -1,11 +1,9 @@
 //! `vpost calibrate volumetric` and `ballbar`: samples of machines whose truth the generator knows.
 
-mod common;
-
 use std::path::Path;
 use std::process::Output;
 
-use common::{messages, run, vpost};
+use crate::common::{messages, run, vpost};
 
 const TABLE_MACHINE: &str = "format = 1\nname = \"table machine\"\ncontrol = \"linuxcnc\"\nchain = \"[w C A X Y b Z t]\"\n[axis.X]\ntravel_mm = [0, 600]\n[axis.Y]\ntravel_mm = [0, 500]\n[axis.Z]\ntravel_mm = [-600, 0]\n[rotary.A]\ncentre_mm = [250, 150, -300]\n[rotary.C]\ncentre_mm = [250, 150, -300]\n";
 
@@ -139,7 +137,7 @@ fn points_of_a_volume_become_tables_that_unseen_points_confirm() {
 #[test]
 fn one_tool_leaves_angles_open_and_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
-    let all = std::fs::read_to_string(common::root().join("samples/calibration/volume_points.csv"))
+    let all = std::fs::read_to_string(crate::common::root().join("samples/calibration/volume_points.csv"))
         .expect("a sample");
     let one: Vec<&str> =
         all.lines().filter(|line| !line.starts_with("1,") && !line.starts_with("2,")).collect();
@@ -196,8 +194,8 @@ fn ball_bars_that_make_no_sense_are_refused() {
         &["VP1101", "A turns the tool"],
     );
     // Without the spindle turn the cup offset cannot be told from the table's.
-    let all =
-        std::fs::read_to_string(common::root().join("samples/calibration/ballbar_ac.csv")).expect("a sample");
+    let all = std::fs::read_to_string(crate::common::root().join("samples/calibration/ballbar_ac.csv"))
+        .expect("a sample");
     let four: Vec<&str> = all.lines().filter(|line| !line.starts_with("spindle")).collect();
     let mut at_the_crossing = chain.to_vec();
     at_the_crossing.extend(["--crossing", "250,150,-300"]);

@@ -1,8 +1,6 @@
 //! The promise, judged twice: by `vpost check`, and by LinuxCNC's interpreter with a model of its own.
 
-mod common;
-
-use common::{SAMPLES, have_interpreter, messages, referee, root, run};
+use crate::common::{SAMPLES, have_interpreter, messages, referee, root, run};
 
 /// 1.1 mrad of squareness with the interferometer tables, as the users' acceptance asks for.
 const SQUARE: &str = "tests/profiles/stan_s500_square_1100.toml";

@@ -1,12 +1,10 @@
 //! What a program as a whole shows, and what only the machine's owner knows, on the command line: lathes, lengths without
 //! a point, M codes, cut programs, tool changes.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::process::Output;
 
-use common::{messages, vpost};
+use crate::common::{messages, vpost};
 
 const CORPUS: &str = "tests/profiles/corpus.toml";
 
@@ -21,7 +19,7 @@ impl Part {
 
     /// The corpus' profile with more in it.
     fn profile(&self, more: &str) -> String {
-        let folder = common::root().join("tests/profiles");
+        let folder = crate::common::root().join("tests/profiles");
         let text = std::fs::read_to_string(folder.join("corpus.toml")).expect("readable");
         let tables = text.replace("\"wavy_", &format!("\"{}/wavy_", folder.display()));
         let path = self.0.path().join("machine.toml");

@@ -1,9 +1,7 @@
 //! One small program per trap: those that must be corrected, and those that must be refused, each for
 //! its reason.
 
-mod common;
-
-use common::{files, have_interpreter, messages, referee, root, run};
+use crate::common::{files, have_interpreter, messages, referee, root, run};
 
 const DIALECTS: [&str; 6] = ["fanuc", "perspektiva", "linuxcnc", "balt-system", "sinumerik", "centroid"];
 /// Crooked in everything a 3-axis machine can be, with offsets and tools for every program of the corpus.

@@ -1,10 +1,8 @@
 //! `vpost diagnose` on real measurements and on bad files, through the command.
 
-mod common;
-
 use std::path::Path;
 
-use common::{messages, root, run};
+use crate::common::{messages, root, run};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;

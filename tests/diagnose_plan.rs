@@ -1,8 +1,6 @@
 //! `vpost diagnose --plan`: the design separates the causes, the rows can be filled in, the program runs.
 
-mod common;
-
-use common::{have_interpreter, messages, referee, run};
+use crate::common::{have_interpreter, messages, referee, run};
 use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Command, Vector};
@@ -22,7 +20,7 @@ fn plan(form: &str, profile: &str, more: &[&str]) -> (String, String) {
 
 /// Rows of a plan as the diagnosis would see them, read by code of this test's own.
 fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements {
-    let text = std::fs::read_to_string(common::root().join(profile)).expect("a profile");
+    let text = std::fs::read_to_string(crate::common::root().join(profile)).expect("a profile");
     let chain = text.lines().find_map(|line| line.strip_prefix("chain")).expect("a chain");
     let chain = machine_model::Chain::parse(chain.split('"').nth(1).expect("in quotes")).expect("a chain");
     let mut lines = csv.lines();

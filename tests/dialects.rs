@@ -4,8 +4,6 @@
 //! left alone; the program without it means something else, or the same; it is what the refusal names. The
 //! list is written from the tables and from the proofs found: `VPOST_UPDATE_DOCS=1` writes it.
 
-mod common;
-
 use std::fmt::Write;
 use std::path::Path;
 
@@ -16,7 +14,7 @@ use nc_syntax::dialect::{GCode, Paren};
 use nc_syntax::{Block, Dialect, ItemKind, Reader, Value};
 use toolpath::Motion;
 
-use common::{files, messages, root, run};
+use crate::common::{files, messages, root, run};
 
 const DOCUMENT: &str = "docs/dialects.md";
 /// What stands above the list.

@@ -7,15 +7,13 @@
 // The blocks are written for a POSIX shell.
 #![cfg(unix)]
 
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use machine_model::effects::EffectKind;
 
-use common::{messages, root, run, vpost};
+use crate::common::{messages, root, run, vpost};
 
 /// A fenced block of a document.
 #[derive(Debug)]
@@ -194,7 +192,7 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
         }
     }
     let hint = format!(
-        "if that is how it should be: `{UPDATE}=1 cargo test -p vpost --test docs`, and read the diff"
+        "if that is how it should be: `{UPDATE}=1 cargo test -p vpost --test whole docs::`, and read the diff"
     );
     assert!(wrong.is_empty(), "{}\n{hint}", wrong.join("\n"));
     assert!(ran > 20 && shown > 10, "{ran} blocks ran and {shown} outputs were compared");

@@ -1,8 +1,6 @@
 //! Effects of a profile through the whole program: predicted, solved, corrected, checked, never guessed.
 
-mod common;
-
-use common::{SAMPLES, messages, root, run};
+use crate::common::{SAMPLES, messages, root, run};
 
 /// A perfect machine large enough for the samples.
 const MACHINE: &str = r#"format = 1

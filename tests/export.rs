@@ -1,11 +1,9 @@
 //! `vpost profile export`: what is written comes back.
 
-mod common;
-
 use std::path::Path;
 use std::process::Output;
 
-use common::{messages, run};
+use crate::common::{messages, run};
 
 const MILL: &str = "machine-profiles/generic_vmc.toml";
 
@@ -97,8 +95,9 @@ fn linuxcnc_files_come_back_with_both_directions() {
     // the same in both profiles.
     let made = std::fs::read_to_string(folder.path().join("made/x.csv")).expect("a table");
     let negative = std::fs::read_to_string(folder.path().join("made/x_negative.csv")).expect("a table");
-    let source = std::fs::read_to_string(common::root().join("machine-profiles/generic_vmc/errors_x.csv"))
-        .expect("a table");
+    let source =
+        std::fs::read_to_string(crate::common::root().join("machine-profiles/generic_vmc/errors_x.csv"))
+            .expect("a table");
     let place =
         source.lines().next().expect("a header").split(',').position(|c| c == "EXX_um").expect("positioning");
     let number = |line: &str, k: usize| -> f64 {

@@ -2,15 +2,13 @@
 
 #![cfg(unix)]
 
-mod common;
-
 use std::io::Write;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::PathBuf;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{messages, root, run, vpost};
+use crate::common::{messages, root, run, vpost};
 
 const PROFILE: &str = "machine-profiles/stan_s500.toml";
 const GOOD: &str = "%\nG21 G90 G54\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX60. Y40.\nM30\n%\n";

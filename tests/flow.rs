@@ -1,13 +1,11 @@
 //! Programs with variables, loops and subprograms, through the command.
 
-mod common;
-
 use std::io::Write;
 use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{files, have_interpreter, messages, referee, root, run, vpost};
+use crate::common::{files, have_interpreter, messages, referee, root, run, vpost};
 
 const CROOKED: &str = "tests/profiles/corpus.toml";
 const PERFECT: &str = "machine-profiles/perfect.toml";

@@ -1,10 +1,8 @@
 //! A machine without errors changes no byte, or refuses.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{SAMPLES, files, messages, root, run};
+use crate::common::{SAMPLES, files, messages, root, run};
 
 fn same_or_refused(path: &Path, dialect: &str) -> bool {
     let text = std::fs::read(path).expect("readable");

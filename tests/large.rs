@@ -1,14 +1,12 @@
 //! Programs too large to be held in memory at once: the same bytes for any number of threads, nothing half done.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{messages, vpost};
+use crate::common::{messages, vpost};
 
 const PROFILE: &str = "machine-profiles/stan_s500.toml";
 

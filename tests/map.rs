@@ -1,10 +1,8 @@
 //! `vpost map` through the whole program: figures, zero points, exports, refusals.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{messages, run, vpost};
+use crate::common::{messages, run, vpost};
 use serde_json::Value;
 
 const STAN: &str = "machine-profiles/stan_s500.toml";
@@ -404,7 +402,7 @@ fn what_cannot_be_mapped_is_refused_with_what_to_type() {
 
 #[test]
 fn effects_and_their_conditions_are_part_of_the_map() {
-    let profile = std::fs::read_to_string(common::root().join(KONDIA)).expect("reads")
+    let profile = std::fs::read_to_string(crate::common::root().join(KONDIA)).expect("reads")
         + "[[effect]]\nid = \"thermal.X\"\nexpansion_um_per_m_k = 11.5\n";
     let profile = profile.replace(
         "chain ",

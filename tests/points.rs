@@ -1,11 +1,9 @@
 //! Published numbers through the command: `vpost solve` and `vpost predict`.
 
-mod common;
-
 use std::io::Write;
 use std::process::Stdio;
 
-use common::{messages, vpost};
+use crate::common::{messages, vpost};
 
 const STAN: [&str; 2] = ["-m", "machine-profiles/stan_s500.toml"];
 

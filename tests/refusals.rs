@@ -1,11 +1,9 @@
 //! Bad input: a clear error, no output, the right exit status, and an earlier output left alone.
 
-mod common;
-
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
-use common::{messages, root, run, vpost};
+use crate::common::{messages, root, run, vpost};
 
 const PROFILE: [&str; 2] = ["-m", "machine-profiles/stan_s500.toml"];
 const GOOD: &str = "G21 G17 G90 G54\nG0 X10. Y10. Z20.\nG1 X50. F500.\nM30\n";

@@ -1,13 +1,11 @@
 //! `docs/traps.md`: every trap has a proof that exists, and every program of the corpus proves something.
 //! Below: the traps that only a whole output shows.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use common::{files, messages, root, run};
+use crate::common::{files, messages, root, run};
 use nc_syntax::{Block, ItemKind, Reader, Value};
 
 const PROFILE: &str = "tests/profiles/corpus.toml";

@@ -1,8 +1,6 @@
 //! Words that nobody wrote: none in a rapid, none for an axis that the program has not named in the frame in force.
 
-mod common;
-
-use common::{messages, run};
+use crate::common::{messages, run};
 
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const HEAD: &str = "G21 G90 G17 G54\n";

@@ -1,7 +1,5 @@
 //! Folders of many programs, and what must be true of the outputs.
 
-#![allow(dead_code, reason = "each test file uses its own part of this")]
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! What the whole-program tests share: the command, folders, the second judge.
 
-#![expect(dead_code, reason = "each test file uses its own part of this")]
+#![allow(dead_code, reason = "each test binary uses its own part of this")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,0 +1,39 @@
+//! The command and its files, as a whole: all tests of the roof in one binary, linked once.
+//!
+//! `cargo test -p vpost --test whole closed_loop::` runs one file's.
+
+mod common;
+#[path = "common/folders.rs"]
+mod folders;
+
+mod arcs;
+mod batch;
+mod batch_cluster;
+mod batch_engines;
+mod batch_kill;
+mod batch_shop;
+mod browser;
+mod budget;
+mod calibrate;
+mod calibrate_interferometer;
+mod calibrate_machine;
+mod closed_loop;
+mod controls;
+mod corpus;
+mod diagnose;
+mod diagnose_plan;
+mod dialects;
+mod docs;
+mod effects;
+mod export;
+mod files;
+mod flow;
+mod gap_smoke;
+mod identity;
+mod large;
+mod map;
+mod one_block;
+mod points;
+mod refusals;
+mod traps;
+mod words;
