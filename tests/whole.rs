@@ -34,6 +34,7 @@ mod large;
 mod map;
 mod one_block;
 mod points;
+mod real_machines;
 mod refusals;
 mod traps;
 mod words;
