@@ -161,7 +161,8 @@ impl<'m> Corrector<'m> {
                 if corrected.pieces.len() > written {
                     self.approached = Some(start);
                     let told = &mut corrected.correction.after_mm;
-                    *told = told.max(off_mm.min(self.limit_mm(block)));
+                    // What `check` allows: from a place that was not corrected the tool comes as it can.
+                    *told = told.max(off_mm.min(self.options.tolerance_mm + block.rounding_mm()));
                 }
                 return Ok(());
             }

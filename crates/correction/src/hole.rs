@@ -55,8 +55,7 @@ impl Kept {
             }
             (beyond @ Verdict::Beyond { .. }, Verdict::Within(_)) | (Verdict::Within(_), beyond) => beyond,
         };
-        let others = pecks.filter(|pecks| matches!(pecks, Verdict::Beyond { .. }));
-        others.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
+        pecks.into_iter().chain(self.out_again(machine, limit_mm)).fold(verdict, worse)
     }
 
     /// The same for the way out of a hole that is left at feed, on a machine that goes out another way than it came in.
@@ -186,8 +185,15 @@ impl<'m> Corrector<'m> {
             match self.verdict_with_play(&machine, &pair, verdict, limit_mm) {
                 Verdict::Within(bound) => correction.after_mm = bound,
                 Verdict::Beyond { distance_mm, .. } => {
-                    correction.after_mm = distance_mm;
-                    correction.leaning_mm = Some(distance_mm);
+                    // What is said of it is a bound, not the place that was beyond.
+                    let all = Machine { told_mm: 0.0, ..machine.clone() };
+                    let verdict = kept.verdict(&all, f64::INFINITY);
+                    let most_mm = match self.verdict_with_play(&all, &pair, verdict, f64::INFINITY) {
+                        Verdict::Within(bound_mm) => bound_mm.max(distance_mm),
+                        Verdict::Beyond { distance_mm, .. } => distance_mm,
+                    };
+                    correction.after_mm = most_mm;
+                    correction.leaning_mm = Some(most_mm);
                 }
             }
             if correction.leaning_mm.is_none() || !expandable {
