@@ -167,7 +167,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         start_mm: None,
         ..Default::default()
     };
-    let job = vpost::correct::Job {
+    let job = rewrite::Job {
         dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,
         setup: &setup,
         model,

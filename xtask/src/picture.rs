@@ -135,7 +135,7 @@ fn corrected(
     dialect: &Dialect,
     setup: &Setup,
 ) -> anyhow::Result<Vec<u8>> {
-    let job = vpost::correct::Job {
+    let job = rewrite::Job {
         dialect,
         setup,
         model,
@@ -148,7 +148,7 @@ fn corrected(
         force: false,
         provenance: "",
     };
-    let result = vpost::correct::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
+    let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)
 }
 

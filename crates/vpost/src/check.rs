@@ -1,14 +1,12 @@
 //! The closed loop: two programs through the machine model, what they make of the part compared.
 
-mod findings;
 mod page;
-mod reading;
 
-use std::cell::RefCell;
 use std::path::Path;
 
 use nc_expand::Expanded;
-use path_comparison::{Comparison, Pecks, Traces, compare};
+use path_comparison::Traces;
+use rewrite::Checked;
 use serde::Serialize;
 
 use crate::arguments::{Check, Shared};
@@ -17,13 +15,6 @@ use crate::file;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
 use crate::settings::Settings;
-use reading::{Numbers, Optional, Program};
-
-/// Two programs, with blocks under `/` executed or skipped.
-struct Loop {
-    comparison: Comparison,
-    findings: Vec<String>,
-}
 
 /// The JSON of `vpost check --json`.
 #[derive(Debug, Serialize)]
@@ -56,7 +47,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let (wanted_name, wanted) = read(&arguments.input)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
     let traces = if arguments.html.is_some() { Traces::Kept } else { Traces::Forgotten };
-    let Loop { comparison, findings } =
+    let Checked { comparison, findings } =
         closed((&wanted_name, &wanted), (&commanded_name, &commanded), &settings, traces)?;
     // A program that feeds nowhere has no limit of its own.
     let limit_mm = comparison.limit_mm.max(settings.options.tolerance_mm);
@@ -130,20 +121,18 @@ pub(crate) fn findings_between(
     Ok(closed(posted, corrected, settings, Traces::Forgotten)?.findings)
 }
 
-/// Both programs through the model. Where blocks may be skipped, once with and once without them: what is said of the
-/// path is said of the way with them, what is wrong is said of both.
+/// Both programs through the model.
 fn closed(
     posted: (&str, &[u8]),
     corrected: (&str, &[u8]),
     settings: &Settings,
     traces: Traces,
-) -> Result<Loop, Failure> {
+) -> Result<Checked, Failure> {
     // What is refused is not compared either: its motions would be read as the correction would not read them.
     let questions = settings.questions();
     nc_program::Evidence::of(posted.1, &questions)
         .refusal(&questions)
         .map_err(|finding| Failure::refused(posted.0, posted.1, vec![finding.0]))?;
-    let model = settings.path_model()?;
     let programs = [posted, corrected].map(|(name, text)| {
         nc_syntax::looks_like_program(text)
             .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
@@ -151,34 +140,9 @@ fn closed(
     });
     let [wanted, commanded] = programs;
     let (wanted, commanded): ((_, _, Expanded<'_>), (_, _, Expanded<'_>)) = (wanted?, commanded?);
-    let pecks = Pecks {
-        clearance_mm: settings.dialect.output.peck_clearance_mm,
-        retreat_mm: settings.dialect.output.chip_retreat_mm,
-    };
-    let compared = |optional: Optional, traces: Traces| {
-        let numbers = RefCell::new(Numbers::default());
-        let mut steps =
-            [&wanted, &commanded].map(|(.., text)| Program::new(text, settings, optional, &numbers));
-        let [w, c] = &mut steps;
-        let comparison = compare(model, &mut *w, &mut *c, pecks, traces);
-        // The one that the other was compared with may end early: what cannot be read is refused all the same.
-        for (program, (name, text, expanded)) in steps.iter_mut().zip([&wanted, &commanded]) {
-            program.by_ref().for_each(drop);
-            if let Some(diagnostics) = program.refused.take() {
-                return Err(Failure::Refused(expand::reports(expanded, name, text, diagnostics)));
-            }
-        }
-        let may_skip = steps.iter().any(|program| program.may_skip);
-        let findings = findings::of(&comparison, &numbers.borrow());
-        Ok((Loop { comparison, findings }, may_skip))
-    };
-    let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
-    if may_skip {
-        for finding in compared(Optional::Skipped, Traces::Forgotten)?.0.findings {
-            if !executed.findings.contains(&finding) {
-                executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
-            }
-        }
-    }
-    Ok(executed)
+    let job = settings.job(true, "")?;
+    rewrite::check(&job, [&wanted.2, &commanded.2], traces).map_err(|unreadable| {
+        let (name, text, expanded) = [&wanted, &commanded][unreadable.program];
+        Failure::Refused(expand::reports(expanded, name, text, unreadable.diagnostics))
+    })
 }

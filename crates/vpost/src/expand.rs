@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use diagnostic::Diagnostic;
 use nc_expand::{Environment, Expanded, Limits, Preset};
 use nc_program::{Evidence, Finding};
+use rewrite::{Corrected, Job};
 use serde::{Deserialize, Serialize};
 
 use crate::arguments::Shared;
-use crate::correct::{self, Corrected, Job};
 use crate::message::{Failure, Report, Source};
 use crate::settings::Settings;
 
@@ -154,7 +154,7 @@ pub(crate) fn correct(
     nc_syntax::looks_like_program(text)
         .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
     // The mark of an earlier correction may stand where the flat program does not come by.
-    if let (Some(diagnostic), false) = (correct::corrected_before(text), force) {
+    if let (Some(diagnostic), false) = (rewrite::corrected_before(text), force) {
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
     match correct_plain(text, name, settings, force, &mut progress)? {
@@ -188,7 +188,7 @@ fn correct_expanded(
     // Looked for above, in the text as it was given.
     let job = Job { force: true, ..settings.job(force, &provenance)? };
     let total = expanded.text().len().max(1) as f64;
-    let result = correct::correct(expanded.text(), &job, |done| {
+    let result = rewrite::correct(expanded.text(), &job, |done| {
         progress(done as f64 / total).map_err(PipelineEnd::Failed)
     });
     let mut corrected = match result {
@@ -243,7 +243,7 @@ fn correct_plain(
     let job = settings.job(force, &provenance)?;
     let total = text.len().max(1) as f64;
     let result =
-        correct::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));
+        rewrite::correct_plain(text, &job, |done| progress(done as f64 / total).map_err(PipelineEnd::Failed));
     let mut corrected = match result {
         Ok(Some(corrected)) => corrected,
         Ok(None) | Err(PipelineEnd::Refused(_)) => return Ok(None),

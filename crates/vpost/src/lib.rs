@@ -9,7 +9,7 @@ pub mod budget;
 pub mod calibrate;
 mod check;
 mod conditions;
-pub mod correct;
+mod correct;
 pub mod diagnose;
 mod expand;
 pub mod export;
@@ -32,7 +32,6 @@ mod source;
 mod summary;
 mod terminal;
 mod to_disk;
-mod words;
 
 use std::ffi::OsString;
 use std::io::Write;

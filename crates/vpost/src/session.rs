@@ -4,9 +4,9 @@
 
 use clap::Parser;
 use nc_expand::Limits;
+use rewrite::Corrected;
 
 use crate::arguments::{Arguments, Color};
-use crate::correct::Corrected;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
 use crate::{check, diagnose, expand};

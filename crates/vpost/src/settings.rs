@@ -8,9 +8,9 @@ use machine_profile::{BareLengths, Profile};
 use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{MCode, PointFree};
+use rewrite::Job;
 
 use crate::arguments::{self, Shared};
-use crate::correct::Job;
 use crate::expand::Flow;
 use crate::message::{Failure, Messages, Report, Source};
 use crate::{conditions, file, profile};

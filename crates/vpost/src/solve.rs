@@ -3,12 +3,12 @@
 use diagnostic::Diagnostic;
 
 use crate::arguments::{Shared, Solve};
-use crate::correct::OUTSIDE;
 use crate::figures::fixed;
 use crate::message::{Failure, Messages};
 use crate::points::Points;
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{conditions, file, profile};
+use rewrite::OUTSIDE;
 
 /// `vpost solve POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {

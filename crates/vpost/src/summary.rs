@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::correct::{Digest, Figures, Program};
+use rewrite::{Digest, Figures};
+
+use crate::correct::Program;
 use crate::settings::Settings;
 
 /// The JSON of `--summary`.

@@ -108,7 +108,7 @@ fn judged(dialect: &str, machine: Machine, text: &[u8]) -> Outcome {
     };
     // A tapping cycle drills straight down whatever the machine does: the command says by how much it leans, and the
     // check says it too.
-    if warnings.iter().any(|warning| warning.code == vpost::correct::LEANING_CYCLE) {
+    if warnings.iter().any(|warning| warning.code == rewrite::LEANING_CYCLE) {
         // Where many holes lean the list ends before the last of them.
         let leans = |finding: &String| {
             finding.contains(" um off the path of line ") || finding.ends_with(" more of the path")

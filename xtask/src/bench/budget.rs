@@ -6,7 +6,7 @@ use correction::{Corrector, Options};
 use machine_model::{Command, LANES, Move, PathModel, Range, Vector};
 use nc_program::Interpreter;
 use nc_syntax::{Block, Dialect, PlainLine, Reader};
-use vpost::correct::{Job, correct};
+use rewrite::{Job, correct};
 
 use super::measure::own_cpu_s;
 

@@ -5,7 +5,9 @@ use blake3::{Hash, Hasher};
 use super::inputs::Item;
 use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
-use crate::correct::{self, Input, Manner, Program};
+use rewrite::Manner;
+
+use crate::correct::{self, Input, Program};
 use crate::file::Place;
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages, Report};

@@ -3,9 +3,9 @@
 use diagnostic::Diagnostic;
 use serde::{Deserialize, Serialize};
 
-use crate::correct::Figures;
 use crate::expand::Lookup;
 use crate::message::Source;
+use rewrite::Figures;
 
 /// What became of a program.
 ///

@@ -1,20 +1,13 @@
 //! One program from a reader to a file: small ones in memory, large ones in chunks.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use diagnostic::{Diagnostic, Severity};
-use nc_program::Evidence;
-use nc_syntax::{Envelope, Place, Reader};
+use rewrite::{Digest, Figures, Large, LargeEnd, Manner, Part};
 
-use super::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
-use super::notices::Warning;
-use super::pass::State;
-use super::sink::{Sink, Written};
-use super::stream::{self, End, Plan};
-use super::{Figures, Job, comment_position};
 use crate::expand::{self, Lookup};
 use crate::file;
 use crate::message::{Failure, Report, Source};
@@ -50,31 +43,6 @@ impl Input {
 pub(crate) trait Growing: Write + Send {
     /// Starts anew.
     fn clear(&mut self) -> io::Result<()>;
-}
-
-/// How a program is corrected.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Manner {
-    /// Also one that was corrected before.
-    pub(crate) force: bool,
-    /// Threads for a large one; the bytes are the same for any number.
-    pub(crate) threads: usize,
-    /// Hashes of input and output are wanted.
-    pub(crate) hashes: bool,
-}
-
-/// A text by its length and hash.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Digest {
-    pub(crate) bytes: u64,
-    /// Where it was wanted.
-    pub(crate) hash: Option<blake3::Hash>,
-}
-
-impl Digest {
-    fn of(bytes: &[u8], hashes: bool) -> Self {
-        Self { bytes: bytes.len() as u64, hash: hashes.then(|| blake3::hash(bytes)) }
-    }
 }
 
 /// A program that was corrected.
@@ -182,16 +150,34 @@ impl Text<'_> {
             Some(still) => Kept::File(still.clone()),
             None => Kept::spool(&head, self.rest).map_err(|error| unread(&error))?,
         };
-        let large = Large { name, head: &head, kept: &kept, settings, manner, progress };
-        match large.correct(out) {
-            Ok(program) => Ok(program),
+        let provenance = settings.provenance();
+        let job = settings.job(manner.force, &provenance)?;
+        let source = rewrite::Source { head: &head, open: || kept.reading(), job: &job, manner };
+        let report = |part: Part| {
+            let Part { bytes, offset, first_line, diagnostics } = part;
+            Report { source: Some(Source { name: name.to_owned(), bytes, offset, first_line }), diagnostics }
+        };
+        match source.correct(out, progress) {
+            Ok(Large { input, output, changed, figures, warnings }) => Ok(Program {
+                name: name.to_owned(),
+                input,
+                output,
+                changed,
+                figures,
+                warnings: warnings.into_iter().map(report).collect(),
+                // What calls subprograms is worked on as a whole.
+                lookups: Vec::new(),
+            }),
             Err(LargeEnd::AsAWhole) => {
                 drop(head);
                 out.clear().map_err(|error| unwritten(&error))?;
                 let text = file::read_lines(kept.reading(), name)?;
                 in_memory(&text, name, settings, manner, out, progress)
             }
-            Err(LargeEnd::Failed(failure)) => Err(failure),
+            Err(LargeEnd::Refused(part)) => Err(Failure::Refused(vec![report(part)])),
+            Err(LargeEnd::Unread(error)) => Err(unread(&error)),
+            Err(LargeEnd::Unwritten(error)) => Err(unwritten(&error)),
+            Err(LargeEnd::Stopped(failure)) => Err(failure),
         }
     }
 }
@@ -252,193 +238,5 @@ impl Kept {
             Self::File(still) => still.reading(),
             Self::Spool(spool) => Reading::of(spool),
         }
-    }
-}
-
-/// Why a large program was not corrected in chunks.
-enum LargeEnd {
-    /// It must be read as a whole: flow, and what is rare.
-    AsAWhole,
-    Failed(Failure),
-}
-
-impl From<Failure> for LargeEnd {
-    fn from(failure: Failure) -> Self {
-        Self::Failed(failure)
-    }
-}
-
-struct Large<'a> {
-    name: &'a str,
-    /// The first megabytes.
-    head: &'a [u8],
-    kept: &'a Kept,
-    settings: &'a Settings,
-    manner: Manner,
-    progress: &'a (dyn Fn(f64) -> Result<(), Failure> + Sync),
-}
-
-impl Large<'_> {
-    fn correct(&self, out: &mut impl Growing) -> Result<Program, LargeEnd> {
-        // Told from the first bytes only; what ends within them is rare enough.
-        if nc_syntax::looks_like_program(self.head).is_err() {
-            return Err(LargeEnd::AsAWhole);
-        }
-        let unread = |error: &io::Error| LargeEnd::Failed(Failure::file(self.name, "read", error));
-        let open = || Ok(self.kept.reading());
-        let settings = self.settings;
-        let survey = Survey::of(
-            self.kept.reading(),
-            &settings.dialect,
-            self.manner.hashes,
-            |_| -> Result<(), SurveyEnd> { (self.progress)(0.0).map_err(SurveyEnd::Failed) },
-        )
-        .map_err(|end| match end {
-            SurveyEnd::Unread(Unread::AsAWhole) => LargeEnd::AsAWhole,
-            SurveyEnd::Unread(Unread::Failed(error)) => unread(&error),
-            SurveyEnd::Failed(failure) => LargeEnd::Failed(failure),
-        })?;
-        if survey.corrected_before && !self.manner.force {
-            return Err(LargeEnd::AsAWhole);
-        }
-        let provenance = settings.provenance();
-        let job = settings.job(true, &provenance)?;
-        let plan = Plan {
-            job: &job,
-            envelope: survey.envelope,
-            start: State::new(&job, &survey.numbers),
-            threads: self.manner.threads.max(1),
-            chunk_bytes: CHUNK_BYTES,
-        };
-        let mut sink = Sink::new(&mut *out, self.manner.hashes, self.mark(&job, &plan));
-        let total = survey.bytes.max(1) as f64;
-        let stopped = std::sync::Mutex::new(None);
-        let progress = |done: u64| match (self.progress)(done as f64 / total) {
-            Ok(()) => true,
-            Err(failure) => {
-                *stopped.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(failure);
-                false
-            }
-        };
-        let tally = match stream::correct(&plan, self.kept.reading(), &mut sink, &open, &progress) {
-            Ok(tally) => tally,
-            Err(End::Refused(chunk, diagnostics)) => {
-                return Err(self.refused(chunk, diagnostics, survey.envelope));
-            }
-            Err(End::Flows | End::Unread(Unread::AsAWhole)) => return Err(LargeEnd::AsAWhole),
-            Err(End::Unread(Unread::Failed(error))) => return Err(unread(&error)),
-            Err(End::Unwritten(error)) => return Err(LargeEnd::Failed(unwritten(&error))),
-            Err(End::Stopped) => {
-                let stopped = stopped.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-                return Err(LargeEnd::Failed(stopped.unwrap_or(Failure::Interrupted(2))));
-            }
-        };
-        let Written { bytes, hash, changed } =
-            sink.finish(open).map_err(|error| LargeEnd::Failed(unwritten(&error)))?;
-        let mut figures = tally.figures;
-        let questions = settings.questions();
-        tally.evidence.refusal(&questions).map_err(|finding| self.refused_as_a_whole(*finding))?;
-        let mut warnings = tally.notices.warnings();
-        warnings.extend(tally.evidence.doubts(&questions));
-        figures.warnings = warnings.iter().map(|(warning, _)| warning.clone()).collect();
-        let reports: Result<Vec<Report>, LargeEnd> = warnings
-            .into_iter()
-            .map(|warning| self.report(warning).map_err(|error| unread(&error)))
-            .collect();
-        Ok(Program {
-            name: self.name.to_owned(),
-            input: Digest { bytes: survey.bytes, hash: survey.hash },
-            output: Digest { bytes, hash },
-            changed,
-            figures,
-            warnings: reports?,
-            // What calls subprograms is worked on as a whole.
-            lookups: Vec::new(),
-        })
-    }
-
-    /// The mark of the correction, and the bytes of output before it.
-    fn mark(&self, job: &Job<'_>, plan: &Plan<'_>) -> (u64, Vec<u8>) {
-        let comment = nc_emit::provenance_comment(job.dialect, job.provenance);
-        let reader = Reader::part(self.head, job.dialect, plan.envelope, Place::START);
-        let (at, line) = nc_emit::provenance_line(self.head, comment_position(reader), &comment);
-        (at as u64, line)
-    }
-
-    /// A program that computes somewhere behind the block that was refused is told about as a whole.
-    fn refused(&self, chunk: Chunk, diagnostics: Vec<Diagnostic>, envelope: Envelope) -> LargeEnd {
-        let computes = |text: &[u8]| {
-            let mut found = false;
-            super::each_block(text, &self.settings.dialect, |block| {
-                found |= nc_expand::computes(block, &self.settings.dialect);
-            });
-            found
-        };
-        let mut chunks = Chunks::new(self.kept.reading(), CHUNK_BYTES);
-        // What the program as a whole shows tells more than one of its blocks.
-        let questions = self.settings.questions();
-        let (mut evidence, mut expects_name) = (Evidence::default(), false);
-        loop {
-            match chunks.next() {
-                Ok(Some(other)) => {
-                    if other.index >= chunk.index && computes(&other.text) {
-                        return LargeEnd::AsAWhole;
-                    }
-                    let place = other.place(expects_name);
-                    let mut reader = Reader::part(&other.text, &self.settings.dialect, envelope, place);
-                    evidence.see_all(&mut reader, &questions);
-                    expects_name = reader.expects_name();
-                }
-                Ok(None) => break,
-                Err(_) => return LargeEnd::AsAWhole,
-            }
-        }
-        if let Err(finding) = evidence.refusal(&questions) {
-            return self.refused_as_a_whole(*finding);
-        }
-        let source = Source {
-            name: self.name.to_owned(),
-            bytes: chunk.text,
-            offset: chunk.offset,
-            first_line: chunk.line,
-        };
-        LargeEnd::Failed(Failure::Refused(vec![Report { source: Some(source), diagnostics }]))
-    }
-
-    /// A refusal for what the program as a whole shows.
-    fn refused_as_a_whole(&self, finding: Warning) -> LargeEnd {
-        match self.report(finding) {
-            Ok(report) => LargeEnd::Failed(Failure::Refused(vec![report])),
-            Err(error) => LargeEnd::Failed(Failure::file(self.name, "read", &error)),
-        }
-    }
-
-    /// A warning with the line it is about.
-    fn report(&self, (diagnostic, line): Warning) -> io::Result<Report> {
-        /// Longer lines are shown in part.
-        const BEFORE: u64 = 1 << 16;
-        let span = diagnostic.span.clone().unwrap_or(0..0);
-        let from = span.start.saturating_sub(BEFORE);
-        let mut file = self.kept.reading();
-        file.seek(SeekFrom::Start(from))?;
-        let mut bytes = Vec::new();
-        file.take(span.end - from + 4096).read_to_end(&mut bytes)?;
-        let at = usize::try_from(span.start - from).unwrap_or(0).min(bytes.len());
-        let start = memchr::memrchr2(b'\n', b'\r', &bytes[..at]).map_or(0, |end| end + 1);
-        bytes.drain(..start);
-        let source =
-            Source { name: self.name.to_owned(), bytes, offset: from + start as u64, first_line: line };
-        Ok(Report { source: Some(source), diagnostics: vec![diagnostic] })
-    }
-}
-
-enum SurveyEnd {
-    Unread(Unread),
-    Failed(Failure),
-}
-
-impl From<Unread> for SurveyEnd {
-    fn from(unread: Unread) -> Self {
-        Self::Unread(unread)
     }
 }

@@ -8,16 +8,16 @@ use nc_syntax::{Block, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
-use super::notices::{Notices, hole_skipped, refusal};
-use super::{Figures, Job};
+use crate::job::{Figures, Job};
+use crate::notices::{Notices, hole_skipped, refusal};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
 /// What flows from block to block: all that the blocks before have to do with those that follow.
 #[derive(Clone)]
 pub(crate) struct State<'a> {
-    pub(super) interpreter: Interpreter<'a>,
-    pub(super) corrector: Corrector<'a>,
-    pub(super) emitter: Emitter<'a>,
+    pub(crate) interpreter: Interpreter<'a>,
+    pub(crate) corrector: Corrector<'a>,
+    pub(crate) emitter: Emitter<'a>,
     /// [`nc_syntax::Place::expects_name`]
     pub(crate) expects_name: bool,
 }
@@ -82,7 +82,7 @@ impl Tally {
 
 /// The first of the largest counts.
 #[inline]
-pub(super) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
+pub(crate) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
     if value > figure.0 {
         *figure = (value, line);
     }
@@ -93,9 +93,9 @@ type Pieces = SmallVec<[nc_emit::Piece; 4]>;
 
 /// A pass over blocks.
 pub(crate) struct Pass<'a> {
-    pub(super) job: &'a Job<'a>,
+    pub(crate) job: &'a Job<'a>,
     codes: MotionCodes,
-    pub(super) questions: Questions<'a>,
+    pub(crate) questions: Questions<'a>,
     pub(crate) state: State<'a>,
     pub(crate) out: Vec<u8>,
     pub(crate) tally: Tally,
@@ -164,7 +164,7 @@ impl Pass<'_> {
     }
 
     /// Corrects the motions of a block and writes it.
-    pub(super) fn moved(
+    pub(crate) fn moved(
         &mut self,
         block: &Block<'_>,
         context: &Context,
@@ -345,7 +345,7 @@ impl Pass<'_> {
         info(self.job, context, letters)
     }
 
-    pub(super) fn editing<'e>(
+    pub(crate) fn editing<'e>(
         &'e self,
         context: &'e Context,
         letters: Letters,
@@ -426,7 +426,7 @@ fn decimals(job: &Job<'_>, context: &Context) -> [u8; 3] {
 }
 
 /// What correction must know of a block.
-pub(super) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
+pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
     let output = &job.dialect.output;
     correction::Block {
         frame: context.frame.clone(),

@@ -12,7 +12,7 @@ use path_comparison::{Act, Step};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
-use crate::settings::Settings;
+use crate::job::Job;
 
 /// What becomes of blocks under `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +66,7 @@ fn number<T: Clone + Eq + std::hash::Hash>(
 
 /// A program under way.
 pub(super) struct Program<'a, 'n> {
-    settings: &'a Settings,
+    job: &'a Job<'a>,
     expanded: &'a Expanded<'a>,
     optional: Optional,
     reader: Reader<'a>,
@@ -88,19 +88,19 @@ pub(super) struct Program<'a, 'n> {
 impl<'a, 'n> Program<'a, 'n> {
     pub(super) fn new(
         expanded: &'a Expanded<'a>,
-        settings: &'a Settings,
+        job: &'a Job<'a>,
         optional: Optional,
         numbers: &'n std::cell::RefCell<Numbers>,
     ) -> Self {
         Self {
-            settings,
+            job,
             expanded,
             optional,
-            reader: Reader::new(expanded.text(), &settings.dialect),
+            reader: Reader::new(expanded.text(), job.dialect),
             block: Block::default(),
-            interpreter: Interpreter::new(&settings.dialect, &settings.setup),
+            interpreter: Interpreter::new(job.dialect, job.setup),
             numbers,
-            process: Process::at_start(&settings.dialect),
+            process: Process::at_start(job.dialect),
             process_number: None,
             feed: None,
             ready: SmallVec::new(),
@@ -127,7 +127,7 @@ impl<'a, 'n> Program<'a, 'n> {
                             *motion = turn;
                         }
                     }
-                    let says = said(&block, &self.settings.dialect, &step);
+                    let says = said(&block, self.job.dialect, &step);
                     if !aside || self.optional == Optional::Executed {
                         self.take(&block, says, &step.motions, &step.context);
                     }
@@ -141,13 +141,13 @@ impl<'a, 'n> Program<'a, 'n> {
 
     fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
         let line = self.expanded.source_line(block.line).1;
-        let limit_mm = self.settings.options.tolerance_mm + rounding_mm(self.settings, context);
+        let limit_mm = self.job.options.tolerance_mm + rounding_mm(self.job, context);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         for motion in motions {
             let (process, dwell) = match motion {
                 Motion::Hole(hole) => {
                     let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
-                    let dwell = hole.cycle.dwell.map(|time| Deed::dwell(&self.settings.dialect, time));
+                    let dwell = hole.cycle.dwell.map(|time| Deed::dwell(self.job.dialect, time));
                     let mut numbers = self.numbers.borrow_mut();
                     (numbers.of_process(&process), dwell.map(|dwell| numbers.of_deed(&dwell)))
                 }
@@ -191,7 +191,7 @@ impl<'a, 'n> Program<'a, 'n> {
         context: &Context,
     ) -> Option<Motion> {
         let Motion::Uncorrected { end } = motion else { return None };
-        let code = self.settings.dialect.code(context.motion_code?)?;
+        let code = self.job.dialect.code(context.motion_code?)?;
         let start = before.partial().complete()?;
         let end = end.complete()?;
         let feeds = code.action == Action::Line
@@ -220,9 +220,9 @@ impl Iterator for Program<'_, '_> {
 }
 
 /// What rounding adds to the tolerance: half an output step on each axis, as a distance.
-fn rounding_mm(settings: &Settings, context: &Context) -> f64 {
+fn rounding_mm(job: &Job<'_>, context: &Context) -> f64 {
     let inch = context.unit_mm != 1.0;
-    let decimals = if inch { [settings.dialect.output.decimals_inch; 3] } else { settings.decimals_mm() };
+    let decimals = if inch { [job.dialect.output.decimals_inch; 3] } else { job.decimals_mm };
     let half = decimals.map(|d| 0.5 * context.unit_mm / f64::from(10u32.pow(u32::from(d))));
     context.frame.largest_scale().max(1.0) * half.iter().map(|h| h * h).sum::<f64>().sqrt()
 }

@@ -10,7 +10,7 @@ use nc_program::PlainEnd;
 use nc_syntax::{Block, PlainLine, Reader};
 use toolpath::Motion;
 
-use super::pass::{Pass, info, raise};
+use crate::pass::{Pass, info, raise};
 use crate::words::letters;
 
 /// A plain line, with what is known of it before its turn.
@@ -24,7 +24,7 @@ struct Ahead<'l, 't> {
 
 impl Pass<'_> {
     /// Corrects the plain lines that come next; `ends` as in [`Pass::run`].
-    pub(super) fn plain_lines<E: From<Vec<Diagnostic>>>(
+    pub(crate) fn plain_lines<E: From<Vec<Diagnostic>>>(
         &mut self,
         reader: &mut Reader<'_>,
         ends: &mut impl FnMut(&mut Self, u64) -> Result<bool, E>,

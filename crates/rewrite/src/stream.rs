@@ -14,10 +14,10 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use diagnostic::Diagnostic;
 use nc_syntax::{Block, Envelope, Reader};
 
-use super::Job;
-use super::chunks::{Chunk, Chunks, Unread};
-use super::pass::{Pass, State, Tally};
-use super::sink::Sink;
+use crate::chunks::{Chunk, Chunks, Unread};
+use crate::job::Job;
+use crate::pass::{Pass, State, Tally};
+use crate::sink::Sink;
 
 /// How much of the chunk before leads a guess.
 const LEAD_BYTES: usize = 2048;
@@ -370,7 +370,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::correct::{Corrected, Figures};
+    use crate::job::{Corrected, Figures};
 
     /// The pieces of programs: what a state can be carried through.
     const PARTS: [&str; 12] = [
@@ -395,7 +395,7 @@ mod tests {
         threads: usize,
     ) -> Result<(Vec<u8>, Figures), Vec<Diagnostic>> {
         let mut numbers = BlockNumbers::new();
-        crate::correct::each_block(text, job.dialect, |block| _ = numbers.see(block));
+        crate::whole::each_block(text, job.dialect, |block| _ = numbers.see(block));
         let mut finder = EnvelopeFinder::new(job.dialect);
         finder.see(text);
         let start = State::new(job, &numbers);
@@ -447,7 +447,7 @@ mod tests {
             parts.iter().for_each(|part| text.push_str(PARTS[*part]));
             text.push_str("M30\n%\n");
             let whole: Result<Option<Corrected>, Vec<Diagnostic>> =
-                crate::correct::pass(text.as_bytes(), &job, |_| false, |_| Ok(()));
+                crate::whole::pass(text.as_bytes(), &job, |_| false, |_| Ok(()));
             let chunked = in_chunks(text.as_bytes(), &job, chunk_bytes, threads);
             // A jump that cannot be hidden is refused, in one piece as in chunks.
             if let (Err(one), Err(other)) = (&whole, &chunked) {
@@ -461,9 +461,9 @@ mod tests {
 
             // The short way through plain blocks is the long way, without its detours.
             let mut numbers = BlockNumbers::new();
-            crate::correct::each_block(text.as_bytes(), job.dialect, |block| _ = numbers.see(block));
+            crate::whole::each_block(text.as_bytes(), job.dialect, |block| _ = numbers.see(block));
             let mut pass = Pass::new(&job, State::new(&job, &numbers), text.len());
-            crate::correct::each_block(text.as_bytes(), job.dialect, |block| pass.block(block).unwrap());
+            crate::whole::each_block(text.as_bytes(), job.dialect, |block| pass.block(block).unwrap());
             prop_assert_eq!(String::from_utf8_lossy(&pass.out), String::from_utf8_lossy(&whole.text));
             prop_assert_eq!(pass.tally.figures.blocks_out, figures.blocks_out);
         }

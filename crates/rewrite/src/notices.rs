@@ -9,7 +9,7 @@ use nc_program::Context;
 use nc_syntax::Block;
 use toolpath::{AXIS_NAMES, Motion};
 
-use super::{
+use crate::job::{
     COMPENSATED, LEANING_CYCLE, MUST_NOT_SPLIT, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE,
     SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
 };

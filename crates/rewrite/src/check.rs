@@ -1,0 +1,68 @@
+//! Two programs through the machine model, what they make of the part compared.
+
+mod findings;
+mod reading;
+
+use std::cell::RefCell;
+
+use diagnostic::Diagnostic;
+use nc_expand::Expanded;
+use path_comparison::{Comparison, Pecks, Traces, compare};
+
+use crate::job::Job;
+use reading::{Numbers, Optional, Program};
+
+/// How the corrected program compares with the posted one.
+#[derive(Debug)]
+pub struct Checked {
+    /// Distances and counts, of blocks under `/` executed.
+    pub comparison: Comparison,
+    /// What differs, a sentence each; none where the program passes.
+    pub findings: Vec<String>,
+}
+
+/// A program that cannot be read on.
+#[derive(Debug)]
+pub struct Unreadable {
+    /// The first of both, or the second.
+    pub program: usize,
+    /// Why; spans are those of the plain program.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Compares a posted and a corrected program on the machine as it is. Where blocks may be skipped, once with and once
+/// without them: what is said of the path is said of the way with them, what is wrong is said of both.
+///
+/// # Errors
+/// [`Unreadable`] of the first program that cannot be read to its end.
+pub fn check(job: &Job<'_>, programs: [&Expanded<'_>; 2], traces: Traces) -> Result<Checked, Unreadable> {
+    let pecks = Pecks {
+        clearance_mm: job.dialect.output.peck_clearance_mm,
+        retreat_mm: job.dialect.output.chip_retreat_mm,
+    };
+    let compared = |optional: Optional, traces: Traces| {
+        let numbers = RefCell::new(Numbers::default());
+        let mut steps = programs.map(|text| Program::new(text, job, optional, &numbers));
+        let [w, c] = &mut steps;
+        let comparison = compare(job.model, &mut *w, &mut *c, pecks, traces);
+        // The one that the other was compared with may end early: what cannot be read is refused all the same.
+        for (program, steps) in steps.iter_mut().enumerate() {
+            steps.by_ref().for_each(drop);
+            if let Some(diagnostics) = steps.refused.take() {
+                return Err(Unreadable { program, diagnostics });
+            }
+        }
+        let may_skip = steps.iter().any(|program| program.may_skip);
+        let findings = findings::of(&comparison, &numbers.borrow());
+        Ok((Checked { comparison, findings }, may_skip))
+    };
+    let (mut executed, may_skip) = compared(Optional::Executed, traces)?;
+    if may_skip {
+        for finding in compared(Optional::Skipped, Traces::Forgotten)?.0.findings {
+            if !executed.findings.contains(&finding) {
+                executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
+            }
+        }
+    }
+    Ok(executed)
+}

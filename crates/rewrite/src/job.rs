@@ -1,0 +1,84 @@
+//! What decides what becomes of a program, and what became of it.
+
+use correction::Options;
+use diagnostic::{Code, Diagnostic};
+use machine_model::PathModel;
+use nc_program::{Evidence, Setup};
+use nc_syntax::Dialect;
+
+/// Feed motion, or what would correct it, lies outside the calibrated volume.
+pub const OUTSIDE: Code = Code(501);
+/// The path cannot be held within tolerance.
+pub const NOT_WITHIN_TOLERANCE: Code = Code(502);
+/// A motion that must stay one block would need to be split.
+pub const MUST_NOT_SPLIT: Code = Code(503);
+/// The model has no single answer at a point.
+pub const NOT_CONVERGED: Code = Code(504);
+/// The program was corrected before.
+pub const CORRECTED_BEFORE: Code = Code(505);
+/// A drilling cycle leans by more than the tolerance.
+pub const LEANING_CYCLE: Code = Code(506);
+/// Rapids end outside the calibrated volume.
+pub const RAPID_OUTSIDE: Code = Code(507);
+/// Motion under cutter compensation was corrected.
+pub const COMPENSATED: Code = Code(508);
+/// Nobody knows on which side of its play an axis stands.
+pub const UNKNOWN_SIDE: Code = Code(509);
+/// A hole of more pecks than anybody drills.
+pub const TOO_MANY_PECKS: Code = Code(510);
+/// Arcs end off their circle, as the control takes them.
+pub const SPIRAL: Code = Code(515);
+/// An axis would need a word, and the program has not named it in the frame in force.
+pub const UNNAMED: Code = Code(514);
+/// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
+pub const SIDEWAYS: Code = Code(519);
+
+/// Everything that decides what becomes of a program.
+pub struct Job<'a> {
+    /// The control's dialect.
+    pub dialect: &'a Dialect,
+    /// Work offsets and tools.
+    pub setup: &'a Setup,
+    /// Where the machine really goes.
+    pub model: &'a dyn PathModel,
+    /// Tolerance and policy.
+    pub options: Options,
+    /// Decimals of X, Y, Z in mm.
+    pub decimals_mm: [u8; 3],
+    /// Correct a program that was corrected before.
+    pub force: bool,
+    /// What the comment in the output says after its marker.
+    pub provenance: &'a str,
+}
+
+/// What happened, in figures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Figures {
+    /// Blocks read.
+    pub blocks_in: u64,
+    /// Blocks written.
+    pub blocks_out: u64,
+    /// Motions that became more than one block.
+    pub splits: u64,
+    /// Largest correction of an end point, mm, and its line.
+    pub largest: (f64, u64),
+    /// Proven bound of the path deviation before, mm, and its line.
+    pub before: (f64, u64),
+    /// Proven bound of the path deviation after, mm, and its line.
+    pub after: (f64, u64),
+    /// Short moves to a corrected start that were put in.
+    pub approaches: u64,
+    /// What the user should know.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A corrected program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected {
+    /// Its bytes.
+    pub text: Vec<u8>,
+    /// What was done.
+    pub figures: Figures,
+    /// What the program as a whole shows; who corrects it judges that.
+    pub evidence: Evidence,
+}

@@ -1,0 +1,49 @@
+//! The main job: a program in, the corrected one out; and whether two programs cut alike.
+//!
+//! The one room where the text wing and the mathematics wing meet. `nc-syntax` reads blocks, `nc-program` says what they
+//! make the axes do, `correction` says what they should be told instead, `nc-emit` writes it. Nothing flows back. No
+//! files, clocks or messages: bytes and a [`Job`] in; bytes, [`Figures`] and diagnostics out, in one piece ([`correct`])
+//! or in chunks on several threads ([`Source`]). [`check`] puts both programs through the machine.
+//!
+//! ```
+//! use correction::{Options, Outside};
+//! use rewrite::{Job, correct};
+//!
+//! let profile = include_str!("../../../machine-profiles/stan_s500.toml");
+//! # let tables = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machine-profiles");
+//! let profile = machine_profile::load(profile, &|table| std::fs::read(format!("{tables}/{table}"))).expect("a profile");
+//! let engine = profile.engine(profile.correction.engine, &Default::default()).expect("an engine");
+//! let job = Job {
+//!     dialect: nc_dialect::builtin("fanuc").expect("it is shipped"),
+//!     setup: &nc_program::Setup {
+//!         work_offsets: vec![("G54".to_owned(), [140.0, 110.0, 20.0])],
+//!         ..Default::default()
+//!     },
+//!     model: engine.path_model().expect("it corrects programs"),
+//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 },
+//!     decimals_mm: [3; 3],
+//!     force: false,
+//!     provenance: "AN EXAMPLE",
+//! };
+//! let posted = b"G21 G90 G54\nG0 X10. Y10. Z30.\nG1 X90. F500.\nM30\n";
+//! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |_| Ok(())).expect("inside the volume");
+//! assert!(corrected.text != posted && corrected.figures.after.0 <= 1.9e-3);
+//! assert!(String::from_utf8_lossy(&corrected.text).contains("(CORRECTED BY VPOST AN EXAMPLE)"));
+//! ```
+
+mod check;
+mod chunks;
+mod job;
+mod large;
+mod notices;
+mod pass;
+mod plain;
+mod sink;
+mod stream;
+mod whole;
+mod words;
+
+pub use check::{Checked, Unreadable, check};
+pub use job::*;
+pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
+pub use whole::{correct, correct_plain, corrected_before};
