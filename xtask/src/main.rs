@@ -5,6 +5,7 @@ mod calibration;
 mod corpus;
 mod engines;
 mod gap_bench;
+mod house;
 mod map_speed;
 mod markdown;
 mod picture;
@@ -49,6 +50,8 @@ enum Task {
         #[arg(default_value = "samples/diagnosis")]
         folder: std::path::PathBuf,
     },
+    /// Measure the house: lines, long files and functions, circles of files, test binaries (docs/house.md).
+    House(house::Options),
     /// Time error maps and zero-point searches; use a release build.
     MapSpeed,
     /// Draw the README's picture.
@@ -67,6 +70,7 @@ fn main() -> anyhow::Result<()> {
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
+        Task::House(options) => house::run(&options)?,
         Task::MapSpeed => map_speed::page(),
         Task::Picture(options) => picture::write(&options)?,
         Task::Reproduction => reproduction::page(),
