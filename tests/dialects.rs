@@ -327,7 +327,7 @@ fn every_code_is_listed_with_its_proof() {
     let path = root().join(DOCUMENT);
     let document = std::fs::read_to_string(&path).expect("readable");
     let (above, _) = document.split_once(MARK).expect("the mark is there");
-    let wanted = format!("{above}{MARK}\n{}", lists.join("\n"));
+    let wanted = crate::wrap::wrapped(&format!("{above}{MARK}\n{}", lists.join("\n")));
     if std::env::var_os("VPOST_UPDATE_DOCS").is_some() {
         std::fs::write(&path, wanted).expect("writable");
     } else {

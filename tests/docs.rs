@@ -42,7 +42,7 @@ fn read(path: &str) -> String {
 
 /// The documents, relative to the root.
 fn documents() -> Vec<String> {
-    let mut found = vec!["README.md".to_owned(), "README.ru.md".to_owned()];
+    let mut found = vec!["README.md".to_owned(), "README.ru.md".to_owned(), "CONTRIBUTING.md".to_owned()];
     let mut folders = vec![PathBuf::from("docs")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(root().join(&folder)).expect("docs are there") {
@@ -280,6 +280,18 @@ fn the_russian_readme_has_the_same_commands_and_outputs() {
     assert_eq!(english, russian);
     let pictures = |name: &str| read(name).matches("docs/img/").count();
     assert_eq!(pictures("README.md"), pictures("README.ru.md"));
+}
+
+#[test]
+fn lines_of_prose_have_at_most_120_characters() {
+    let others =
+        ["CHANGELOG.md", "samples/README.md", "samples/diagnosis/README.md", "xtask/src/gap_bench/rules.md"];
+    let mut pages: Vec<String> = documents().into_iter().chain(others.map(str::to_owned)).collect();
+    pages.retain(|page| {
+        let text = read(page);
+        text != crate::wrap::wrapped(&text)
+    });
+    assert!(pages.is_empty(), "`cargo xtask wrap {}` breaks their long lines", pages.join(" "));
 }
 
 #[test]

@@ -5,6 +5,8 @@
 mod common;
 #[path = "common/folders.rs"]
 mod folders;
+#[path = "../xtask/src/wrap.rs"]
+mod wrap;
 
 mod arcs;
 mod batch;

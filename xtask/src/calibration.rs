@@ -350,7 +350,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     };
     text += &format!("## Verdict\n\n{verdict}\n");
     text += &before_and_after(seed)?;
-    std::fs::write(&options.page, &text)?;
+    std::fs::write(&options.page, crate::wrap::wrapped(&text))?;
     Ok(verdict)
 }
 

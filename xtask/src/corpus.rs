@@ -12,6 +12,7 @@ use nc_expand::{Environment, Limits, Preset, expand};
 use rayon::prelude::*;
 
 use crate::markdown::table;
+use crate::wrap::wrapped;
 
 /// Options of the corpus run.
 #[derive(Debug, Args)]
@@ -115,7 +116,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         paths.par_iter().map(|path| sample(&vpost, options, path)).collect::<anyhow::Result<Vec<_>>>()
     })?;
     let intro = if options.suite.is_some() { SUITE } else { SAMPLES };
-    let made = section(&samples, intro);
+    let made = wrapped(&section(&samples, intro));
     if options.only.is_none() {
         let page = std::fs::read_to_string(&options.page).unwrap_or_default();
         let (before, after) = page.split_at(page.find(SUITE_HEADING).unwrap_or(page.len()));

@@ -338,7 +338,7 @@ pub(crate) fn page() -> String {
              A refused target would be one that no command reaches (the jumps of `tangential-interval`).\n\n";
     let rows: Vec<Vec<String>> = found.inverses.iter().map(Inverse::cells).collect();
     text += &table(&["engine", "solved", "refused", "largest residual, mm", "most evaluations"], &rows);
-    text
+    crate::wrap::wrapped(&text)
 }
 
 impl Orders {

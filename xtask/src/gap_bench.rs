@@ -106,7 +106,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     }
     let page = page::page(&found, &run);
     if options.only.is_none() {
-        std::fs::write(&options.page, &page)
+        std::fs::write(&options.page, crate::wrap::wrapped(&page))
             .with_context(|| format!("cannot write {}", options.page.display()))?;
     }
     Ok(page::summary(&page))

@@ -12,9 +12,12 @@ mod picture;
 mod reproduction;
 #[path = "../../crates/machine-model/tests/stan_s500/mod.rs"]
 mod stan_s500;
+mod wrap;
 
 use std::io::Write;
+use std::path::PathBuf;
 
+use anyhow::Context;
 use clap::{Parser, Subcommand};
 
 /// Makes what the documentation shows, and checks that take longer than a test should.
@@ -34,7 +37,7 @@ enum Task {
     CalibrationSamples {
         /// Where they go.
         #[arg(default_value = "samples/calibration")]
-        folder: std::path::PathBuf,
+        folder: PathBuf,
     },
     /// Measure the correction of many small programs; print a section for docs/performance.md.
     BenchBatch(bench::batch::Options),
@@ -48,7 +51,7 @@ enum Task {
     GapSamples {
         /// Where they go.
         #[arg(default_value = "samples/diagnosis")]
-        folder: std::path::PathBuf,
+        folder: PathBuf,
     },
     /// Measure the house: lines, long files and functions, circles of files, test binaries (docs/house.md).
     House(house::Options),
@@ -58,6 +61,12 @@ enum Task {
     Picture(picture::Options),
     /// Print docs/reproduction.md: printed numbers beside ours.
     Reproduction,
+    /// Break the lines of Markdown that are longer than 120 characters.
+    Wrap {
+        /// The pages.
+        #[arg(required = true)]
+        pages: Vec<PathBuf>,
+    },
 }
 
 fn main() -> anyhow::Result<()> {
@@ -74,7 +83,23 @@ fn main() -> anyhow::Result<()> {
         Task::MapSpeed => map_speed::page(),
         Task::Picture(options) => picture::write(&options)?,
         Task::Reproduction => reproduction::page(),
+        Task::Wrap { pages } => wrap_pages(&pages)?,
     };
     std::io::stdout().write_all(text.as_bytes())?;
     Ok(())
+}
+
+/// Breaks the long lines of files; says which had some.
+fn wrap_pages(pages: &[PathBuf]) -> anyhow::Result<String> {
+    let mut said = String::new();
+    for page in pages {
+        let text =
+            std::fs::read_to_string(page).with_context(|| format!("{}: unreadable", page.display()))?;
+        let made = wrap::wrapped(&text);
+        if made != text {
+            std::fs::write(page, made).with_context(|| format!("{}: cannot be written", page.display()))?;
+            said += &format!("{}\n", page.display());
+        }
+    }
+    Ok(said)
 }

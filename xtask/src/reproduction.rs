@@ -30,7 +30,7 @@ pub(crate) fn page() -> String {
     text += &targets::section();
     text += "\n";
     text += &calibration::section();
-    text
+    crate::wrap::wrapped(&text)
 }
 
 #[cfg(test)]
