@@ -3,6 +3,20 @@ use units::decimal::Decimal;
 use crate::dialect::GCode;
 
 /// Bytes of a block, counted from its start.
+///
+/// ```
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("G1 X-10.5 (in)\r\n", "fanuc");
+/// let span = block.word(b'X').unwrap().span;
+/// assert_eq!((span.start, span.end), (3, 9));
+/// assert_eq!(block.text(span), b"X-10.5");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// First byte.
@@ -12,6 +26,21 @@ pub struct Span {
 }
 
 /// The sign as written.
+///
+/// ```
+/// use nc_syntax::Sign;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// // Both are ten, and each is written again as it was.
+/// let block = read("X+10. Y10.\n", "fanuc");
+/// let sign = |letter| block.word(letter).unwrap().number().unwrap().sign;
+/// assert_eq!((sign(b'X'), sign(b'Y')), (Sign::Plus, Sign::None));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     /// No sign.
@@ -23,6 +52,24 @@ pub enum Sign {
 }
 
 /// A number as written.
+///
+/// ```
+/// use nc_syntax::Number;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("G54.1 X-.250 M06\n", "fanuc");
+/// let number = |letter| block.word(letter).unwrap().number().unwrap();
+/// let x = number(b'X');
+/// assert_eq!((x.decimal.mantissa, x.decimal.decimals, x.leading_digit), (-250, 3, false));
+/// assert_eq!(x.to_f64(), -0.25);
+/// assert_eq!((number(b'M').integer(), x.integer()), (Some(6), None));
+/// assert_eq!(number(b'G').tenths(), Some(541));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Number {
     /// Its exact value, sign included.
@@ -36,6 +83,21 @@ pub struct Number {
 }
 
 /// What follows a word's letter.
+///
+/// ```
+/// use nc_syntax::Value;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("X#1 Y[#2+1] Z5.\n", "fanuc");
+/// let value = |letter| block.word(letter).unwrap().value;
+/// assert_eq!((value(b'X'), value(b'Y')), (Value::Expression, Value::Expression));
+/// assert!(matches!(value(b'Z'), Value::Number(five) if five.to_f64() == 5.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Value {
     /// A plain number.
@@ -47,6 +109,22 @@ pub enum Value {
 }
 
 /// Why bytes are not a word.
+///
+/// ```
+/// use nc_syntax::Invalid;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// // Nothing is lost over it: the bytes stand in their item, and the block's other words are there.
+/// let block = read("G1 X1.2.3 Y5.\n", "fanuc");
+/// let (why, span) = block.first_invalid().unwrap();
+/// assert_eq!((why, block.text(span)), (Invalid::Number, &b"X1.2.3"[..]));
+/// assert_eq!(block.word(b'Y').unwrap().number().unwrap().to_f64(), 5.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Invalid {
     /// A number that cannot be read (`X1.2.3`, `Xnan`, `X1E5`).
@@ -64,6 +142,30 @@ pub enum Invalid {
 }
 
 /// What a stretch of a block is.
+///
+/// ```
+/// use nc_syntax::ItemKind;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("/ N5 G1 X10. ,C2. (CHAMFER)\n", "fanuc");
+/// let kinds: Vec<&str> = block
+///     .items
+///     .iter()
+///     .map(|item| match item.kind {
+///         ItemKind::Skip => "skip",
+///         ItemKind::Word { .. } => "word",
+///         ItemKind::CommaWord { .. } => "comma word",
+///         ItemKind::Comment => "comment",
+///         _ => "other",
+///     })
+///     .collect();
+/// assert_eq!(kinds, ["skip", "word", "word", "word", "comma word", "comment"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ItemKind {
     /// Letter (upper case) and value. `N`, `G`, `X`, `O`… all are words.
@@ -99,6 +201,20 @@ pub enum ItemKind {
 }
 
 /// One thing in a block.
+///
+/// ```
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// // What lies between the items is white space.
+/// let block = read("G1  X10.\t(in)\n", "fanuc");
+/// let texts: Vec<&[u8]> = block.items.iter().map(|item| block.text(item.span)).collect();
+/// assert_eq!(texts, [&b"G1"[..], b"X10.", b"(in)"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Item {
     /// What it is.
@@ -108,6 +224,22 @@ pub struct Item {
 }
 
 /// One block of the program with its line ending.
+///
+/// ```
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("N10 G1 X10. X20. (twice)\r\n", "fanuc");
+/// assert_eq!(block.bytes, b"N10 G1 X10. X20. (twice)\r\n");
+/// // Where a letter stands twice, `word` is the last and `words` has both.
+/// assert_eq!(block.word(b'X').and_then(|x| x.number()).map(|x| x.to_f64()), Some(20.0));
+/// assert_eq!(block.words().filter(|word| word.letter == b'X').count(), 2);
+/// assert!(block.acts() && !read("N10 (only a comment)\n", "fanuc").acts());
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Block<'a> {
     /// All bytes of the block, its end included.
@@ -127,6 +259,20 @@ pub struct Block<'a> {
 pub const MAX_BLOCK_BYTES: usize = 1 << 16;
 
 /// A letter with its value, as [`Block::words`] yields them.
+///
+/// ```
+/// use nc_syntax::dialect::GCode;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let block = read("G54.1 P3\n", "fanuc");
+/// let codes: Vec<_> = block.words().map(|word| word.g_code()).collect();
+/// assert_eq!(codes, [Some(GCode(541)), None]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// Upper-case ASCII letter.

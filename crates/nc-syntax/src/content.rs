@@ -30,6 +30,15 @@ const SAMPLE: usize = 1 << 16;
 ///
 /// # Errors
 /// VP0110 where nothing but blanks is there, VP0111 where the bytes are no text.
+///
+/// ```
+/// use nc_syntax::looks_like_program;
+///
+/// assert!(looks_like_program(b"%\nG0 X1.\n%\n").is_ok());
+/// // A drawing handed over by mistake is no program with thousands of unknown words.
+/// assert!(looks_like_program(b"%PDF-1.7\n%\xe2\xe3\xcf\xd3\n").is_err());
+/// assert!(looks_like_program(b" \n\n").is_err());
+/// ```
 pub fn looks_like_program(bytes: &[u8]) -> Result<(), Diagnostic> {
     let padding = |byte: &u8| is_blank(*byte) || matches!(byte, b'\r' | b'\n');
     let Some(start) = bytes.iter().position(|byte| !padding(byte)) else {

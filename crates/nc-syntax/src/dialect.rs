@@ -7,6 +7,12 @@ use units::decimal::Decimal;
 use crate::Number;
 
 /// A preparatory code in tenths: `G81` is 810, `G54.1` is 541.
+///
+/// ```
+/// use nc_syntax::dialect::GCode;
+///
+/// assert_eq!(format!("{} {}", GCode(810), GCode(541)), "G81 G54.1");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GCode(pub u16);
 
@@ -27,6 +33,20 @@ impl std::fmt::Display for GCode {
 }
 
 /// What `( )` means.
+///
+/// ```
+/// use nc_syntax::ItemKind;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// // A comment on one control, a command on the other.
+/// let kind = |dialect| read("(UAO,1)\n", dialect).items[0].kind;
+/// assert_eq!((kind("fanuc"), kind("balt-system")), (ItemKind::Comment, ItemKind::BracketCommand));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paren {
     /// Not part of the dialect.
@@ -41,6 +61,19 @@ pub enum Paren {
 }
 
 /// What `;` means.
+///
+/// ```
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// // It ends the block, or the rest of the line is a comment.
+/// assert_eq!(read("X1.;Y2.\n", "fanuc").bytes, b"X1.;");
+/// assert_eq!(read("X1.;Y2.\n", "linuxcnc").bytes, b"X1.;Y2.\n");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Semicolon {
     /// Not part of the dialect.
@@ -52,6 +85,20 @@ pub enum Semicolon {
 }
 
 /// What `:` means.
+///
+/// ```
+/// use nc_syntax::ItemKind;
+/// # use nc_syntax::{Block, Reader};
+/// # fn read(text: &'static str, dialect: &str) -> Block<'static> {
+/// #     let dialect = nc_dialect::builtin(dialect).unwrap();
+/// #     let (mut reader, mut block) = (Reader::new(text.as_bytes(), dialect), Block::default());
+/// #     assert!(reader.next(&mut block));
+/// #     block
+/// # }
+/// let kind = |dialect| read(":1234\n", dialect).items[0].kind;
+/// assert!(matches!(kind("fanuc"), ItemKind::Word { letter: b'O', .. }));
+/// assert_eq!(kind("centroid"), ItemKind::Comment);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colon {
     /// Not part of the dialect.
@@ -63,6 +110,13 @@ pub enum Colon {
 }
 
 /// What a number without a decimal point means for lengths.
+///
+/// ```
+/// use nc_syntax::dialect::PointFree;
+///
+/// let meaning = |dialect| nc_dialect::builtin(dialect).unwrap().numbers.point_free;
+/// assert_eq!((meaning("fanuc"), meaning("linuxcnc")), (PointFree::LeastIncrement, PointFree::Unit));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointFree {
     /// `X100` is 100 mm (calculator type, LinuxCNC).
@@ -72,6 +126,20 @@ pub enum PointFree {
 }
 
 /// How numbers are written and read.
+///
+/// ```
+/// use nc_syntax::{Block, Reader};
+///
+/// let (text, mut block) = (b"X100 Y100.\n", Block::default());
+/// let read = |dialect: &str, block: &mut Block<'static>| {
+///     let dialect = nc_dialect::builtin(dialect).unwrap();
+///     assert!(Reader::new(text, dialect).next(block));
+///     [b'X', b'Y'].map(|axis| dialect.numbers.length(block.word(axis).unwrap().number().unwrap(), false).to_f64())
+/// };
+/// // A hundred steps of a micrometre on one control, a hundred millimetres on the other.
+/// assert_eq!(read("fanuc", &mut block), [0.1, 100.0]);
+/// assert_eq!(read("linuxcnc", &mut block), [100.0, 100.0]);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers {
     /// Meaning of a length without a point.
@@ -85,6 +153,18 @@ pub struct Numbers {
 }
 
 /// What a G code does, as far as `nc-program` must know.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode};
+///
+/// let action = |dialect, code| &nc_dialect::builtin(dialect).unwrap().code(GCode(code)).unwrap().action;
+/// assert_eq!(action("linuxcnc", 10), &Action::Line);
+/// // Inches are G20 on one control and G70 on another.
+/// assert_eq!(action("fanuc", 200), &Action::Inch);
+/// assert_eq!(action("sinumerik", 700), &Action::Inch);
+/// // What is known and not certain is refused with the way out.
+/// assert!(matches!(action("perspektiva", 530), Action::Refuse { help, .. } if !help.is_empty()));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     /// G0
@@ -194,6 +274,13 @@ pub enum Action {
 }
 
 /// G17, G18, G19; not `toolpath::Plane`, so that reading text needs no geometry.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode, PlaneCode};
+///
+/// let fanuc = nc_dialect::builtin("fanuc").unwrap();
+/// assert_eq!(fanuc.code(GCode(180)).map(|row| &row.action), Some(&Action::Plane(PlaneCode::Zx)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaneCode {
     /// G17
@@ -205,6 +292,13 @@ pub enum PlaneCode {
 }
 
 /// Which drilling cycle.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, CycleCode, GCode};
+///
+/// let fanuc = nc_dialect::builtin("fanuc").unwrap();
+/// assert_eq!(fanuc.code(GCode(830)).map(|row| &row.action), Some(&Action::Cycle(CycleCode::PeckFull)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleCode {
     /// G81, G82
@@ -220,6 +314,14 @@ pub enum CycleCode {
 }
 
 /// What R and Z of a cycle mean for the blocks that repeat it without writing them again.
+///
+/// ```
+/// use nc_syntax::dialect::CycleLevels;
+///
+/// let levels = |dialect| nc_dialect::builtin(dialect).unwrap().cycle_levels;
+/// assert_eq!((levels("fanuc"), levels("linuxcnc")), (CycleLevels::Held, CycleLevels::Reread));
+/// assert_eq!(levels("perspektiva"), CycleLevels::Unstated);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleLevels {
     /// They were turned into levels where they were written, and the levels hold (Fanuc).
@@ -232,6 +334,13 @@ pub enum CycleLevels {
 }
 
 /// What becomes of a tool length in force behind a code that ends offsets.
+///
+/// ```
+/// use nc_syntax::dialect::LengthAfter;
+///
+/// // GOST 20999-83 can be read either way: refused while a length is in force.
+/// assert_eq!(nc_dialect::builtin("perspektiva").unwrap().length_under_g40, LengthAfter::Unstated);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthAfter {
     /// It stays.
@@ -243,6 +352,13 @@ pub enum LengthAfter {
 }
 
 /// What `G10 L20 Pn` writes.
+///
+/// ```
+/// use nc_syntax::dialect::OffsetL20;
+///
+/// let l20 = |dialect| nc_dialect::builtin(dialect).unwrap().frames.l20;
+/// assert_eq!((l20("fanuc"), l20("linuxcnc")), (OffsetL20::Numbered, OffsetL20::Position));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OffsetL20 {
     /// The numbered work offset G54.1 Pn (Fanuc).
@@ -252,6 +368,13 @@ pub enum OffsetL20 {
 }
 
 /// How the codes that move the frame work together, where controls differ.
+///
+/// ```
+/// let frames = |dialect| nc_dialect::builtin(dialect).unwrap().frames;
+/// // G52 and G92 add up on one control and are one shift on the other.
+/// assert!(!frames("fanuc").local_is_preset && frames("linuxcnc").local_is_preset);
+/// assert!(frames("fanuc").p_selects_numbered);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameRules {
     /// `G54 P1` is `G54.1 P1` (Fanuc); where false a P beside a work offset is refused.
@@ -267,6 +390,15 @@ pub struct FrameRules {
 }
 
 /// One row of the dialect's code table.
+///
+/// ```
+/// use nc_syntax::dialect::GCode;
+///
+/// // G0 and G1 replace each other, G90 does not touch them.
+/// let group = |code| nc_dialect::builtin("fanuc").unwrap().code(GCode(code)).unwrap().group;
+/// assert_eq!(group(0), group(10));
+/// assert_ne!(group(0), group(900));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeEntry {
     /// The code.
@@ -280,6 +412,15 @@ pub struct CodeEntry {
 /// The rows of a dialect's code table, in the order of their codes.
 ///
 /// A block's codes are looked up several times, so that a row is found from its code's whole number at once.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, CodeEntry, Codes, GCode};
+///
+/// let row = |code, action| CodeEntry { code: GCode(code), group: 1, action };
+/// let codes = Codes::from(vec![row(10, Action::Line), row(0, Action::Rapid)]);
+/// // In the order of their codes, however the table lists them.
+/// assert_eq!(codes.iter().map(|row| row.code).collect::<Vec<_>>(), [GCode(0), GCode(10)]);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Codes {
     rows: Vec<CodeEntry>,
@@ -315,6 +456,13 @@ impl Codes {
 }
 
 /// An M code that is more than text.
+///
+/// ```
+/// let fanuc = nc_dialect::builtin("fanuc").unwrap();
+/// let change = fanuc.m_code(6).unwrap();
+/// assert!(change.changes_tool && change.loses_position == [true; 3]);
+/// assert!(fanuc.m_code(30).unwrap().ends_program);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MCode {
     /// Its number.
@@ -335,6 +483,12 @@ pub struct MCode {
 }
 
 /// A block that stands in programs of lathes: any of the codes or commands, all of the letters, none of the others.
+///
+/// ```
+/// // `T0101` in a block of its own is how lathes of Fanuc choose a tool with its offset.
+/// let signs = &nc_dialect::builtin("fanuc").unwrap().lathe;
+/// assert!(signs.iter().any(|sign| sign.digits.is_some_and(|(letter, count)| (letter, count) == (b'T', 4))));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LatheSign {
     /// Any of them; empty where every block may be one.
@@ -360,6 +514,13 @@ pub struct LatheSign {
 /// A command by name: a word of letters (Sinumerik `TRANS`) or the first word in brackets (Balt-System `(UAO,1)`).
 ///
 /// A command that is not in the table is refused: it may move the frame.
+///
+/// ```
+/// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
+/// // TRANS moves the frame; what is not in the table may, and is refused as well.
+/// assert!(sinumerik.command(b"TRANS X10").unwrap().refusal(b"TRANS X10").is_some());
+/// assert!(sinumerik.command(b"NOBODYKNOWS").is_none());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Command {
     /// Upper case.
@@ -385,6 +546,13 @@ impl Command {
 }
 
 /// How text is written.
+///
+/// ```
+/// let output = |dialect| nc_dialect::builtin(dialect).unwrap().output.clone();
+/// // LinuxCNC's interpreter reads lines of 254 bytes and their end; Sinumerik's R is another word.
+/// assert_eq!(output("linuxcnc").max_block_bytes, 255);
+/// assert!(!output("sinumerik").radius_word && output("fanuc").radius_word);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Decimals of an inch word; those of a millimetre word come from the profile's resolution.
@@ -412,6 +580,13 @@ pub struct Output {
 }
 
 /// Which language of variables, expressions and program flow the control has.
+///
+/// ```
+/// use nc_syntax::dialect::Macros;
+///
+/// let macros = |dialect| nc_dialect::builtin(dialect).unwrap().flow.macros;
+/// assert_eq!((macros("fanuc"), macros("centroid")), (Macros::Fanuc, Macros::None));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Macros {
     /// None that is known: a program that uses one is refused.
@@ -424,6 +599,12 @@ pub enum Macros {
 }
 
 /// Variables, program flow and subprograms.
+///
+/// ```
+/// let flow = |dialect| nc_dialect::builtin(dialect).unwrap().flow;
+/// // M98 P31000 is three calls of O1000 on one control and a call of O31000 on the other.
+/// assert!(flow("fanuc").packed_repeats && !flow("linuxcnc").packed_repeats);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flow {
     /// The language.
@@ -440,6 +621,18 @@ pub struct Flow {
 }
 
 /// Everything that differs between controls.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode};
+///
+/// let fanuc = nc_dialect::builtin("fanuc").unwrap();
+/// assert_eq!(fanuc.name, "fanuc");
+/// // What holds before the first block: G17, G90 and others, as if they stood in one.
+/// let stands = |code| fanuc.initial.contains(&GCode(code));
+/// assert!(stands(170) && stands(900) && !stands(910));
+/// assert_eq!(fanuc.code(GCode(20)).map(|row| &row.action), Some(&Action::ArcClockwise));
+/// assert!(fanuc.code(GCode(9999)).is_none());
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dialect {
     /// File name in `grammars/` without ending.

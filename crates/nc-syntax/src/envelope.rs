@@ -6,6 +6,16 @@ use crate::lexer::{Lexer, is_blank, skip_blanks};
 use crate::{Dialect, Item, ItemKind};
 
 /// What surrounds the program in its file.
+///
+/// ```
+/// use nc_syntax::EnvelopeFinder;
+///
+/// let mut finder = EnvelopeFinder::new(nc_dialect::builtin("fanuc").unwrap());
+/// finder.see(b"PART 7\n%\nG0 X1.\n%\nnotes\n");
+/// let envelope = finder.finish();
+/// // The leader is not executed, the program is, what stands behind it is not.
+/// assert_eq!([0, 9, 18].map(|offset| envelope.holds(offset)), [false, true, false]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Envelope {
     /// Bytes before the `%` that opens the program: a leader, not executed. 0 where no `%` opens it.
@@ -27,6 +37,16 @@ impl Envelope {
 /// The first one opens the program unless blocks stand before it. The last one closes it, unless it is
 /// the one that opened it, or blocks stand behind it: somebody may execute those. Marks between the two are left for
 /// the reader to show.
+///
+/// ```
+/// use nc_syntax::EnvelopeFinder;
+///
+/// let mut finder = EnvelopeFinder::new(nc_dialect::builtin("fanuc").unwrap());
+/// finder.see(b"%\nG0 X1.\n%\n");
+/// // While parts are to come the second mark may be one between blocks.
+/// assert!(finder.open().holds(12));
+/// assert!(!finder.finish().holds(12));
+/// ```
 pub struct EnvelopeFinder<'d> {
     lexer: Lexer<'d>,
     length: u64,

@@ -16,6 +16,20 @@ const MOST_WORDS: usize = LETTERS.len();
 const LETTERS: &[u8] = b"FGNXYZ";
 
 /// A word of a plain line.
+///
+/// ```
+/// use nc_syntax::{PlainLine, PlainWord, Reader};
+///
+/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let mut line = PlainLine::default();
+/// assert!(Reader::new(b"X10.250 Y.5\n", dialect).plain_line(&mut line));
+/// let [x, y] = line.words() else { panic!("two words") };
+/// assert_eq!((x.letter(), x.number().to_f64()), (b'X', 10.25));
+/// assert_eq!(line.text(y.number_span()), b".5");
+/// // `.5` is spelt otherwise than `0.5`.
+/// assert_eq!(x.form(), PlainWord::usual_form(3));
+/// assert_ne!(y.form(), PlainWord::usual_form(1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlainWord {
     mantissa: i64,
@@ -107,6 +121,20 @@ impl PlainWord {
 }
 
 /// A line of words with plain numbers, none of the letters F, G, N, X, Y, Z twice, and nothing else: one block.
+///
+/// ```
+/// use nc_syntax::{Block, PlainLine, Reader};
+///
+/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let mut reader = Reader::new(b"G1 X10. Y5.\r\nX11. (last)\n", dialect);
+/// let (mut line, mut block) = (PlainLine::default(), Block::default());
+/// assert!(reader.plain_line(&mut line));
+/// assert_eq!((line.content(), line.end()), (&b"G1 X10. Y5."[..], &b"\r\n"[..]));
+/// // A comment is more than plain words: nothing was read, and the slower way shows it.
+/// assert!(!reader.plain_line(&mut line));
+/// assert!(reader.next(&mut block));
+/// assert_eq!(block.bytes, b"X11. (last)\n");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlainLine<'a> {
     /// All bytes of the line, its end included.

@@ -19,6 +19,22 @@ pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 /// [`ItemKind::Name`]: text that nobody executes. A file with one `%` above its blocks, or with none, is
 /// a program as a whole. A `%` between the first and the last is shown where it stands, and so is the last one where
 /// blocks stand behind it.
+///
+/// ```
+/// use nc_syntax::{Block, Reader};
+///
+/// let text = b"%\nO1 (PART)\r\nN10 G1 X10. \xc7 F300\n\n%\n(left over)";
+/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+/// let (mut again, mut lines) = (Vec::new(), Vec::new());
+/// while reader.next(&mut block) {
+///     again.extend_from_slice(block.bytes);
+///     lines.push(block.line);
+/// }
+/// // Every byte comes out as it went in, whatever it is.
+/// assert_eq!(again, text);
+/// assert_eq!(lines, [1, 2, 3, 4, 5, 6]);
+/// ```
 pub struct Reader<'a> {
     text: &'a [u8],
     lexer: Lexer<'a>,
@@ -34,6 +50,21 @@ pub struct Reader<'a> {
 }
 
 /// Where a part of a program starts.
+///
+/// ```
+/// use nc_syntax::{Block, EnvelopeFinder, Place, Reader};
+///
+/// // The second half of a program, read alone, has the places of the whole.
+/// let (first, second) = (b"G21\nG0 X1.\n", b"G1 X2. F100\n");
+/// let dialect = nc_dialect::builtin("fanuc").unwrap();
+/// let mut finder = EnvelopeFinder::new(dialect);
+/// finder.see(first);
+/// finder.see(second);
+/// let place = Place { offset: first.len() as u64, line: 3, ..Place::START };
+/// let mut block = Block::default();
+/// assert!(Reader::part(second, dialect, finder.finish(), place).next(&mut block));
+/// assert_eq!((block.offset, block.line), (11, 3));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// Bytes of the program before it.
