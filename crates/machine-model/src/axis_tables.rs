@@ -11,6 +11,21 @@ pub type Six = [f64; 6];
 ///
 /// Tables on different nodes are written on the union of their nodes over the range that all of them
 /// cover. That is exact: a cubic stays itself when its cell is cut.
+///
+/// ```
+/// use machine_model::{AxisTables, Interpolation, Table};
+///
+/// let table = |nodes: [f64; 2], values: [f64; 2]| {
+///     Some(Table::new(nodes.to_vec(), values.to_vec(), Interpolation::Linear).unwrap())
+/// };
+/// // EXX over 0 to 100 mm and EYX over 50 to 200 mm: known together from 50 to 100.
+/// let tables =
+///     AxisTables::new(&[table([0.0, 100.0], [0.0, 0.010]), table([50.0, 200.0], [0.003, 0.003]), None, None, None, None])
+///         .unwrap();
+/// assert_eq!((tables.range().low, tables.range().high), (50.0, 100.0));
+/// let [exx, eyx, ezx, ..] = tables.at(80.0);
+/// assert!((exx - 0.008).abs() < 1e-12 && (eyx - 0.003).abs() < 1e-12 && ezx == 0.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisTables {
     grid: Grid,

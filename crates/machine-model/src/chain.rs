@@ -3,6 +3,16 @@
 use std::fmt;
 
 /// A machine axis by its letter.
+///
+/// ```
+/// use machine_model::Axis;
+///
+/// let b = Axis::from_letter('B').unwrap();
+/// assert!(!b.is_linear());
+/// // B turns around Y.
+/// assert_eq!((b.direction(), Axis::Y.direction()), (1, 1));
+/// assert_eq!(Axis::from_letter('b'), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Axis {
     /// Along X.
@@ -52,6 +62,13 @@ impl fmt::Display for Axis {
 }
 
 /// Why a text is not a chain.
+///
+/// ```
+/// use machine_model::{Chain, ChainError};
+///
+/// assert_eq!(Chain::parse("w X Y b Z t"), Err(ChainError::Form));
+/// assert!(Chain::parse("[w X Y b Y t]").is_err());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChainError {
     /// No brackets around it, or not one character per link.
@@ -83,6 +100,19 @@ pub enum ChainError {
 /// What stands before the bed carries the workpiece, what stands behind it the tool. For linear axes
 /// only the order matters; a rotary axis before the bed turns the workpiece, so the workpiece sees the
 /// tool turn by the negative command.
+///
+/// ```
+/// use machine_model::{Axis, Chain};
+///
+/// // A table that moves in X and Y, a head that moves in Z.
+/// let mill = Chain::parse("[w X Y b Z t]").unwrap();
+/// assert_eq!(mill.linear(), [Axis::X, Axis::Y, Axis::Z]);
+/// assert_eq!(mill.to_string(), "[w X Y b Z t]");
+/// // A trunnion: the workpiece turns on C, which turns on A.
+/// let five = Chain::parse("[w C A X Y b Z t]").unwrap();
+/// assert!(five.has_rotary() && !mill.has_rotary());
+/// assert!(five.head().is_empty());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
     table: Vec<Axis>,

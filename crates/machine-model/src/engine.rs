@@ -8,6 +8,20 @@ use crate::{Everywhere, LANES};
 pub type Vector = Vector3<f64>;
 
 /// What the axes are told, with everything the error depends on.
+///
+/// ```
+/// use machine_model::{Command, Vector};
+///
+/// // X100 Y50 Z20 with a tool of 80 mm, X last moved in its negative direction.
+/// let command = Command {
+///     linear_mm: Vector::new(100.0, 50.0, 20.0),
+///     rotary_rad: Vector::zeros(),
+///     tool_mm: Vector::new(0.0, 0.0, -80.0),
+///     direction: [-1, 0, 0],
+/// };
+/// // A perfect machine without rotary axes has its tip here.
+/// assert_eq!(command.linear_mm + command.tool_mm, Vector::new(100.0, 50.0, -60.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
     /// X, Y, Z, machine coordinates, mm.
@@ -21,6 +35,13 @@ pub struct Command {
 }
 
 /// Closed interval of an axis command, mm.
+///
+/// ```
+/// use machine_model::Range;
+///
+/// let travel = Range { low: 0.0, high: 500.0 };
+/// assert!(travel.contains(500.0) && !travel.contains(500.001) && !travel.contains(f64::NAN));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower end.
@@ -39,6 +60,15 @@ impl Range {
 }
 
 /// Where the model knows the machine: the box of axis commands that every table covers.
+///
+/// ```
+/// use machine_model::{Range, Vector, Volume};
+///
+/// let volume = Volume([Range { low: 0.0, high: 100.0 }; 3]);
+/// let outside = Vector::new(120.0, 50.0, -1.0);
+/// assert!(!volume.contains(&outside));
+/// assert_eq!(volume.nearest(&outside), Vector::new(100.0, 50.0, 0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume(pub [Range; 3]);
 
@@ -57,6 +87,31 @@ impl Volume {
 }
 
 /// A stretch of a path `q(s)`, 0 ≤ s ≤ 1, of axis commands, as far as bounds need it.
+///
+/// ```
+/// use machine_model::{Move, PathModel};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// // A line from X10 to X40. Here the error grows evenly, so that it does not leave its chord at all.
+/// let stretch = Move {
+///     range_mm: [Range { low: 10.0, high: 40.0 }, Range { low: 5.0, high: 5.0 }, Range { low: 0.0, high: 0.0 }],
+///     speed_mm: [30.0, 0.0, 0.0],
+///     acceleration_mm: [0.0; 3],
+///     passes: 1,
+///     state: at(0.0, 0.0, 0.0),
+/// };
+/// assert!(machine().chord_bound_mm(&stretch) < 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Move {
     /// Box that contains every `q(s)`, mm. An axis without acceleration runs from one end of its range
@@ -73,6 +128,24 @@ pub struct Move {
 }
 
 /// What to command so that the tool goes to the target.
+///
+/// ```
+/// use machine_model::{Engine, TOLERANCE_MM};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// let told = machine().solve(&at(50.0, 0.0, 0.0)).unwrap();
+/// assert!(told.residual_mm <= TOLERANCE_MM && told.iterations < 10);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
     /// Commands of the linear axes, mm.
@@ -84,6 +157,24 @@ pub struct Solution {
 }
 
 /// Why there is no solution.
+///
+/// ```
+/// use machine_model::{Engine, SolveError};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// let error = machine().solve(&at(130.0, 0.0, 0.0)).unwrap_err();
+/// assert!(matches!(error, SolveError::OutsideVolume { axis: 'X', value_mm: 130.0, .. }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
     /// The target, or the command that would reach it, lies outside the calibrated volume.
@@ -126,6 +217,14 @@ pub enum SolveError {
 }
 
 /// The engines by the names of the command line.
+///
+/// ```
+/// use machine_model::EngineId;
+///
+/// assert_eq!(EngineId::from_name("rigid-body"), Some(EngineId::RigidBody));
+/// assert_eq!(EngineId::KmtppPublished.name(), "kmtpp-published");
+/// assert!(EngineId::KmtppPublished.is_published() && !EngineId::Kmtpp.is_published());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EngineId {
     /// `rigid-body`
@@ -151,6 +250,28 @@ pub enum EngineId {
 }
 
 /// A correction engine: solves single points; engines that can also correct paths say so.
+///
+/// ```
+/// use machine_model::{Engine, EngineId};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// // Those who correct points need not know which engine they have.
+/// let machine = machine();
+/// let engine: &dyn Engine = &machine;
+/// assert_eq!(engine.id(), EngineId::RigidBody);
+/// assert!(engine.volume().contains(&engine.solve(&at(50.0, 0.0, 0.0)).unwrap().linear_mm));
+/// assert!(engine.path_model().is_some());
+/// ```
 pub trait Engine: Send + Sync {
     /// Its name.
     fn id(&self) -> EngineId;
@@ -174,6 +295,27 @@ pub trait Engine: Send + Sync {
 }
 
 /// A model whose error is known along paths, with bounds that hold everywhere.
+///
+/// ```
+/// use machine_model::PathModel;
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// let machine = machine();
+/// assert!((machine.error_mm(&at(25.0, 0.0, 0.0)).x - 0.005).abs() < 1e-12);
+/// // Outside the volume the error is that of its nearest point.
+/// assert_eq!(machine.error_mm(&at(130.0, 0.0, 0.0)), machine.error_mm(&at(100.0, 0.0, 0.0)));
+/// assert!(!machine.depends_on_direction());
+/// ```
 pub trait PathModel: Engine {
     /// Real tip minus nominal tip, mm, in the directions of the linear axes: the displacement the
     /// linear axes would have to undo.

@@ -11,6 +11,29 @@ const SHORTEST: i32 = -12;
 ///
 /// Dense programs ask millions of times for a bound that lies far below the tolerance. This one is looked up; the
 /// bound of the stretch itself ([`crate::PathModel::chord_bound_mm`]) is only asked for where it matters.
+///
+/// ```
+/// use machine_model::PathModel;
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// let machine = machine();
+/// let bounds = machine.everywhere(&at(0.0, 0.0, 0.0)).unwrap();
+/// // The error grows by 0.2 µm a millimetre, and nowhere faster.
+/// let grows = (machine.error_mm(&at(60.0, 0.0, 0.0)) - machine.error_mm(&at(20.0, 0.0, 0.0))).norm();
+/// assert!(grows <= bounds.gradient * 40.0);
+/// // The longer the move, the more the error may bend on it.
+/// assert!(bounds.chord_bound_mm(0.1) <= bounds.chord_bound_mm(10.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Everywhere {
     /// Upper bound of how fast the error changes along any way: `|e(p) - e(q)| ≤ gradient·|p - q|`.

@@ -46,6 +46,17 @@ impl Link {
 }
 
 /// Why a description is no machine.
+///
+/// ```
+/// use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector};
+///
+/// let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 400.0 }));
+/// linear[1].travel_mm = Range { low: 10.0, high: 10.0 };
+/// let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// let machine = Description { chain, linear, rotary, squareness: Squareness::default() };
+/// assert_eq!(RigidBody::new(machine).unwrap_err().axis, 'Y');
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("axis {axis}: its tables and its travel have no interval in common")]
 pub struct Unusable {
@@ -54,6 +65,25 @@ pub struct Unusable {
 }
 
 /// Where the tool is, seen from the workpiece.
+///
+/// ```
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// // Told to go to X50, this machine stands 10 µm farther.
+/// let there = machine().predict(&at(50.0, 20.0, 10.0));
+/// assert!((there.position_mm - Vector::new(50.010, 20.0, 10.0)).norm() < 1e-12);
+/// assert!((there.error_mm - Vector::new(0.010, 0.0, 0.0)).norm() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// Real position of the tool tip, mm, workpiece frame.
@@ -63,6 +93,28 @@ pub struct Prediction {
 }
 
 /// The machine as a chain of rigid bodies.
+///
+/// ```
+/// use machine_model::Engine;
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// // X is too long by 0.02 %. What the inverse commands, the forward model leads to the target.
+/// let machine = machine();
+/// let told = machine.solve(&at(50.0, 20.0, 10.0)).unwrap();
+/// assert!((told.linear_mm.x - 50.0 / 1.0002).abs() < 1e-9);
+/// let real = machine.predict(&Command { linear_mm: told.linear_mm, ..at(0.0, 0.0, 0.0) });
+/// assert!((real.position_mm - Vector::new(50.0, 20.0, 10.0)).norm() < 1e-9);
+/// ```
 #[derive(Clone, Debug)]
 pub struct RigidBody {
     pub(crate) description: Description,

@@ -6,6 +6,16 @@ use crate::Range;
 use crate::lanes::Real;
 
 /// What lies between the nodes of a table.
+///
+/// ```
+/// use machine_model::{Interpolation, Table};
+///
+/// let (nodes, values) = (vec![0.0, 10.0, 20.0], vec![0.0, 0.004, 0.004]);
+/// let between = |kind| Table::new(nodes.clone(), values.clone(), kind).unwrap().value(15.0);
+/// assert_eq!(between(Interpolation::Linear), 0.004);
+/// // Where the nodes are level, the curve is: no overshoot.
+/// assert_eq!(between(Interpolation::Monotone), 0.004);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Interpolation {
     /// Straight lines: continuous, with a kink at every node.
@@ -17,6 +27,16 @@ pub enum Interpolation {
 }
 
 /// Why numbers are not a table.
+///
+/// ```
+/// use machine_model::{Interpolation, Table, TableError};
+///
+/// let table = |nodes: &[f64]| Table::new(nodes.to_vec(), vec![0.0; nodes.len()], Interpolation::Linear);
+/// assert_eq!(table(&[0.0]).unwrap_err(), TableError::TooShort(1));
+/// let back = TableError::NotIncreasing { row: 2, position: 5.0, before: 10.0 };
+/// assert_eq!(table(&[0.0, 10.0, 5.0]).unwrap_err(), back);
+/// assert_eq!(back.to_string(), "row 2: position 5 does not lie above 10 of the row before");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
     /// A curve needs two nodes.
@@ -49,6 +69,18 @@ pub enum TableError {
 }
 
 /// How large a function and its derivatives can get on an interval.
+///
+/// ```
+/// use machine_model::{Interpolation, Range, Table};
+///
+/// // Up and down again by 4 µm: the slope jumps by 0.0008 in the middle.
+/// let table = Table::new(vec![0.0, 10.0, 20.0], vec![0.0, 0.004, 0.0], Interpolation::Linear).unwrap();
+/// let whole = table.bounds(Range { low: 0.0, high: 20.0 });
+/// assert!((whole.value - 0.004).abs() < 1e-12 && (whole.slope - 0.0004).abs() < 1e-12);
+/// assert!((whole.kinks - 0.0008).abs() < 1e-12);
+/// // On one side of the kink there is none.
+/// assert_eq!(table.bounds(Range { low: 1.0, high: 9.0 }).kinks, 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Bounds {
     /// Upper bound of |f|.
@@ -178,6 +210,16 @@ fn join(so_far: &mut Bounds, other: &Bounds) {
 /// One error function of one axis command.
 ///
 /// Outside its nodes it keeps the value of the nearest end: nothing is extrapolated.
+///
+/// ```
+/// use machine_model::{Interpolation, Table};
+///
+/// // Measured every 100 mm, in mm.
+/// let table = Table::new(vec![0.0, 100.0, 200.0], vec![0.0, 0.006, 0.004], Interpolation::Linear).unwrap();
+/// assert!((table.value(50.0) - 0.003).abs() < 1e-12);
+/// // Outside the nodes holds the value of the nearer end.
+/// assert_eq!(table.value(250.0), table.value(200.0));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     grid: Grid,

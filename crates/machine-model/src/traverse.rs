@@ -1,6 +1,22 @@
 //! One axis driven alone through its travel, followed in space by a tracker.
 
 /// A measured traverse of one linear axis.
+///
+/// ```
+/// use machine_model::Traverse;
+///
+/// // X driven to 200 mm and followed by a tracker: too long, and rising.
+/// let traverse = Traverse {
+///     axis: 0,
+///     nodes_mm: vec![0.0, 100.0, 200.0],
+///     start_mm: [0.0, 50.0, 20.0],
+///     measured_mm: vec![[0.0, 50.0, 20.0], [100.004, 50.0, 20.001], [200.010, 50.0, 20.003]],
+///     published_cosines: None,
+/// };
+/// let last = traverse.measured_mm.last().unwrap();
+/// let expected = traverse.start_mm[0] + traverse.nodes_mm[2] - traverse.nodes_mm[0];
+/// assert!((last[0] - expected - 0.010).abs() < 1e-9);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traverse {
     /// The axis that moved: 0 X, 1 Y, 2 Z.

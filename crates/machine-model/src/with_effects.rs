@@ -7,6 +7,27 @@ use crate::{
 };
 
 /// An effect cannot be evaluated: what it depends on is not known.
+///
+/// ```
+/// use machine_model::WithEffects;
+/// use machine_model::effects::{Conditions, EffectTerm};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// let parameters = [("expansion_um_per_m_k".to_owned(), 11.5)];
+/// let warm = EffectTerm::from_entry("thermal.X", &parameters).unwrap();
+/// let error = WithEffects::new(machine(), vec![warm], Conditions::default()).unwrap_err();
+/// assert_eq!(error.effect.to_string(), "thermal.X");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the effect {effect} depends on the {}, which is not known here", condition.0)]
 pub struct UnknownCondition {
@@ -21,6 +42,30 @@ pub struct UnknownCondition {
 /// Both are evaluated at the command; products of the two (nanometres) are left out, as in the diagnosis
 /// that finds effects. Faults of the measuring instrument are no part of a machine: see
 /// [`EffectKind::is_instrument`] and [`WithEffects::new`].
+///
+/// ```
+/// use machine_model::effects::{Conditions, EffectTerm};
+/// use machine_model::{PathModel, WithEffects};
+/// # use machine_model::{AxisTables, Chain, Command, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Table, Vector};
+/// # fn machine() -> RigidBody {
+/// #     let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// #     let long = Table::new(vec![0.0, 100.0], vec![0.0, 0.020], Interpolation::Linear).unwrap();
+/// #     linear[0].errors = AxisTables::new(&[Some(long), None, None, None, None, None]);
+/// #     let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// #     let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
+/// # }
+/// # fn at(x: f64, y: f64, z: f64) -> Command {
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// # }
+/// // Half a lost motion of 3 µm: the tip lags behind, whichever way X goes.
+/// let lost = EffectTerm::from_entry("backlash.X", &[("half_width_um".to_owned(), 3.0)]).unwrap();
+/// let machine = WithEffects::new(machine(), vec![lost], Conditions::default()).unwrap();
+/// let error = |way| machine.error_mm(&Command { direction: [way, 0, 0], ..at(50.0, 0.0, 0.0) }).x;
+/// assert!((error(1) - error(-1)).abs() > 0.0059);
+/// assert!((error(1) + error(-1) - 2.0 * machine.base().error_mm(&at(50.0, 0.0, 0.0)).x).abs() < 1e-12);
+/// assert!(machine.depends_on_direction());
+/// ```
 #[derive(Clone, Debug)]
 pub struct WithEffects {
     base: RigidBody,

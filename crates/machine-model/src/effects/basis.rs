@@ -6,6 +6,23 @@ use super::{EffectGeometry, EffectKind};
 use crate::{Command, Vector};
 
 /// What the error may depend on besides the command; `None` where it is not known.
+///
+/// ```
+/// use machine_model::effects::{Conditions, EffectTerm};
+/// use machine_model::{Command, Vector};
+///
+/// let warm = EffectTerm::from_entry("thermal.X", &[("expansion_um_per_m_k".to_owned(), 11.5)]).unwrap();
+/// let at = Command {
+///     linear_mm: Vector::new(200.0, 0.0, 0.0),
+///     rotary_rad: Vector::zeros(),
+///     tool_mm: Vector::zeros(),
+///     direction: [0; 3],
+/// };
+/// // Calibrated at 20 °C: at that temperature the machine is as its tables say, and an unknown one is never guessed.
+/// let known = Conditions { temp_c: [Some(20.0); 3], ..Conditions::default() };
+/// assert_eq!(warm.displacement_mm(&at, &known).map(|moved| moved.x), Ok(0.0));
+/// assert!(warm.displacement_mm(&at, &Conditions::default()).is_err());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Conditions {
     /// Temperature of each axis (or of the machine, three times), °C.

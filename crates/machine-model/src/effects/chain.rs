@@ -5,6 +5,16 @@ use nalgebra::{Matrix3, Rotation3};
 use crate::{Chain, Command, Vector};
 
 /// One joint of the chain, workpiece to tool.
+///
+/// ```
+/// use machine_model::Chain;
+/// use machine_model::effects::{EffectGeometry, Joint};
+///
+/// // A table that turns about Z, and a head that turns about Y.
+/// let geometry = EffectGeometry::from_chain(&Chain::parse("[w C X Y b Z B t]").unwrap());
+/// assert_eq!(geometry.joints().first(), Some(&Joint::Table(2)));
+/// assert_eq!(geometry.joints().last(), Some(&Joint::Head(1)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joint {
     /// X, Y or Z.
@@ -17,6 +27,15 @@ pub enum Joint {
 
 /// What the effects must know of the machine: the order of its axes, where its rotary axes lie, at which
 /// temperature it was calibrated.
+///
+/// ```
+/// use machine_model::Chain;
+/// use machine_model::effects::EffectGeometry;
+///
+/// let mill = EffectGeometry::from_chain(&Chain::parse("[w X Y b Z t]").unwrap());
+/// assert_eq!(mill, EffectGeometry::default());
+/// assert!(!mill.has_table() && mill.reference_temp_c == 20.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectGeometry {
     joints: Vec<Joint>,

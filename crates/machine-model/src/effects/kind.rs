@@ -14,6 +14,15 @@ const PAIRS: [(AxisIndex, AxisIndex); 3] = [(0, 1), (0, 2), (1, 2)];
 /// One effect that can make a machine miss; the ids are fixed by the contract.
 ///
 /// Axes are indices into X, Y, Z (linear) or A, B, C (rotary).
+///
+/// ```
+/// use machine_model::effects::EffectKind;
+///
+/// let kind: EffectKind = "lost-motion.EYX".parse().unwrap();
+/// assert_eq!(kind, EffectKind::LostMotion { direction: 1, axis: 0 });
+/// assert_eq!(kind.to_string(), "lost-motion.EYX");
+/// assert!(kind.depends_on_direction());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EffectKind {
     /// `scale.X`: error proportional to the command.
@@ -203,6 +212,12 @@ impl fmt::Display for EffectKind {
 }
 
 /// The id is not in the catalogue.
+///
+/// ```
+/// use machine_model::effects::{EffectKind, UnknownEffect};
+///
+/// assert_eq!("backlash.Q".parse::<EffectKind>(), Err(UnknownEffect("backlash.Q".to_owned())));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown effect '{0}'; known are for example scale.X, backlash.Y, squareness.XZ, straightness.EYX, angular.EAX"

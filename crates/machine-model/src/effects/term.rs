@@ -6,6 +6,22 @@ use super::{Conditions, EffectGeometry, EffectKind, MissingCondition, Shape, Unk
 use crate::{Command, Vector};
 
 /// An effect with numbers: what a profile states and what a prediction adds.
+///
+/// ```
+/// use machine_model::effects::{Conditions, EffectTerm};
+/// use machine_model::{Command, Vector};
+///
+/// // 100 µm too long in a metre: 20 µm at X200.
+/// let long = EffectTerm::from_entry("scale.X", &[("scale_um_per_m".to_owned(), 100.0)]).unwrap();
+/// let at = Command {
+///     linear_mm: Vector::new(200.0, 0.0, 0.0),
+///     rotary_rad: Vector::zeros(),
+///     tool_mm: Vector::zeros(),
+///     direction: [0; 3],
+/// };
+/// let moved = long.displacement_mm(&at, &Conditions::default()).unwrap();
+/// assert!((moved - Vector::new(0.020, 0.0, 0.0)).norm() < 1e-12);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectTerm {
     pub(super) kind: EffectKind,
@@ -16,6 +32,14 @@ pub struct EffectTerm {
 }
 
 /// Why an entry is not an effect.
+///
+/// ```
+/// use machine_model::effects::{EffectError, EffectTerm};
+///
+/// let entry = |name: &str| EffectTerm::from_entry("backlash.X", &[(name.to_owned(), 3.0)]);
+/// assert!(matches!(entry("half_width_mm"), Err(EffectError::UnknownParameter { .. })));
+/// assert!(entry("half_width_um").is_ok());
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum EffectError {
     /// The id is not in the catalogue.
