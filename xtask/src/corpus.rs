@@ -32,6 +32,9 @@ pub(crate) struct Options {
     /// Programs at the same time.
     #[arg(long, default_value_t = 2)]
     jobs: usize,
+    /// What was run, for the page: the version of the package, the commit of the sources.
+    #[arg(long)]
+    of: Option<String>,
     /// Only programs whose path contains this text; nothing is written to docs/ then.
     #[arg(long)]
     only: Option<String>,
@@ -116,7 +119,9 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         paths.par_iter().map(|path| sample(&vpost, options, path)).collect::<anyhow::Result<Vec<_>>>()
     })?;
     let intro = if options.suite.is_some() { SUITE } else { SAMPLES };
-    let made = wrapped(&section(&samples, intro));
+    let of = options.of.as_ref().map_or_else(String::new, |of| format!(" on {of}"));
+    let intro = format!("{intro}Run on {}{of}.\n\n", crate::gap_bench::date());
+    let made = wrapped(&section(&samples, &intro));
     if options.only.is_none() {
         let page = std::fs::read_to_string(&options.page).unwrap_or_default();
         let (before, after) = page.split_at(page.find(SUITE_HEADING).unwrap_or(page.len()));

@@ -13,6 +13,8 @@ mod table;
 mod transport;
 mod voxels;
 
+pub(crate) use page::date;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

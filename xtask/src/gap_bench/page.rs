@@ -356,7 +356,7 @@ fn breakdown(all: &[Outcome]) -> String {
 }
 
 /// Today, from the system's clock, as year-month-day.
-fn date() -> String {
+pub(crate) fn date() -> String {
     let days = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs() / 86_400) as i64;
     // Days since 1970 to a date of the Gregorian calendar, counted from 1 March of year 0.
     let day = days + 719_468;
