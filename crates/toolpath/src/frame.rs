@@ -3,6 +3,17 @@ use std::sync::Arc;
 use crate::Plane;
 
 /// What a frame makes of circles.
+///
+/// ```
+/// use toolpath::{Frame, Plane, Similarity};
+///
+/// // G51.1 X0 mirrors: what is G2 in the program turns the axes as G3 does. Scaled in X alone a circle is none.
+/// let mirror = Frame::affine([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]).unwrap();
+/// assert_eq!(mirror.similarity(Plane::Xy), Some(Similarity { scale: 1.0, mirrored: true }));
+/// let stretched = Frame::affine([[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]).unwrap();
+/// assert_eq!(stretched.similarity(Plane::Xy), None);
+/// assert_eq!(stretched.similarity(Plane::Yz), Some(Similarity { scale: 1.0, mirrored: false }));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
     /// Radius by axis commands over radius in the program.
@@ -15,6 +26,21 @@ pub struct Similarity {
 ///
 /// Without G68, G51 or G51.1 the matrix is the identity and the frame a mere shift: work offset plus
 /// tool length. The matrix is invertible by construction.
+///
+/// ```
+/// use toolpath::Frame;
+///
+/// // G54 at X100 Y50 Z20 and a tool of 80 mm.
+/// let frame = Frame::shift([100.0, 50.0, 20.0 + 80.0]);
+/// assert_eq!(frame.to_machine([10.0, 0.0, -5.0]), [110.0, 50.0, 95.0]);
+/// assert_eq!(frame.to_program([110.0, 50.0, 95.0]), [10.0, 0.0, -5.0]);
+/// // G68 R90 about its zero turns X into Y.
+/// let turned = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+/// let frame = Frame::affine(turned, [100.0, 50.0, 100.0]).unwrap();
+/// assert_eq!(frame.to_machine([10.0, 0.0, 0.0]), [100.0, 60.0, 100.0]);
+/// // A matrix that makes a plane of space has no way back.
+/// assert_eq!(Frame::affine([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]], [0.0; 3]), None);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Axis commands of the program's zero.

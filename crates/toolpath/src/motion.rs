@@ -3,6 +3,15 @@ use units::decimal::Decimal;
 use crate::Plane;
 
 /// Where the axes are commanded to be.
+///
+/// ```
+/// use toolpath::{Partial, Position};
+///
+/// let at = Position { linear_mm: [10.0, 20.0, -3.0], ..Position::default() };
+/// assert_eq!(at.rotary_deg, [0.0; 3]);
+/// // What is known of it as a whole is the position again.
+/// assert_eq!(Partial::from(at).complete(), Some(at));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Position {
     /// X, Y, Z in mm.
@@ -12,6 +21,16 @@ pub struct Position {
 }
 
 /// A position of which some axes may not be known yet (start of program, after G28 or a tool change).
+///
+/// ```
+/// use toolpath::Partial;
+///
+/// // Behind a tool change only Z is known; once the program has named X and Y, all is.
+/// let mut at = Partial { linear_mm: [None, None, Some(100.0)], ..Partial::default() };
+/// assert_eq!(at.complete(), None);
+/// (at.linear_mm[0], at.linear_mm[1]) = (Some(10.0), Some(20.0));
+/// assert_eq!(at.complete().map(|place| place.linear_mm), Some([10.0, 20.0, 100.0]));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Partial {
     /// X, Y, Z in mm where known.
@@ -39,6 +58,22 @@ impl From<Position> for Partial {
 ///
 /// The radius runs linearly with the angle from the start's distance to the end's: programs give ends
 /// and centre rounded, so the two differ by the rounding, and this is how LinuxCNC closes the gap.
+///
+/// ```
+/// use toolpath::{Arc, Plane};
+///
+/// // G18 G3, a quarter turn about Z0 X0 from Z20: Z towards X, so it ends at X20.
+/// let arc = Arc { plane: Plane::Zx, centre_mm: [0.0, 0.0], sweep_rad: std::f64::consts::FRAC_PI_2 };
+/// let [first, second, _] = arc.plane.axes();
+/// let start_mm = [0.0, 5.0, 20.0];
+/// let radius = [start_mm[first] - arc.centre_mm[0], start_mm[second] - arc.centre_mm[1]];
+/// let (sin, cos) = units::math::sin_cos(arc.sweep_rad);
+/// let mut end_mm = start_mm;
+/// end_mm[first] = arc.centre_mm[0] + cos * radius[0] - sin * radius[1];
+/// end_mm[second] = arc.centre_mm[1] + sin * radius[0] + cos * radius[1];
+/// assert!((end_mm[0] - 20.0).abs() < 1e-12 && end_mm[2].abs() < 1e-12);
+/// assert_eq!(end_mm[1], 5.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// Plane the circle lies in.
@@ -51,6 +86,18 @@ pub struct Arc {
 }
 
 /// The geometry between two ends.
+///
+/// ```
+/// use toolpath::{Arc, Plane, Shape};
+///
+/// // How far the direction of motion turns between two ends.
+/// let turn_rad = |shape: Shape| match shape {
+///     Shape::Line => 0.0,
+///     Shape::Arc(arc) => arc.sweep_rad.abs(),
+/// };
+/// let clockwise = Arc { plane: Plane::Xy, centre_mm: [10.0, 0.0], sweep_rad: -1.5 };
+/// assert_eq!((turn_rad(Shape::Line), turn_rad(Shape::Arc(clockwise))), (0.0, 1.5));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Straight, all axes in step.
@@ -60,6 +107,18 @@ pub enum Shape {
 }
 
 /// What F means (ISO 6983: G93, G94, G95).
+///
+/// ```
+/// use toolpath::FeedRate;
+///
+/// // What F must become where a motion is cut into equal pieces.
+/// let piece = |rate: FeedRate, pieces: f64| match rate {
+///     FeedRate::InverseTime(f) => FeedRate::InverseTime(f * pieces),
+///     other => other,
+/// };
+/// assert_eq!(piece(FeedRate::InverseTime(2.0), 4.0), FeedRate::InverseTime(8.0));
+/// assert_eq!(piece(FeedRate::default(), 4.0), FeedRate::PerMinute);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum FeedRate {
     /// Millimetres per minute, or whatever the control makes of F: nothing depends on it here.
@@ -72,6 +131,23 @@ pub enum FeedRate {
 }
 
 /// A motion on a path that was promised.
+///
+/// ```
+/// use toolpath::{Division, Feed, FeedRate, Position, Shape};
+///
+/// let at = |x: f64| Position { linear_mm: [x, 0.0, 0.0], ..Position::default() };
+/// let whole = Feed {
+///     start: at(0.0),
+///     end: at(30.0),
+///     shape: Shape::Line,
+///     rate: FeedRate::PerMinute,
+///     division: Division::Any,
+/// };
+/// // Cut at X10, the two pieces meet there and reach as far as the whole.
+/// let (first, second) = (Feed { end: at(10.0), ..whole }, Feed { start: at(10.0), ..whole });
+/// assert_eq!(first.end, second.start);
+/// assert_eq!((first.start, second.end), (whole.start, whole.end));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feed {
     /// Where it starts.
@@ -87,6 +163,18 @@ pub struct Feed {
 }
 
 /// How many blocks a feed motion may become.
+///
+/// ```
+/// use toolpath::Division;
+///
+/// // Into how many blocks a path of so many pieces may go.
+/// let blocks = |division: Division, pieces: usize| match division {
+///     Division::Any => Some(pieces),
+///     Division::OneBehindLines | Division::One => (pieces == 1).then_some(1),
+/// };
+/// assert_eq!(blocks(Division::default(), 3), Some(3));
+/// assert_eq!(blocks(Division::One, 3), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Division {
     /// As many as its path needs.
@@ -99,6 +187,14 @@ pub enum Division {
 }
 
 /// What a drilling cycle does at the bottom and on the way back; what `correction` may rewrite as moves.
+///
+/// ```
+/// use toolpath::CycleKind;
+///
+/// // Which cycles can be written as moves.
+/// let as_moves = |kind: CycleKind| kind != CycleKind::Synchronised;
+/// assert!(as_moves(CycleKind::PeckFull) && !as_moves(CycleKind::Synchronised));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CycleKind {
     /// G81, G82: feed in, dwell of `dwell` (the P word as written) if any, rapid out.
@@ -114,6 +210,14 @@ pub enum CycleKind {
 }
 
 /// A drilling cycle as it stands when a hole is made.
+///
+/// ```
+/// use toolpath::{Cycle, CycleKind};
+///
+/// // G99 G83 … Q4.: how many pecks a hole of 15 mm takes.
+/// let cycle = Cycle { kind: CycleKind::PeckFull, peck_mm: Some(4.0), dwell: None, return_to_initial: false };
+/// assert_eq!(cycle.peck_mm.map(|peck_mm| (15.0 / peck_mm).ceil()), Some(4.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
     /// What it does.
@@ -127,6 +231,27 @@ pub struct Cycle {
 }
 
 /// One hole of a drilling cycle, along the plane's normal axis.
+///
+/// ```
+/// use toolpath::{Cycle, CycleKind, FeedRate, Hole, Plane, Position};
+///
+/// // G98 G81 X50 Y20 Z-8 R2 from Z30, then the same under G99.
+/// let at = |z: f64| Position { linear_mm: [50.0, 20.0, z], ..Position::default() };
+/// let cycle = Cycle { kind: CycleKind::Drill, peck_mm: None, dwell: None, return_to_initial: true };
+/// let hole = Hole {
+///     plane: Plane::Xy,
+///     start: at(30.0),
+///     at_r: at(2.0),
+///     bottom_mm: -8.0,
+///     first: true,
+///     began_mm: 30.0,
+///     initial_mm: 30.0,
+///     cycle,
+///     rate: FeedRate::PerMinute,
+/// };
+/// assert_eq!(hole.end(), at(30.0));
+/// assert_eq!(Hole { cycle: Cycle { return_to_initial: false, ..cycle }, ..hole }.end(), at(2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
     /// Working plane; the hole runs along its normal.
@@ -164,6 +289,22 @@ impl Hole {
 }
 
 /// What one block, or one turn of a repeated block, makes the axes do.
+///
+/// ```
+/// use toolpath::{Motion, Partial, Position};
+///
+/// // Where the axes are known to end, whatever moves them.
+/// let end = |motion: &Motion| match motion {
+///     Motion::Rapid { end, .. } | Motion::Uncorrected { end } => end.complete(),
+///     Motion::Feed(feed) => Some(feed.end),
+///     Motion::Hole(hole) => Some(hole.end()),
+/// };
+/// let there = Position { linear_mm: [1.0, 2.0, 3.0], ..Position::default() };
+/// assert_eq!(end(&Motion::Rapid { start: Partial::default(), end: there.into() }), Some(there));
+/// // Behind a probe X stands anywhere.
+/// let probed = Partial { linear_mm: [None, Some(2.0), Some(3.0)], ..Partial::default() };
+/// assert_eq!(end(&Motion::Uncorrected { end: probed }), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// G0: the end matters, the way there is the control's.

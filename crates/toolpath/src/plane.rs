@@ -1,4 +1,15 @@
 /// The working plane of arcs and cycles (ISO 6983-1: G17, G18, G19).
+///
+/// ```
+/// use toolpath::Plane;
+///
+/// // A positive turn is right-handed about the normal axis: first, second and normal follow each other round.
+/// for plane in [Plane::Xy, Plane::Zx, Plane::Yz] {
+///     let [first, second, normal] = plane.axes();
+///     assert_eq!([(first + 1) % 3, (second + 1) % 3], [second, normal]);
+/// }
+/// assert_eq!(Plane::Zx.centre_letters(), *b"KI");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Plane {
     /// G17: X to Y, drilling along Z.
