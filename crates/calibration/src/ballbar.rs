@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use machine_model::{Description, RigidBody, Vector, Volume, WithEffects};
+use machine_model::{Description, RigidBody, Vector, WithEffects};
 use nalgebra::{DMatrix, DVector};
 
 use crate::adjustment::Estimate;
@@ -119,15 +119,4 @@ pub(crate) fn field_u95_mm(
         DMatrix::from_fn(changed.len(), changed.len(), |i, k| estimate.covariance[(changed[i], changed[k])]);
     let spreads = field::spreads(&places_mm, displacements, &covariance);
     field::quantile_of_points(&spreads) * estimate.coverage_factor_95() / quantile_95(None)
-}
-
-/// Places of a volume at which its field is looked at: so many along each axis.
-pub(crate) fn grid_mm(volume: &Volume, along: usize) -> Vec<Vector> {
-    let node = |axis: usize, k: usize| {
-        let range = volume.0[axis];
-        range.low + (range.high - range.low) * k as f64 / (along - 1) as f64
-    };
-    (0..along * along * along)
-        .map(|k| Vector::new(node(0, k % along), node(1, k / along % along), node(2, k / along / along)))
-        .collect()
 }

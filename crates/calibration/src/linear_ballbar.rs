@@ -10,10 +10,9 @@ use machine_model::{Command, Engine, PathModel, Vector, WithEffects};
 use nalgebra::{DMatrix, DVector};
 
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
-use crate::ballbar::{
-    RESOLVED_MM, changed, each_changed, field_u95_mm, grid_mm, no_outlier, open_error, too_few,
-};
+use crate::ballbar::{RESOLVED_MM, changed, each_changed, field_u95_mm, no_outlier, open_error, too_few};
 use crate::error::{CalibrationError, LETTERS};
+use crate::field;
 use crate::student::quantile;
 
 /// One reading on a circle.
@@ -277,8 +276,8 @@ fn uncertainty_mm(estimate: &Estimate, layout: &Layout, base: &WithEffects) -> f
         tool_mm: Vector::zeros(),
         direction: [side; 3],
     };
-    let commands: Vec<Command> =
-        grid_mm(&base.volume(), 5).into_iter().flat_map(|place| [at(place, -1), at(place, 1)]).collect();
+    let places = field::places_mm(&base.volume().0);
+    let commands: Vec<Command> = places.into_iter().flat_map(|place| [at(place, -1), at(place, 1)]).collect();
     let positions = |x: &DVector<f64>| {
         let machine = layout.machine(base, x);
         commands.iter().map(|c| c.linear_mm + machine.error_mm(c)).collect()

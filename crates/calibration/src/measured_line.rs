@@ -5,11 +5,11 @@
 //! change of the axis' functions, and zero where nothing has changed, whatever the instrument's zero was.
 
 use machine_model::{
-    Axis, AxisTables, Command, Description, Interpolation, LinearAxis, Six, Squareness, Table, Vector,
+    Axis, AxisTables, Command, Description, Interpolation, LinearAxis, Range, Six, Squareness, Table, Vector,
     WithEffects,
 };
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix3};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::field;
@@ -313,9 +313,6 @@ pub fn squareness_for<E>(
     Ok(found)
 }
 
-/// Places along each axis at which a field's uncertainty is looked at.
-const PLACES: usize = 5;
-
 /// Half width that 95 % of the volume's points keep, mm, their common frame taken off: equation (51c) with the noise of (58). `None`
 /// where no function was repeated.
 ///
@@ -330,20 +327,18 @@ pub fn field_u95_mm(
     changes: &[[Option<Function>; 6]; 3],
     relative: f64,
 ) -> Option<f64> {
-    let places: [[f64; PLACES]; 3] = std::array::from_fn(|axis| {
-        let (low, high) = (targets_mm[axis][0], targets_mm[axis][targets_mm[axis].len() - 1]);
-        std::array::from_fn(|i| low + (high - low) * i as f64 / (PLACES - 1) as f64)
-    });
-    let points: Vec<[usize; 3]> = (0..PLACES * PLACES * PLACES)
-        .map(|k| [k % PLACES, k / PLACES % PLACES, k / (PLACES * PLACES)])
-        .collect();
-    let at = |point: &[usize; 3]| Vector::from_fn(|axis, _| places[axis][point[axis]]);
-    // A value at each place of each function, and a scale an axis.
-    let count = 18 * PLACES + 3;
-    let mut displacements = DMatrix::zeros(3 * points.len(), count);
-    let mut covariance = DMatrix::zeros(count, count);
+    let span = |targets: &Vec<f64>| Range { low: targets[0], high: targets[targets.len() - 1] };
+    let places = field::places_mm(&targets_mm.each_ref().map(span));
+    let mut spreads = vec![Matrix3::zeros(); places.len()];
+    // Functions, and the scales of the axes, scatter independently: their spreads add.
+    let mut add = |displacements: DMatrix<f64>, variance: f64| {
+        for (sum, own) in spreads.iter_mut().zip(field::independent_spreads(&places, displacements)) {
+            *sum += own * variance;
+        }
+    };
     let mut freedom = usize::MAX;
     for (axis, functions) in changes.iter().enumerate() {
+        let own: Vec<f64> = places.iter().map(|place| place[axis]).collect();
         for (f, function) in functions.iter().enumerate() {
             let Some(function) = function else { continue };
             let Some(scatter) = function.scatter else { continue };
@@ -352,38 +347,33 @@ pub fn field_u95_mm(
             let nodes = function.positions_mm.len();
             let runs = if function.directions.is_some() { 2 } else { 1 };
             freedom = freedom.min(nodes * function.count.saturating_sub(runs));
-            let first = (6 * axis + f) * PLACES;
-            let seen = noise_at(&places[axis], function, &lines[axis], f);
-            let variance = scatter * scatter * f64::from(sides) / function.count as f64;
-            covariance
-                .view_mut((first, first), (PLACES, PLACES))
-                .copy_from(&(&seen * seen.transpose() * variance));
-            for (row, point) in points.iter().enumerate() {
+            let ways = places.iter().map(|place| {
                 let mut way = Vector::zeros();
                 way[f % 3] = 1.0;
                 if f >= 3 {
                     let mut arm = Vector::zeros();
                     for later in order.into_iter().skip_while(|k| *k != axis).skip(1) {
-                        arm[later] = at(point)[later] - lines[axis].at_mm[later];
+                        arm[later] = place[later] - lines[axis].at_mm[later];
                     }
                     way = way.cross(&arm);
                 }
-                displacements.view_mut((3 * row, first + point[axis]), (3, 1)).copy_from(&way);
+                way
+            });
+            let seen = noise_at(&own, function, &lines[axis], f);
+            let mut displacements = DMatrix::zeros(3 * places.len(), nodes);
+            for (k, way) in ways.enumerate() {
+                displacements.rows_mut(3 * k, 3).copy_from(&(way * seen.row(k)));
             }
+            add(displacements, scatter * scatter * f64::from(sides) / function.count as f64);
         }
         if functions[axis].is_some() {
-            let own = 18 * PLACES + axis;
-            covariance[(own, own)] = relative * relative;
-            for (row, point) in points.iter().enumerate() {
-                displacements[(3 * row + axis, own)] = at(point)[axis];
-            }
+            let along = |row: usize, _| if row % 3 == axis { own[row / 3] } else { 0.0 };
+            add(DMatrix::from_fn(3 * places.len(), 1, along), relative * relative);
         }
     }
     if freedom == usize::MAX {
         return None;
     }
-    let commands: Vec<Vector> = points.iter().map(at).collect();
-    let spreads = field::spreads(&commands, displacements, &covariance);
     let factor = quantile_95(Some(freedom.max(1))) / quantile_95(None);
     Some(field::quantile_of_points(&spreads) * factor)
 }

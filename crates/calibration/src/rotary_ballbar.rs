@@ -10,8 +10,9 @@ use nalgebra::{DMatrix, DVector};
 use units::math;
 
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
-use crate::ballbar::{changed, each_changed, field_u95_mm, grid_mm, no_outlier, open_error, too_few};
+use crate::ballbar::{changed, each_changed, field_u95_mm, no_outlier, open_error, too_few};
 use crate::error::CalibrationError;
+use crate::field;
 
 /// What turns in a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,9 +103,6 @@ const STEPS: [f64; 2] = [1e-2, 1e-5];
 /// A location error beyond is no error of a machine: 5 mm, 50 mrad.
 const LARGEST: [f64; 2] = [5.0, 0.05];
 
-/// Angles of each axis at which the field is looked at.
-const ANGLES: usize = 6;
-
 /// Lengths of one test by the whole model, without the bar's own error: equation (47).
 fn lengths_mm(machine: &WithEffects, test: &Test, cup_mm: [f64; 2]) -> Vec<f64> {
     let at = |angle_rad: f64| {
@@ -142,7 +140,7 @@ fn only_of_the_table(tests: &[Test], chain: &Chain) -> Result<(), CalibrationErr
         let Turning::Axis(axis) = test.turning else { continue };
         if chain.head().contains(&axis) {
             return Err(CalibrationError::Axes(format!(
-                "{axis} turns the tool on {chain}; these tests are of axes that turn the table"
+                "{axis} turns the tool on {chain}: location errors are found of axes that turn the table, not of a head's"
             )));
         }
         if !chain.table().contains(&axis) {
@@ -243,32 +241,26 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
 /// All over the volume, the table's axes at angles all over their travel.
 fn uncertainty_mm(estimate: &Estimate, locations: &[Location], steps: &[f64], base: &WithEffects) -> f64 {
     let description = base.base().description();
-    let angles = |axis: Axis| {
+    let turned = |axis: &Axis| {
         let Range { low, high } = description.rotary[axis.direction()].travel_rad;
         let turn = std::f64::consts::TAU;
-        let (low, high) = if high - low < turn { (low, high) } else { (0.0, turn) };
-        (0..ANGLES).map(move |k| low + (high - low) * (k as f64 + 0.5) / ANGLES as f64)
+        if high - low < turn { Range { low, high } } else { Range { low: 0.0, high: turn } }
     };
-    let mut commands: Vec<Command> = grid_mm(&base.volume(), 3)
-        .into_iter()
-        .map(|linear_mm| Command {
-            linear_mm,
+    let table = description.chain.table();
+    let ranges: Vec<Range> = base.volume().0.into_iter().chain(table.iter().map(turned)).collect();
+    let command = |place: &Vec<f64>| {
+        let mut command = Command {
+            linear_mm: Vector::from_fn(|i, _| place[i]),
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-        })
-        .collect();
-    for axis in description.chain.table() {
-        let turned = |command: &Command| {
-            let command = *command;
-            angles(*axis).map(move |angle| {
-                let mut turned = command;
-                turned.rotary_rad[axis.direction()] = angle;
-                turned
-            })
         };
-        commands = commands.iter().flat_map(turned).collect();
-    }
+        for (axis, angle) in table.iter().zip(&place[3..]) {
+            command.rotary_rad[axis.direction()] = *angle;
+        }
+        command
+    };
+    let commands: Vec<Command> = field::places(&ranges).iter().map(command).collect();
     let positions = |x: &DVector<f64>| {
         let machine = machine(base, locations, x);
         commands.iter().map(|c| machine.predict(c).position_mm).collect()

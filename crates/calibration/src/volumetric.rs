@@ -1,9 +1,10 @@
 //! All rigid-body terms from points anywhere in the volume: equations (51) to (51c).
 
-use machine_model::{Command, Description, Engine, PathModel, Vector};
+use machine_model::{Command, Description, Engine, PathModel, Range, Vector};
 
 use crate::adjustment::Estimate;
 use crate::error::{CalibrationError, LETTERS};
+use crate::field;
 use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, SetUp, find};
 use crate::mistakes;
 
@@ -226,10 +227,9 @@ pub(crate) fn plays(base: &Base, found: &Found) -> [Option<(f64, f64)>; 3] {
     })
 }
 
-/// Where the field is judged: a grid over the nodes for the tools that were measured with, from both sides where they were told
+/// Where the field is judged: all over the nodes for the tools that were measured with, from both sides where they were told
 /// apart; tools of one run share a frame.
 pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command>> {
-    const GRID: usize = 5;
     /// More tools than this are represented by as many of them.
     const TOOLS: usize = 6;
     let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
@@ -256,20 +256,8 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
     let kept: Vec<(Vector, usize)> = tools.into_iter().step_by(every).collect();
     let sides: &[i8] =
         if (0..3).any(|axis| found.layout.at(Group::Play(axis)).is_some()) { &[1, -1] } else { &[0] };
-    // On nodes, where a function is known least: between two of them the noise of both is averaged.
-    let places = found.layout.plan.nodes_mm.each_ref().map(|nodes| {
-        let last = nodes.len() - 1;
-        let mut picked: Vec<usize> =
-            (0..GRID).map(|k| (2 * k * last + GRID - 1) / (2 * (GRID - 1))).collect();
-        picked.dedup();
-        picked.into_iter().map(|k| nodes[k]).collect::<Vec<f64>>()
-    });
-    let mut grid = Vec::new();
-    for x in &places[0] {
-        for y in &places[1] {
-            grid.extend(places[2].iter().map(|z| Vector::new(*x, *y, *z)));
-        }
-    }
+    let span = |nodes: &Vec<f64>| Range { low: nodes[0], high: nodes[nodes.len() - 1] };
+    let places = field::places_mm(&found.layout.plan.nodes_mm.each_ref().map(span));
     let mut groups: Vec<usize> = kept.iter().map(|(_, group)| *group).collect();
     groups.sort_unstable();
     groups.dedup();
@@ -279,7 +267,7 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
             let mut commands = Vec::new();
             for (tool_mm, _) in kept.iter().filter(|(_, own)| *own == group) {
                 for side in sides {
-                    commands.extend(grid.iter().map(|linear_mm| Command {
+                    commands.extend(places.iter().map(|linear_mm| Command {
                         linear_mm: *linear_mm,
                         rotary_rad: Vector::zeros(),
                         tool_mm: *tool_mm,
