@@ -61,7 +61,7 @@ pub struct VolumetricCalibration {
 pub struct Options {
     /// Nodes per axis, at least 2.
     pub nodes: usize,
-    /// Every so-manieth point is held out of a first fit; 0 for none.
+    /// One point of so many is held out of a first fit; 0 or 1 for none.
     pub holdout_every: usize,
 }
 
@@ -101,8 +101,8 @@ pub fn calibrate(
     mistakes::outlier(points, &found).map_err(|error| error.with_points(&kept))?;
     let play_mm = plays(base, &found);
     mistakes::play(&play_mm)?;
-    let held = |k: usize| options.holdout_every > 1 && k % options.holdout_every == options.holdout_every - 1;
-    let (unseen, seen): (Vec<_>, Vec<_>) = points.iter().copied().enumerate().partition(|(k, _)| held(*k));
+    let (unseen, seen): (Vec<_>, Vec<_>) =
+        points.iter().copied().enumerate().partition(|(k, _)| is_held_out(*k, options.holdout_every));
     let [unseen, seen] = [unseen, seen].map(|all| all.into_iter().map(|(_, p)| p).collect::<Vec<Point>>());
     let (mut holdout, mut refuted) = (None, false);
     if !unseen.is_empty() && unseen.iter().all(|p| seen.iter().any(|q| q.run == p.run)) {
@@ -133,6 +133,15 @@ pub fn calibrate(
         left_out,
         estimate: found.estimate,
     })
+}
+
+/// True for one row of `every`, spread over the rows.
+///
+/// A lattice comes row by row: every fifth row of five places a line is a whole plane, and the fit without it knows nothing there.
+/// Multiples of the golden section fall evenly into the unit interval and in step with no lattice.
+fn is_held_out(row: usize, every: usize) -> bool {
+    const GOLDEN_SECTION: f64 = 0.618_033_988_749_894_9;
+    every > 1 && (row as f64 * GOLDEN_SECTION).fract() * (every as f64) < 1.0
 }
 
 fn root_mean_square(values: &[f64]) -> f64 {
@@ -278,4 +287,26 @@ pub(crate) fn field_commands(points: &[Point], found: &Found) -> Vec<Vec<Command
             commands
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_held_out;
+
+    #[test]
+    fn no_plane_of_a_lattice_is_held_out() {
+        for planes in [2_usize, 3, 4, 5, 7, 8, 13] {
+            for every in [2, 3, 4, 5, 8] {
+                let held: Vec<usize> = (0..planes.pow(3)).filter(|k| is_held_out(*k, every)).collect();
+                let wanted = planes.pow(3).div_ceil(every);
+                assert!(held.len().abs_diff(wanted) <= 2, "{planes} {every}: {} of {wanted}", held.len());
+                for axis in 0..3 {
+                    for plane in 0..planes {
+                        let lost = held.iter().filter(|k| **k / planes.pow(axis) % planes == plane).count();
+                        assert!(lost < planes.pow(2), "{planes} {every} {axis} {plane}");
+                    }
+                }
+            }
+        }
+    }
 }
