@@ -11,7 +11,6 @@ mod error;
 mod field;
 pub mod functions;
 pub mod iso230_2;
-mod least_squares;
 pub mod linear_ballbar;
 mod machine_change;
 pub mod measured_line;
@@ -25,7 +24,6 @@ mod traverse;
 pub mod volumetric;
 
 pub use error::CalibrationError;
-pub use least_squares::{Estimate, solve};
 pub use machine_change::{Base, ChangedAxis, Point, PointReading, SetUp};
 pub use student::{quantile, quantile_95};
 pub use traverse::{MeanTraverse, Node, Noise, Reading};
