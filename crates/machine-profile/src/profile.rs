@@ -16,7 +16,8 @@ pub struct Calibrated {
     pub instrument: Option<String>,
     /// Standard deviation of one reading, µm: how well the machine came back to a point while it was measured.
     pub repeatability_um: Option<f64>,
-    /// Half width of the 95 % interval of the deviation at the far corner of the volume, µm.
+    /// Length that the difference of the machine from its profile keeps at 95 % of the places of the whole volume, frames taken
+    /// off, µm; equation (51c).
     pub uncertainty_um: Option<f64>,
 }
 
