@@ -13,7 +13,7 @@ import os
 import numpy
 
 import reference
-from field import Points, grid, rest, rms
+from field import Points, grid, places, rest, rms
 from machine import AXES, Machine, Rotary, Smooth, Table, location, tabled, write_profile
 from volume import Scenario, drifted, errors, line_angles, lines, save, travel
 
@@ -89,7 +89,7 @@ def interferometer(rng, folder, base="none", noise=0.3, order=(0, 1, 2), count=9
         arguments += ["--squareness", f"XY={c:.4f},ZX={b:.4f},YZ={a:.4f}", "--squareness-convention", "right-handed",
                       "--straightness-slopes", "remove"]
     identity = base in ("own", "scaled", "warm")
-    points = grid(truth.travel, [tool, (50.0, -60.0, -20.0)] if identity and not noise else [tool], 5, play)
+    points = grid(truth.travel, [tool, (50.0, -60.0, -20.0)] if identity and not noise else [tool], 5, play, spread=bool(noise))
     allowed = None
     if refer and only is None and len(axes) == 3:
         allowed = rms(rest(points.true(line_reference(truth, start, data, place, tool, angles)), points.true(truth), points.group))
@@ -164,7 +164,7 @@ def circles(rng, folder, base="bare", noise=0.3, order=(0, 1, 2), off=1.0, arm=1
     header = "run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm,dir_x,dir_y,dir_z,length_mm"
     q, side, length, middle, runs = numpy.vstack(q), numpy.vstack(side), numpy.concatenate(length), numpy.vstack(middle), numpy.array(runs)
     path = save(os.path.join(folder, "circles.csv"), header, rows, 9)
-    points = grid(truth.travel, [truth.tool], 5, True)
+    points = grid(truth.travel, [truth.tool], 5, True, spread=bool(noise))
     values, allowed = {}, None
     if base in ("bare", "none"):
         found, slopes = line_angles(truth, centre, truth.tool)
@@ -258,10 +258,12 @@ def table(rng, folder, base="bare", names="CA", noise=0.3, order=(0, 1, 2), apar
         rows += [[name, *q, *(q + bar), *angles[k, used], tests[-1][4][k], read[k]] for k in range(len(turns))]
     header = "run,x_mm,y_mm,z_mm,bx_mm,by_mm,bz_mm," + ",".join("abc"["ABC".index(n)] + "_deg" for n in sorted(names)) + ",spindle_deg,length_mm"
     path = save(os.path.join(folder, "readings.csv"), header, rows, 9)
-    where = place + rng.uniform(-150, 150, (400, 3))
+    # All over the travel, any angles: of that the stated uncertainty speaks.
+    where = places([*truth.travel, *[(-180.0, 180.0)] * len(names)], 400)
     angles = numpy.zeros((400, 3))
-    for n in names:
-        angles[:, "ABC".index(n)] = rng.uniform(-180, 180, 400)
+    for k, n in enumerate(names):
+        angles[:, "ABC".index(n)] = where[:, 3 + k]
+    where = where[:, :3]
     points = Points(where, truth.tool, numpy.zeros((400, 3)), angles)
     values = {}
     for axis in truth.table:

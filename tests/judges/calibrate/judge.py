@@ -3,12 +3,12 @@
 
 It makes arbitrary smooth machines (machine.py, from the equations alone), measures them with simulated instruments in the documented
 file formats (volume.py, bars.py), runs the command, and scores the written profile as a FIELD: positions by `vpost predict` against
-the true machine on a grid, after the best rigid motion (field.py; exact, by singular values). Five kinds of checks:
+the true machine at places spread over the volume, after the best rigid motion (field.py; exact, by singular values). Five kinds of checks:
 
   noise     per command and kind of base, many machines: RMS error of the field against that of the judge's own least squares on the
             same readings (reference.py), at most 1.3 times; share of printed parameters within their stated 95 % (against the
             truth where it has a definition outside the fit, else against what the command itself finds without noise); share of
-            the field's points within `uncertainty_um`. A measurement that is refused counts as wrong.
+            the field's points, spread over the whole travel, within `uncertainty_um`: both 92 to 97 %. A measurement that is refused counts as wrong.
   identity  a machine measured without noise from its own profile comes back to 0.1 um everywhere, for other tools and both
             directions, and so does a machine within the fit's own functions without a base; every command and chain.
   iso       coverage of the stated uncertainties of A, E, M, B of ISO 230-2.
@@ -17,17 +17,22 @@ the true machine on a grid, after the best rigid motion (field.py; exact, by sin
   mistakes  forty mistakes (mistakes.py): what is said, and none that the data contradict may pass.
   export    round trips of every form within the loss it states; loop: a user's closed loop (exports.py).
 
-Run: judge.py --vpost PATH [--count N] [--seed S] [--only noise,mistakes] [--match TEXT] [--keep DIR] [--self-test]
-N machines per row (default 5; 300 for the figures of record). Needs numpy. Exit status 1 when something is wrong. Each failure
+Run: judge.py --vpost PATH [--count N] [--seconds T] [--seed S] [--only noise,mistakes] [--match TEXT] [--results FILE] [--keep DIR]
+[--self-test]
+N machines per row (default 5; 300 for the figures of record), fewer where a row has taken T seconds. With --results each row is
+added to FILE as a line of JSON, from which page.py makes docs/calibration-benchmark.md. Needs numpy. Exit status 1 when something is wrong. Each failure
 leaves its folder below --keep with `command.txt` and `found.txt`.
 """
 
 import argparse
+import hashlib
+import json
 import os
 import shlex
 import shutil
 import sys
 import tempfile
+import time
 import zlib
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -106,6 +111,7 @@ class Judge:
         self.options, self.vpost = options, options.vpost
         self.keep = options.keep or tempfile.mkdtemp(prefix="calibrate-judge-")
         self.wrong, self.lines = 0, []
+        self.program = {}
 
     def rng(self, name, number):
         return numpy.random.default_rng([self.options.seed, zlib.crc32(name.encode()), number])
@@ -126,9 +132,21 @@ class Judge:
             file.write(found + "\n")
         os.rename(folder, target)
 
-    def line(self, kind, name, good, text):
+    def numbers(self, count):
+        """Numbers of a row's machines: as many as were asked for, or as the row's time allows."""
+        start = time.monotonic()
+        for number in range(count):
+            if number and self.options.seconds and time.monotonic() - start > self.options.seconds:
+                return
+            yield number
+
+    def line(self, kind, name, good, text, **figures):
         self.wrong += not good
         self.lines.append((kind, good))
+        if self.options.results:
+            row = dict(kind=kind, name=name, holds=bool(good), **self.program, seed=self.options.seed, seconds=self.options.seconds, **figures, text=text)
+            with open(self.options.results, "a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
         print(f"{'ok   ' if good else 'WRONG'} {kind:9}{name:44} {text}", flush=True)
 
     def wanted(self, name):
@@ -157,8 +175,9 @@ class Judge:
 
     def noise_row(self, name, make):
         found, allowed, inside, total, refused, says = [], [], 0, 0, 0, ""
-        within, limits, shares = [], [], []
-        for number in range(self.options.count):
+        within, limits, shares, machines, figures = [], [], [], 0, {}
+        for number in self.numbers(self.options.count):
+            machines += 1
             order = ORDERS[(number + zlib.crc32(name.encode())) % 6]
             folder = self.folder()
             scenario = make(self.rng(name, number), folder, order, 1.0)
@@ -191,24 +210,28 @@ class Judge:
                 self.fail(folder, name, scenario.arguments, f"field wrong by {found[-1]:.3f} um RMS, {size.max():.3f} largest; readings allow {allowed[-1]:.3f} RMS; stated uncertainty {limit}")
             else:
                 shutil.rmtree(folder)
-        good, text = not refused, f"refused {refused} of {self.options.count} ({says})" if refused else ""
+        good, text = not refused, f"refused {refused} of {machines} ({says})" if refused else ""
         if found:
             a, b = (float(numpy.sqrt(numpy.mean(numpy.square(v)))) for v in (found, allowed))
             good &= a <= LIMIT * b
             text += f" field {a:7.3f} um, allowed {b:6.3f}, ratio {a / b:6.2f}"
+            figures = dict(field_um=a, allowed_um=b)
             if total:
                 # Parameters of one machine hang together: the scatter from machine to machine counts too.
                 share, slack = inside / total, 2.6 * max(numpy.sqrt(0.05 * 0.95 / total), numpy.std(shares) / numpy.sqrt(len(shares)))
                 good &= 0.92 - slack <= share <= 0.97 + slack
                 text += f"; parameters {100 * share:5.1f} % of {total}"
+                figures |= dict(parameters=total, parameters_covered=share)
             if within:
-                share = float(numpy.mean(within))
-                good &= share >= 0.92
+                # The points of one machine hang together: machines count.
+                share, slack = float(numpy.mean(within)), 2.6 * numpy.std(within) / numpy.sqrt(len(within))
+                good &= 0.92 - slack <= share <= 0.97 + slack
                 text += f"; field's points within U {100 * share:5.1f} %, U is {numpy.median(limits):.2f} of the 95 % quantile"
+                figures |= dict(field_covered=share, u_over_quantile=float(numpy.median(limits)))
             else:
                 good = False
                 text += "; no uncertainty_um in the profile"
-        self.line("noise", name, good, text.strip())
+        self.line("noise", name, good, f"{machines} machines: {text.strip()}", machines=machines, refused=refused, **figures)
 
     def identity(self):
         for name, make in identity_rows():
@@ -230,7 +253,7 @@ class Judge:
                 else:
                     shutil.rmtree(folder)
             text = f"largest {worst:8.3f} um" + (f"; refused {len(refused)} of {count}: {refused[0]}" if refused else "")
-            self.line("identity", name, worst <= NANO and not refused, text)
+            self.line("identity", name, worst <= NANO and not refused, text, machines=count)
 
     def iso(self):
         for same in (False, True):
@@ -241,7 +264,7 @@ class Judge:
                 n = max(total.values(), default=0)
                 slack = 2.6 * numpy.sqrt(0.05 * 0.95 / max(n, 1))
                 good = n > 0 and all(0.92 - slack <= s <= 0.97 + slack for s in shares.values())
-                self.line("iso", name, good, f"{n} machines: " + ", ".join(f"{k} {100 * s:.0f} %" for k, s in shares.items()))
+                self.line("iso", name, good, f"{n} machines: " + ", ".join(f"{k} {100 * s:.0f} %" for k, s in shares.items()), machines=n)
 
     def against(self):
         makers = {"tracker": lambda r, d, t: tracker(r, d, "none", t, 0.2, count=6, refer=False),
@@ -249,8 +272,9 @@ class Judge:
         for name, make in makers.items():
             if not self.wanted("against " + name):
                 continue
-            said_changed, refused, count = 0, 0, self.options.count
-            for number in range(count):
+            said_changed, refused, count = 0, 0, 0
+            for number in self.numbers(self.options.count):
+                count += 1
                 # The same generator for the machine, another noise and set-up: the machine draws come first.
                 a, b = self.folder(), self.folder()
                 first = make(self.rng(name, number), a, 1e-4 if name == "volumetric" else 0.004)
@@ -269,7 +293,7 @@ class Judge:
                 if changed or status:
                     self.fail(b, "against " + name, [*second.arguments, "--against", profile], out[-600:] + err)
             self.line("against", name + ": set up anew, nothing changed", said_changed <= 0.05 * count + 1 and not refused,
-                      f'"changed" {said_changed} of {count}; refused {refused}')
+                      f'"changed" {said_changed} of {count}; refused {refused}', machines=count)
 
     def axis(self):
         name = "one axis today, squareness tomorrow"
@@ -334,8 +358,9 @@ class Judge:
             name = "closed loop, " + kind
             if not self.wanted(name):
                 continue
-            held, text = 0, ""
-            for number in range(self.options.count):
+            held, machines, text = 0, 0, ""
+            for number in self.numbers(self.options.count):
+                machines += 1
                 folder = self.folder()
                 rng = self.rng(name, number)
                 scenario = make(rng, folder, ORDERS[number % 6])
@@ -346,8 +371,10 @@ class Judge:
                 if not good:
                     text = text or detail
                     self.fail(folder, name, scenario.arguments, detail)
-            share, slack = held / self.options.count, 2 * numpy.sqrt(0.05 * 0.95 / self.options.count)
-            self.line("loop", name, share >= 0.95 - slack, f"within promise {held} of {self.options.count}" + (f"; first other: {text}" if text else ""))
+                else:
+                    shutil.rmtree(folder)
+            share, slack = held / machines, 2 * numpy.sqrt(0.05 * 0.95 / machines)
+            self.line("loop", name, share >= 0.95 - slack, f"within promise {held} of {machines}" + (f"; first other: {text}" if text else ""), machines=machines, held=held)
 
 
 class Second:
@@ -371,7 +398,7 @@ class Second:
 def iso_coverage(judge, name, same):
     """Counts for A, E, M, B: truth from the noise-free means and the true standard deviation."""
     inside, total = {}, {}
-    for number in range(40 * judge.options.count):
+    for number in judge.numbers(40 * judge.options.count):
         rng = judge.rng(name, number)
         targets, sigma = numpy.linspace(0, 400, 6), 0.8
         up = numpy.cumsum(rng.normal(size=6)) * 3
@@ -411,10 +438,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vpost", default="vpost")
     parser.add_argument("--count", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=0.0, help="no further machine of a row after this time; 0: all of them")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1, help="kept for uniformity: the judge runs one command at a time")
     parser.add_argument("--only", default=",".join(KINDS))
     parser.add_argument("--match", default="", help="rows whose name holds this text")
+    parser.add_argument("--results", help="add each row to this file as a line of JSON")
     parser.add_argument("--keep", default=None)
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
@@ -424,6 +453,10 @@ def main():
     if options.keep:
         os.makedirs(options.keep, exist_ok=True)
     judge = Judge(options)
+    if options.results:
+        with open(options.vpost, "rb") as file:
+            judge.program["program"] = hashlib.sha256(file.read()).hexdigest()[:12]
+        judge.program["version"] = run(options.vpost, ["--version"])[1].split("\n")[0]
     for kind in options.only.split(","):
         getattr(judge, kind)()
     for name in os.listdir(judge.keep):

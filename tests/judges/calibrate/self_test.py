@@ -23,8 +23,9 @@ class Fake(judging.Judge):
         if self.spoil == "refuse":
             return None, "", "error[VP1103]: no"
         path = os.path.join(folder, "fake.toml")
+        stated = numpy.quantile(numpy.linalg.norm(self.score(scenario, path, folder), axis=1), 0.95) * {"narrow": 0.5, "wide": 2.0}.get(self.spoil, 1.0)
         with open(path, "w", encoding="utf-8") as file:
-            file.write(f"calibrated = {{ uncertainty_um = {0.001 if self.spoil == 'narrow' else 3.0} }}\n")
+            file.write(f"calibrated = {{ uncertainty_um = {stated:.6f} }}\n")
         off = 5.0 if self.spoil == "parameters" else 0.0
         chance = numpy.random.default_rng(abs(int(scenario.points.q.sum())))
         report = "".join(f"  {k}   {v + off + chance.normal():.4f} ± 1.96 urad\n" for k, v in scenario.values.items())
@@ -71,7 +72,7 @@ def main(options):
 
     options.keep, options.count, options.match = tempfile.mkdtemp(), 12, ""
     noise = dict(judging.noise_rows())["tracker, base none, 8 mrad"]
-    for spoil in ("nothing", "squareness", "play", "angle", "narrow", "parameters", "refuse"):
+    for spoil in ("nothing", "squareness", "play", "angle", "narrow", "wide", "parameters", "refuse"):
         fake = Fake(options)
         fake.spoil = spoil
         fake.noise_row(f"played tracker, spoilt: {spoil}", noise)

@@ -131,7 +131,7 @@ def volumetric(rng, folder, base="none", turn=0.05, noise=1.0, form="positions",
         columns.append(numpy.full((len(q), 1), 24.0, dtype=object))
     table = numpy.hstack(columns)
     path = save(os.path.join(folder, "points.csv"), header, table, 9)
-    points = grid(truth.travel, TOOLS, 5, play, one_frame=base in ("own", "scaled", "warm") and not noise)
+    points = grid(truth.travel, TOOLS, 5, play, one_frame=base in ("own", "scaled", "warm") and not noise, spread=bool(noise))
     allowed = None
     if refer:
         fitted, _ = reference.volumetric(start, q, tool, side if play else 0 * side, runs, read, nodes, with_play=play)
@@ -163,7 +163,7 @@ def stations(rng, folder, base="none", noise=0.5, order=(0, 1, 2), nodes=5, coun
         lengths.append(length)
     header = "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,bx_mm,by_mm,bz_mm,length_mm"
     path = save(os.path.join(folder, "distances.csv"), header, rows, 9)
-    points = grid(truth.travel, TOOLS, 5, False, one_frame=base == "own" and not noise)
+    points = grid(truth.travel, TOOLS, 5, False, one_frame=base == "own" and not noise, spread=bool(noise))
     allowed = None
     if refer:
         runs = numpy.array([row[0] for row in rows])
@@ -211,8 +211,6 @@ def tracker(rng, folder, base="none", turn=0.05, noise=1.0, order=(0, 1, 2), cou
         if base == "drift":
             truth = drifted(rng, start, play, angle=0.0)
         arguments = ["-m", write_profile(start, folder, "base")]
-        if base == "drift":
-            arguments.append("--replace-tables")
     r = rotation(vector_in_ball(rng, turn))[0] if turn else numpy.eye(3)
     shift = rng.uniform(-shift, shift, 3)
     paths, traverses = [], []
@@ -233,7 +231,7 @@ def tracker(rng, folder, base="none", turn=0.05, noise=1.0, order=(0, 1, 2), cou
             rows.append([*command, *read] + ([side[axis]] if play else []) + ([24.0] if base == "warm" else []))
         paths.append(save(os.path.join(folder, f"traverse_{letter}.csv"), header, rows, 9))
         traverses.append((commands, sides, reads, header, rows))
-    points = grid(truth.travel, [truth.tool], 6, play)
+    points = grid(truth.travel, [truth.tool], 6, play, spread=bool(noise))
     allowed = None
     if refer:
         allowed = rms(rest(tracker_reference(start, traverses, points, place), points.true(truth), points.group))
