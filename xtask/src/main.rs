@@ -1,7 +1,7 @@
 //! Long checks: benchmarks, corpora, tables for the docs.
 
 mod bench;
-mod calibration;
+mod calibration_samples;
 mod corpus;
 mod engines;
 mod gap_bench;
@@ -31,8 +31,6 @@ struct Arguments {
 enum Task {
     /// Measure the correction of large programs; print a page for docs/performance.md.
     Bench(bench::Options),
-    /// Calibrate machines of known truth and write docs/calibration-benchmark.md.
-    CalibrationCoverage(calibration::Options),
     /// Write the sample measurements of `calibrate` into a folder.
     CalibrationSamples {
         /// Where they go.
@@ -72,8 +70,7 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     let text = match Arguments::parse().task {
         Task::Bench(options) => bench::run_all(&options)?,
-        Task::CalibrationCoverage(options) => calibration::run(&options)?,
-        Task::CalibrationSamples { folder } => calibration::write_samples(&folder)?,
+        Task::CalibrationSamples { folder } => calibration_samples::write(&folder)?,
         Task::BenchBatch(options) => bench::batch::run_all(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Engines => engines::page(),
