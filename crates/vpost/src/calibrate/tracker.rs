@@ -42,9 +42,6 @@ pub struct Tracker {
     /// Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the signs.
     #[arg(long)]
     pub as_published: bool,
-    /// Accepted for scripts: what was measured always changes the tables of the base profile.
-    #[arg(long, hide = true)]
-    pub replace_tables: bool,
 }
 
 /// How instrument and machine frame belong together.
