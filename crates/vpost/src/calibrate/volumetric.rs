@@ -1,6 +1,5 @@
 //! `vpost calibrate volumetric`.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -32,7 +31,7 @@ pub struct Volumetric {
     /// Nodes of the tables per axis.
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub nodes: usize,
-    /// Every so-manieth point is held out of the fit and judges it; 0: none.
+    /// One point of so many is held out of a first fit and judges it, spread over the rows; 0: none.
     #[arg(long, value_name = "K", default_value_t = 5)]
     pub holdout_every: usize,
 }
@@ -77,12 +76,18 @@ struct Read {
     /// Sheet and row of each point.
     places: Vec<(usize, usize)>,
     temperatures: Vec<f64>,
+    /// Names of the runs, with the file where there are several.
+    runs: Vec<String>,
 }
 
 fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read, Failure> {
-    let mut all =
-        Read { points: Vec::new(), sheets: Vec::new(), places: Vec::new(), temperatures: Vec::new() };
-    let mut runs: BTreeMap<String, usize> = BTreeMap::new();
+    let mut all = Read {
+        points: Vec::new(),
+        sheets: Vec::new(),
+        places: Vec::new(),
+        temperatures: Vec::new(),
+        runs: Vec::new(),
+    };
     let said = conditions(shared)?;
     for path in &arguments.files {
         let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
@@ -100,9 +105,14 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
             )?;
         }
         for (line, row) in sheet.rows().enumerate() {
-            let name = format!("{}:{}", sheet.name, row.text("run"));
-            let next = runs.len();
-            let run = *runs.entry(name).or_insert(next);
+            let mut name = row.text("run");
+            if arguments.files.len() > 1 || name.is_empty() {
+                name = format!("{} {name}", sheet.name).trim_end().to_owned();
+            }
+            let run = all.runs.iter().position(|known| *known == name).unwrap_or_else(|| {
+                all.runs.push(name);
+                all.runs.len() - 1
+            });
             let mut point = point(&row, run, output)?;
             let mut here = said;
             let warm = row.number("temp_c")?.or(arguments.target.temperature);
@@ -177,7 +187,7 @@ pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) 
     let read = read(arguments, shared, &output)?;
     let options = Options { nodes: arguments.nodes, holdout_every: arguments.holdout_every };
     let found = calibrate(&read.points, &base, options).map_err(|error| refused(&read, &error))?;
-    file::print(report(&found).as_bytes())?;
+    file::print(report(&found, &read.runs).as_bytes())?;
     judge(&found, messages)?;
     output.changed(&base, &found.axes, &found.description);
     output.set_up(&found.setups);
@@ -255,14 +265,14 @@ const CONTRADICTION: f64 = 10.0;
 /// Above this the stated uncertainty does not explain what is left.
 const ROUGH: f64 = 1.5;
 
-fn report(found: &VolumetricCalibration) -> String {
+fn report(found: &VolumetricCalibration, runs: &[String]) -> String {
     let mut out = String::new();
     // Writing to a String cannot fail.
-    let _ = write_report(&mut out, found);
+    let _ = write_report(&mut out, found, runs);
     out
 }
 
-fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Result {
+fn write_report(out: &mut String, found: &VolumetricCalibration, runs: &[String]) -> std::fmt::Result {
     writeln!(out, "change from … to, largest half width of the 95 % intervals")?;
     for f in &found.functions {
         let (scale, unit) = if f.function < 3 { (1e3, "um") } else { (1e6, "urad") };
@@ -305,7 +315,7 @@ fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Re
         out,
         "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness"
     )?;
-    for (run, setup) in found.setups.iter().enumerate() {
+    for (run, setup) in runs.iter().zip(&found.setups) {
         match setup {
             Some(SetUp::Frame(motion)) => {
                 let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
@@ -320,6 +330,13 @@ fn write_report(out: &mut String, found: &VolumetricCalibration) -> std::fmt::Re
             }
             None => {}
         }
+    }
+    if found.setups.len() > 1 {
+        writeln!(
+            out,
+            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none",
+            found.setups.len()
+        )?;
     }
     if found.left_out > 0 {
         writeln!(out, "{} points lie outside the base's volume and were left out", found.left_out)?;
