@@ -54,9 +54,6 @@ struct Base {
 /// Places nearer than this are one, mm.
 const SAME_MM: f64 = 1e-3;
 
-/// An axis that went less far stood, mm.
-const SHORTEST_MM: f64 = 1.0;
-
 impl Base {
     /// From `-m`, or the chain alone: the axes then go as far as the balls stood.
     fn new(arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<Self, Failure> {
@@ -105,6 +102,18 @@ impl Base {
             Some(path) => ProfileText::parse(&String::from_utf8_lossy(&file::read(path)?)),
             None => None,
         };
+        let chain = &self.description.chain;
+        if let Some(axis) = chain.head().iter().find(|axis| readings.turn(**axis)) {
+            return Err(Failure::usage(
+                Diagnostic::error(
+                    AXES,
+                    format!("{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head"),
+                )
+                .help(format!(
+                    "leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile"
+                )),
+            ));
+        }
         for axis in self.description.chain.table().to_vec() {
             let own = &mut self.description.rotary[axis.direction()];
             let letter = axis.letter().to_string();
@@ -259,7 +268,8 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     }
     let mut output = Output::start(target, shared)?;
     if base.profile.is_none() {
-        travel(&mut output, &readings)?;
+        let [low, high] = readings.span_mm();
+        output.travel([0, 1, 2].map(|axis| [low[axis], high[axis]]), messages);
     }
     if let Some(found) = &rotary {
         write_locations(&mut output, found, &base);
@@ -272,10 +282,9 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
         .map(|r| r.estimate.sigma)
         .chain(circles.iter().map(|c| c.estimate.sigma))
         .fold(0.0, f64::max);
-    let before_um = base.profile.as_ref().and_then(|p| p.calibrated.as_ref()).and_then(|c| c.uncertainty_um);
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|c| c.uncertainty_mm)];
-    // What was not measured is as uncertain as it was.
-    let squares = parts.iter().flatten().map(|u| u * u * 1e6).sum::<f64>() + before_um.map_or(0.0, |u| u * u);
+    let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
+    let uncertainty_mm = output.with_base_mm(found_mm, messages);
     let temperatures: Vec<f64> = readings.temperatures_c().collect();
     let temperature_c =
         (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
@@ -285,7 +294,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
         Calibrated {
             temperature_c,
             repeatability_um: Some(sigma * 1e3),
-            uncertainty_um: Some(squares.sqrt()),
+            uncertainty_um: Some(uncertainty_mm * 1e3),
             ..Calibrated::default()
         },
     )?;
@@ -343,22 +352,6 @@ fn refusal(error: &CalibrationError) -> Failure {
         source: None,
         diagnostics: vec![Diagnostic::error(code, error.to_string()).help(help)],
     }])
-}
-
-/// The travel of a machine of which only the chain is known: as far as the balls of circles stood.
-fn travel(output: &mut Output, readings: &Readings) -> Result<(), Failure> {
-    let [low, high] = readings.span_mm();
-    for (i, axis) in Axis::ALL[..3].iter().enumerate() {
-        if readings.turn_something() || high[i] - low[i] < SHORTEST_MM {
-            return Err(question(
-                format!("how far does {axis} go? these readings do not say it"),
-                "give `-m PROFILE.toml` with travel_mm of X, Y and Z (`vpost profile new` starts one)",
-            ));
-        }
-        let key = ["axis", &axis.letter().to_string(), "travel_mm"];
-        output.text.set_range(&key, [low[i], high[i]], 6);
-    }
-    Ok(())
 }
 
 fn write_locations(output: &mut Output, found: &RotaryCalibration, base: &Base) {

@@ -126,9 +126,9 @@ impl Readings {
         self.runs.iter().flat_map(|(run, _)| run.temperatures_c.iter().copied())
     }
 
-    /// Lowest and highest place of either ball.
+    /// Lowest and highest place of the moving ball.
     pub(super) fn span_mm(&self) -> [Vector; 2] {
-        let balls = self.runs.iter().flat_map(|(run, _)| run.lines.iter().flat_map(|line| line.balls));
+        let balls = self.runs.iter().flat_map(|(run, _)| run.lines.iter().map(|line| line.balls[0]));
         let start = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
         balls.fold(start, |[low, high], ball| [low.inf(&ball), high.sup(&ball)])
     }

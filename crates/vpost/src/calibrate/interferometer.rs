@@ -269,9 +269,7 @@ fn change(
     Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
         // What was not measured is as uncertain as the base says.
         let whole = changes.iter().flatten().all(Option::is_some) && asked.rad.iter().all(Option::is_some);
-        let base = output.base.as_ref().and_then(|base| base.calibrated.as_ref()?.uncertainty_um);
-        let base_mm = if whole { 0.0 } else { base.unwrap_or(0.0) * 1e-3 };
-        units::math::hypot(own, base_mm)
+        if whole { own } else { output.with_base_mm(own, messages) }
     }))
 }
 

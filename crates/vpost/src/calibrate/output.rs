@@ -173,13 +173,32 @@ impl Output {
         }
     }
 
-    /// Writes how the instrument stood, where it stood in one place only; takes out how an earlier one did.
+    /// Writes how the instrument stood, where it stood in one place only: a profile holds one `[setup]`. Takes out how an earlier one
+    /// did.
     pub(super) fn set_up(&mut self, setups: &[Option<SetUp>]) {
         self.text.remove(&["setup"]);
         if let [Some(SetUp::Frame(motion))] = setups {
             self.text.set_triple(&["setup", "shift_mm"], motion.shift_mm.into(), 7);
             self.text.set_triple(&["setup", "rotation_urad"], (motion.rotation_rad() * 1e6).into(), 4);
         }
+    }
+
+    /// Uncertainty of the whole where some of the base stays, mm: what was not measured is as uncertain as the base says. Warns where it
+    /// does not say.
+    pub(super) fn with_base_mm(&self, found_mm: f64, messages: &Messages) -> f64 {
+        let Some(base) = &self.base else { return found_mm };
+        let stated = base.calibrated.as_ref().and_then(|calibrated| calibrated.uncertainty_um);
+        if stated.is_none() {
+            warn(
+                messages,
+                Diagnostic::warning(
+                    UNSAID,
+                    "the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um",
+                )
+                .help("write `uncertainty_um` into `calibrated` of the base, if it is known"),
+            );
+        }
+        units::math::hypot(found_mm, stated.unwrap_or(0.0) * 1e-3)
     }
 
     /// Puts a table beside the profile and gives the name by which the profile calls it.
