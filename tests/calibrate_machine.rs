@@ -74,6 +74,20 @@ fn the_sample_table_is_found_and_written() {
         line.split(',').nth(9).and_then(|v| v.parse().ok()).expect("dx_um")
     };
     assert!((dx(2) - dx(1) - 2.0 * 203.5).abs() < 1.0, "{predicted}");
+    // The base's own uncertainty goes into that of the whole; that it has none is said.
+    let uncertainty_um = |profile: &str| -> f64 {
+        let stated = profile.split("uncertainty_um = ").nth(1).and_then(|rest| rest.split(&[',', ' ']).next());
+        stated.and_then(|v| v.parse().ok()).expect("a number")
+    };
+    let unsaid = "counts as exact in uncertainty_um";
+    assert!(messages(&output).contains(unsaid), "{}", messages(&output));
+    let stated = format!("calibrated = {{ uncertainty_um = 3.0 }}\n{TABLE_MACHINE}");
+    std::fs::write(base, stated).expect("written");
+    let output = calibrate(&arguments, folder.path());
+    assert!(output.status.success() && !messages(&output).contains(unsaid), "{}", messages(&output));
+    let both = std::fs::read_to_string(&made).expect("written");
+    let expected = (9.0 + uncertainty_um(&profile) * uncertainty_um(&profile)).sqrt();
+    assert!((uncertainty_um(&both) - expected).abs() < 0.002, "{both}");
 }
 
 #[test]
@@ -113,8 +127,12 @@ fn points_of_a_volume_become_tables_that_unseen_points_confirm() {
     let unseen = report.lines().find(|line| line.starts_with("unseen")).expect("a hold-out").to_owned();
     let numbers: Vec<f64> = unseen.split_whitespace().filter_map(|w| w.parse().ok()).collect();
     assert!(numbers[0] > 5.0 && numbers[1] < 1.3, "{unseen}");
-    // Measured from the profile that they made, the points change nothing.
+    // Three runs, three set-ups: a profile holds one.
     let made = folder.path().join("made.toml");
+    assert_eq!(report.lines().filter(|line| line.starts_with("set-up ")).count(), 3, "{report}");
+    assert!(report.contains("[setup] of a profile is one: of these 3 none is written"), "{report}");
+    assert!(!std::fs::read_to_string(&made).expect("written").contains("[setup]"));
+    // Measured from the profile that they made, the points change nothing.
     let again = tempfile::tempdir().expect("a folder");
     let output = calibrate(
         &[
@@ -153,6 +171,8 @@ fn one_tool_leaves_angles_open_and_says_so() {
         "{report}{}",
         messages(&output)
     );
+    assert!(!report.contains("[setup] of a profile is one"), "{report}");
+    assert!(std::fs::read_to_string(folder.path().join("made.toml")).expect("written").contains("[setup]"));
     // Too few points for so many nodes.
     let output = calibrate(
         &["volumetric", file.to_str().expect("plain"), "--chain", "[w X Y b Z t]", "--nodes", "40"],
@@ -265,6 +285,17 @@ fn circles_need_no_profile_and_keep_the_one_there_is() {
         let value = |text: &str| figure(&text.replace('=', " "), key);
         assert!((value(&first) - value(&second)).abs() < 0.002, "{first}\n{second}");
     }
+    // A plane says nothing of how far the third axis goes.
+    let all = std::fs::read_to_string(common::root().join(sample)).expect("a sample");
+    let z = all.lines().nth(1).and_then(|line| line.split(',').nth(3)).expect("z_mm");
+    let flat: Vec<&str> =
+        all.lines().filter(|l| l.starts_with("run") || l.split(',').nth(3) == Some(z)).collect();
+    let (plane, other) = (folder.path().join("plane.csv"), tempfile::tempdir().expect("a folder"));
+    std::fs::write(&plane, flat.join("\n") + "\n").expect("written");
+    let plane = ["ballbar", plane.to_str().expect("plain"), "--chain", "[w X Y b Z t]", "-d", "linuxcnc"];
+    let output = calibrate(&plane, other.path());
+    assert!(output.status.success(), "{}", messages(&output));
+    assert!(messages(&output).contains("how far Z can go is not known"), "{}", messages(&output));
     // Tables of both directions hold the play between them.
     let (up, down) = ("position_mm,EXX_um\n-200,1\n200,3\n", "position_mm,EXX_um\n-200,5\n200,7\n");
     std::fs::write(folder.path().join("up.csv"), up).expect("written");
