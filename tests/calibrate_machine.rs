@@ -76,7 +76,8 @@ fn the_sample_table_is_found_and_written() {
     assert!((dx(2) - dx(1) - 2.0 * 203.5).abs() < 1.0, "{predicted}");
     // The base's own uncertainty goes into that of the whole; that it has none is said.
     let uncertainty_um = |profile: &str| -> f64 {
-        let stated = profile.split("uncertainty_um = ").nth(1).and_then(|rest| rest.split(&[',', ' ']).next());
+        let stated =
+            profile.split("uncertainty_um = ").nth(1).and_then(|rest| rest.split(&[',', ' ']).next());
         stated.and_then(|v| v.parse().ok()).expect("a number")
     };
     let unsaid = "counts as exact in uncertainty_um";
