@@ -46,6 +46,7 @@ from field import rest, rms, run, said
 from volume import ORDERS, stations, tracker, volumetric
 
 LIMIT, NANO = 1.3, 0.1
+STEADIEST = 0.07  # scatter, from machine to machine, of the share of places within U where a field has about ten independent unknowns
 FIT = ("--frame", "fit")
 
 
@@ -223,8 +224,8 @@ class Judge:
                 text += f"; parameters {100 * share:5.1f} % of {total}"
                 figures |= dict(parameters=total, parameters_covered=share)
             if within:
-                # The points of one machine hang together: machines count.
-                share, slack = float(numpy.mean(within)), 2.6 * numpy.std(within) / numpy.sqrt(len(within))
+                # The points of one machine hang together: machines count. Shares end at 1, so that few of them look steadier than they are.
+                share, slack = float(numpy.mean(within)), 2.6 * max(numpy.std(within), STEADIEST) / numpy.sqrt(len(within))
                 good &= 0.92 - slack <= share <= 0.97 + slack
                 text += f"; field's points within U {100 * share:5.1f} %, U is {numpy.median(limits):.2f} of the 95 % quantile"
                 figures |= dict(field_covered=share, u_over_quantile=float(numpy.median(limits)))
