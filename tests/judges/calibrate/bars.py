@@ -13,7 +13,7 @@ import os
 import numpy
 
 import reference
-from field import Points, grid, places, rest, rms
+from field import Points, grid, places
 from machine import AXES, Machine, Rotary, Smooth, Table, location, tabled, write_profile
 from volume import Scenario, drifted, errors, line_angles, lines, save, travel
 
@@ -50,7 +50,7 @@ def readings(rng, truth, axis, place, tool, targets, runs, play, noise, noise_ur
     return rows
 
 
-def interferometer(rng, folder, base="none", noise=0.3, order=(0, 1, 2), count=9, runs=5, play=True, refer=True,
+def interferometer(rng, folder, base="none", noise=0.3, order=(0, 1, 2), count=9, runs=5, play=True,
                    axes=(0, 1, 2), only=None, squareness=None, options=(), through=True):
     """`only` names the functions written (all of them else); `axes` those measured; own base: nothing has changed."""
     truth = errors(rng, Machine(order, travel(rng)), play=play)
@@ -90,10 +90,11 @@ def interferometer(rng, folder, base="none", noise=0.3, order=(0, 1, 2), count=9
                       "--straightness-slopes", "remove"]
     identity = base in ("own", "scaled", "warm")
     points = grid(truth.travel, [tool, (50.0, -60.0, -20.0)] if identity and not noise else [tool], 5, play, spread=bool(noise))
-    allowed = None
-    if refer and only is None and len(axes) == 3:
-        allowed = rms(rest(points.true(line_reference(truth, start, data, place, tool, angles)), points.true(truth), points.group))
-    return Scenario(["calibrate", "interferometer", *paths, *arguments, *options], truth, points, allowed, {}, dict(data, paths=paths, start=start))
+
+    def own():
+        return points.true(line_reference(truth, start, data, place, tool, angles))
+
+    return Scenario(["calibrate", "interferometer", *paths, *arguments, *options], truth, points, own, {}, dict(data, paths=paths, start=start))
 
 
 def line_reference(truth, start, data, place, tool, angles):
@@ -120,7 +121,7 @@ def line_reference(truth, start, data, place, tool, angles):
 PLANES = [(0, 1), (2, 0), (1, 2)]
 
 
-def circles(rng, folder, base="bare", noise=0.3, order=(0, 1, 2), off=1.0, arm=100.0, count=60, refer=True, options=(),
+def circles(rng, folder, base="bare", noise=0.3, order=(0, 1, 2), off=1.0, arm=100.0, count=60, options=(),
             scales=False, planes=PLANES):
     """Circles; "bare": a base without tables, a machine with squareness, play and constant angles only."""
     truth = errors(rng, Machine(order, travel(rng, (500, 450, 400))))
@@ -165,16 +166,17 @@ def circles(rng, folder, base="bare", noise=0.3, order=(0, 1, 2), off=1.0, arm=1
     q, side, length, middle, runs = numpy.vstack(q), numpy.vstack(side), numpy.concatenate(length), numpy.vstack(middle), numpy.array(runs)
     path = save(os.path.join(folder, "circles.csv"), header, rows, 9)
     points = grid(truth.travel, [truth.tool], 5, True, spread=bool(noise))
-    values, allowed = {}, None
+    values = {}
     if base in ("bare", "none"):
         found, slopes = line_angles(truth, centre, truth.tool)
         values = {k: v * 1e6 for k, v in zip(("EC0Y", "EB0Z", "EA0Z"), found)}
         values |= {f"backlash {AXES[k]}": truth.play[k] * 1e3 for k in range(3)}
         values |= {f"scale {AXES[a]}-{AXES[b]}": (truth.scale[a] - truth.scale[b]) * 1e6 for a, b in PLANES}
-    if refer:
-        fitted = circle_reference(start, q, side, runs, middle, length)
-        allowed = rms(rest(points.true(fitted), points.true(truth), points.group))
-    return Scenario(["calibrate", "ballbar", path, *arguments, *options], truth, points, allowed, values,
+
+    def own():
+        return points.true(circle_reference(start, q, side, runs, middle, length))
+
+    return Scenario(["calibrate", "ballbar", path, *arguments, *options], truth, points, own, values,
                     dict(header=header, rows=rows, path=path, start=start, centre=centre))
 
 
@@ -218,7 +220,7 @@ def rotary_axis(rng, name, centre, size=200.0):
     return axis
 
 
-def table(rng, folder, base="bare", names="CA", noise=0.3, order=(0, 1, 2), apart=0.0, step=10, refer=True, options=(),
+def table(rng, folder, base="bare", names="CA", noise=0.3, order=(0, 1, 2), apart=0.0, step=10, options=(),
           spindle=True, crossing=False, head=False):
     """A table, `names` in chain order from the workpiece ("CA": A carries C); `apart`: the second centre along its own axis."""
     truth = Machine(order, [(0, 600), (0, 500), (-700, 0)])
@@ -269,11 +271,11 @@ def table(rng, folder, base="bare", names="CA", noise=0.3, order=(0, 1, 2), apar
     for axis in truth.table:
         values |= {k.rsplit("_", 1)[0]: v for k, v in location(axis).items()}
     values |= {"eX": cup[0] * 1e3, "eY": cup[1] * 1e3}
-    allowed = None
-    if refer:
-        fitted = table_reference(start, tests, numpy.array([r[-1] for r in rows], float))
-        allowed = rms(rest(points.true(fitted), points.true(truth), points.group))
-    return Scenario(["calibrate", "ballbar", path, *arguments, *options], truth, points, allowed, values,
+
+    def own():
+        return points.true(table_reference(start, tests, numpy.array([r[-1] for r in rows], float)))
+
+    return Scenario(["calibrate", "ballbar", path, *arguments, *options], truth, points, own, values,
                     dict(header=header, rows=rows, path=path, start=start, place=place))
 
 

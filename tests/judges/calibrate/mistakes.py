@@ -22,7 +22,7 @@ CONTRADICTED, UNDETECTABLE = True, False
 def vol(change, base="none", form="deviations", turn=2e-4, chain=None, **options):
     """A volumetric measurement whose table is changed; u_um is stated, so that the data say what noise is."""
     def make(rng, folder):
-        s = volumetric(rng, folder, base, turn, 1.0, form, refer=False, u=1.0, angle=120.0, length=20.0, **options)
+        s = volumetric(rng, folder, base, turn, 1.0, form, u=1.0, angle=120.0, length=20.0, **options)
         names = s.data["header"].split(",")
         table = s.data["table"].copy()
         header = change(rng, names, table) or s.data["header"]
@@ -89,7 +89,7 @@ def few(rng, names, table):
 
 def trav(change, base="none", **options):
     def make(rng, folder):
-        s = tracker(rng, folder, base, 0.0, 1.0, refer=False, shift=0.02, **options)
+        s = tracker(rng, folder, base, 0.0, 1.0, shift=0.02, **options)
         arguments = list(s.arguments)
         arguments = change(rng, s, arguments) or arguments
         return arguments, ""
@@ -147,7 +147,7 @@ def files_in_order(*order):
 
 def line(change, base="none", **options):
     def make(rng, folder):
-        s = bars.interferometer(rng, folder, base, refer=False, **options)
+        s = bars.interferometer(rng, folder, base, **options)
         return (change(rng, s, list(s.arguments)) or list(s.arguments)), ""
     return make
 
@@ -182,7 +182,7 @@ def through(place):
 
 def bar(change, **options):
     def make(rng, folder):
-        s = bars.circles(rng, folder, "bare", refer=False, **options)
+        s = bars.circles(rng, folder, "bare", **options)
         rows = [list(r) for r in s.data["rows"]]
         arguments = list(s.arguments)
         rows = change(rows) or rows
@@ -211,7 +211,7 @@ def turned_directions(row):
 
 def tab(change, rename=None, **options):
     def make(rng, folder):
-        s = bars.table(rng, folder, refer=False, **options)
+        s = bars.table(rng, folder, **options)
         rows = [list(r) for r in s.data["rows"]]
         rows = change(rows) or rows
         header = s.data["header"] if rename is None else rename(s.data["header"])
@@ -254,14 +254,14 @@ def foreign_base(rng, s, arguments):
 
 
 def foreign_vol(rng, folder):
-    s = volumetric(rng, folder, "own", 2e-4, 1.0, "deviations", refer=False, u=1.0)
+    s = volumetric(rng, folder, "own", 2e-4, 1.0, "deviations", u=1.0)
     foreign_base(rng, s, s.arguments)
     return s.arguments, "no point lies in the base's volume"
 
 
 def stations_without_places(rng, folder):
     from volume import stations
-    s = stations(rng, folder, refer=False)
+    s = stations(rng, folder)
     names = s.data["header"].split(",")
     kept = [k for k, n in enumerate(names) if n not in ("bx_mm", "by_mm", "bz_mm")]
     save(s.data["path"], ",".join(names[k] for k in kept), s.data["table"][:, kept], 9)

@@ -23,7 +23,7 @@ scored as a field: `vpost predict` against the truth at places all over the trav
 
 NOISE = """## With noise
 
-Field: RMS error of the profile, and what the judge's own least squares of the same readings leaves; at most 1.3 times that is wanted. Parameters: share of what is
+Field: RMS error of the profile, and what the judge's own least squares of the same readings leaves{references}; at most 1.3 times that is wanted. Parameters: share of what is
 printed with ± that holds the truth. Places: share of the volume's places whose error is within the profile's `uncertainty_um`. 92 to 97 % of both are wanted, a row fails where it is
 outside by more than 2.6 standard deviations of that share from machine to machine. Base: none (the chain alone), bare (a profile without tables), own (the machine's own profile: nothing
 has changed), drift (a profile, and the machine has changed since).
@@ -95,7 +95,9 @@ def main():
     wrong = [row for row in rows.values() if not row["holds"]]
     print("Short of it: " + "; ".join(f"{row['kind']}, {row['name']} ({plain(row['text'])})" for row in wrong) + ".\n" if wrong else "Every row holds.\n")
     if "noise" in kinds:
-        print(NOISE)
+        most = max(row["machines"] for row in kinds["noise"])
+        fitted = max(row.get("references", 0) for row in kinds["noise"])
+        print(NOISE.format(references=f" (compared on the first {fitted} machines of a row)" if fitted < most else ""))
         print(noise_table(rows))
     sections = (
         ("identity", "## Without noise", "Measured from its own profile a machine comes back, whatever was measured and in every chain, to 0.1 µm; so does one within the fit's own functions without a base.", "largest error"),

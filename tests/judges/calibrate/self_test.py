@@ -96,7 +96,7 @@ def main(options):
     run, predict = exports.run, exports.predict
     try:
         with tempfile.TemporaryDirectory() as folder:
-            scenario = tracker(rng(3), folder, "none", 0.0, 1.0, play=False, refer=False)
+            scenario = tracker(rng(3), folder, "none", 0.0, 1.0, play=False)
             perfect = Machine(scenario.truth.order, scenario.truth.travel)
 
             def uncorrected(_, arguments, *rest):

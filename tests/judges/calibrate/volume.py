@@ -24,10 +24,15 @@ class Scenario:
     arguments: list
     truth: Machine
     points: Points
-    allowed_um: float = None  # RMS error of the judge's own least squares on the same readings
+    own: object = None  # () -> positions at the points by the judge's own least squares of the same readings
     values: dict = member(default_factory=dict)  # printed name -> true value
     data: dict = member(default_factory=dict)
     corner: int = None  # row of `points` at the far corner
+
+    @property
+    def allowed_um(self):
+        """RMS error of the judge's own least squares, which take longer than the command."""
+        return rms(rest(self.own(), self.points.true(self.truth), self.points.group))
 
 
 def vector_in_ball(rng, radius):
@@ -91,7 +96,7 @@ TOOLS = [(0.0, 0.0, 0.0), (0.0, 0.0, -150.0), (60.0, 40.0, -80.0)]
 
 
 def volumetric(rng, folder, base="none", turn=0.05, noise=1.0, form="positions", order=(0, 1, 2), nodes=5, count=70,
-               play=True, smooth=False, refer=True, options=(), u=None, shift=1.0, **sizes):
+               play=True, smooth=False, options=(), u=None, shift=1.0, **sizes):
     truth, start, arguments = machine_with_base(rng, folder, base, order, None if smooth else nodes, play=play, **sizes)
     q, tool, side, runs = [], [], [], []
     ends = numpy.array(truth.travel)
@@ -132,16 +137,17 @@ def volumetric(rng, folder, base="none", turn=0.05, noise=1.0, form="positions",
     table = numpy.hstack(columns)
     path = save(os.path.join(folder, "points.csv"), header, table, 9)
     points = grid(truth.travel, TOOLS, 5, play, one_frame=base in ("own", "scaled", "warm") and not noise, spread=bool(noise))
-    allowed = None
-    if refer:
+
+    def own():
         fitted, _ = reference.volumetric(start, q, tool, side if play else 0 * side, runs, read, nodes, with_play=play)
-        allowed = rms(rest(points.true(fitted), points.true(truth), points.group))
+        return points.true(fitted)
+
     arguments = ["calibrate", "volumetric", path, "--nodes", nodes, *arguments, *options]
     data = dict(header=header, table=table, path=path, start=start, q=q, tool=tool, side=side, runs=runs, read=read, exact=exact)
-    return Scenario(arguments, truth, points, allowed, {}, data)
+    return Scenario(arguments, truth, points, own, {}, data)
 
 
-def stations(rng, folder, base="none", noise=0.5, order=(0, 1, 2), nodes=5, count=160, refer=True):
+def stations(rng, folder, base="none", noise=0.5, order=(0, 1, 2), nodes=5, count=160):
     """Distances of a tracking interferometer from stations that are known to a millimetre, a zero of the length each."""
     truth, start, arguments = machine_with_base(rng, folder, base, order, nodes, play=False)
     ends = numpy.array(truth.travel)
@@ -164,13 +170,13 @@ def stations(rng, folder, base="none", noise=0.5, order=(0, 1, 2), nodes=5, coun
     header = "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,bx_mm,by_mm,bz_mm,length_mm"
     path = save(os.path.join(folder, "distances.csv"), header, rows, 9)
     points = grid(truth.travel, TOOLS, 5, False, one_frame=base == "own" and not noise, spread=bool(noise))
-    allowed = None
-    if refer:
+
+    def own():
         runs = numpy.array([row[0] for row in rows])
         stacked = [numpy.concatenate(v) for v in (commands, vectors, places, lengths)]
-        fitted = reference.distances(start, stacked[0], stacked[1], runs, stacked[2], stacked[3], nodes)
-        allowed = rms(rest(points.true(fitted), points.true(truth), points.group))
-    return Scenario(["calibrate", "volumetric", path, "--nodes", nodes, *arguments], truth, points, allowed, {},
+        return points.true(reference.distances(start, stacked[0], stacked[1], runs, stacked[2], stacked[3], nodes))
+
+    return Scenario(["calibrate", "volumetric", path, "--nodes", nodes, *arguments], truth, points, own, {},
                     dict(header=header, table=numpy.array(rows, dtype=object), path=path))
 
 
@@ -194,7 +200,7 @@ def line_angles(machine, place, tool, count=16):
     return numpy.array([-x @ y, x @ z, -y @ z]), [numpy.linalg.norm(s) - 1 for s in slopes]
 
 
-def tracker(rng, folder, base="none", turn=0.05, noise=1.0, order=(0, 1, 2), count=9, repeats=3, play=True, refer=True,
+def tracker(rng, folder, base="none", turn=0.05, noise=1.0, order=(0, 1, 2), count=9, repeats=3, play=True,
             options=(), u=None, shift=1.0):
     """Three traverses through a common place; without a base only a machine whose angles are constant can be known."""
     truth = errors(rng, Machine(order, travel(rng)), angle=0.0 if base == "none" else 20.0, play=play)
@@ -232,16 +238,17 @@ def tracker(rng, folder, base="none", turn=0.05, noise=1.0, order=(0, 1, 2), cou
         paths.append(save(os.path.join(folder, f"traverse_{letter}.csv"), header, rows, 9))
         traverses.append((commands, sides, reads, header, rows))
     points = grid(truth.travel, [truth.tool], 6, play, spread=bool(noise))
-    allowed = None
-    if refer:
-        allowed = rms(rest(tracker_reference(start, traverses, points, place), points.true(truth), points.group))
+
+    def own():
+        return tracker_reference(start, traverses, points, place)
+
     angles, scales = line_angles(truth, place, truth.tool, count)
     values = {k: v * 1e6 for k, v in zip(("EC0Y", "EB0Z", "EA0Z"), angles)}
     values |= {f"scale {AXES[k]}": scales[k] * 1e6 for k in range(3)}
     arguments = ["calibrate", "tracker", *paths, *arguments, *options]
     if u is not None:
         arguments += ["--u-um", u]
-    return Scenario(arguments, truth, points, allowed, values, dict(paths=paths, traverses=traverses, start=start, place=place))
+    return Scenario(arguments, truth, points, own, values, dict(paths=paths, traverses=traverses, start=start, place=place))
 
 
 def tracker_reference(start, traverses, points, place):
