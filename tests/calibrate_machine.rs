@@ -287,7 +287,7 @@ fn circles_need_no_profile_and_keep_the_one_there_is() {
         assert!((value(&first) - value(&second)).abs() < 0.002, "{first}\n{second}");
     }
     // A plane says nothing of how far the third axis goes.
-    let all = std::fs::read_to_string(common::root().join(sample)).expect("a sample");
+    let all = std::fs::read_to_string(crate::common::root().join(sample)).expect("a sample");
     let z = all.lines().nth(1).and_then(|line| line.split(',').nth(3)).expect("z_mm");
     let flat: Vec<&str> =
         all.lines().filter(|l| l.starts_with("run") || l.split(',').nth(3) == Some(z)).collect();

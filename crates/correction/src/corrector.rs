@@ -40,9 +40,9 @@ pub enum CorrectionError {
     #[error(transparent)]
     Solve(#[from] SolveError),
     /// The motion would have to be split and must not be.
-    #[error("the path would be {distance_um:.2} um off and this motion must stay one block")]
+    #[error("{} and this motion must stay one block", off(*distance_um))]
     MustNotSplit {
-        /// What one block would miss by, µm.
+        /// What one block would miss by, µm; infinite where there is none, as of an arc whose corrected ends no arc joins.
         distance_um: f64,
     },
     /// A hole that would be written as more moves than anybody drills.
@@ -92,6 +92,15 @@ pub enum CorrectionError {
         /// What was asked for, µm.
         tolerance_um: f64,
     },
+}
+
+/// How far off one block would be, in words.
+fn off(distance_um: f64) -> String {
+    if distance_um.is_finite() {
+        format!("the path would be {distance_um:.2} um off")
+    } else {
+        "no single arc leads from the corrected start to the corrected end".to_owned()
+    }
 }
 
 /// One motion, corrected.
