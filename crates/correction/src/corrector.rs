@@ -516,12 +516,28 @@ impl<'m> Corrector<'m> {
     /// True where every further motion would be corrected alike.
     #[must_use]
     pub fn continues_as(&self, other: &Self) -> bool {
-        self.standing == other.standing
-            && self.direction == other.direction
-            && self.play == other.play
-            && self.last == other.last
-            && self.expanding == other.expanding
-            && self.remembered == other.remembered
+        // Taken apart, so that a new field asks whether it belongs here. Left out is what is the same for a whole program,
+        // what a motion sets before it asks, and what was worked out and would be worked out again.
+        let Self {
+            standing,
+            direction,
+            play,
+            last,
+            expanding,
+            remembered,
+            model: _,
+            options: _,
+            approached: _,
+            known: _,
+            everywhere: _,
+            told_mm: _,
+        } = self;
+        *standing == other.standing
+            && *direction == other.direction
+            && *play == other.play
+            && *last == other.last
+            && *expanding == other.expanding
+            && *remembered == other.remembered
     }
 
     /// Where the output has brought the axes, axis commands in mm.

@@ -39,10 +39,11 @@ impl<'a> State<'a> {
 
     /// True where whatever follows comes out alike.
     pub(crate) fn continues_as(&self, other: &Self) -> bool {
-        self.interpreter.modal() == other.interpreter.modal()
-            && self.corrector.continues_as(&other.corrector)
-            && self.emitter.continues_as(&other.emitter)
-            && self.expects_name == other.expects_name
+        let Self { interpreter, corrector, emitter, expects_name } = self;
+        interpreter.modal() == other.interpreter.modal()
+            && corrector.continues_as(&other.corrector)
+            && emitter.continues_as(&other.emitter)
+            && *expects_name == other.expects_name
     }
 
     /// Bounds that were told to another state and count here too.
