@@ -96,7 +96,7 @@ def main():
     print("Short of it: " + "; ".join(f"{row['kind']}, {row['name']} ({plain(row['text'])})" for row in wrong) + ".\n" if wrong else "Every row holds.\n")
     if "noise" in kinds:
         most = max(row["machines"] for row in kinds["noise"])
-        fitted = max(row.get("references", 0) for row in kinds["noise"])
+        fitted = max(row.get("references", row["machines"]) for row in kinds["noise"])
         print(NOISE.format(references=f" (compared on the first {fitted} machines of a row)" if fitted < most else ""))
         print(noise_table(rows))
     sections = (
