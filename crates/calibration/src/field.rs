@@ -128,11 +128,12 @@ mod tests {
         for d in 1..=5 {
             let all = places(&vec![Range { low: -1.0, high: 1.0 }; d]);
             for j in 0..d {
-                // Mean 0 and mean square 1/3 of a uniform distribution, and no two coordinates go together.
+                // Mean 0 and mean square 1/3 of a uniform distribution, and no two coordinates go together; random places would be off by
+                // 0.05, 0.03 and 0.03 in one standard deviation.
                 let mean = |of: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
-                assert!(mean(&|p| p[j]).abs() < 0.03, "{d} {j}");
-                assert!((mean(&|p| p[j] * p[j]) - 1.0 / 3.0).abs() < 0.02, "{d} {j}");
-                assert!((0..j).all(|i| mean(&|p| p[i] * p[j]).abs() < 0.03), "{d} {j}");
+                assert!(mean(&|p| p[j]).abs() < 0.065, "{d} {j}");
+                assert!((mean(&|p| p[j] * p[j]) - 1.0 / 3.0).abs() < 0.01, "{d} {j}");
+                assert!((0..j).all(|i| mean(&|p| p[i] * p[j]).abs() < 0.065), "{d} {j}");
             }
         }
     }
