@@ -185,13 +185,17 @@ impl<'m> Corrector<'m> {
             match self.verdict_with_play(&machine, &pair, verdict, limit_mm) {
                 Verdict::Within(bound) => correction.after_mm = bound,
                 Verdict::Beyond { distance_mm, .. } => {
-                    // What is said of it is a bound, not the place that was beyond.
+                    // What is said of it is a bound, not the place that was beyond; the least of some limits that holds.
                     let all = Machine { told_mm: 0.0, ..machine.clone() };
-                    let verdict = kept.verdict(&all, f64::INFINITY);
-                    let most_mm = match self.verdict_with_play(&all, &pair, verdict, f64::INFINITY) {
-                        Verdict::Within(bound_mm) => bound_mm.max(distance_mm),
-                        Verdict::Beyond { distance_mm, .. } => distance_mm,
+                    let bound = |factor: f64| {
+                        let limit_mm = distance_mm * factor;
+                        match self.verdict_with_play(&all, &pair, kept.verdict(&all, limit_mm), limit_mm) {
+                            Verdict::Within(bound_mm) => Some(bound_mm),
+                            Verdict::Beyond { .. } => None,
+                        }
                     };
+                    let most_mm = [1.01, 1.1, 1.25, 1.5, 2.0, 3.0, f64::INFINITY].into_iter().find_map(bound);
+                    let most_mm = most_mm.unwrap_or(distance_mm).max(distance_mm);
                     correction.after_mm = most_mm;
                     correction.leaning_mm = Some(most_mm);
                 }
