@@ -63,7 +63,9 @@ class Answer:
 
     @property
     def effects_written(self):
-        return len(re.findall(r"^\[\[effect\]\]", self.written or "", re.M)) - len(re.findall(r"^\[\[effect\]\]", self.base, re.M))
+        """Ids of the effects written beyond those of the profile; the instrument's, which are no part of any correction, do not count."""
+        ids = [re.findall(r'^id = "(.*?)"', text or "", re.M) for text in (self.written, self.base)]
+        return [i for i in ids[0] if i not in ids[1] and not INSTRUMENT.search(i)]
 
     @property
     def forecast(self):

@@ -33,7 +33,7 @@ def between(rng, rows, count=4000):
 
 def largest_correction(case, answer, rows, rng):
     """Largest displacement by the written effects between the measured places, um, and its place; (0, None) where none is written."""
-    if answer.effects_written <= 0:
+    if not answer.effects_written:
         return 0.0, None
     q, tool, dirs = between(rng, rows)
     ids = re.findall(r'^id = "(.*?)"', answer.written, re.M)
@@ -162,11 +162,11 @@ def same_size_other(rng, machine, first):
 
 
 def training(rng, machine):
-    return lines(rng, machine, 3, 9, 2)
+    return lines(rng, machine, 3, 9, 1, tools=2)
 
 
 def unseen(rng, machine):
-    return lines(rng, machine, 2, 8, 1, name="h")
+    return lines(rng, machine, 2, 8, 1, tools=2, name="h")
 
 
 def refuted(kind):
@@ -193,22 +193,27 @@ def refuted(kind):
         if kind == "other frame":  # read in axes turned so that X is called Y, Y Z and Z X
             out.d = out.d[:, [2, 0, 1]]
         profile = machine.profile(case.folder)
+        if kind != "gap only unseen":
+            alone = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), profile, write=False)
+            if not (alone.named and alone.causes == [fault[1]]):  # what was not NAMED without the hold-out cannot lose or keep it
+                return Outcome({"NAMED without it": False}, alone.verdict, f"{fault[1]}; without the hold-out: {', '.join(alone.causes)} {alone.err}")
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), profile, out.write(case.path("holdout.csv")))
         if answer.data is None:
             return Outcome({}, answer.verdict, answer.err)
         held = answer.data.get("holdout") or {}
         note = f"{fault[1] if fault else 'none'}; found {', '.join(answer.causes)}; forecast {answer.forecast}, held out {held.get('rms_before_um')} -> {held.get('rms_after_um')}"
         if kind in ("good hold-out", "own set-up"):
-            return Outcome({"stays NAMED, right": answer.named and answer.causes == [fault[1]]}, answer.verdict, note)
+            return Outcome({"NAMED without it": True, "stays NAMED, right": answer.named and answer.causes == [fault[1]]}, answer.verdict, note)
         if kind == "gap only unseen":
             return Outcome({"all-clear": answer.verdict == "NO GAP"}, answer.verdict, note)
-        return Outcome({"refuted but NAMED": answer.named}, answer.verdict, note)
+        return Outcome({"NAMED without it": True, "refuted but NAMED": answer.named}, answer.verdict, note)
 
     return play
 
 
 HARM = {"beyond twice the largest reading": (0, 0)}
-NEVER, STAYS = {"refuted but NAMED": (0, 0.01)}, {"stays NAMED, right": (0.95, 1)}
+FIRST = {"NAMED without it": (0.9, 1)}
+NEVER, STAYS = FIRST | {"refuted but NAMED": (0, 0.01)}, FIRST | {"stays NAMED, right": (0.95, 1)}
 KINDS = [
     Kind("harm", "ten set-points 5 mm apart", 40, HARM, harm(short_span, "any")),
     Kind("harm", "one axis, 5 mm apart", 40, HARM, harm(one_axis, "any")),

@@ -87,7 +87,7 @@ def one(vpost, kind_at, number, seed, keep):
         outcome = kind.run(Case(vpost, folder, kind, number, seed))
     except Exception:  # a fault of the judge, or an answer that it cannot read: never silent
         outcome = Outcome({}, "JUDGE FAILED", traceback.format_exc())
-    figures = {n: ((int(v), 1) if isinstance(v, (bool, numpy.bool_)) else v) for n, v in outcome.figures.items()}
+    figures = {n: (int(v), 1) if isinstance(v, (bool, numpy.bool_)) else (int(v[0]), int(v[1])) for n, v in outcome.figures.items()}
     if not figures and outcome.verdict.startswith("refused"):
         figures = {n: ((0, 1) if low > 0 else (1, 1)) for n, (low, _) in kind.figures.items()}
     fails = outcome.verdict == "JUDGE FAILED" or any(v[0] < v[1] if kind.figures[n][0] > 0 else v[0] > 0 for n, v in figures.items())
@@ -98,7 +98,7 @@ def one(vpost, kind_at, number, seed, keep):
         with open(os.path.join(target, "found.txt"), "w", encoding="utf-8") as file:
             file.write(f"{kind.family}/{kind.name}, case {number}, seed {seed}\n{outcome.verdict}\n{outcome.note}\n{figures}\n")
     shutil.rmtree(folder)
-    return {"family": kind.family, "kind": kind.name, "case": number, "verdict": outcome.verdict, "note": outcome.note, "figures": figures, "fails": bool(fails),
+    return {"family": kind.family, "kind": kind.name, "case": number, "verdict": outcome.verdict, "note": outcome.note.replace(folder + os.sep, ""), "figures": figures, "fails": bool(fails),
             "seconds": round(time.monotonic() - began, 3)}
 
 

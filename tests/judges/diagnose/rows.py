@@ -128,7 +128,7 @@ def along(machine, axis, at, places):
 
 def lines(rng, machine, per_axis=3, count=9, passes=1, diagonals=True, tools=1, both=True, rows=None, name="r", axes=(0, 1, 2), shuffle=True, change=None):
     """Lines along each axis in several places, and the diagonals of planes; a run each. `change(rows, k)` gives conditions of run k."""
-    rows, todo = rows or Rows(machine), []
+    rows, todo = Rows(machine) if rows is None else rows, []
     travel = machine.travel
     for axis in axes:
         for k in range(per_axis):
@@ -160,7 +160,7 @@ def lines(rng, machine, per_axis=3, count=9, passes=1, diagonals=True, tools=1, 
 
 def plates(rng, machine, count=8, grid=5, passes=2, rows=None, name="p"):
     """Plates with grid x grid marks, in the planes XY, XZ and YZ in turn, each a run, read forth and back."""
-    rows = rows or Rows(machine)
+    rows = Rows(machine) if rows is None else rows
     for k in range(count):
         a, b = ((0, 1), (0, 2), (1, 2))[k % 3]
         at = machine.travel * rng.uniform(0.1, 0.9, 3)
@@ -176,7 +176,7 @@ def plates(rng, machine, count=8, grid=5, passes=2, rows=None, name="p"):
 
 
 def scatter(rng, machine, count=120, runs=4, rows=None, name="s"):
-    rows = rows or Rows(machine)
+    rows = Rows(machine) if rows is None else rows
     for k in range(runs):
         rows.path(f"{name}{k}", numpy.round(machine.travel * rng.uniform(0.03, 0.97, (count // runs, 3)), 3))
     return rows

@@ -77,8 +77,8 @@ def stations(count, whose):
                 return Outcome({"machine's fault in the set": effect in everyone}, answer.verdict, note)
             return Outcome({"told apart": effect in answer.causes[:1] and not any(INSTRUMENT.search(e) for e in answer.causes)}, answer.verdict, note)
         if count == 1:
-            return Outcome({"instrument in the set": any(INSTRUMENT.search(e) for e in everyone), "written as a machine's": answer.effects_written > 0}, answer.verdict, note)
-        return Outcome({"told apart": bool(answer.causes) and all(INSTRUMENT.search(e) for e in answer.causes), "written as a machine's": answer.effects_written > 0}, answer.verdict, note)
+            return Outcome({"instrument in the set": any(INSTRUMENT.search(e) for e in everyone), "written as a machine's": bool(answer.effects_written)}, answer.verdict, note)
+        return Outcome({"told apart": bool(answer.causes) and all(INSTRUMENT.search(e) for e in answer.causes), "written as a machine's": bool(answer.effects_written)}, answer.verdict, note)
 
     return play
 
@@ -113,7 +113,13 @@ def circle_rows(rng, machine, plane, radius):
     return rows, centre, speeds, ways
 
 
-def circle_faults(rng, machine, plane, radius, speeds, ways):
+def bow(rng, seen, axis, size, middle, radius):
+    """Straightness over the circle: a smooth curve without slope there."""
+    f = truth.curve(rng, 2 * radius, size)
+    return lambda r: vector(r, seen, f(r.q[:, axis] - middle[axis] + radius))
+
+
+def circle_faults(rng, plane, centre, radius, speeds, ways):
     """The thirteen: name -> (displacement (rows) -> (n, 3), parameter, value)."""
     a, b = plane
     A, B = AXES[a], AXES[b]
@@ -125,7 +131,7 @@ def circle_faults(rng, machine, plane, radius, speeds, ways):
         found[f"lost-motion.E{AXES[other]}{name}"] = (truth.lost_motion(other, axis, sideways)[0], "half_width_um", sideways)
         k = 1.2e3 * big / radius
         found[f"scale.{name}"] = (truth.scale(axis, k)[0], "scale_um_per_m", k)
-        found[f"straightness.E{AXES[other]}{name}"] = (truth.straightness(rng, other, axis, 3 * abs(big), machine)[0], None, None)
+        found[f"straightness.E{AXES[other]}{name}"] = (bow(rng, other, axis, 1.5 * abs(big), centre, radius), None, None)
         period, phase, wave = rng.uniform(6, 20), rng.uniform(0, 6.28), abs(size()) * 0.6
         found[f"pitch.{name}"] = (lambda r, x=axis, p=period, f=phase, w=wave: vector(r, x, w * numpy.sin(2 * numpy.pi * r.q[:, x] / p + f)), None, None)
         spike = abs(size()) * 1.5
@@ -151,7 +157,7 @@ def circles(count):
         plane = ((0, 1), (0, 2), (1, 2))[int(rng.integers(3))]
         radius = float(rng.choice([100.0, 150.0]))
         rows, centre, speeds, ways = circle_rows(rng, machine, plane, radius)
-        every = circle_faults(rng, machine, plane, radius, speeds, ways)
+        every = circle_faults(rng, plane, centre, radius, speeds, ways)
         names = [n for n in sorted(every) if n != f"spike.{AXES[plane[1]]}"]
         chosen = [names[k] for k in rng.choice(len(names), count, replace=False)]
         measure(rng, rows, truth.white(0.25), [every[n][0] for n in chosen])
