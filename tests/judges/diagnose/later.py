@@ -40,6 +40,9 @@ def dates(change):
         second = first + (abs(size) if change == "reversal value" else 0.0)
         one = interferometer(case.path("first.csv"), rng, axis, nodes, base, first, noise, 0.0)
         two = interferometer(case.path("second.csv"), rng, axis, nodes, lambda p: base(p) + bump(p), second, noise, rng.normal() * 20)
+        amount = {"nothing": "no change is shown", "at a place": f"the machine has changed: {name} by {size:.2f} um at {nodes[at]:.0f} mm",
+                  "reversal value": f"the machine has changed: reversal value of {name} by {abs(size):.2f} um"}[change]
+        case.deserves("unchanged" if change == "nothing" else "changed", text=f"against old.toml: {amount}")
         common = ["--chain", "[w X Y b Z t]", "--name", "judged", "--u-um-per-m", "0"]
         first_command = [case.vpost, "calibrate", "interferometer", one, "-o", case.path("old.toml"), *common]
         second_command = [case.vpost, "calibrate", "interferometer", two, "--against", case.path("old.toml"), *common]
@@ -90,8 +93,9 @@ def whole_plan(curves):
         if status:
             return Outcome({}, "refused", err)
         rows = from_plan(out, machine)
-        fault, effect, _ = truth.random_fault(rng, machine, ("positioning", "straightness") if curves else ("scale", "backlash", "lost-motion", "squareness"), rng.uniform(6, 15))
+        fault, effect, parameters = truth.random_fault(rng, machine, ("positioning", "straightness") if curves else ("scale", "backlash", "lost-motion", "squareness"), rng.uniform(6, 15))
         measure(rng, rows, truth.white(rng.uniform(0.5, 1.2)), [fault], setup(rng))
+        case.deserves("NAMED", [(effect, parameters)])
         blank = numpy.array(["" if f == 0 else f"{f:.0f}" for f in rows.feed])
         rows.extra["feed_mm_min"] = blank
         rows.conditions["load_kg"][:] = 0
@@ -151,7 +155,7 @@ def follow(pair):
         profile, axis = machine.profile(case.folder), int(rng.integers(3))
         if pair == "lag or play":
             rows = lines(rng, machine, 3, 9, 1, diagonals=False).close()
-            fault, effect, _ = truth.backlash(axis, rng.uniform(4, 9)) if rng.random() < 0.5 else truth.lag(axis, rng.uniform(4, 9) * 60 / 2000)
+            fault, effect, parameters = truth.backlash(axis, rng.uniform(4, 9)) if rng.random() < 0.5 else truth.lag(axis, rng.uniform(4, 9) * 60 / 2000)
         else:  # one line per axis through one corner: a squareness is an angle of a carriage
             rows = Rows(machine)
             corner = machine.travel * 0.1
@@ -159,7 +163,8 @@ def follow(pair):
                 for k in range(2):
                     rows.path(f"r{a}{k}", there_and_back(along(machine, a, corner, uneven(rng, 0.1 * machine.travel[a], 0.95 * machine.travel[a], 13))))
             rows.close()
-            fault, effect, _ = truth.squareness(("XY", "XZ", "YZ")[axis], rng.uniform(60, 120) * rng.choice([-1, 1]))
+            fault, effect, parameters = truth.squareness(("XY", "XZ", "YZ")[axis], rng.uniform(60, 120) * rng.choice([-1, 1]))
+        case.deserves("NAMED", [(effect, parameters)], ambiguous=True)
         frame, noise = setup(rng), truth.white(rng.uniform(0.5, 1.0))
         measure(rng, rows, noise, [fault], frame)
         always, figures, note = ("feed_mm_min",), {}, effect
@@ -193,6 +198,7 @@ def proposes_anyway(case):
     rows = lines(rng, machine, 4, 11, 1).close()
     fault, _, _ = outside_fault(rng, machine, OUTSIDE[1 + case.number % 4])
     measure(rng, rows, truth.white(1.0), [fault], setup(rng))
+    case.deserves("UNKNOWN", ambiguous=True)
     answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder), write=False)
     if answer.data is None:
         return Outcome({}, answer.verdict, answer.err)
@@ -238,6 +244,7 @@ def bad(kind):
             out.extra["c_deg"] = rng.uniform(0, 360, len(out))
         if "stations" in kind:
             rows.extra["station"] = numpy.where(rng.random(len(rows)) < 0.5, "S1", "S2")
+        case.deserves("refused", err=f"error[VP0999]: {kind}: u_x_um, temp_c, load_kg, hold-out, station")
         holdout = out.write(case.path("holdout.csv")) if kind.startswith("hold-out") else None
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder), holdout)
         message = answer.err if answer.data is None else ""
@@ -253,10 +260,10 @@ KINDS = [
     Kind("dates", "unchanged", 60, {"change said": (0, 0.02)}, dates("nothing")),
     Kind("dates", "changed at a place", 30, CHANGED | {"place within a step": (0.95, 1)}, dates("at a place")),
     Kind("dates", "reversal value grown", 30, CHANGED | {"called reversal": (0.95, 1)}, dates("reversal value")),
-    Kind("plans", "whole plan, one cause", 30, {"named alone": (0.98, 1)}, whole_plan(False)),
-    Kind("plans", "whole plan, smooth curve", 40, {"a screw is named": (0, 0.02), "named first": (0.95, 1)}, whole_plan(True)),
-    Kind("plans", "proposal: lag or play", 30, {"named alone after it": (0.98, 1), "proposed as rows": (0.98, 1)}, follow("lag or play")),
-    Kind("plans", "proposal: squareness or angle", 30, {"named alone after it": (0.98, 1), "proposed as rows": (0.98, 1)}, follow("squareness or angle")),
-    Kind("plans", "no name, yet a proposal", 20, {"proposes": (0.95, 1)}, proposes_anyway),
+    Kind("plans", "whole plan, one cause", 20, {"named alone": (0.98, 1)}, whole_plan(False)),
+    Kind("plans", "whole plan, smooth curve", 30, {"a screw is named": (0, 0.02), "named first": (0.95, 1)}, whole_plan(True)),
+    Kind("plans", "proposal: lag or play", 20, {"named alone after it": (0.98, 1), "proposed as rows": (0.98, 1)}, follow("lag or play")),
+    Kind("plans", "proposal: squareness or angle", 20, {"named alone after it": (0.98, 1), "proposed as rows": (0.98, 1)}, follow("squareness or angle")),
+    Kind("plans", "no name, yet a proposal", 15, {"proposes": (0.95, 1)}, proposes_anyway),
 ]
 KINDS += [Kind("bad", k, 12, {"message of its own": (1, 1), "a name": (0, 0), "effects written": (0, 0)}, bad(k)) for k in BAD]

@@ -65,6 +65,10 @@ def noise_case(name):
         rows = design(rng, machine).close()
         measure(rng, rows, make(sigma), frame=setup(rng))
         state(rows, stated, sigma)
+        if name == "instrument warming":
+            case.deserves("NOISE MODEL SUSPECT", [("instrument-drift", {})], noise_um=sigma)
+        else:
+            case.deserves("NO GAP", noise_um=sigma)
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
         if answer.data is None:
             return Outcome({}, answer.verdict, answer.err)
@@ -94,6 +98,7 @@ def coverage_case(name):
         rows = coverage_design(rng, machine, name).close()
         measure(rng, rows, make(sigma), [fault], setup(rng))
         state(rows, stated, sigma)
+        case.deserves("NAMED", [(effect, parameters)], noise_um=sigma)
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder), write=False)
         if answer.data is None:
             return Outcome({"cause found": False}, answer.verdict, answer.err)
@@ -135,6 +140,7 @@ def parts(column, times=2, stated=False):
             rows.extra["u_um"] = numpy.full(len(rows), noise)
         if column:
             rows.extra["artefact"] = numpy.array([f"part {run}" for run in rows.run])
+        case.deserves("UNKNOWN", noise_um=noise)
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv"), leave=("dir_x", "dir_y", "dir_z")), machine.profile(case.folder))
         if answer.data is None:
             return Outcome({}, answer.verdict, answer.err)
@@ -157,8 +163,9 @@ def other_temperature(case):
         for a, track in enumerate(tracks):
             rows.path(f"r{k}{'XYZ'[a]}", there_and_back(track), temp_c=float(temp))
     rows.close()
-    fault, effect, _ = truth.thermal(axis, 11.5)
+    fault, effect, parameters = truth.thermal(axis, 11.5)
     measure(rng, rows, truth.white(noise), [fault], setup(rng))
+    case.deserves("NAMED", [(effect, parameters)], noise_um=noise)
     answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
     if answer.data is None:
         return Outcome({}, answer.verdict, answer.err)
@@ -172,11 +179,8 @@ def turned_plates(case):
     rng = case.rng
     machine = Machine(rng, 300, 600)
     rows = plates(rng, machine, 9, 5, 2).close()
-    fault, effect, _ = truth.random_fault(rng, machine, ("scale", "squareness", "backlash"), 12.0)
+    fault, effect, parameters = truth.random_fault(rng, machine, ("scale", "squareness", "backlash"), 12.0)
     measure(rng, rows, truth.turned(0.8, 400), [fault])
-    answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
-    if answer.data is None:
-        return Outcome({}, answer.verdict, answer.err)
     own = fault(rows)
     for _, rs in rows.runs():  # what no set-up of a run can do
         tip = rows.q[rs] + rows.tool[rs] - (rows.q[rs] + rows.tool[rs]).mean(axis=0)
@@ -187,6 +191,10 @@ def turned_plates(case):
         flat = basis.reshape(-1, 6)
         own[rs] -= (flat @ numpy.linalg.lstsq(flat, own[rs].ravel(), rcond=None)[0]).reshape(-1, 3)
     least, most = numpy.sqrt((own**2).sum(axis=1).mean()), numpy.sqrt((fault(rows) ** 2).sum(axis=1).mean())
+    case.deserves("NAMED", [(effect, parameters)], noise_um=0.8, gap_um=(least + most) / 2)
+    answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
+    if answer.data is None:
+        return Outcome({}, answer.verdict, answer.err)
     gap = answer.data["gap"]["rms_um"]
     good = 0.6 * least <= gap <= 1.5 * most + 3.0
     return Outcome({"gap is the machine's": good, "cause named first": answer.causes[:1] == [effect]}, answer.verdict, f"{effect}; gap stated {gap}, truth {least:.1f} to {most:.1f}; {', '.join(answer.causes)}")
@@ -207,6 +215,10 @@ def two_instruments(agree):
         if not agree:
             rows.d[late] += 40e-3 * 1e3 * rows.q[late] / machine.travel.max() * rng.choice([-1, 1]) + rng.normal(size=3) * 15
         rows.extra["instrument"] = numpy.where(late, "tracker B", "tracker A")
+        if agree:
+            case.deserves("NO GAP")
+        else:
+            case.deserves("NOISE MODEL SUSPECT", notes=["the instruments tracker A and tracker B disagree by 40 um"])
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
         if answer.data is None:
             return Outcome({}, answer.verdict, answer.err)
@@ -217,15 +229,15 @@ def two_instruments(agree):
     return play
 
 
-KINDS = [Kind("noise", n, 100, {"false alarms": (0, 0.03), "effects written": (0, 0)}, noise_case(n)) for n in NOISES]
-KINDS += [Kind("coverage", n, 60, {"interval holds the truth": (0.92, 0.97), "cause found": (0.9, 1)}, coverage_case(n)) for n in NOISES if not n.startswith("standing")]
+KINDS = [Kind("noise", n, 40, {"false alarms": (0, 0.03), "effects written": (0, 0)}, noise_case(n)) for n in NOISES]
+KINDS += [Kind("coverage", n, 20, {"interval holds the truth": (0.92, 0.97), "cause found": (0.9, 1)}, coverage_case(n)) for n in NOISES if not n.startswith("standing")]
 KINDS += [
-    Kind("repeats", "parts, by run", 25, {"all-clear over the parts": (0, 0), "noise within a factor of 2": (0.9, 1), "a cause of the machine": (0, 0.03)}, parts(False)),
-    Kind("repeats", "parts, by artefact", 25, {"all-clear over the parts": (0, 0), "noise within a factor of 2": (0.9, 1), "a cause of the machine": (0, 0.03)}, parts(True)),
-    Kind("repeats", "parts, once each, u_um stated", 25, {"all-clear over the parts": (0, 0), "a cause of the machine": (0, 0.03)}, parts(False, 1, True)),
-    Kind("repeats", "parts, once each, smooth", 25, {"all-clear over the parts": (0, 0), "a cause of the machine": (0, 0.03)}, parts(False, 1)),
-    Kind("repeats", "other temperatures", 25, {"all-clear": (0, 0), "noise within a factor of 2": (0.95, 1), "cause named first": (0.95, 1)}, other_temperature),
-    Kind("repeats", "plates turned", 40, {"gap is the machine's": (0.95, 1), "cause named first": (0.95, 1)}, turned_plates),
+    Kind("repeats", "parts, by run", 15, {"all-clear over the parts": (0, 0), "noise within a factor of 2": (0.9, 1), "a cause of the machine": (0, 0.03)}, parts(False)),
+    Kind("repeats", "parts, by artefact", 15, {"all-clear over the parts": (0, 0), "noise within a factor of 2": (0.9, 1), "a cause of the machine": (0, 0.03)}, parts(True)),
+    Kind("repeats", "parts, once each, u_um stated", 15, {"all-clear over the parts": (0, 0), "a cause of the machine": (0, 0.03)}, parts(False, 1, True)),
+    Kind("repeats", "parts, once each, smooth", 15, {"all-clear over the parts": (0, 0), "a cause of the machine": (0, 0.03)}, parts(False, 1)),
+    Kind("repeats", "other temperatures", 15, {"all-clear": (0, 0), "noise within a factor of 2": (0.95, 1), "cause named first": (0.95, 1)}, other_temperature),
+    Kind("repeats", "plates turned", 15, {"gap is the machine's": (0.95, 1), "cause named first": (0.95, 1)}, turned_plates),
     Kind("repeats", "two instruments disagree", 20, {"said that they disagree": (0.95, 1), "the machine is blamed": (0, 0.03)}, two_instruments(False)),
     Kind("repeats", "two instruments agree", 20, {"said that they disagree": (0, 0.03), "the machine is blamed": (0, 0.03)}, two_instruments(True)),
 ]

@@ -57,7 +57,7 @@ def stations(count, whose):
         rows.close()
         at = numpy.searchsorted(ends, numpy.arange(len(rows)), side="right")
         kind = TERMS[case.number % len(TERMS)]
-        fault, effect, _ = truth.random_fault(rng, machine, ("scale", "backlash", "squareness"), 20.0)
+        fault, effect, parameters = truth.random_fault(rng, machine, ("scale", "backlash", "squareness"), 20.0)
         term = tracker_term(rng, kind)
         measure(rng, rows, truth.white(1.5), [fault] if whose == "machine" else [])
         for k, place in enumerate(places):  # each station is tied to the machine by a frame of its own
@@ -67,6 +67,8 @@ def stations(count, whose):
         rows.extra["station"] = numpy.array([f"S{k + 1}" for k in at])
         for k, axis in enumerate("xyz"):
             rows.extra[f"b{axis}_mm"] = numpy.array([places[s][k] for s in at])
+        right, wrong = [(effect, parameters), ("tracker." + kind.replace(" ", "-"), {})][:: 1 if whose == "machine" else -1]
+        case.deserves("NAMED" if count == 2 else "AMBIGUOUS", [(*right, [] if count == 2 else [wrong[0]])])
         answer = ask(case.vpost, case.folder, rows.write(case.path("rows.csv")), machine.profile(case.folder))
         if answer.data is None:
             return Outcome({}, answer.verdict, answer.err)
@@ -161,6 +163,7 @@ def circles(count):
         names = [n for n in sorted(every) if n != f"spike.{AXES[plane[1]]}"]
         chosen = [names[k] for k in rng.choice(len(names), count, replace=False)]
         measure(rng, rows, truth.white(0.25), [every[n][0] for n in chosen])
+        case.deserves("NAMED", [(n, {every[n][1]: every[n][2]} if every[n][1] else {}) for n in chosen])
         ball = centre + machine.tool
         where = rows.q + rows.tool + rows.d * 1e-3
         slip = rng.normal(size=3) * 3e-3  # the ball is not quite where it is said to be
@@ -191,9 +194,9 @@ def circles(count):
 
 CIRCLES = {"recall": (0.95, 1), "precision": (0.95, 1), "sizes within 10 %": (0.95, 1)}
 KINDS = [
-    Kind("stations", "two, tracker's fault", 40, {"told apart": (0.9, 1), "written as a machine's": (0, 0.02)}, stations(2, "tracker")),
+    Kind("stations", "two, tracker's fault", 32, {"told apart": (0.9, 1), "written as a machine's": (0, 0.02)}, stations(2, "tracker")),
     Kind("stations", "two, machine's fault", 30, {"told apart": (0.9, 1)}, stations(2, "machine")),
     Kind("stations", "one, tracker's fault", 30, {"instrument in the set": (0.95, 1), "written as a machine's": (0, 0.02)}, stations(1, "tracker")),
     Kind("stations", "one, machine's fault", 20, {"machine's fault in the set": (0.95, 1)}, stations(1, "machine")),
 ]
-KINDS += [Kind("circles", f"{n} fault{'s' * (n > 1)}", 30, CIRCLES, circles(n)) for n in (1, 2, 3, 4)]
+KINDS += [Kind("circles", f"{n} fault{'s' * (n > 1)}", 25, CIRCLES, circles(n)) for n in (1, 2, 3, 4)]
