@@ -3,7 +3,8 @@
   knows    what truth.json beside the measurements deserves; its numbers scatter as its intervals say
   narrow   the same with intervals of a third            off      the same with numbers 30 % off and forecasts 20 points too hopeful
   silent   NO GAP, always                                boaster  NAMED backlash.X, always, with a correction of a millimetre
-  refuser  refuses every file
+  refuser  refuses every file                             stubborn knows, and does not look at the hold-out
+  clerk    a flipped sign, always
 """
 
 import csv
@@ -34,16 +35,18 @@ def diagnose(mode, arguments):
                 print(f"p{line},{','.join(places)},,,," + ",".join(str(int(a == line % 3)) for a in range(3)) + ",")
         return 0
     told = {"verdict": "NO GAP", "causes": []}
-    if mode in ("knows", "narrow", "off"):
+    if mode in ("knows", "narrow", "off", "stubborn"):
         with open(os.path.join(os.path.dirname(arguments[0]), "truth.json"), encoding="utf-8") as file:
             told = json.load(file)
     if mode == "boaster":
         told = {"verdict": "NAMED", "causes": [{"effect": "backlash.X", "parameters": {"half_width_um": 1000.0}, "rivals": []}], "written": True}
+    if mode == "clerk":
+        told = {"verdict": "NAMED", "causes": [{"effect": "bookkeeping.sign-flipped", "parameters": {}, "rivals": []}]}
     if "err" in told or mode == "refuser":
         print(told.get("err", "error[VP0910]: no"), file=sys.stderr)
         return 1
     chance = random.Random(zlib.crc32(open(arguments[0], "rb").read()))
-    verdict = told.get("holdout_verdict", told["verdict"]) if "--holdout" in arguments else told["verdict"]
+    verdict = told.get("holdout_verdict", told["verdict"]) if "--holdout" in arguments and mode != "stubborn" else told["verdict"]
     causes, proposal = [], None
     for cause in told["causes"]:
         sigma = {k: 0.01 * abs(v) for k, v in cause["parameters"].items()}

@@ -20,10 +20,12 @@ FAILS = {
                ("stations", "told apart"), ("circles", "recall"), ("dates", "change said"), ("plans", "named alone"), ("outside", "a formula is proposed"), ("bad", "message of its own"), ("harm", "said what it is")],
     "boaster": [("noise", "false alarms"), ("noise", "effects written"), ("harm", "beyond twice the largest reading"), ("outside", "not NAMED"), ("repeats", "a cause of the machine"), ("repeats", "the machine is blamed"),
                 ("stations", "written as a machine's"), ("dates", "change said"), ("bad", "a name"), ("bad", "effects written"), ("runs", "a cause named"), ("circles", "precision"), ("books", "named first")],
+    "stubborn": [("refuted", "refuted but NAMED")],
+    "clerk": [("books", "bookkeeping blamed")],
     "narrow": [("coverage", "interval holds the truth")],
     "off": [("runs", "forecast within 5 points"), ("circles", "sizes within 10 %"), ("repeats", "noise within a factor of 2"), ("repeats", "gap is the machine's"), ("coverage", "interval holds the truth")],
 }
-ONLY = {"narrow": ("coverage", "circles"), "off": ("coverage", "runs", "circles", "repeats")}
+ONLY = {"stubborn": ("refuted",), "clerk": ("books",), "narrow": ("coverage", "circles"), "off": ("coverage", "runs", "circles", "repeats")}
 COUNT = 2
 # Of families whose kinds are scored alike, these are enough.
 ENOUGH = {"noise": ("isotropic", "instrument warming", "standing, AR(1) 0.9"), "coverage": ("isotropic", "runs turned"), "outside": ("step at a joint", "dead zone"),
