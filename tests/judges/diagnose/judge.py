@@ -10,7 +10,7 @@ documented file format (rows.py), runs the command, and scores the answer agains
   tools.py     stations (trackers), circles (ball bars)
   later.py     dates (has it changed?), plans (measure what was proposed), bad (input that must be refused)
 
-Run: judge.py --vpost PATH [--only noise,harm/clusters] [--count N] [--case K] [--seed S] [--jobs J] [--json FILE] [--keep DIR] [--self-test]
+Run: judge.py --vpost PATH [--only noise,harm/clusters] [--count N] [--case K] [--seed S] [--jobs J] [--minutes M] [--json FILE] [--keep DIR] [--self-test]
 `--only` takes families and family/kind (the start of a kind's name does). N cases of every kind, its own number if not given. A case is decided by seed, family, kind and
 number, so `--only FAMILY/KIND --case K --keep DIR` does one again and leaves its files; `--keep` keeps those of failing cases. Needs numpy.
 
@@ -176,6 +176,7 @@ def main():
     parser.add_argument("--case", type=int, default=None, help="this case alone")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--minutes", type=float, default=0, help="begin no case later than this; no limit if not given")
     parser.add_argument("--json", default=None)
     parser.add_argument("--keep", default=None)
     parser.add_argument("--list", action="store_true", help="families and kinds")
@@ -197,8 +198,16 @@ def main():
         os.makedirs(options.keep, exist_ok=True)
     numbers = (lambda k: [options.case]) if options.case is not None else (lambda k: range(options.count or every[k].count))
     todo = [(os.path.abspath(vpost), k, number, options.seed, options.keep) for k in chosen for number in numbers(k)]
+    todo.sort(key=lambda task: task[2])  # so that every kind has its share when the time is over
+    cases, began = [], time.monotonic()
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
-        cases = list(pool.map(one, *zip(*todo), chunksize=1))
+        waiting = [pool.submit(one, *task) for task in todo]
+        for future in waiting:  # in order; what is begun when the time is over still ends
+            if options.minutes and time.monotonic() - began > 60 * options.minutes and future.cancel():
+                continue
+            cases.append(future.result())
+    if len(cases) < len(todo):
+        print(f"{len(todo) - len(cases)} of {len(todo)} cases were not begun in {options.minutes:g} minutes\n")
     rows = table([every[k] for k in chosen], cases)
     if options.case is not None:
         for case in cases:
