@@ -203,9 +203,12 @@ def main():
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
         waiting = [pool.submit(one, *task) for task in todo]
         for future in waiting:  # in order; what is begun when the time is over still ends
-            if options.minutes and time.monotonic() - began > 60 * options.minutes and future.cancel():
-                continue
-            cases.append(future.result())
+            if options.minutes and time.monotonic() - began > 60 * options.minutes:
+                # All that wait: to cancel them one by one would wait for those that run meanwhile.
+                for other in waiting:
+                    other.cancel()
+            if not future.cancelled():
+                cases.append(future.result())
     if len(cases) < len(todo):
         print(f"{len(todo) - len(cases)} of {len(todo)} cases were not begun in {options.minutes:g} minutes\n")
     rows = table([every[k] for k in chosen], cases)
