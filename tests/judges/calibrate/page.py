@@ -8,6 +8,8 @@ import json
 import re
 import sys
 
+import judge
+
 HEAD = """# Machines measured and found again
 
 What `vpost calibrate` makes of machines whose truth is known, as an outside judge sees it (`tests/judges/calibrate`, Python, no code in common with vpost):
@@ -46,7 +48,7 @@ def table(head, rows):
 def plain(text):
     """Fit for a cell; the judge's words have um for µm."""
     text = re.sub(r"\bum\b", "µm", re.sub(r"\burad\b", "µrad", " ".join(text.split())))
-    return text.replace("|", "\\|")
+    return re.sub(r"\S*/case-[^/ ]+/", "", text).replace("|", "\\|")  # the judge's folders are nobody's
 
 
 def split(name):
@@ -94,6 +96,10 @@ def main():
     print(table(["kind", "rows that hold", "of"], counts))
     wrong = [row for row in rows.values() if not row["holds"]]
     print("Short of it: " + "; ".join(f"{row['kind']}, {row['name']} ({plain(row['text'])})" for row in wrong) + ".\n" if wrong else "Every row holds.\n")
+    missing = [kind for kind in judge.KINDS if kind.removesuffix("s") not in kinds and kind not in kinds]
+    missing += [name for name, _ in judge.noise_rows() if ("noise", name) not in rows]
+    if missing:
+        print("Not judged this time: " + "; ".join(missing) + ".\n")
     if "noise" in kinds:
         most = max(row["machines"] for row in kinds["noise"])
         fitted = max(row.get("references", row["machines"]) for row in kinds["noise"])
