@@ -151,6 +151,26 @@ fn spec(kind: Kind, turn: usize, index: u64, seed: u64) -> CaseSpec {
     spec
 }
 
+/// Cases whose noise is not what a fit takes for granted: in turn nulls and single effects, every kind of
+/// [`NoiseKind::DOUBTFUL`], every plan for nulls. Their numbers begin behind those of [`catalogue`].
+#[must_use]
+pub fn doubtful(cases: usize, seed: u64) -> Vec<CaseSpec> {
+    const FIRST: u64 = 100_000;
+    let kinds = NoiseKind::DOUBTFUL.len();
+    (0..cases)
+        .map(|turn| {
+            let kind = if turn % 2 == 0 { Kind::Null } else { Kind::Single };
+            let mut spec = spec(kind, turn / 2 * 7 / kinds, FIRST + turn as u64, seed);
+            spec.noise = NoiseKind::DOUBTFUL[turn / 2 % kinds];
+            spec.observation = Observation::Displacement;
+            if kind == Kind::Single {
+                (spec.plans, spec.snr) = (vec![Plan::Good], vec![[1.0, 3.0, 10.0][turn / 2 % 3]]);
+            }
+            spec
+        })
+        .collect()
+}
+
 /// Small cases for documents and tests: their file name, and how they are made.
 #[must_use]
 pub fn sample_cases() -> Vec<(&'static str, CaseSpec)> {
@@ -204,6 +224,17 @@ mod tests {
                 assert_eq!((good, both.count()), (1, 2), "{} at {snr}", effect.id());
             }
         }
+    }
+
+    #[test]
+    fn doubtful_cases_hold_every_noise_with_and_without_an_effect() {
+        let list = doubtful(80, 3);
+        for noise in NoiseKind::DOUBTFUL {
+            for kind in [Kind::Null, Kind::Single] {
+                assert_eq!(list.iter().filter(|s| s.noise == noise && s.kind == kind).count(), 10);
+            }
+        }
+        assert!(list[0].build().truth.effects.is_empty() && !list[1].build().truth.effects.is_empty());
     }
 
     fn read(text: &str) -> (Vec<String>, Vec<Vec<String>>) {

@@ -33,7 +33,7 @@ mod textbook;
 mod truth;
 
 pub use case::{Case, CaseSpec, Kind, Observation};
-pub use catalogue::{catalogue, sample_cases};
+pub use catalogue::{catalogue, doubtful, sample_cases};
 pub use design::Plan;
 pub use effect::Effect;
 pub use fresh::{Fresh, Shrink};
