@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::Args;
-use gap_lab::{Case, CaseSpec, catalogue};
+use gap_lab::{Case, CaseSpec, catalogue, doubtful};
 use rayon::prelude::*;
 
 use answer::Answer;
@@ -42,6 +42,9 @@ pub(crate) struct Options {
     /// Cases at the same time.
     #[arg(long, default_value_t = 2)]
     jobs: usize,
+    /// Cases whose noise is not what a fit takes for granted, in the place of the usual ones.
+    #[arg(long)]
+    doubtful: bool,
     /// Keep the files of every case, the answers and a table of outcomes in this folder.
     #[arg(long)]
     keep: Option<PathBuf>,
@@ -65,7 +68,8 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let temporary = std::env::temp_dir().join(format!("gap-bench-{}", std::process::id()));
     let root = options.keep.clone().unwrap_or_else(|| temporary.clone());
     std::fs::create_dir_all(&root)?;
-    let specs: Vec<CaseSpec> = catalogue(options.cases, options.seed);
+    let draw = if options.doubtful { doubtful } else { catalogue };
+    let specs: Vec<CaseSpec> = draw(options.cases, options.seed);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;
     let started = Instant::now();
     let outcomes: Vec<anyhow::Result<Option<Outcome>>> = pool.install(|| {
@@ -93,8 +97,8 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         std::fs::write(root.join("outcomes.csv"), table::outcomes_csv(&found))?;
     }
     let speed = match options.only {
-        None => speed::measure(&vpost, &root)?,
-        Some(_) => Vec::new(),
+        None if !options.doubtful => speed::measure(&vpost, &root)?,
+        _ => Vec::new(),
     };
     let run = page::Run {
         speed,
@@ -107,7 +111,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         std::fs::remove_dir_all(&temporary)?;
     }
     let page = page::page(&found, &run);
-    if options.only.is_none() {
+    if options.only.is_none() && !options.doubtful {
         std::fs::write(&options.page, crate::wrap::wrapped(&page))
             .with_context(|| format!("cannot write {}", options.page.display()))?;
     }
