@@ -25,8 +25,12 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
     let chain = machine_model::Chain::parse(chain.split('"').nth(1).expect("in quotes")).expect("a chain");
     let mut lines = csv.lines();
     let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
-    let mut data =
-        Measurements { runs: Vec::new(), rows: Vec::new(), geometry: EffectGeometry::from_chain(&chain) };
+    let mut data = Measurements {
+        runs: Vec::new(),
+        instruments: Vec::new(),
+        rows: Vec::new(),
+        geometry: EffectGeometry::from_chain(&chain),
+    };
     for line in lines.filter(|line| kept(line)) {
         let fields: Vec<&str> = line.split(',').collect();
         assert_eq!(fields.len(), header.len(), "{line}");
@@ -52,7 +56,9 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
                 ..Conditions::default()
             },
             predicted_mm: Vector::zeros(),
-            u_um: None,
+            u_um: [None; 3],
+            instrument: None,
+            artefact: None,
             reading: Reading::Displacement([Some(0.0); 3]),
             line: 0,
         });

@@ -10,23 +10,41 @@ use crate::term::Term;
 /// Below this many equations a set-up is not fitted: six parameters would eat what they should judge.
 const ENOUGH_FOR_SETUP: usize = 24;
 
+/// Readings per run and component that its zero is fitted to, at least.
+const ROWS_PER_ZERO: f64 = 3.0;
+
 /// Run offsets of any size: the set-up of a new run says nothing about the machine.
 pub(crate) const FREE_OFFSETS: f64 = 1e6;
 
-/// The gap less a displacement, set-up and the runs' offsets fitted to what is left.
+/// The gap less a displacement, set-up and the runs' offsets (of variance `ratio` times the noise's) fitted to what is
+/// left. Few rows carry no frame; where they carry the zero of their runs, that alone is taken out: it is the set-up's and
+/// neither gap nor gain.
 #[must_use]
 pub(crate) fn aligned(
     data: &Measurements,
     scalars: &[Scalar],
     set_up: &[Term],
+    ratio: f64,
     taken_off: &[(Term, f64)],
 ) -> Vec<f64> {
     let changed = less(data, scalars, taken_off);
-    if changed.len() < ENOUGH_FOR_SETUP || data.has_magnitudes() {
+    let source = source(data, &changed);
+    let set_up = if changed.len() < ENOUGH_FOR_SETUP { &[] } else { set_up };
+    let gram = Gram::new(set_up.to_vec(), &source);
+    if data.has_magnitudes() || (changed.len() as f64) < ROWS_PER_ZERO * gram.offsets_fitted() {
         return changed.iter().map(|s| s.gap_um).collect();
     }
-    let source = source(data, &changed);
-    Gram::new(set_up.to_vec(), &source).solve(FREE_OFFSETS, &source).residuals_um
+    gram.solve(ratio, &source).residuals_um
+}
+
+/// Root mean square over the rows of the gap, one set-up and the zero of every run taken out, µm.
+#[must_use]
+pub fn gap_rms_um(data: &Measurements) -> f64 {
+    let scalars = data.scalars(None);
+    rms(&row_lengths(
+        &scalars,
+        &aligned(data, &scalars, &crate::library::frame(data, false), FREE_OFFSETS, &[]),
+    ))
 }
 
 /// Equations with a displacement taken off.

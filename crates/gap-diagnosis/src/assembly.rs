@@ -4,12 +4,13 @@ use std::cell::OnceCell;
 
 use machine_model::effects::EffectKind;
 
-use crate::align::{aligned, rms, row_lengths};
+use crate::align::{FREE_OFFSETS, aligned, rms, row_lengths};
 use crate::crossval::Folds;
 use crate::diagnose::Options;
 use crate::diagnosis::{Cause, Diagnosis, Gap, Leftover, Lookalike, Verdict};
 use crate::engine::{Explained, f_tail};
 use crate::library::Library;
+use crate::linear::Products;
 use crate::locate::places;
 use crate::noise::{Noise, NoiseSource, estimate};
 use crate::observation::{Measurements, Scalar};
@@ -18,7 +19,7 @@ use crate::rivals::{Rival, rivals};
 use crate::search::without;
 use crate::space::Part;
 use crate::term::Term;
-use crate::verdict::{Evidence, verdict};
+use crate::verdict::{Evidence, Unseen, verdict};
 
 /// A solved model and what is needed to speak about it.
 pub(crate) struct Assembly<'a> {
@@ -29,6 +30,9 @@ pub(crate) struct Assembly<'a> {
     pub(crate) ordered: Vec<Ranked>,
     /// Products of left-out runs with the columns in that order, made when a forecast asks for them.
     pub(crate) folds: OnceCell<Folds>,
+    /// Variance of the runs' own offsets over the noise's that an alignment takes out: any, or none where a cause shows
+    /// between the runs alone.
+    pub(crate) alignment: f64,
 }
 
 pub(crate) struct Ranked {
@@ -62,9 +66,13 @@ impl Ranked {
 
 impl<'a> Assembly<'a> {
     pub(crate) fn new(data: &'a Measurements, model: &'a Explained) -> Self {
-        let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um);
-        let mut assembly = Self { data, model, noise, ordered: Vec::new(), folds: OnceCell::new() };
+        let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um, model.phi);
+        let (ordered, folds, alignment) = (Vec::new(), OnceCell::new(), FREE_OFFSETS);
+        let mut assembly = Self { data, model, noise, ordered, folds, alignment };
         assembly.ordered = assembly.rank();
+        if assembly.between_runs() {
+            assembly.alignment = 0.0;
+        }
         assembly
     }
 
@@ -80,6 +88,26 @@ impl<'a> Assembly<'a> {
     /// Variance of the noise alone: never more than what is left.
     pub(crate) fn noise_variance(&self) -> f64 {
         self.noise.map_or(self.variance(), |n| n.variance.min(self.variance()))
+    }
+
+    /// True where a cause shows as the difference of runs (a load, a temperature, a tool that is one number per run): with
+    /// free offsets of the runs there would be neither gap nor gain.
+    fn between_runs(&self) -> bool {
+        /// Share of its information that lies within the runs.
+        const WITHIN: f64 = 0.3;
+        let (space, library) = (&self.model.space, &self.model.library);
+        let free = crate::space::RHO_GRID.len() - 1;
+        self.model.parts.iter().any(|part| {
+            let columns = space.columns(library, &[*part]);
+            let information =
+                |level: usize| columns.iter().map(|c| space.products(level).product(*c, *c)).sum::<f64>();
+            information(free) < WITHIN * information(0)
+        })
+    }
+
+    /// Variance of an aligned reading without gap over that of the noise: offsets that are not taken out stay.
+    pub(crate) fn unaligned(&self) -> f64 {
+        if self.alignment > 0.0 { 1.0 } else { 1.0 + self.model.solution.rho }
     }
 
     pub(crate) fn square(&self, parts: &[Part]) -> (f64, usize) {
@@ -135,29 +163,37 @@ impl<'a> Assembly<'a> {
         positions(&self.model.library, &self.model.parts, place)
     }
 
-    /// Columns of the measuring frame: the first six.
-    pub(crate) fn set_up_terms(&self) -> &[Term] {
-        self.model.solution.terms.split_at(6).0
+    /// Columns of the measuring frame of some rows: six, and angles of every run where the runs are turned.
+    pub(crate) fn frame(&self, data: &Measurements) -> Vec<Term> {
+        crate::library::frame(data, self.model.turned)
     }
 
-    /// What is neither frame nor cause and is known from the fit: the bar's length, unknown approaches.
+    /// What is neither frame nor cause and is known from the fit: the bar's length, unknown approaches, instruments' zeros.
     pub(crate) fn instrument(&self) -> Vec<(Term, f64)> {
         let solution = &self.model.solution;
-        (6..self.model.library.nuisances).map(|i| (solution.terms[i], solution.coefficients[i])).collect()
+        let library = &self.model.library;
+        (library.framing..library.nuisances).map(|i| (solution.terms[i], solution.coefficients[i])).collect()
     }
 
     /// The gap of some rows, aligned, with the first causes taken off.
     pub(crate) fn gap(&self, data: &Measurements, scalars: &[Scalar], count: usize) -> Vec<f64> {
         let mut off = self.instrument();
         off.extend(self.taken_off(count));
-        aligned(data, scalars, self.set_up_terms(), &off)
+        aligned(data, scalars, &self.frame(data), self.alignment, &off)
     }
 
     pub(crate) fn gap_after(&self, count: usize) -> Vec<f64> {
         self.gap(self.data, &self.model.scalars, count)
     }
 
-    pub(crate) fn diagnosis(&self, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
+    /// The answer. `kept_back` says what runs that a second search did not see make of its forecast; it is asked where
+    /// there is a name and no hold-out.
+    pub(crate) fn diagnosis(
+        &self,
+        holdout: Option<&Measurements>,
+        options: &Options,
+        kept_back: impl FnOnce() -> Option<Unseen>,
+    ) -> Diagnosis {
         let model = self.model;
         let before = self.gap_after(0);
         let mut lengths = row_lengths(&model.scalars, &before);
@@ -175,7 +211,8 @@ impl<'a> Assembly<'a> {
         let leftover = self.leftover();
         let causes = self.causes(holdout, gap_rms);
         let corner_um = self.uncertainty_in_corners_um(options.volume);
-        let evidence = Evidence {
+        let after = causes.last().map_or(gap_rms, |c| c.rms_after_um);
+        let mut evidence = Evidence {
             degrees: model.space.degrees,
             runs: self.data.runs.len(),
             visible: model.library.candidates.len(),
@@ -186,9 +223,26 @@ impl<'a> Assembly<'a> {
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
             carries: corner_um <= gap_rms,
+            slow: self.noise.is_some_and(|n| n.is_slow()),
+            trifling: gap_rms - after < crate::verdict::WORTH_NAMING * gap_rms,
+            unseen: None,
         };
-        let verdict = verdict(&evidence);
+        let held = holdout.map(|h| self.holdout(h));
+        let believed = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous);
+        evidence.unseen = match (holdout, &held) {
+            (Some(data), Some(held)) => {
+                let promised = causes.last().map(|c| c.shrink_predicted);
+                Some(self.unseen(data, held.rms_before_um, held.rms_after_um, promised))
+            }
+            _ if believed => kept_back(),
+            _ => None,
+        };
+        // Below the step of the control no correction is possible and no cause is worth a name.
+        let fine = gap_rms * 12.0_f64.sqrt() < options.resolution_um;
+        let causes = if fine { Vec::new() } else { causes };
+        let verdict = if fine { Verdict::NoGap } else { verdict(&evidence) };
         let mut notes = self.notes();
+        notes.extend(evidence.unseen.filter(|_| holdout.is_none()).and_then(|u| u.kept_back_note()));
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
         let sentence = if unsure {
@@ -197,10 +251,14 @@ impl<'a> Assembly<'a> {
                 "These rows cannot carry a correction: what they show is uncertain by {corner_um:.1} um in the far corner, and the gap itself is {gap_rms:.1} um RMS."
             )
         } else {
-            crate::sentence::sentence(verdict, &gap, &causes, &leftover)
+            let refuted = evidence.unseen.and_then(|u| u.refutation(!causes.is_empty()));
+            crate::sentence::sentence(verdict, &gap, &causes, &leftover) + &refuted.unwrap_or_default()
         };
-        let causes = if verdict == Verdict::Underpowered { Vec::new() } else { causes };
-        let holdout = holdout.filter(|_| !unsure).map(|h| self.holdout(h));
+        let mut causes = if verdict == Verdict::Underpowered { Vec::new() } else { causes };
+        if matches!(verdict, Verdict::Partial | Verdict::Unknown) {
+            causes.iter_mut().for_each(|c| c.remedy = crate::words::DO_NOT_ACT);
+        }
+        let holdout = held.filter(|_| !unsure);
         Diagnosis {
             verdict,
             sentence,
@@ -247,7 +305,7 @@ impl<'a> Assembly<'a> {
     }
 
     pub(crate) fn noise_ratio(&self) -> Option<f64> {
-        let stated = self.data.rows.iter().any(|r| r.u_um.is_some());
+        let stated = self.data.rows.iter().any(|r| r.u_um.iter().any(Option::is_some));
         stated.then(|| self.variance().sqrt() / self.data.typical_uncertainty_um())
     }
 
@@ -258,8 +316,20 @@ impl<'a> Assembly<'a> {
                 "No command was measured twice in a run: the noise is estimated from neighbouring rows, and a gap finer than their distance counts as noise.".to_owned(),
             ),
             None => notes.push("There are neither repeats nor neighbours to tell noise from gap.".to_owned()),
+            Some(noise) if noise.is_slow() => notes.push(format!(
+                "Repeats of one command scatter {:.1} times as much as neighbouring readings: something changes between the passes (temperature, machine or instrument), and the repeats' scatter is not noise alone.",
+                noise.slow
+            )),
             Some(_) => {}
         }
+        if self.model.phi > 0.0 {
+            notes.push(format!(
+                "Neighbouring readings hang together (correlation {:.2} from one to the next): intervals and tests count them as {:.0} % of as many independent ones.",
+                self.model.phi,
+                100.0 * (1.0 - self.model.phi) / (1.0 + self.model.phi)
+            ));
+        }
+        notes.extend(self.setup_notes());
         if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
             notes.push(format!(
                 "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used."
@@ -267,6 +337,36 @@ impl<'a> Assembly<'a> {
         }
         if let Some(refused) = &self.model.refused {
             notes.push(format!("{} was considered next and not named: {}.", refused.kind, refused.reason));
+        }
+        notes
+    }
+
+    /// What the set-up holds that its reader should know.
+    fn setup_notes(&self) -> Vec<String> {
+        let setup = self.setup();
+        let mut notes = Vec::new();
+        if self.model.turned {
+            let turns = || setup.run_rotations_urad.iter().flat_map(|(_, turn)| turn.iter().copied());
+            let (low, high) =
+                turns().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            notes.push(format!(
+                "The runs are turned against each other by up to {:.0} urad: every run has a set-up of its own (clamping), and that is taken out of the gap.",
+                high - low
+            ));
+        }
+        for (instrument, zeros) in &setup.instruments_um {
+            let axis = (0..3).max_by(|a, b| zeros[*a].0.abs().total_cmp(&zeros[*b].0.abs())).unwrap_or(0);
+            let (value, u95) = zeros[axis];
+            if value.abs() > u95 && value.abs() > 2.0 * self.noise_variance().sqrt() {
+                let name = |i: usize| self.data.instruments.get(i).map_or("?", String::as_str);
+                notes.push(format!(
+                    "The instruments {} and {} disagree by {:.1} ± {u95:.1} um in {}: taken out as set-up; which of them is right these rows do not say.",
+                    name(0),
+                    name(*instrument),
+                    value.abs(),
+                    ["X", "Y", "Z"][axis]
+                ));
+            }
         }
         notes
     }
@@ -306,6 +406,7 @@ impl<'a> Assembly<'a> {
                 let cause = Cause {
                     term: self.term(ranked.place),
                     effect: kind.to_string(),
+                    words: self.words(ranked.place),
                     parameters: self.parameters(ranked.place),
                     share_unique: ranked.unique,
                     share_alone: ranked.alone,
@@ -315,7 +416,12 @@ impl<'a> Assembly<'a> {
                     rms_before_um,
                     rms_after_um,
                     shrink_predicted: self.shrink(index + 1, holdout),
-                    remedy: remedy(kind),
+                    remedy: match (kind, self.own(ranked.place).first()) {
+                        (EffectKind::Backlash(_), Some((_, half_width))) if *half_width < 0.0 => {
+                            crate::words::NO_PLAY
+                        }
+                        _ => remedy(kind),
+                    },
                 };
                 rms_before_um = rms_after_um;
                 cause

@@ -47,7 +47,7 @@ impl Confounding {
 /// Between two effects with several textbook forms (time constants, places) the pair of forms that is most alike counts.
 #[must_use]
 pub fn confounding(design: &Measurements) -> Confounding {
-    let library = Library::new(design, &[]);
+    let library = Library::new(design, &[], false);
     let scalars = design.scalars(None);
     let gram = Gram::new(library.terms.clone(), &source(design, &scalars));
     let (whitened, _) = gram.whitened(RHO);

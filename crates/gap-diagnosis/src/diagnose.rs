@@ -16,6 +16,8 @@ pub struct Options {
     pub seed: u64,
     /// Where the causes are to be used; default: the box that was measured.
     pub volume: Option<Volume>,
+    /// Finest step of the axes, µm: a gap below it is none that anyone could correct. 0: not known.
+    pub resolution_um: f64,
 }
 
 /// Diagnoses the gap between `data` and the model that predicted its rows; `holdout` is never fitted.
@@ -25,7 +27,8 @@ pub fn diagnose(data: &Measurements, holdout: Option<&Measurements>, options: &O
         return answer;
     }
     let (model, magnitude_notes) = crate::magnitude::explained(data, &options.without);
-    let mut answer = Assembly::new(data, &model).diagnosis(holdout, options);
+    let kept_back = || crate::unseen::kept_back(data, &options.without);
+    let mut answer = Assembly::new(data, &model).diagnosis(holdout, options, kept_back);
     answer.notes.extend(magnitude_notes);
     answer
 }

@@ -106,6 +106,8 @@ pub struct Cause {
     pub term: EffectTerm,
     /// Its id.
     pub effect: String,
+    /// What it is, in words, with its size.
+    pub words: String,
     /// Its numbers.
     pub parameters: Vec<Parameter>,
     /// Share of the reducible gap that nothing else explains.
@@ -137,6 +139,10 @@ pub struct Setup {
     pub rotation_urad: [f64; 3],
     /// Offsets of the runs, µm.
     pub run_offsets_um: Vec<(String, [f64; 3])>,
+    /// Angles of the runs, where they are turned against each other, µrad.
+    pub run_rotations_urad: Vec<(String, [f64; 3])>,
+    /// Zeros of the instruments behind the first one against it, with the half width of the 95 % interval, µm.
+    pub instruments_um: Vec<(usize, [(f64, f64); 3])>,
 }
 
 /// What the causes leave.

@@ -4,15 +4,18 @@ use machine_model::effects::{EffectKind, Shape};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::assembly::positions;
+use crate::bounds::Bounds;
 use crate::columns::{Kept, Places};
+use crate::doubt::{self, Setting, could_be_turned};
 use crate::fit::Solution;
 use crate::gram::{Gram, Source};
 use crate::library::{Library, Variant, narrowest_mm};
-use crate::noise::outliers;
+use crate::noise::{estimate, outliers};
 use crate::observation::{Measurements, Scalar};
 use crate::pool::Pool;
 use crate::propose::{self, Pitches};
 use crate::refine::Stage;
+use crate::rivals::WITHIN;
 use crate::search::{MOST_TRIED, Move, next_move};
 use crate::space::{Fit, Part, Space};
 use crate::term::Term;
@@ -51,6 +54,17 @@ pub(crate) struct Explained {
     pub dropped_residuals_um: Vec<f64>,
     /// The effect that would come next and why it did not.
     pub refused: Option<Refused>,
+    /// Correlation of a reading with the next one of its run.
+    pub phi: f64,
+    /// The set-up holds an angle of every run.
+    pub turned: bool,
+}
+
+impl Explained {
+    /// BIC of the whole model, its set-up counted, so that models with different set-ups compare.
+    fn evidence(&self) -> f64 {
+        self.space.evidence(&self.fit)
+    }
 }
 
 /// An effect that scored and failed a test.
@@ -71,35 +85,83 @@ pub(crate) struct Refused {
 pub(crate) fn explain_roughly(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
     let places = Places::new(&data.rows);
     let source = Source { places: Some(&places), ..source(data, scalars) };
-    pass(data, &mut Pool::new(&source), &[], without, None, Task::Search)
+    pass(data, &mut Pool::new(&source), &[], without, Setting::default(), None, Task::Search)
 }
 
-/// Runs the search, drops lone outliers, and searches again until they stay the same.
+/// Runs the search, and again where what it took for granted of noise and set-up does not hold on what it left.
 #[must_use]
 pub(crate) fn explain(data: &Measurements, scalars: &[Scalar], without: &[EffectKind]) -> Explained {
     let places = Places::new(&data.rows);
-    let source = Source { places: Some(&places), ..source(data, scalars) };
-    let mut pool = Pool::new(&source);
+    let shifted = weighed_and_settled(data, scalars, without, &places, false);
+    if !could_be_turned(data) {
+        return shifted;
+    }
+    let noise = estimate(&data.rows, &shifted.scalars, &shifted.solution.residuals_um, shifted.phi);
+    let left = |model: &Explained| {
+        let noise = noise.map_or(0.0, |n| n.variance) * model.space.degrees;
+        (model.solution.residual_square - noise).max(0.0)
+    };
+    if left(&shifted) <= 0.0 && shifted.parts.is_empty() {
+        return shifted;
+    }
+    let turned = weighed_and_settled(data, scalars, without, &places, true);
+    // Angles of runs explain more than they cost, and most of what no cause explains.
+    let better = turned.evidence() < shifted.evidence() - WITHIN && left(&turned) <= 0.5 * left(&shifted);
+    if better { turned } else { shifted }
+}
+
+/// The search with weights by component where these scatter differently.
+fn weighed_and_settled(
+    data: &Measurements,
+    scalars: &[Scalar],
+    without: &[EffectKind],
+    places: &Places,
+    turned: bool,
+) -> Explained {
+    let source = Source { places: Some(places), ..source(data, scalars) };
+    let first = settled(data, &source, without, turned, None);
+    match doubt::weighed(data, &first, scalars) {
+        Some(scalars) => settled(data, &Source { scalars: &scalars, ..source }, without, turned, Some(first)),
+        None => first,
+    }
+}
+
+/// Runs the search, drops lone outliers, and searches again until they stay the same; then once more where the readings
+/// of a run turn out to hang together.
+fn settled(
+    data: &Measurements,
+    source: &Source<'_>,
+    without: &[EffectKind],
+    turned: bool,
+    start: Option<Explained>,
+) -> Explained {
+    let scalars = source.scalars;
+    let mut pool = Pool::new(source);
     let mut dropped: Vec<usize> = Vec::new();
-    let mut result = pass(data, &mut pool, &dropped, without, None, Task::Search);
+    let mut setting = Setting { phi: 0.0, turned };
+    let mut result = pass(data, &mut pool, &dropped, without, setting, start, Task::Search);
     let lone = |solution: &Solution| {
-        let residuals = conditional_residuals(solution, &source);
+        let residuals = conditional_residuals(solution, source);
         outliers(&data.rows, scalars, &residuals)
     };
     for nth in 0..PASSES {
         let local = result.parts.iter().any(|p| is_local(result.library.candidates[p.candidate].kind));
         let found =
-            if nth == 0 && local { lone(&without_damage(&result, &source)) } else { lone(&result.solution) };
+            if nth == 0 && local { lone(&without_damage(&result, source)) } else { lone(&result.solution) };
         if found == dropped || found.len() * 5 > data.rows.len() {
             break;
         }
         dropped = found;
-        result = pass(data, &mut pool, &dropped, without, Some(result), Task::Search);
+        result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
     }
-    result = pass(data, &mut pool, &dropped, without, Some(result), Task::Imitate);
+    setting.phi = doubt::phi(&data.rows, &result.scalars, &result.solution.residuals_um);
+    if setting.phi > 0.0 {
+        result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
+    }
+    result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Imitate);
     result.outliers.clone_from(&dropped);
     if !dropped.is_empty() {
-        let all = conditional_residuals(&result.solution, &source);
+        let all = conditional_residuals(&result.solution, source);
         let left_out = scalars.iter().zip(all).filter(|(s, _)| dropped.binary_search(&s.row).is_ok());
         result.dropped_residuals_um = left_out.map(|(_, r)| r).collect();
     }
@@ -154,6 +216,7 @@ fn pass(
     pool: &mut Pool<'_>,
     dropped: &[usize],
     without: &[EffectKind],
+    setting: Setting,
     start: Option<Explained>,
     task: Task,
 ) -> Explained {
@@ -163,7 +226,7 @@ fn pass(
     let source = Source { scalars: &scalars, ..all };
     // Too few to look anything up.
     let lost = Source { scalars: &lost, places: None, ..all };
-    let mut state = State::new(data, &source, pool, lost, without, start);
+    let mut state = State::new(data, &source, pool, lost, without, setting, start);
     match task {
         Task::Search => state.search(),
         Task::Imitate => state.imitate(),
@@ -183,6 +246,8 @@ fn pass(
         dropped_residuals_um: Vec::new(),
         equally_good: Vec::new(),
         refused,
+        phi: setting.phi,
+        turned: setting.turned,
         scalars,
     }
 }
@@ -202,7 +267,10 @@ pub(crate) struct State<'a, 'b> {
     pub(crate) space: Space,
     pub(crate) parts: Vec<Part>,
     pub(crate) fit: Fit,
-    refused: Option<Refused>,
+    pub(crate) refused: Option<Refused>,
+    pub(crate) bounds: Bounds,
+    /// Correlation of neighbouring readings of a run.
+    pub(crate) phi: f64,
 }
 
 impl<'a, 'b> State<'a, 'b> {
@@ -213,10 +281,11 @@ impl<'a, 'b> State<'a, 'b> {
         pool: &'a mut Pool<'b>,
         lost: Source<'a>,
         without: &'a [EffectKind],
+        setting: Setting,
         start: Option<Explained>,
     ) -> Self {
         let (library, parts, refused) = start.map_or_else(
-            || (Library::new(data, without), Vec::new(), None),
+            || (Library::new(data, without, setting.turned), Vec::new(), None),
             |s| (s.library, s.parts, s.refused),
         );
         let gone = Gram::new(library.terms.clone(), &lost);
@@ -225,7 +294,23 @@ impl<'a, 'b> State<'a, 'b> {
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
-        Self { data, source, without, library, pool, lost, positions, pitches, space, parts, fit, refused }
+        let (bounds, phi) = (Bounds::new(data, source.scalars), setting.phi);
+        Self {
+            data,
+            source,
+            without,
+            library,
+            pool,
+            lost,
+            positions,
+            pitches,
+            space,
+            parts,
+            fit,
+            refused,
+            bounds,
+            phi,
+        }
     }
 
     fn search(&mut self) {
@@ -268,6 +353,7 @@ impl<'a, 'b> State<'a, 'b> {
             }
         }
         self.prune();
+        self.restrain();
     }
 
     /// The first of some effects that passes its tests, or why the best did not.
@@ -351,11 +437,8 @@ impl<'a, 'b> State<'a, 'b> {
                 continue;
             }
             let (found, asked) = self.pitches[axis].best(self.source, &solution.residuals_um, axis);
-            let range = self.data.range_mm(axis);
             for pitch in found {
-                let mut variants = propose::pitch_variants(&mut self.library, axis, pitch, range);
-                let coarse = propose::is_coarse(self.source, axis, pitch);
-                variants.iter_mut().for_each(|v| v.only_rival = coarse);
+                let variants = propose::pitch_variants(&mut self.library, self.data, axis, pitch);
                 self.library.add_variants(kind, variants, asked);
             }
         }
@@ -419,8 +502,7 @@ impl<'a, 'b> State<'a, 'b> {
             }
             let variants = match kind {
                 EffectKind::Pitch(axis) => {
-                    let range = self.data.range_mm(axis);
-                    propose::pitch_variants(&mut self.library, axis, better.pitch_mm, range)
+                    propose::pitch_variants(&mut self.library, self.data, axis, better.pitch_mm)
                 }
                 EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
                 _ => {

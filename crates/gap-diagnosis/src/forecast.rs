@@ -55,13 +55,13 @@ impl Assembly<'_> {
         let own: Vec<(Term, f64)> = self.taken_off(count);
         let positions: Vec<usize> =
             self.ordered.iter().take(count).flat_map(|r| self.positions(r.place)).collect();
-        let mut terms = self.set_up_terms().to_vec();
+        let mut terms = self.frame(data);
         let nuisances = terms.len();
         terms.extend(own.iter().map(|(t, _)| *t));
         let source = source(data, scalars);
         let gram = Gram::new(terms, &source);
         let align = scalars.len() >= 24 && !data.has_magnitudes();
-        let (whitened, _) = gram.whitened(if align { FREE_OFFSETS } else { 0.0 });
+        let (whitened, _) = gram.whitened(if align { self.alignment } else { 0.0 });
         let (products, rank) =
             crate::gram::eliminate(&whitened, if align { nuisances } else { 0 }, &gram.squares());
         let offset = products.nrows() - 1 - own.len();
@@ -76,11 +76,12 @@ impl Assembly<'_> {
         }
         let equations = scalars.len().max(1) as f64;
         let noise = self.noise_variance().max(1e-12);
-        let fitted = if align { rank as f64 + gram.offsets_fitted() } else { 0.0 };
+        let offsets = if self.alignment < FREE_OFFSETS { 0.0 } else { gram.offsets_fitted() };
+        let fitted = if align { rank as f64 + offsets } else { 0.0 };
         Strength {
             square: square / equations / noise,
             spread: spread * self.variance() / equations / noise,
-            noise: (1.0 - fitted / equations).max(0.05),
+            noise: self.unaligned() * (1.0 - fitted / equations).max(0.05),
         }
     }
 
@@ -139,15 +140,16 @@ impl Assembly<'_> {
                 let (instead, minus): (Vec<_>, Vec<_>) =
                     (instead.clone().collect(), instead.map(|(t, v)| (t, -v)).collect());
                 let difference: Vec<_> = named.iter().copied().chain(minus).collect();
-                let square = |terms: &[(Term, f64)]| scale * self.aligned_square(terms, &source);
+                let frame = self.frame(data);
+                let square = |terms: &[(Term, f64)]| scale * self.aligned_square(terms, &frame, &source);
                 found.push(Alternative { weight, square: square(&instead), difference: square(&difference) });
             }
         }
         found
     }
 
-    /// Square of what some terms displace, set-up and run offsets of any size taken out, µm².
-    fn aligned_square(&self, terms: &[(Term, f64)], source: &Source<'_>) -> f64 {
+    /// Square of what some terms displace, set-up and run offsets taken out, µm².
+    fn aligned_square(&self, terms: &[(Term, f64)], frame: &[Term], source: &Source<'_>) -> f64 {
         let displaced: Vec<Scalar> = source
             .scalars
             .iter()
@@ -158,7 +160,7 @@ impl Assembly<'_> {
             })
             .collect();
         let source = Source { scalars: &displaced, ..*source };
-        let (whitened, _) = Gram::new(self.set_up_terms().to_vec(), &source).whitened(FREE_OFFSETS);
+        let (whitened, _) = Gram::new(frame.to_vec(), &source).whitened(self.alignment);
         let columns: Vec<usize> = (0..whitened.nrows() - 1).collect();
         let squares: Vec<f64> = columns.iter().map(|i| whitened[(*i, *i)]).collect();
         let last = columns.len();

@@ -6,11 +6,13 @@
 
 mod align;
 mod assembly;
+mod bounds;
 mod columns;
 mod confounding;
 mod crossval;
 mod diagnose;
 mod diagnosis;
+mod doubt;
 mod engine;
 mod fit;
 mod forecast;
@@ -40,7 +42,9 @@ mod tile;
 mod trial;
 mod unseen;
 mod verdict;
+mod words;
 
+pub use align::gap_rms_um;
 pub use confounding::{Confounding, confounding};
 pub use diagnose::{Options, diagnose, underpowered};
 pub use diagnosis::{

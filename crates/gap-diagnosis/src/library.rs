@@ -42,7 +42,9 @@ impl Candidate {
 pub(crate) struct Library {
     /// Set-up columns first, then those of the effects.
     pub terms: Vec<Term>,
-    /// How many of the columns are set-up.
+    /// How many of the columns are the measuring frame's and the runs' angles.
+    pub framing: usize,
+    /// How many of the columns are set-up: these, and what the instruments add.
     pub nuisances: usize,
     /// The effects.
     pub candidates: Vec<Candidate>,
@@ -59,6 +61,8 @@ const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
 struct Seen {
     /// Number of different places per axis.
     places: [usize; 3],
+    /// Of these, as many as a curve can tell apart.
+    effective: [f64; 3],
     /// Narrowest damage that these places could show.
     narrowest_mm: [f64; 3],
     range: [(f64, f64); 3],
@@ -74,12 +78,23 @@ struct Seen {
 }
 
 impl Seen {
+    /// True where an effect of this kind may have so many coefficients: a curve along an axis at most half of the places
+    /// measured there, shift and slope (which are the set-up's) left over for two more.
+    fn carry(&self, kind: EffectKind, coefficients: usize) -> bool {
+        curve_axis(kind).is_none_or(|axis| {
+            let places = self.effective[axis];
+            2.0 * coefficients as f64 <= places && coefficients as f64 + 2.0 <= places
+        })
+    }
+
     fn new(data: &Measurements) -> Self {
         let rows = &data.rows;
         let varies = |value: &dyn Fn(&Row) -> Option<f64>| range(rows, value).is_some_and(|(a, b)| b > a);
         let places = [0, 1, 2].map(|a| data.places_mm(a).len());
         Self {
             places,
+            // Half a place is rounding.
+            effective: [0, 1, 2].map(|a| data.effective_places(a) + 0.5),
             narrowest_mm: [0, 1, 2].map(|a| narrowest_mm(data, a)),
             range: [0, 1, 2].map(|a| data.range_mm(a)),
             direction: [0, 1, 2].map(|a| {
@@ -98,6 +113,19 @@ impl Seen {
             rotary: [0, 1, 2]
                 .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
         }
+    }
+}
+
+/// The axis along which an effect is a curve.
+#[must_use]
+pub(crate) const fn curve_axis(kind: EffectKind) -> Option<usize> {
+    match kind {
+        EffectKind::Positioning(axis)
+        | EffectKind::Straightness { axis, .. }
+        | EffectKind::Angular { axis, .. }
+        | EffectKind::Pitch(axis)
+        | EffectKind::Sag(axis) => Some(axis),
+        _ => None,
     }
 }
 
@@ -122,13 +150,37 @@ fn range(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> Option<(f64, f64)
     Some(known.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
 }
 
+/// Columns of the measuring frame: shift and rotation, and where runs are turned against each other, those of every run
+/// about its middle.
+#[must_use]
+pub(crate) fn frame(data: &Measurements, turned: bool) -> Vec<Term> {
+    let mut terms: Vec<Term> = (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
+    for run in 0..if turned { data.runs.len() } else { 0 } {
+        let tips =
+            || data.rows.iter().filter(|r| r.run == run).map(|r| r.command.linear_mm + r.command.tool_mm);
+        let count = tips().count().max(1) as f64;
+        let centre_mm: [f64; 3] = (tips().sum::<machine_model::Vector>() / count).into();
+        terms.extend((0..3).map(|about| Term::RunRotation { run, about, centre_mm }));
+    }
+    terms
+}
+
+/// Columns of the zero of every instrument but the first.
+fn instruments(data: &Measurements) -> Vec<Term> {
+    let count = data.rows.iter().filter_map(|r| r.instrument).max().map_or(0, |m| m + 1);
+    (1..count)
+        .flat_map(|instrument| (0..3).map(move |axis| Term::InstrumentShift { instrument, axis }))
+        .collect()
+}
+
 impl Library {
-    /// Every effect whose columns the rows hold, except those in `without`.
+    /// Every effect whose columns the rows hold, except those in `without`; `turned`: every run has angles of its own.
     #[must_use]
-    pub(crate) fn new(data: &Measurements, without: &[EffectKind]) -> Self {
+    pub(crate) fn new(data: &Measurements, without: &[EffectKind], turned: bool) -> Self {
         let seen = Seen::new(data);
-        let mut terms: Vec<Term> =
-            (0..3).map(Term::SetupShift).chain((0..3).map(Term::SetupRotation)).collect();
+        let mut terms = frame(data, turned);
+        let framing = terms.len();
+        terms.extend(instruments(data));
         if data.has_lengths() {
             terms.push(Term::BarLength);
         }
@@ -138,9 +190,10 @@ impl Library {
             }
         }
         let nuisances = terms.len();
-        let mut library = Self { terms, nuisances, candidates: Vec::new() };
+        let mut library = Self { terms, framing, nuisances, candidates: Vec::new() };
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
-            let variants = library.forms(kind, &seen);
+            let mut variants = library.forms(kind, &seen);
+            variants.retain(|form| seen.carry(kind, form.columns.len()));
             if !variants.is_empty() {
                 library.candidates.push(Candidate { kind, variants, rejected: 0 });
             }
@@ -174,7 +227,7 @@ impl Library {
     }
 
     /// Forms made of a list of coefficient indices each; the first list is the textbook form.
-    fn selections(&mut self, kind: EffectKind, shape: Shape, lists: &[&[usize]]) -> Vec<Variant> {
+    pub(crate) fn selections(&mut self, kind: EffectKind, shape: Shape, lists: &[&[usize]]) -> Vec<Variant> {
         let mut indices: Vec<usize> = lists.iter().flat_map(|l| l.iter().copied()).collect();
         indices.sort_unstable();
         indices.dedup();

@@ -44,35 +44,20 @@ pub(crate) fn places(
     }
     let squares: Vec<f64> = gap_um.iter().map(|g| g * g).collect();
     let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let found: Vec<Scored> = families(data, scalars)
+        .into_iter()
+        .map(|family| Scored::new(family, data, scalars, &squares, &mut random))
+        .collect();
+    // The largest of all cells of all families in each relabelling corrects for how many were looked at.
+    let largest: Vec<f64> = (0..RELABELLINGS)
+        .map(|k| found.iter().map(|f| f.relabelled[k]).fold(f64::NEG_INFINITY, f64::max))
+        .collect();
+    let share = |sum: f64, count: f64| {
+        let own = (sum - noise_variance * count).max(0.0);
+        if beyond > 0.0 { (own / beyond).min(1.0) } else { sum / total }
+    };
     let mut cells = Vec::new();
-    for family in families(data, scalars) {
-        let counts = sums(&family, &vec![1.0; scalars.len()], 0);
-        let observed = sums(&family, &squares, 0);
-        let mean = total / scalars.len() as f64;
-        // Excess over an even spread, on the scale of its own scatter.
-        let excess = |sum: f64, count: f64| {
-            if count > 0.0 { (sum - mean * count) / count.sqrt() } else { f64::NEG_INFINITY }
-        };
-        let score =
-            |sums: &[f64]| -> Vec<f64> { sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect() };
-        let own = score(&observed);
-        let share = |sum: f64, count: f64| {
-            let own = (sum - noise_variance * count).max(0.0);
-            if beyond > 0.0 { (own / beyond).min(1.0) } else { sum / total }
-        };
-        // Either relabelling keeps how rows hang together, and the largest of all cells corrects for their number.
-        let by_run = (family.by == COMPONENT).then(|| components_by_run(data, scalars, &squares));
-        let largest: Vec<f64> = (0..RELABELLINGS)
-            .map(|_| {
-                let sums = match &by_run {
-                    // The components of a whole run change names.
-                    Some(runs) => renamed(runs, &counts, &mut random),
-                    // The labels are shifted along the file.
-                    None => sums(&family, &squares, random.random_range(1..scalars.len().max(2))),
-                };
-                score(&sums).into_iter().fold(f64::NEG_INFINITY, f64::max)
-            })
-            .collect();
+    for Scored { family, counts, observed, own, .. } in found {
         let mut found: Vec<Cell> = family
             .names
             .iter()
@@ -91,6 +76,57 @@ pub(crate) fn places(
         cells.extend(found);
     }
     cells
+}
+
+/// A family with what its cells hold and what relabelled ones would, on one scale for all families: standard deviations of
+/// the largest cell of a relabelling about its mean.
+struct Scored {
+    family: Family,
+    counts: Vec<f64>,
+    observed: Vec<f64>,
+    /// Excess of every cell.
+    own: Vec<f64>,
+    /// Largest excess of every relabelling.
+    relabelled: Vec<f64>,
+}
+
+impl Scored {
+    fn new(
+        family: Family,
+        data: &Measurements,
+        scalars: &[Scalar],
+        squares: &[f64],
+        random: &mut ChaCha8Rng,
+    ) -> Self {
+        let counts = sums(&family, &vec![1.0; scalars.len()], 0);
+        let observed = sums(&family, squares, 0);
+        let mean = squares.iter().sum::<f64>() / scalars.len() as f64;
+        // Excess over an even spread, on the scale of its own scatter.
+        let excess = |sum: f64, count: f64| {
+            if count > 0.0 { (sum - mean * count) / count.sqrt() } else { f64::NEG_INFINITY }
+        };
+        let score =
+            |sums: &[f64]| -> Vec<f64> { sums.iter().zip(&counts).map(|(s, c)| excess(*s, *c)).collect() };
+        // Either relabelling keeps how rows hang together.
+        let by_run = (family.by == COMPONENT).then(|| components_by_run(data, scalars, squares));
+        let largest: Vec<f64> = (0..RELABELLINGS)
+            .map(|_| {
+                let sums = match &by_run {
+                    // The components of a whole run change names.
+                    Some(runs) => renamed(runs, &counts, random),
+                    // The labels are shifted along the file.
+                    None => sums(&family, squares, random.random_range(1..scalars.len().max(2))),
+                };
+                score(&sums).into_iter().fold(f64::NEG_INFINITY, f64::max)
+            })
+            .collect();
+        let middle = largest.iter().sum::<f64>() / RELABELLINGS as f64;
+        let spread = largest.iter().map(|l| (l - middle) * (l - middle)).sum::<f64>() / RELABELLINGS as f64;
+        let scale = |value: f64| (value - middle) / spread.sqrt().max(1e-12 * mean.max(1e-12));
+        let own = score(&observed).into_iter().map(scale).collect();
+        let relabelled = largest.into_iter().map(scale).collect();
+        Self { family, counts, observed, own, relabelled }
+    }
 }
 
 /// Squares of every run by component.

@@ -64,7 +64,7 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explain
 fn noise_um(data: &Measurements) -> f64 {
     let scalars = first_equations(data);
     let gaps: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    noise::estimate(&data.rows, &scalars, &gaps).map_or(0.0, |noise| noise.variance.sqrt())
+    noise::estimate(&data.rows, &scalars, &gaps, 0.0).map_or(0.0, |noise| noise.variance.sqrt())
 }
 
 /// A file with lengths and the noise of one component.
@@ -217,7 +217,7 @@ fn starts(lengths: &Lengths<'_>, without: &[EffectKind]) -> Vec<Guess> {
         own: Vec<(usize, f64)>,
     }
     let data = lengths.data;
-    let library = Library::new(data, without);
+    let library = Library::new(data, without, false);
     let predicted: Vec<Vector> = data.rows.iter().map(|r| 1e3 * r.predicted_mm).collect();
     let measured: Vec<f64> =
         data.rows.iter().map(|r| if let Reading::Magnitude(um) = r.reading { um } else { 0.0 }).collect();

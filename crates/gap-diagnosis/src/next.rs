@@ -50,7 +50,7 @@ pub(crate) fn next_measurement(
         let mut runs = data.runs.clone();
         runs.push("next".to_owned());
         let rows: Vec<Row> = line.rows.iter().map(|r| Row { run: data.runs.len(), ..*r }).collect();
-        let extra = Measurements { runs, rows, geometry: data.geometry.clone() };
+        let extra = Measurements { runs, rows, ..data.clone() };
         let scalars = extra.scalars(None);
         let (fresh, _) = Gram::new(terms.clone(), &source(&extra, &scalars)).whitened(model.solution.rho);
         let sigma = separation(&(&known + fresh), explained_by, &values, noise_um);
@@ -110,7 +110,9 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
             ..typical.conditions
         },
         predicted_mm: Vector::zeros(),
-        u_um: None,
+        u_um: [None; 3],
+        instrument: None,
+        artefact: None,
         reading: Reading::Displacement([Some(0.0); 3]),
         ..typical
     };

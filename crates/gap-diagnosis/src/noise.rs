@@ -22,26 +22,65 @@ pub(crate) struct Noise {
     pub degrees: f64,
     /// Where it comes from.
     pub source: NoiseSource,
+    /// Scatter of repeats over that of neighbouring readings, at least 1.
+    pub slow: f64,
 }
 
-/// Repeats must give at least this many degrees of freedom to be believed.
-const ENOUGH_REPEATS: f64 = 12.0;
-
-/// Noise variance from residuals: from repeats where there are enough, else from neighbours.
-#[must_use]
-pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
-    let repeats = from_repeats(rows, scalars, residuals_um);
-    match repeats {
-        Some(noise) if noise.degrees >= ENOUGH_REPEATS => Some(noise),
-        _ => from_neighbours(rows, scalars, residuals_um).or(repeats),
+impl Noise {
+    /// True where one command read again differs by more than neighbouring readings scatter.
+    #[must_use]
+    pub(crate) fn is_slow(&self) -> bool {
+        self.slow > SLOW
     }
 }
 
+/// Repeats differ in temperature by less than this: 0.5 m of steel grows by 6 µm in one kelvin.
+const SAME_K: f64 = 1.0;
+/// Repeats must give at least this many degrees of freedom to be believed.
+const ENOUGH_REPEATS: f64 = 12.0;
+
+/// Repeats that scatter by this factor more than neighbours (standard deviations) differ by more than noise: something
+/// changed between the passes.
+const SLOW: f64 = 2.0;
+
+/// Noise variance from residuals: from repeats where there are enough, else from neighbours.
+///
+/// `phi`: correlation of a reading with the next one of its run. Neighbours then differ by less than independent
+/// readings: `σ²` times `1 - 4φ/3 + φ²/3` in second differences.
+#[must_use]
+pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
+    let floor = quantum_um(scalars).powi(2) / 12.0;
+    let neighbours = from_neighbours(rows, scalars, residuals_um, phi);
+    let found = match from_repeats(rows, scalars, residuals_um) {
+        Some(noise) if noise.degrees >= ENOUGH_REPEATS => {
+            let slow = neighbours
+                .map_or(1.0, |n| (noise.variance / n.variance.max(floor).max(1e-12)).sqrt())
+                .max(1.0);
+            Some(Noise { slow, ..noise })
+        }
+        few => neighbours.or(few),
+    };
+    found.map(|noise| Noise { variance: noise.variance.max(floor), ..noise })
+}
+
+/// Step of the readings, µm, 0 where they have none: a display that shows whole micrometres gives few different values.
+#[must_use]
+pub(crate) fn quantum_um(scalars: &[Scalar]) -> f64 {
+    /// Distinct values may be at most this share of the readings.
+    const FEW: f64 = 0.3;
+    let mut values: Vec<f64> = scalars.iter().map(|s| s.reading_um).collect();
+    values.sort_by(f64::total_cmp);
+    let mut steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).collect();
+    if (steps.len() as f64) < FEW * values.len() as f64 { median(&mut steps).unwrap_or(0.0) } else { 0.0 }
+}
+
 /// Everything that must agree for two rows to be repeats, in steps far below what matters.
-fn key(row: &Row, scalar: &Scalar) -> [i64; 17] {
+fn key(row: &Row, scalar: &Scalar) -> [i64; 22] {
     let step = |v: f64, unit: f64| (v / unit).round() as i64;
     let c = &row.command;
     let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
+    let id = |v: Option<usize>| v.map_or(-1, |v| v as i64);
+    let [tx, ty, tz] = row.conditions.temp_c.map(|t| optional(t, SAME_K));
     [
         row.run as i64,
         step(c.linear_mm.x, 1e-5),
@@ -60,34 +99,45 @@ fn key(row: &Row, scalar: &Scalar) -> [i64; 17] {
         step(scalar.along.x, 1e-4),
         step(scalar.along.y, 1e-4),
         step(scalar.along.z, 1e-4),
+        id(row.instrument),
+        id(row.artefact),
+        tx,
+        ty,
+        tz,
     ]
 }
 
+/// Scatter about the mean of repeats. The same command in another run, with another artefact or instrument or at another
+/// temperature is no repeat: what differs then is set-up, workpiece or machine.
+///
+/// Single blunders would make the noise large enough to hide themselves: readings of three repeats and more that lie
+/// further than [`BLUNDER`] robust standard deviations from their median are left out.
 fn from_repeats(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
-    let mut groups: BTreeMap<[i64; 17], Vec<f64>> = BTreeMap::new();
-    let mut joined: BTreeMap<[i64; 17], Vec<f64>> = BTreeMap::new();
+    /// Far beyond the tail of what is left when outliers have gone.
+    const BLUNDER: f64 = 8.0;
+    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
-        let mut key = key(&rows[scalar.row], scalar);
-        let value = r * scalar.weight.sqrt();
-        groups.entry(key).or_default().push(value);
-        key[0] = 0;
-        joined.entry(key).or_default().push(value);
+        groups.entry(key(&rows[scalar.row], scalar)).or_default().push(r * scalar.weight.sqrt());
     }
-    // Repeats within a run are free of the run's offset; across runs the offset was estimated and removed.
-    let pooled = |groups: &BTreeMap<[i64; 17], Vec<f64>>| {
-        let (mut square, mut degrees) = (0.0, 0.0);
-        for group in groups.values().filter(|g| g.len() > 1) {
-            let mean = group.iter().sum::<f64>() / group.len() as f64;
-            square += group.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
-            degrees += group.len() as f64 - 1.0;
+    groups.retain(|_, group| group.len() > 1);
+    let differences = groups.values().flat_map(|g| g.windows(2).map(|w| (w[1] - w[0]).abs()));
+    let robust = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences.collect::<Vec<f64>>())?;
+    let (mut square, mut degrees) = (0.0, 0.0);
+    for group in groups.values_mut() {
+        if group.len() > 2 && robust > 0.0 {
+            let middle = median(&mut group.clone()).unwrap_or(0.0);
+            group.retain(|v| (v - middle).abs() <= BLUNDER * robust);
         }
-        (degrees > 0.0).then(|| Noise { variance: square / degrees, degrees, source: NoiseSource::Repeats })
-    };
-    pooled(&groups).filter(|n| n.degrees >= ENOUGH_REPEATS).or_else(|| pooled(&joined))
+        let mean = group.iter().sum::<f64>() / group.len() as f64;
+        square += group.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+        degrees += group.len() as f64 - 1.0;
+    }
+    let source = NoiseSource::Repeats;
+    (degrees > 0.0).then(|| Noise { variance: square / degrees, degrees, source, slow: 1.0 })
 }
 
 /// Second differences along a run, robustly: a smooth residual cancels, noise does not.
-fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
     let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
         let row = &rows[scalar.row];
@@ -100,7 +150,9 @@ fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Op
         .collect();
     let degrees = differences.len() as f64 / 3.0;
     let sigma = 1.4826 * median(&mut differences)?;
-    (degrees >= 4.0).then_some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Neighbours })
+    let variance = sigma * sigma / (1.0 - 4.0 / 3.0 * phi + phi * phi / 3.0).max(0.02);
+    let source = NoiseSource::Neighbours;
+    (degrees >= 4.0).then_some(Noise { variance, degrees, source, slow: 1.0 })
 }
 
 /// Median; sorts what it is given.
@@ -125,7 +177,8 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
     let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
     let mut sizes: Vec<f64> = weighted.iter().map(|v| v.abs()).collect();
     let Some(mad) = median(&mut sizes) else { return Vec::new() };
-    let sigma = (1.4826 * mad).max(1e-6);
+    // Where most readings show the same number, the display's step is the scatter.
+    let sigma = (1.4826 * mad).max(quantum_um(scalars)).max(1e-6);
     let mut lines: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     // Sum and count at one place, whatever the direction and the repeat.
     let mut places: BTreeMap<(usize, usize, [i64; 6]), (f64, f64)> = BTreeMap::new();

@@ -30,12 +30,29 @@ pub struct Row {
     pub conditions: Conditions,
     /// Real minus nominal tip that the model predicts here, mm.
     pub predicted_mm: Vector,
-    /// Standard uncertainty stated for the row, µm.
-    pub u_um: Option<f64>,
+    /// Standard uncertainty stated for each component, µm.
+    pub u_um: [Option<f64>; 3],
+    /// Which instrument read it, numbered in order of appearance; `None` where the file does not say.
+    pub instrument: Option<usize>,
+    /// Which artefact (workpiece, ball plate, mirror) was read; `None` where the file does not say.
+    pub artefact: Option<usize>,
     /// What was read.
     pub reading: Reading,
     /// Line of the file, for messages.
     pub line: u64,
+}
+
+impl Row {
+    /// Stated uncertainty of an equation of a class: of its component, or the mean of all for another direction, µm.
+    #[must_use]
+    pub fn uncertainty_um(&self, class: usize) -> Option<f64> {
+        if class < 3 {
+            return self.u_um[class];
+        }
+        let stated = || self.u_um.into_iter().flatten();
+        let count = stated().count();
+        (count > 0).then(|| (stated().map(|u| u * u).sum::<f64>() / count as f64).sqrt())
+    }
 }
 
 /// A measurement file.
@@ -43,6 +60,8 @@ pub struct Row {
 pub struct Measurements {
     /// Names of the runs, in order of appearance.
     pub runs: Vec<String>,
+    /// Names of the instruments, in order of appearance; empty where the file does not say.
+    pub instruments: Vec<String>,
     /// The rows in the order of the file.
     pub rows: Vec<Row>,
     /// What the effects must know of the machine.
@@ -79,6 +98,8 @@ pub struct Scalar {
     pub class: usize,
     /// Measured minus predicted, µm.
     pub gap_um: f64,
+    /// What the instrument showed, µm: what it rounds to is seen here.
+    pub reading_um: f64,
     /// Inverse variance relative to the other rows.
     pub weight: f64,
 }
@@ -92,9 +113,9 @@ impl Measurements {
         let typical = self.typical_uncertainty_um();
         let mut scalars = Vec::with_capacity(3 * self.rows.len());
         for (index, row) in self.rows.iter().enumerate() {
-            let weight = row.u_um.map_or(1.0, |u| (typical / u) * (typical / u));
-            let mut push = |along: Vector, class: usize, gap_um: f64| {
-                scalars.push(Scalar { row: index, along, class, gap_um, weight });
+            let mut push = |along: Vector, class: usize, gap_um: f64, reading_um: f64| {
+                let weight = row.uncertainty_um(class).map_or(1.0, |u| (typical / u) * (typical / u));
+                scalars.push(Scalar { row: index, along, class, gap_um, reading_um, weight });
             };
             match row.reading {
                 Reading::Displacement(components) => {
@@ -102,7 +123,7 @@ impl Measurements {
                         if let Some(um) = value {
                             let mut along = Vector::zeros();
                             along[class] = 1.0;
-                            push(along, class, um - 1e3 * row.predicted_mm[class]);
+                            push(along, class, um - 1e3 * row.predicted_mm[class], *um);
                         }
                     }
                 }
@@ -110,7 +131,7 @@ impl Measurements {
                     let bar = self.geometry.nominal_tip_mm(&row.command) + row.predicted_mm - ball_mm;
                     let predicted_mm = bar.norm();
                     if predicted_mm > 0.0 {
-                        push(bar / predicted_mm, 3, 1e3 * (length_mm - predicted_mm));
+                        push(bar / predicted_mm, 3, 1e3 * (length_mm - predicted_mm), 1e3 * length_mm);
                     }
                 }
                 Reading::Magnitude(um) => {
@@ -120,7 +141,7 @@ impl Measurements {
                         let expected = believed.expected_um(&whole);
                         if expected > 0.0 {
                             let along = whole / expected;
-                            push(along, 3, um - expected + along.dot(displaced));
+                            push(along, 3, um - expected + along.dot(displaced), um);
                         }
                     }
                 }
@@ -132,7 +153,7 @@ impl Measurements {
     /// Root mean square of the stated uncertainties, 1 where none is stated.
     #[must_use]
     pub fn typical_uncertainty_um(&self) -> f64 {
-        let stated: Vec<f64> = self.rows.iter().filter_map(|r| r.u_um).collect();
+        let stated: Vec<f64> = self.rows.iter().flat_map(|r| r.u_um).flatten().collect();
         if stated.is_empty() {
             return 1.0;
         }
@@ -169,6 +190,26 @@ impl Measurements {
         places.sort_by(f64::total_cmp);
         places.dedup_by(|b, a| *b - *a < SAME_MM);
         places
+    }
+
+    /// Distance of neighbouring places of an axis, mm: the mean of the steps between them, each counted by its length.
+    ///
+    /// Even places give their step. Places in pairs (a few tenths apart, as where the way back stops beside the way
+    /// there) give the step from pair to pair: what lies within a pair says nothing about what is between pairs.
+    #[must_use]
+    pub(crate) fn spacing_mm(&self, axis: usize) -> f64 {
+        let places = self.places_mm(axis);
+        let (low, high) = self.range_mm(axis);
+        let square: f64 = places.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum();
+        if high > low { square / (high - low) } else { 0.0 }
+    }
+
+    /// Number of places of an axis that a curve can tell apart: those that its range holds at [`Self::spacing_mm`].
+    #[must_use]
+    pub(crate) fn effective_places(&self, axis: usize) -> f64 {
+        let (low, high) = self.range_mm(axis);
+        let spacing = self.spacing_mm(axis);
+        if spacing > 0.0 { (high - low) / spacing + 1.0 } else { 1.0 }
     }
 
     /// Smallest and largest command of a linear axis, mm.

@@ -29,14 +29,30 @@ impl Assembly<'_> {
         EffectTerm::new(kind, common, &coefficients, self.data.geometry.clone())
     }
 
+    /// By how much the variance of a part's numbers grows because readings hang together.
+    fn inflations(&self, place: usize) -> Vec<f64> {
+        let (model, own) = (self.model, self.positions(place));
+        if model.phi == 0.0 {
+            return vec![1.0; own.len()];
+        }
+        let terms = &model.solution.terms;
+        let beside = terms.iter().enumerate().filter(|(i, _)| !own.contains(i)).map(|(_, t)| *t).collect();
+        let source = crate::engine::source(self.data, &model.scalars);
+        crate::trial::inflations(beside, &terms[own], model.solution.rho, model.phi, &source)
+    }
+
     pub(crate) fn parameters(&self, place: usize) -> Vec<Parameter> {
         let solution = &self.model.solution;
         let positions = self.positions(place);
         let quantile = StudentsT::new(0.0, 1.0, self.degrees()).map_or(1.96, |d| d.inverse_cdf(0.975));
         // Leaving out the far end of a heavy tail makes the rest look better than it is.
         let tail = tail_factor(&self.model.scalars, &solution.residuals_um, &self.model.dropped_residuals_um);
-        let deviation =
-            |i: usize| (solution.unit_covariance[(i, i)] * self.variance() * tail).max(0.0).sqrt();
+        let wider = self.inflations(place);
+        let deviation = |i: usize| {
+            let variance =
+                solution.unit_covariance[(i, i)] * self.variance() * tail * wider[i - positions.start];
+            variance.max(0.0).sqrt()
+        };
         let kind = self.model.library.candidates[self.model.parts[place].candidate].kind;
         let names = kind.coefficient_names();
         let mut parameters = Vec::new();
@@ -54,7 +70,7 @@ impl Assembly<'_> {
                 u95: Some(quantile * u),
             });
         }
-        for i in positions {
+        for i in positions.clone() {
             if let Term::Effect { index, .. } = solution.terms[i] {
                 let u95 = Some(quantile * deviation(i));
                 parameters.push(Parameter {
@@ -106,17 +122,40 @@ impl Assembly<'_> {
             .collect()
     }
 
+    /// Zeros of the instruments against that of the first one.
+    fn instruments_um(&self) -> Vec<(usize, [(f64, f64); 3])> {
+        let solution = &self.model.solution;
+        let mut found: Vec<(usize, [(f64, f64); 3])> = Vec::new();
+        for (i, term) in solution.terms.iter().enumerate() {
+            let Term::InstrumentShift { instrument, axis } = *term else { continue };
+            if found.last().is_none_or(|(last, _)| *last != instrument) {
+                found.push((instrument, [(0.0, 0.0); 3]));
+            }
+            let u95 = 1.96 * (solution.unit_covariance[(i, i)] * self.variance()).max(0.0).sqrt();
+            if let Some((_, values)) = found.last_mut() {
+                values[axis] = (solution.coefficients[i], u95);
+            }
+        }
+        found
+    }
+
     pub(crate) fn setup(&self) -> Setup {
         let solution = &self.model.solution;
         let mut setup = Setup::default();
+        let mut turns = vec![[0.0; 3]; self.data.runs.len()];
         for (term, value) in solution.terms.iter().zip(&solution.coefficients) {
             match term {
                 Term::SetupShift(axis) => setup.shift_um[*axis] = *value,
                 Term::SetupRotation(axis) => setup.rotation_urad[*axis] = *value,
+                Term::RunRotation { run, about, .. } => turns[*run][*about] = *value,
                 _ => {}
             }
         }
         let offsets = solution.run_offsets_um.iter().map(|o| [o.x, o.y, o.z]);
+        if self.model.turned {
+            setup.run_rotations_urad = self.data.runs.iter().cloned().zip(turns).collect();
+        }
+        setup.instruments_um = self.instruments_um();
         setup.run_offsets_um = self.data.runs.iter().cloned().zip(offsets).collect();
         setup
     }

@@ -6,8 +6,7 @@ use units::math;
 
 use crate::gram::Source;
 use crate::library::{Library, Variant};
-use crate::noise::median;
-use crate::observation::Scalar;
+use crate::observation::{Measurements, Scalar};
 
 /// Pitches that screws, racks and gears are made with, mm.
 const NOMINAL_PITCHES_MM: [f64; 17] =
@@ -16,6 +15,8 @@ const NOMINAL_PITCHES_MM: [f64; 17] =
 pub(crate) const LOCAL_WIDEST: f64 = 0.3;
 /// So many places at uneven distances show a wave even where they lie further apart than half its period.
 const ENOUGH_PLACES: usize = 24;
+/// A step that differs from the typical one by more than this share is uneven.
+const UNEVEN: f64 = 0.15;
 /// How far from a nominal pitch is still a neighbour.
 const NEIGHBOURHOOD: f64 = 0.025;
 /// Equations that a scan over shapes looks at; more are thinned evenly.
@@ -217,13 +218,16 @@ pub(crate) fn damage(
     best.map(|(centre, width)| (centre, width, asked))
 }
 
-/// True where the places measured along the axis lie further apart than half a period.
+/// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.
+///
+/// Many places at uneven distances show a wave even where they lie further apart; even ones never do.
 #[must_use]
-pub(crate) fn is_coarse(source: &Source<'_>, axis: usize, pitch_mm: f64) -> bool {
-    let mut places: Vec<f64> = source.rows.iter().map(|r| r.command.linear_mm[axis]).collect();
-    places.sort_by(f64::total_cmp);
-    let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).filter(|s| *s > 1e-3).collect();
-    steps.len() < ENOUGH_PLACES && median(&mut steps).is_none_or(|step| step > 0.5 * pitch_mm)
+pub(crate) fn is_coarse(data: &Measurements, axis: usize, period_mm: f64) -> bool {
+    let spacing = data.spacing_mm(axis);
+    let places = data.places_mm(axis);
+    let odd = |w: &&[f64]| ((w[1] - w[0]) / spacing - 1.0).abs() > UNEVEN;
+    let uneven = 3 * places.windows(2).filter(odd).count() >= places.len();
+    2.0 * spacing > period_mm && (places.len() <= ENOUGH_PLACES || !uneven)
 }
 
 /// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
@@ -236,22 +240,31 @@ fn is_strobed(steps_mm: &[f64], pitch_mm: f64) -> bool {
     all > 8 && 10 * slow > 8 * all
 }
 
-/// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude.
+/// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
+/// places are too coarse for is not asked about; where the period itself is, the forms stay rivals.
 pub(crate) fn pitch_variants(
     library: &mut Library,
+    data: &Measurements,
     axis: usize,
     pitch_mm: f64,
-    range: (f64, f64),
 ) -> Vec<Variant> {
+    let range = data.range_mm(axis);
     let shape = Shape { pitch_mm, from_mm: range.0, to_mm: range.1, ..Shape::default() };
-    let all: Vec<usize> = (0..12).collect();
-    let columns = library.add_columns(EffectKind::Pitch(axis), shape, &all);
-    let pick = |list: &[usize]| list.iter().map(|i| columns[*i]).collect::<Vec<_>>();
-    vec![
-        Variant { columns: pick(&[0, 1]), enriched: false, only_rival: false },
-        Variant { columns: pick(&[0, 1, 2, 3]), enriched: true, only_rival: false },
-        Variant { columns: pick(&[0, 1, 6, 7]), enriched: true, only_rival: false },
-        Variant { columns: pick(&[0, 1, 2, 3, 4, 5]), enriched: true, only_rival: false },
-        Variant { columns, enriched: true, only_rival: false },
-    ]
+    let only_rival = is_coarse(data, axis, pitch_mm);
+    let lists: [(f64, &[usize]); 5] = [
+        (1.0, &[0, 1]),
+        (2.0, &[0, 1, 2, 3]),
+        (1.0, &[0, 1, 6, 7]),
+        (3.0, &[0, 1, 2, 3, 4, 5]),
+        (3.0, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]),
+    ];
+    let shown = |(harmonic, list): &(f64, &[usize])| {
+        list.len() == 2
+            || (!is_coarse(data, axis, pitch_mm / harmonic)
+                && 2.0 * list.len() as f64 <= data.effective_places(axis))
+    };
+    let lists: Vec<&[usize]> = lists.into_iter().filter(shown).map(|(_, list)| list).collect();
+    let mut forms = library.selections(EffectKind::Pitch(axis), shape, &lists);
+    forms.iter_mut().for_each(|form| form.only_rival = only_rival);
+    forms
 }

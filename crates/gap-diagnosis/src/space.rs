@@ -256,6 +256,17 @@ impl Space {
         fit
     }
 
+    /// BIC of a model with its set-up columns counted.
+    #[must_use]
+    pub(crate) fn evidence(&self, fit: &Fit) -> f64 {
+        let level = &self.levels[fit.level];
+        let equations = self.gram.equations as f64;
+        let columns = (level.pivots.len() + fit.rank) as f64;
+        equations * math::ln((fit.residual / equations).max(1e-6))
+            + level.log_determinant
+            + columns * math::ln(equations)
+    }
+
     fn judged(&self, level: usize, residual: f64, rank: usize, price: f64) -> Fit {
         // A residual of nothing would make any model infinitely good: a nanometre per row is nothing.
         let mean = (residual / self.degrees).max(1e-6);

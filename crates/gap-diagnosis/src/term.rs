@@ -12,6 +12,22 @@ pub(crate) enum Term {
     SetupShift(usize),
     /// The measuring frame is turned about the machine's origin; coefficient in µrad.
     SetupRotation(usize),
+    /// A run is turned about its middle; coefficient in µrad.
+    RunRotation {
+        /// Index of the run.
+        run: usize,
+        /// Direction it is turned about.
+        about: usize,
+        /// Middle of its tips, mm.
+        centre_mm: [f64; 3],
+    },
+    /// An instrument has another zero than the first one; coefficient in µm.
+    InstrumentShift {
+        /// Its number.
+        instrument: usize,
+        /// Component.
+        axis: usize,
+    },
     /// The ball bar is longer than it says; coefficient in µm.
     BarLength,
     /// Rows whose direction of approach on an axis is not known, among others where it is: their mean may
@@ -35,6 +51,20 @@ impl Term {
         match self {
             Self::SetupShift(axis) => unit(*axis),
             Self::SetupRotation(axis) => unit(*axis).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
+            Self::RunRotation { run, about, centre_mm } => {
+                if row.run != *run {
+                    return Vector::zeros();
+                }
+                let tip = row.command.linear_mm + row.command.tool_mm;
+                unit(*about).cross(&(1e-3 * (tip - Vector::from(*centre_mm))))
+            }
+            Self::InstrumentShift { instrument, axis } => {
+                if row.instrument == Some(*instrument) {
+                    unit(*axis)
+                } else {
+                    Vector::zeros()
+                }
+            }
             Self::BarLength => Vector::zeros(),
             Self::UnknownApproach(axis) => {
                 if row.command.direction[*axis] == 0 {
@@ -87,7 +117,8 @@ impl Term {
             // Turned with the table it is seen in any.
             Self::Effect { .. } if geometry.has_table() => true,
             Self::SetupShift(axis) | Self::UnknownApproach(axis) => axis == component,
-            Self::SetupRotation(axis) => axis != component,
+            Self::SetupRotation(axis) | Self::RunRotation { about: axis, .. } => axis != component,
+            Self::InstrumentShift { axis, .. } => axis == component,
             Self::BarLength => false,
             Self::Effect { kind, index, .. } => match kind {
                 EffectKind::Scale(a)

@@ -16,6 +16,8 @@ use crate::space::{RHO_GRID, Space};
 use crate::term::Term;
 use crate::{Options, Verdict, diagnose};
 
+mod doubts;
+
 /// How the plan of these tests is measured.
 #[derive(Clone, Copy)]
 struct Plan {
@@ -64,7 +66,9 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
                         ..Conditions::default()
                     },
                     predicted_mm: Vector::zeros(),
-                    u_um: None,
+                    u_um: [None; 3],
+                    instrument: None,
+                    artefact: None,
                     reading: Reading::Magnitude(0.0),
                     line: rows.len() as u64 + 2,
                 };
@@ -75,7 +79,7 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
         }
         runs.push(format!("r{line}"));
     }
-    Measurements { runs, rows, geometry: EffectGeometry::default() }
+    Measurements { runs, instruments: Vec::new(), rows, geometry: EffectGeometry::default() }
 }
 
 fn nothing(_: &Row) -> Vector {
@@ -97,7 +101,7 @@ fn repeats_and_neighbours_find_the_noise_and_not_the_curve() {
     let data = measured(plan, curve);
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    let noise = estimate(&data.rows, &scalars, &values).unwrap();
+    let noise = estimate(&data.rows, &scalars, &values, 0.0).unwrap();
     assert_eq!(noise.source, NoiseSource::Repeats);
     // 12 runs × 34 places × 3 components; the deviation of s is sigma / sqrt(2 · degrees), times 4.
     assert!((noise.degrees - 12.0 * 34.0 * 3.0).abs() < 0.5, "{}", noise.degrees);
@@ -106,7 +110,7 @@ fn repeats_and_neighbours_find_the_noise_and_not_the_curve() {
     let data = measured(GOOD, curve);
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    let noise = estimate(&data.rows, &scalars, &values).unwrap();
+    let noise = estimate(&data.rows, &scalars, &values, 0.0).unwrap();
     assert_eq!(noise.source, NoiseSource::Neighbours);
     // The second difference of the curve over 25 mm adds 2e-3 · 25² / 2 = 0.6 µm to a third of the equations.
     assert!((0.85..1.3).contains(&noise.variance.sqrt()), "{noise:?}");
@@ -170,7 +174,7 @@ fn columns_added_later_give_the_same_space_as_columns_there_from_the_start() {
     let data = measured(GOOD, backlash_um);
     let scalars = data.scalars(None);
     let source = source(&data, &scalars);
-    let library = Library::new(&data, &[]);
+    let library = Library::new(&data, &[], false);
     let (early, late) = library.terms.split_at(library.terms.len() - 40);
     let mut kept = crate::columns::Kept::default();
     let mut gram = Gram::new(Vec::new(), &source);
@@ -220,7 +224,7 @@ fn a_period_is_found_and_not_named_where_places_are_too_far_apart() {
     let (found, asked) = crate::propose::Pitches::new(&source, 0).best(&source, &values, 0);
     // 400 mm of travel resolve 40.3² / 400 = 4 mm between neighbours of equal power; a tenth of that is enough here.
     assert!((found[0] - 40.3).abs() < 0.5 && asked > 17, "{found:?} of {asked}");
-    assert!(crate::propose::is_coarse(&source, 0, 40.3));
+    assert!(crate::propose::is_coarse(&data, 0, 40.3));
     let answer = diagnose(&data, None, &Options::default());
     assert!(!names(&answer).contains(&"pitch.X") && answer.verdict != Verdict::Named, "{}", answer.sentence);
     assert!(answer.causes.iter().any(|c| c.cannot_be_told_from.iter().any(|r| r == "pitch.X")));
@@ -281,7 +285,7 @@ fn one_tool_cannot_tell_a_curve_from_an_angle() {
 #[test]
 fn every_question_costs_its_share_of_the_level() {
     let data = measured(GOOD, backlash_um);
-    let library = Library::new(&data, &[]);
+    let library = Library::new(&data, &[], false);
     let spent: f64 = (0..library.candidates.len())
         .map(|c| library.candidates[c].asked() as f64 * LEVEL / library.questions(c))
         .sum();

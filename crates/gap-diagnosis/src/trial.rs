@@ -4,15 +4,45 @@
 //! asked, keeps noise from being named; the least share keeps what no one would repair out of the answer; lines that were
 //! left out show whether the effect is one of the machine or of a single run.
 
+use crate::assembly::positions;
+use crate::columns::Column;
 use crate::crossval::{Folding, Folds};
+use crate::doubt::inflation;
 use crate::engine::{LEAST_SHARE, LEVEL, Refused, State, f_tail, model_columns};
+use crate::gram::{Gram, Source};
+use crate::library::curve_axis;
 use crate::linear::Products;
+use crate::observation::Scalar;
 use crate::search::without;
 use crate::space::{Fit, Part};
 use crate::term::Term;
 
 /// Why an effect is refused that may be there and is not proven.
 pub(crate) const UNPROVEN: &str = "the F test";
+
+/// [`inflation`] of some columns, each beside others and the runs' offsets.
+#[must_use]
+pub(crate) fn inflations(
+    beside: Vec<Term>,
+    columns: &[Term],
+    rho: f64,
+    phi: f64,
+    source: &Source<'_>,
+) -> Vec<f64> {
+    let of = |term: &Term| {
+        let column = Column::new(term, source);
+        let alone: Vec<Scalar> = source
+            .scalars
+            .iter()
+            .enumerate()
+            .map(|(i, s)| Scalar { gap_um: column.value(i), ..*s })
+            .collect();
+        let source = Source { scalars: &alone, ..*source };
+        let left = Gram::new(beside.clone(), &source).solve(rho, &source).residuals_um;
+        inflation(source.rows, &alone, &left, phi)
+    };
+    columns.iter().map(of).collect()
+}
 
 impl State<'_, '_> {
     /// Why an effect that scores must not be named beside `rest`; `None` where it may.
@@ -24,13 +54,16 @@ impl State<'_, '_> {
         let gain = (before - fit.residual).max(0.0);
         let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
-        let effective = self.effective_degrees(part, fit.level, degrees);
-        let ratio = gain / columns / (fit.residual / degrees).max(1e-12);
+        let inflation = self.inflation(rest, part, fit.level);
+        // Readings that hang together are as good as (1 - φ)/(1 + φ) times as many independent ones.
+        let independent = degrees * (1.0 - self.phi) / (1.0 + self.phi);
+        let effective = self.effective_degrees(part, fit.level, independent.max(1.0));
+        let ratio = gain / columns / (fit.residual / degrees).max(1e-12) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
         let p = 2.0
             * self.library.questions(part.candidate)
-            * f_tail(ratio, columns, effective).min(self.within_runs(&with));
+            * f_tail(ratio, columns, effective).min(self.within_runs(&with, inflation));
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
@@ -40,14 +73,69 @@ impl State<'_, '_> {
         if gain / reducible < LEAST_SHARE {
             return refuse("its share is below 2 % of what can be explained");
         }
+        if let Some(reason) = self.crowded(&with).or_else(|| self.out_of_bounds(&with, fit.level)) {
+            return refuse(reason);
+        }
         if !self.predicts(&with, fit.level) {
             return refuse("it does not predict lines it has not seen");
         }
         None
     }
 
+    /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
+    fn crowded(&self, with: &[Part]) -> Option<&'static str> {
+        let crowd = |axis: usize, component: usize| {
+            let columns = with.iter().flat_map(|part| {
+                let candidate = &self.library.candidates[part.candidate];
+                let own = curve_axis(candidate.kind) == Some(axis);
+                candidate.variants[part.variant].columns.iter().filter(move |_| own)
+            });
+            let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
+            2.0 * columns.filter(seen).count() as f64 > self.data.effective_places(axis) + 0.5
+        };
+        let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
+        crowded.then_some(
+            "the curves along that axis would have more coefficients than half the places measured",
+        )
+    }
+
+    /// Why a part, with the numbers it has beside the others, must not be used.
+    fn out_of_bounds(&self, parts: &[Part], level: usize) -> Option<&'static str> {
+        let sub = self.space.gram.select(&model_columns(&self.library, parts));
+        let values = sub.coefficients(self.space.rho(level));
+        (0..parts.len()).find_map(|place| {
+            let kind = self.library.candidates[parts[place].candidate].kind;
+            let own = positions(&self.library, parts, place);
+            let terms: Vec<(Term, f64)> = own.map(|i| (sub.terms[i], values[i])).collect();
+            self.bounds.broken_by(kind, &terms, self.source.geometry)
+        })
+    }
+
+    /// Takes out causes that break their bounds in the model that the search ended with, the worst scoring first.
+    pub(crate) fn restrain(&mut self) {
+        while !self.parts.is_empty() {
+            let Some(reason) = self.out_of_bounds(&self.parts, self.fit.level) else { break };
+            let kept = (0..self.parts.len()).map(|place| without(&self.parts, place));
+            let judged = kept.map(|rest| (self.space.fit(&self.library, &rest), rest));
+            let (tame, wild): (Vec<_>, Vec<_>) =
+                judged.partition(|(fit, rest)| self.out_of_bounds(rest, fit.level).is_none());
+            let pool = if tame.is_empty() { wild } else { tame };
+            let Some((fit, rest)) = pool.into_iter().min_by(|a, b| a.0.score.total_cmp(&b.0.score)) else {
+                break;
+            };
+            let gone = self.parts.iter().find(|p| !rest.contains(p));
+            if let Some(part) = gone {
+                let (before, _) = self.space.left(&self.library, &rest, fit.level);
+                let share = (before - self.fit.residual).max(0.0) / before.max(1e-12);
+                let kind = self.library.candidates[part.candidate].kind;
+                self.refused = Some(Refused { kind, share, p: 0.0, reason });
+            }
+            (self.parts, self.fit) = (rest, fit);
+        }
+    }
+
     /// F test of the last part with the runs' offsets left free.
-    fn within_runs(&self, with: &[Part]) -> f64 {
+    fn within_runs(&self, with: &[Part], inflation: f64) -> f64 {
         let level = crate::space::RHO_GRID.len() - 1;
         let (before, rank_before) = self.space.left(&self.library, &with[..with.len() - 1], level);
         let (after, rank_after) = self.space.left(&self.library, with, level);
@@ -56,7 +144,20 @@ impl State<'_, '_> {
         if columns < 1.0 || degrees < 1.0 {
             return 1.0;
         }
-        f_tail((before - after) / columns / (after / degrees).max(1e-12), columns, degrees)
+        let independent = (degrees * (1.0 - self.phi) / (1.0 + self.phi)).max(1.0);
+        f_tail((before - after) / columns / (after / degrees).max(1e-12) / inflation, columns, independent)
+    }
+
+    /// By how much the readings' hanging together widens what is known of a part beside the rest: its columns with the
+    /// rest and the runs' offsets taken out, the widest counts.
+    fn inflation(&self, rest: &[Part], part: Part, level: usize) -> f64 {
+        if self.phi == 0.0 {
+            return 1.0;
+        }
+        let beside = model_columns(&self.library, rest).into_iter().map(|c| self.library.terms[c]).collect();
+        let own = &self.library.candidates[part.candidate].variants[part.variant].columns;
+        let own: Vec<Term> = own.iter().map(|c| self.library.terms[*c]).collect();
+        inflations(beside, &own, self.space.rho(level), self.phi, self.source).into_iter().fold(1.0, f64::max)
     }
 
     /// Degrees of freedom of the noise that an effect competes with: few where only the differences

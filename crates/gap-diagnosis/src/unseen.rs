@@ -2,11 +2,16 @@
 
 use machine_model::Vector;
 
-use crate::align::{magnitude_errors, rms, row_lengths};
+use machine_model::effects::EffectKind;
+
+use crate::align::{aligned, magnitude_errors, rms, row_lengths};
 use crate::assembly::Assembly;
-use crate::diagnosis::{Holdout, Residual, Step};
+use crate::diagnosis::{Holdout, Residual, Shrinkage, Step};
+use crate::engine::explain;
+use crate::noise::tail_factor;
 use crate::observation::{Measurements, Reading, Scalar};
 use crate::term::Term;
+use crate::verdict::Unseen;
 
 impl Assembly<'_> {
     pub(crate) fn holdout(&self, holdout: &Measurements) -> Holdout {
@@ -65,10 +70,87 @@ impl Assembly<'_> {
         finished(errors[0].len(), sizes[0], sizes[last], steps, residuals)
     }
 
+    /// What some unseen rows say, in units of what noise alone would leave there.
+    pub(crate) fn unseen(
+        &self,
+        data: &Measurements,
+        before_um: f64,
+        after_um: f64,
+        promised: Option<Shrinkage>,
+    ) -> Unseen {
+        let model = self.model;
+        let equations = if data.has_magnitudes() { data.rows.len() } else { data.scalars(None).len() } as f64;
+        let tail = tail_factor(&model.scalars, &model.solution.residuals_um, &model.dropped_residuals_um);
+        let floor = (self.noise_variance() * self.unaligned() * tail * equations
+            / data.rows.len().max(1) as f64)
+            .sqrt()
+            .max(1e-9);
+        let promised = promised.map_or((0.0, 0.0), |s| (s.low, s.mid));
+        let left = if before_um > 0.0 { after_um / before_um } else { 1.0 };
+        // Both sizes are known to 1/√(2n), their ratio to √2 of that at worst.
+        let error = left / equations.max(1.0).sqrt();
+        Unseen { before: before_um / floor, after: after_um / floor, promised, error }
+    }
+
+    /// The forecast of this model for runs that it was not fitted to, and what became of it: in the frame that was
+    /// fitted, only the zero of every run is its own.
+    fn on_runs_kept_back(&self, kept: &Measurements) -> Option<Unseen> {
+        let count = self.ordered.len();
+        if count == 0 {
+            return None;
+        }
+        let solution = &self.model.solution;
+        let framing = self.model.library.framing;
+        let fitted = solution.terms.iter().copied().zip(solution.coefficients.iter().copied()).take(framing);
+        let frame: Vec<(Term, f64)> =
+            fitted.filter(|(t, _)| !matches!(t, Term::RunRotation { .. })).chain(self.instrument()).collect();
+        let turns: Vec<Term> = self.frame(kept).into_iter().skip(6).collect();
+        let scalars = kept.scalars(None);
+        let size = |causes: &[(Term, f64)]| {
+            let off: Vec<(Term, f64)> = frame.iter().chain(causes).copied().collect();
+            rms(&row_lengths(&scalars, &aligned(kept, &scalars, &turns, self.alignment, &off)))
+        };
+        let promised = self.shrink(count, Some(kept));
+        Some(self.unseen(kept, size(&[]), size(&self.taken_off(count)), Some(promised)))
+    }
+
     /// Ids of the causes in order.
     fn names(&self) -> impl Iterator<Item = String> {
         self.ordered.iter().map(|r| self.model.library.candidates[r.part.candidate].kind.to_string())
     }
+}
+
+/// Every fourth run kept back and the whole search made on the others: what becomes of its forecast. `None` where these runs
+/// lie outside what the others cover, are few, or the others name nothing.
+#[must_use]
+pub(crate) fn kept_back(data: &Measurements, without: &[EffectKind]) -> Option<Unseen> {
+    /// Fewer runs leave no three quarters that cover the machine.
+    const RUNS: usize = 8;
+    /// More rows make a second search too slow.
+    const ROWS: usize = 20_000;
+    let all = data.runs.len();
+    if all < RUNS || data.rows.len() > ROWS || data.has_magnitudes() {
+        return None;
+    }
+    let part = |wanted: bool| {
+        let chosen: Vec<usize> = (0..all).filter(|run| (run % 4 == 2) == wanted).collect();
+        let rows = data.rows.iter().filter_map(|row| {
+            chosen.binary_search(&row.run).ok().map(|run| crate::observation::Row { run, ..*row })
+        });
+        let runs = chosen.iter().map(|run| data.runs[*run].clone()).collect();
+        Measurements { runs, rows: rows.collect(), ..data.clone() }
+    };
+    let (fitted, kept) = (part(false), part(true));
+    let inside = |axis: usize| {
+        let ((low, high), (from, to)) = (fitted.range_mm(axis), kept.range_mm(axis));
+        let slack = 0.05 * (high - low) + 1e-6;
+        from >= low - slack && to <= high + slack
+    };
+    if !(0..3).all(inside) {
+        return None;
+    }
+    let model = explain(&fitted, &fitted.scalars(None), without);
+    Assembly::new(&fitted, &model).on_runs_kept_back(&kept)
 }
 
 fn finished(

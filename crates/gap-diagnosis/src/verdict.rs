@@ -34,7 +34,80 @@ pub(crate) struct Evidence {
     pub noise_ratio: Option<f64>,
     /// What the causes displace is known better than the gap is large, everywhere it would be used.
     pub carries: bool,
+    /// Repeats of one command differ by more than neighbouring readings do.
+    pub slow: bool,
+    /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
+    pub trifling: bool,
+    /// What rows that no fit has seen say.
+    pub unseen: Option<Unseen>,
 }
+
+/// Forecast and outcome on rows that no fit has seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unseen {
+    /// RMS without the causes, in units of what noise alone leaves there.
+    pub before: f64,
+    /// RMS with them, in the same units.
+    pub after: f64,
+    /// Low end and middle of the forecast shrinkage.
+    pub promised: (f64, f64),
+    /// Standard error of the achieved shrinkage by the number of rows alone.
+    pub error: f64,
+}
+
+impl Unseen {
+    fn achieved(&self) -> f64 {
+        if self.before > 0.0 { 1.0 - self.after / self.before } else { 0.0 }
+    }
+
+    /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
+    /// noise.
+    fn refutes(&self) -> bool {
+        let short = self.promised.0 - self.achieved();
+        self.after > NOISE_LEFT && short > f64::max(SHORT, 2.0 * self.error)
+    }
+
+    /// A forecast that does not hold, and of which a quarter at most is true.
+    fn contradicts(&self) -> bool {
+        self.refutes() && self.achieved() < 0.25 * self.promised.1
+    }
+}
+
+impl Unseen {
+    /// What the headline says of it.
+    pub(crate) fn refutation(&self, named: bool) -> Option<String> {
+        if !named {
+            return (self.before > UNSEEN_GAP).then(|| {
+                format!(" Rows that were not fitted show a gap of {:.1} times the noise.", self.before)
+            });
+        }
+        self.refutes().then(|| {
+            format!(
+                " Rows that were not fitted refute it: {:.0} % were promised there, {:.0} % achieved.",
+                100.0 * self.promised.1,
+                100.0 * self.achieved()
+            )
+        })
+    }
+
+    /// What is said of runs that were kept back because there is no hold-out.
+    pub(crate) fn kept_back_note(&self) -> Option<String> {
+        Some(format!(
+            "No hold-out was given: a search without every fourth run promised {:.0} % on these, and {:.0} % were achieved.",
+            100.0 * self.promised.1,
+            100.0 * self.achieved()
+        ))
+    }
+}
+
+/// A forecast may miss the low end of its interval by so much, as a share of the gap.
+const SHORT: f64 = 0.05;
+/// Up to this factor above the noise, what is left on unseen rows is noise: tails and blunders among them are not left out.
+const NOISE_LEFT: f64 = 1.6;
+/// An unseen gap of so many times the noise is one, whatever the rows of the fit say.
+const UNSEEN_GAP: f64 = 2.0;
+/// Beside structure without a name, a cause that takes off less than this share of the RMS is none that anyone acts on.
+pub(crate) const WORTH_NAMING: f64 = 0.1;
 
 /// The verdict, by the first rule that holds:
 ///
@@ -48,8 +121,33 @@ pub(crate) struct Evidence {
 /// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
 /// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
+///
+/// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
+/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise.
 #[must_use]
 pub(crate) fn verdict(e: &Evidence) -> Verdict {
+    let seen = on_the_rows(e);
+    let Some(unseen) = e.unseen else { return seen };
+    match seen {
+        Verdict::NoGap | Verdict::NoiseModelSuspect if e.causes == 0 && unseen.before > UNSEEN_GAP => {
+            Verdict::Unknown
+        }
+        Verdict::Named | Verdict::Ambiguous | Verdict::NoiseModelSuspect | Verdict::Partial
+            if e.causes > 0 && unseen.contradicts() =>
+        {
+            Verdict::Unknown
+        }
+        Verdict::Named | Verdict::Ambiguous | Verdict::NoiseModelSuspect
+            if e.causes > 0 && unseen.refutes() =>
+        {
+            Verdict::Partial
+        }
+        _ => seen,
+    }
+}
+
+/// The verdict of the rows that were fitted.
+fn on_the_rows(e: &Evidence) -> Verdict {
     if e.degrees < 12.0 || e.runs < 2 || e.visible == 0 {
         return Verdict::Underpowered;
     }
@@ -59,14 +157,14 @@ pub(crate) fn verdict(e: &Evidence) -> Verdict {
             return Verdict::Unknown;
         }
         let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
-        return if suspect { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
+        return if suspect || e.slow { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
     if structured {
         // What is left is no noise, so the intervals are too narrow, and even those exceed the gap.
         if !e.carries {
             return Verdict::Underpowered;
         }
-        return if e.phi > PHI_UNKNOWN { Verdict::Unknown } else { Verdict::Partial };
+        return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
     }
     if e.ambiguous {
         return Verdict::Ambiguous;
@@ -89,6 +187,9 @@ mod tests {
         lack_of_fit_p: 0.4,
         noise_ratio: None,
         carries: true,
+        slow: false,
+        trifling: false,
+        unseen: None,
     };
 
     #[test]
@@ -115,9 +216,39 @@ mod tests {
             (Evidence { ambiguous: true, instrument_causes: 1, ..CLEAR }, Verdict::Ambiguous),
             (Evidence { instrument_causes: 1, ..CLEAR }, Verdict::NoiseModelSuspect),
             (Evidence { instrument_causes: 1, causes: 2, ..CLEAR }, Verdict::Named),
+            (Evidence { trifling: true, ..left }, Verdict::Unknown),
+            (Evidence { slow: true, ..none }, Verdict::NoiseModelSuspect),
         ];
         for (evidence, expected) in cases {
             assert_eq!(verdict(&evidence), expected, "{evidence:?}");
+        }
+    }
+
+    /// Forecast 50 % (40 % at least) of a gap ten times the noise.
+    #[test]
+    fn unseen_rows_have_the_last_word() {
+        let kept = Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01 };
+        let with = |unseen: Unseen, e: Evidence| verdict(&Evidence { unseen: Some(unseen), ..e });
+        let after = |after: f64| Unseen { after, ..kept };
+        let none = Evidence { causes: 0, ..CLEAR };
+        let open = Evidence { ambiguous: true, ..CLEAR };
+        let left = Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..CLEAR };
+        for (found, expected) in [
+            (with(kept, CLEAR), Verdict::Named),
+            (with(after(6.4), CLEAR), Verdict::Named),
+            (with(after(7.0), CLEAR), Verdict::Partial),
+            (with(after(7.0), open), Verdict::Partial),
+            (with(after(9.0), CLEAR), Verdict::Unknown),
+            (with(after(11.0), open), Verdict::Unknown),
+            (with(after(11.0), left), Verdict::Unknown),
+            (with(after(7.0), left), Verdict::Partial),
+            // Few rows prove little, and what is left at the level of the noise refutes nothing.
+            (with(Unseen { error: 0.2, ..after(7.0) }, CLEAR), Verdict::Named),
+            (with(Unseen { before: 2.0, after: 1.5, ..kept }, CLEAR), Verdict::Named),
+            (with(Unseen { before: 1.9, after: 1.9, ..kept }, none), Verdict::NoGap),
+            (with(Unseen { before: 2.1, after: 2.1, ..kept }, none), Verdict::Unknown),
+        ] {
+            assert_eq!(found, expected);
         }
     }
 }

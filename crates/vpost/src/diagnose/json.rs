@@ -45,6 +45,8 @@ pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             "rotation_urad": d.setup.rotation_urad.map(round),
             "run_offsets_um": d.setup.run_offsets_um.iter()
                 .map(|(run, o)| (run.clone(), json!(o.map(round)))).collect::<Map<String, Value>>(),
+            "run_rotations_urad": d.setup.run_rotations_urad.iter()
+                .map(|(run, o)| (run.clone(), json!(o.map(round)))).collect::<Map<String, Value>>(),
         }),
         leftover: json!({
             "rms_um": round(d.leftover.rms_um), "phi": round(d.leftover.phi),
@@ -81,6 +83,7 @@ fn cause(c: &Cause, changes: &[Change]) -> Value {
         .collect();
     json!({
         "effect": c.effect,
+        "words": c.words,
         "parameters": parameters,
         "share_unique": round(c.share_unique),
         "share_alone": round(c.share_alone),

@@ -1,5 +1,6 @@
 //! `vpost diagnose`: files in, the answer of `gap-diagnosis` out.
 
+mod books;
 mod change;
 mod json;
 mod measurements;
@@ -48,6 +49,9 @@ pub struct Diagnose {
     /// Column of the measurements to pass over (repeatable).
     #[arg(long, value_name = "NAME")]
     pub ignore_column: Vec<String>,
+    /// Take the columns as they are named, even where the rows fit better with a sign flipped or two columns swapped.
+    #[arg(long)]
+    pub as_written: bool,
     /// Seed of the random relabellings behind the p values of places.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -88,16 +92,23 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         .writes("--html", arguments.html.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())
         .are_apart()?;
-    let measured = read(measurements, &model, &arguments.ignore_column)?;
+    let measured = read(measurements, &model, &arguments.ignore_column, arguments.as_written)?;
+    let unseen = arguments.holdout.as_deref();
     let holdout =
-        arguments.holdout.as_deref().map(|path| read(path, &model, &arguments.ignore_column)).transpose()?;
+        unseen.map(|path| read(path, &model, &arguments.ignore_column, arguments.as_written)).transpose()?;
     let without = arguments
         .without
         .iter()
         .map(|id| id.parse::<EffectKind>())
         .collect::<Result<Vec<_>, _>>()
         .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
-    let options = Options { without, seed: arguments.seed, volume: Some(model.profile.volume()) };
+    let steps = model.profile.resolution_mm.iter().map(|step| 1e3 * step);
+    let options = Options {
+        without,
+        seed: arguments.seed,
+        volume: Some(model.profile.volume()),
+        resolution_um: steps.fold(f64::INFINITY, f64::min),
+    };
     let unseen = holdout.as_ref().map(|h| &h.data);
     let diagnosis = gap_diagnosis::diagnose(&measured.data, unseen, &options);
     let changes: Vec<Vec<Change>> =
@@ -202,14 +213,19 @@ pub(crate) fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
     measurements::commands_and_frames(&table, &data, profile)
 }
 
-fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Measured, Failure> {
+fn read(
+    path: &std::path::Path,
+    model: &Model,
+    ignore: &[String],
+    as_written: bool,
+) -> Result<Measured, Failure> {
     let bytes = file::read(path)?;
     let tool_mm = setup_tool(&model.profile);
     let name = file::name(path);
     let (mut data, table) = measurements::read(&name, &bytes, tool_mm, ignore, &model.geometry)?;
     measurements::commands_and_frames(&table, &data, &model.profile)?;
     let rigid = model.profile.rigid_body_without_effects();
-    for row in &mut data.rows {
+    let predict = |row: &mut Row| {
         row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {
             // Said along the linear axes, read by the workpiece.
             Some(engine) => model.geometry.table_turn(&row.command) * engine.error_mm(&row.command),
@@ -223,8 +239,13 @@ fn read(path: &std::path::Path, model: &Model, ignore: &[String]) -> Result<Meas
                 )
             })?;
         }
-    }
+        Ok(())
+    };
+    data.rows.iter_mut().try_for_each(predict)?;
     measurements::readings_against_model(&table, &data)?;
+    if !as_written && let Some(slip) = books::slip(&data, &model.profile.work_offsets, predict) {
+        return Err(table.slipped(&slip));
+    }
     in_order_of_time(&mut data);
     let text = file::decoded(&bytes);
     let comments = text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();

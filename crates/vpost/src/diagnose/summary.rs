@@ -41,6 +41,7 @@ fn write(out: &mut String, d: &Diagnosis, changes: &[Vec<Change>]) -> std::fmt::
     if !places.is_empty() {
         writeln!(out, "where   {}", places.join(", "))?;
     }
+    let doubted = matches!(d.verdict, Verdict::Partial | Verdict::Unknown);
     for (cause, changes) in d.causes.iter().zip(changes) {
         let first = cause.parameters.first().map_or_else(String::new, |p| {
             // What is added to the model, not what the model then holds.
@@ -50,6 +51,7 @@ fn write(out: &mut String, d: &Diagnosis, changes: &[Vec<Change>]) -> std::fmt::
             )
         });
         writeln!(out, "\ncause   {}  {first}", cause.effect)?;
+        writeln!(out, "        {}", cause.words)?;
         writeln!(
             out,
             "        {} of the gap; RMS {:.1} -> {:.1} um",
@@ -60,7 +62,7 @@ fn write(out: &mut String, d: &Diagnosis, changes: &[Vec<Change>]) -> std::fmt::
         if !cause.cannot_be_told_from.is_empty() {
             writeln!(out, "        cannot be told from {}", cause.cannot_be_told_from.join(", "))?;
         }
-        if !changes.is_empty() {
+        if !changes.is_empty() && !doubted {
             let changes: Vec<String> = changes.iter().map(Change::text).collect();
             writeln!(out, "        change {}", changes.join(", "))?;
         }

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use diagnostic::Code;
-use gap_diagnosis::Diagnosis;
+use gap_diagnosis::{Diagnosis, Verdict};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use super::json::{number, round};
@@ -13,7 +13,8 @@ use crate::message::Failure;
 /// The profile is no TOML any more: someone changed it meanwhile.
 const UNREADABLE: Code = Code(301);
 
-/// Writes the profile `from` to `path` with the causes as `[[effect]]` and the frame as `[setup]`; comments and order stay.
+/// Writes the profile `from` to `path` with the causes as `[[effect]]` and the frame as `[setup]`; comments and order stay. Under
+/// UNKNOWN no cause is written.
 pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(), Failure> {
     let text = String::from_utf8_lossy(&file::read(from)?).into_owned();
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
@@ -21,9 +22,11 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
         Failure::usage(diagnostic.help("run `vpost profile check` on it"))
     })?;
     move_tables(document.as_table_mut(), &folder(from), &folder(path));
+    // What no effect explains, or unseen rows contradict, corrects nothing.
+    let causes = if diagnosis.verdict == Verdict::Unknown { &[] } else { diagnosis.causes.as_slice() };
     let effects = document.entry("effect").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
     if let Some(effects) = effects.as_array_of_tables_mut() {
-        for cause in &diagnosis.causes {
+        for cause in causes {
             let mut entry = Table::new();
             entry.insert("id", Item::Value(cause.effect.as_str().into()));
             for (name, value) in cause.term.entry() {
@@ -32,7 +35,7 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
             effects.push(entry);
         }
     }
-    if !diagnosis.causes.is_empty() {
+    if !causes.is_empty() {
         let setup = document.entry("setup").or_insert(Item::Table(Table::new()));
         if let Some(setup) = setup.as_table_like_mut() {
             setup.insert("shift_mm", three(diagnosis.setup.shift_um.map(|v| 1e-3 * v)));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use diagnostic::Code;
 
-use super::table::{COLUMNS, Table};
+use super::table::{COLUMNS, FIELD, Table};
 use crate::message::Failure;
 
 /// Rows that repeat each other exactly.
@@ -62,6 +62,46 @@ pub(super) fn agree(table: &Table<'_>) -> Result<(), Failure> {
             "keep one of them in the file",
         )),
     }
+}
+
+/// Conditions that stand in some rows only: the rows without would count as none of that condition.
+///
+/// A feed may be left out: a row that was read at rest has none.
+pub(super) fn everywhere(table: &Table<'_>) -> Result<(), Failure> {
+    let uncertainties = ["u_x_um", "u_y_um", "u_z_um"];
+    let conditions =
+        ["load_kg", "temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "instrument", "artefact"];
+    if let (Some(column), Some(missing)) =
+        (uncertainties.into_iter().find(|c| table.has(c)), uncertainties.into_iter().find(|c| !table.has(c)))
+    {
+        return Err(table.refuse(
+            COLUMNS,
+            Some((&table.header, table.place[column])),
+            format!("`{column}` stands without `{missing}`: the covariance of a reading is incomplete"),
+            "this column",
+            "give u_x_um, u_y_um and u_z_um, or u_um for all three",
+        ));
+    }
+    for column in conditions {
+        let Some(place) = table.place.get(column).copied() else { continue };
+        let empty = |r: &&csv::ByteRecord| r.get(place).unwrap_or_default().is_empty();
+        let count = table.records.iter().filter(empty).count();
+        let Some(first) = table.records.iter().find(empty).filter(|_| count < table.records.len()) else {
+            continue;
+        };
+        return Err(table.refuse(
+            FIELD,
+            Some((first, place)),
+            format!(
+                "`{column}` is empty here and in {} further rows, and filled in in {}",
+                count - 1,
+                table.records.len() - count
+            ),
+            column,
+            "give the condition in every row, or pass the column over with --ignore-column",
+        ));
+    }
+    Ok(())
 }
 
 /// Reading columns that are empty, or the same number, in every row.

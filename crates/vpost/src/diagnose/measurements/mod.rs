@@ -26,7 +26,13 @@ pub(super) fn read<'a>(
 ) -> Result<(Measurements, Table<'a>), Failure> {
     let table = table(name, bytes, ignore)?;
     columns::agree(&table)?;
-    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), geometry: geometry.clone() };
+    let mut data = Measurements {
+        runs: Vec::new(),
+        instruments: Vec::new(),
+        rows: Vec::new(),
+        geometry: geometry.clone(),
+    };
+    let mut artefacts: Vec<String> = Vec::new();
     let mut places = BTreeMap::new();
     for record in &table.records {
         let run_place = table.place["run"];
@@ -45,11 +51,23 @@ pub(super) fn read<'a>(
             data.runs.len() - 1
         });
         table.number(record, "repeat")?;
-        data.rows.push(row(&table, record, index, tool_mm)?);
+        let mut row = row(&table, record, index, tool_mm)?;
+        row.instrument = table.text(record, "instrument").map(|name| numbered(&mut data.instruments, name));
+        row.artefact = table.text(record, "artefact").map(|name| numbered(&mut artefacts, name));
+        data.rows.push(row);
     }
     columns::alive(&table)?;
+    columns::everywhere(&table)?;
     columns::no_copies(&table)?;
     Ok((data, table))
+}
+
+/// The number of a name, in order of appearance.
+fn numbered(names: &mut Vec<String>, name: String) -> usize {
+    names.iter().position(|known| *known == name).unwrap_or_else(|| {
+        names.push(name);
+        names.len() - 1
+    })
 }
 
 fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3]) -> Result<Row, Failure> {
@@ -72,17 +90,7 @@ fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3
     ];
     let common = table.number(record, "temp_c")?;
     let temp_c = three(["temp_x_c", "temp_y_c", "temp_z_c"])?.map(|own| own.or(common));
-    let u_um = table.number(record, "u_um")?;
-    if let Some(u) = u_um.filter(|u| *u <= 0.0) {
-        let place = table.place["u_um"];
-        return Err(table.refuse(
-            FIELD,
-            Some((record, place)),
-            format!("an uncertainty of {u} um is not possible"),
-            "u_um",
-            "give the standard uncertainty, above zero, or leave it empty",
-        ));
-    }
+    let u_um = uncertainty(table, record)?;
     let measured = three(["xm_mm", "ym_mm", "zm_mm"])?;
     let displacement = three(["dx_um", "dy_um", "dz_um"])?;
     let reading = if table.has("length_mm") {
@@ -117,9 +125,30 @@ fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3
         },
         predicted_mm: Vector::zeros(),
         u_um,
+        instrument: None,
+        artefact: None,
         reading,
         line: record.position().map_or(0, csv::Position::line),
     })
+}
+
+/// Stated standard uncertainty by component, µm: one number for all, or one each.
+fn uncertainty(table: &Table<'_>, record: &csv::ByteRecord) -> Result<[Option<f64>; 3], Failure> {
+    let mut found = [table.number(record, "u_um")?; 3];
+    for (component, column) in ["u_x_um", "u_y_um", "u_z_um"].into_iter().enumerate() {
+        found[component] = table.number(record, column)?.or(found[component]);
+    }
+    for column in ["u_um", "u_x_um", "u_y_um", "u_z_um"] {
+        let Some(u) = table.number(record, column)?.filter(|u| *u <= 0.0) else { continue };
+        return Err(table.refuse(
+            FIELD,
+            Some((record, table.place[column])),
+            format!("an uncertainty of {u} um is not possible"),
+            column,
+            "give the standard uncertainty, above zero, or leave it empty",
+        ));
+    }
+    Ok(found)
 }
 
 /// A direction of approach; nothing where it is not known.

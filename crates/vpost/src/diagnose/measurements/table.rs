@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic};
 
+use crate::diagnose::books::Slip;
 use crate::file;
 use crate::message::Failure;
 
@@ -12,10 +13,12 @@ use crate::message::Failure;
 const UNREADABLE: Code = Code(910);
 /// A column is missing, unknown, twice, or contradicts another.
 pub(super) const COLUMNS: Code = Code(911);
+/// Columns hold something else than their names say.
+const SLIP: Code = Code(919);
 /// A field is not what its column says.
 pub(super) const FIELD: Code = Code(912);
 
-const NAMES: [&str; 34] = [
+const NAMES: [&str; 39] = [
     "run",
     "x_mm",
     "y_mm",
@@ -49,6 +52,11 @@ const NAMES: [&str; 34] = [
     "temp_z_c",
     "repeat",
     "u_um",
+    "u_x_um",
+    "u_y_um",
+    "u_z_um",
+    "instrument",
+    "artefact",
     "note",
 ];
 
@@ -79,6 +87,17 @@ impl Table<'_> {
             diagnostic = diagnostic.at(span, label);
         }
         Failure::refused(self.name, self.bytes, vec![diagnostic])
+    }
+
+    /// The refusal of a file whose columns do not hold what their names say.
+    pub(in crate::diagnose) fn slipped(&self, slip: &Slip) -> Failure {
+        let message = format!(
+            "it seems that {}: the gap would be {:.1} um RMS in the place of {:.1} um, with no other cause",
+            slip.words, slip.after_um, slip.before_um
+        );
+        let column = self.place.get(slip.column).copied().unwrap_or_default();
+        let help = "correct the column and diagnose again; with --as-written it is taken as it stands";
+        self.refuse(SLIP, Some((&self.header, column)), message, "this column", help)
     }
 
     /// The number in a column; `None` where the column or the field is empty.
@@ -112,6 +131,12 @@ impl Table<'_> {
                 "every row needs its command",
             )
         })
+    }
+
+    /// The text in a column; `None` where the column or the field is empty.
+    pub(super) fn text(&self, record: &csv::ByteRecord, column: &str) -> Option<String> {
+        let text = file::decoded(record.get(*self.place.get(column)?).unwrap_or_default()).into_owned();
+        (!text.is_empty()).then_some(text)
     }
 
     /// True where the file has the column.

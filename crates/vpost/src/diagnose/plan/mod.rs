@@ -83,7 +83,12 @@ fn points(plan: &[Line]) -> String {
 
 /// The plan as measurements without readings.
 pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
-    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), geometry: geometry.clone() };
+    let mut data = Measurements {
+        runs: Vec::new(),
+        instruments: Vec::new(),
+        rows: Vec::new(),
+        geometry: geometry.clone(),
+    };
     for (line, times) in plan.iter().zip(times(plan)) {
         data.runs.push(line.run.clone());
         for (stop, time) in line.stops.iter().zip(times) {
@@ -101,7 +106,9 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                     ..Conditions::default()
                 },
                 predicted_mm: Vector::zeros(),
-                u_um: None,
+                u_um: [None; 3],
+                instrument: None,
+                artefact: None,
                 reading: Reading::Displacement([Some(0.0); 3]),
                 line: 0,
             });

@@ -50,6 +50,7 @@ pub(super) fn causes(d: &Diagnosis, changes: &[Vec<Change>]) -> Markup {
 fn one(c: &Cause, changes: &[Change]) -> Markup {
     html! {
         h3 { (shown(&c.effect)) }
+        p { (shown(&c.words)) "." }
         dl {
             @for p in &c.parameters {
                 dt { (shown(&p.name)) }

@@ -1,0 +1,262 @@
+//! What the diagnosis must not believe: measurements whose noise, set-up or truth is not what a search takes for granted.
+
+use super::*;
+
+/// Sum of twelve uniform numbers, normal enough up to three sigma.
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
+}
+
+/// The readings of some rows changed, component by component.
+fn changed(mut data: Measurements, mut change: impl FnMut(&Row) -> Vector) -> Measurements {
+    for row in &mut data.rows {
+        let more = change(row);
+        if let Reading::Displacement(components) = &mut row.reading {
+            components.iter_mut().zip(more.iter()).for_each(|(c, m)| *c = c.map(|c| c + m));
+        }
+    }
+    data
+}
+
+/// A plan without noise, for tests that make their own.
+const SILENT: Plan = Plan { sigma_um: 0.0, run_sigma_um: 0.0, ..GOOD };
+
+fn alarms(draws: std::ops::Range<u64>, file: impl Fn(u64) -> Measurements) -> Vec<String> {
+    let say = |seed: u64| {
+        let answer = diagnose(&file(seed), None, &Options::default());
+        (!answer.causes.is_empty()).then(|| format!("{seed}: {} {:?}", answer.verdict.name(), names(&answer)))
+    };
+    draws.filter_map(say).collect()
+}
+
+/// Ten places 5 mm apart with a kink between two of them, five times: what is written moves no place between them by
+/// more than twice the largest reading.
+#[test]
+fn between_the_places_a_cause_does_no_harm() {
+    for seed in 0..6 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let base = measured(SILENT, nothing);
+        let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), ..base.clone() };
+        let kink: Vec<f64> =
+            (0..10).map(|k| if k < 6 { 4.0 * f64::from(k) } else { 41.0 - 3.0 * f64::from(k) }).collect();
+        let rough: Vec<f64> = kink.iter().map(|v| v + 9.0 * normal(&mut random)).collect();
+        for cycle in 0..5_usize {
+            data.runs.push(format!("cycle {cycle}"));
+            for (k, value) in rough.iter().enumerate() {
+                let mut row = base.rows[0];
+                row.run = cycle;
+                row.command.linear_mm = Vector::new(40.0 + 5.0 * k as f64, 40.0, 40.0);
+                row.conditions = Conditions::default();
+                row.reading = Reading::Displacement([Some(value + 0.8 * normal(&mut random)), None, None]);
+                data.rows.push(row);
+            }
+        }
+        let largest = rough.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let answer = diagnose(&data, None, &Options::default());
+        let at = |x_mm: f64| -> f64 {
+            let mut row = data.rows[0];
+            row.command.linear_mm.x = x_mm;
+            let moved = |c: &crate::Cause| c.term.displacement_mm(&row.command, &row.conditions).unwrap().x;
+            1e3 * answer.causes.iter().map(moved).sum::<f64>()
+        };
+        let fine: Vec<f64> = (0..=450).map(|k| at(40.0 + 0.1 * f64::from(k))).collect();
+        let mean = fine.iter().sum::<f64>() / fine.len() as f64;
+        let most = fine.iter().fold(0.0_f64, |m, v| m.max((v - mean).abs()));
+        assert!(most <= 2.0 * largest, "{seed}: {most} of {largest} {:?}", names(&answer));
+        for cause in &answer.causes {
+            let coefficients = cause.term.coefficients().count();
+            assert!(coefficients <= 5, "{}: {coefficients} coefficients on 10 places", cause.effect);
+        }
+    }
+}
+
+/// Of 40 draws at a level of 3 % more than four are an alarm once in forty times.
+#[test]
+fn components_that_scatter_unequally_raise_no_alarm() {
+    let file = |seed: u64| {
+        let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
+        let mut draw = || normal(&mut random);
+        changed(measured(SILENT, nothing), |_| Vector::new(0.6 * draw(), 1.2 * draw(), 1.8 * draw()))
+    };
+    let found = alarms(0..40, file);
+    assert!(found.len() <= 4, "{found:#?}");
+}
+
+/// The same with readings of which each keeps 0.8 of the one before.
+#[test]
+fn readings_that_hang_together_raise_no_alarm() {
+    let file = |seed: u64| {
+        let mut random = ChaCha8Rng::seed_from_u64(2000 + seed);
+        let mut state = Vector::zeros();
+        changed(measured(SILENT, nothing), move |_| {
+            let fresh = Vector::new(normal(&mut random), normal(&mut random), normal(&mut random));
+            state = 0.8 * state + 0.6 * fresh;
+            state
+        })
+    };
+    let found = alarms(0..40, file);
+    assert!(found.len() <= 4, "{found:#?}");
+}
+
+/// Six plates of 6 × 6 holes, each clamped anew: turned by up to 400 µrad against each other.
+fn plates(field_um: impl Fn(&Row) -> Vector) -> Measurements {
+    let mut random = ChaCha8Rng::seed_from_u64(77);
+    let base = measured(SILENT, nothing);
+    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), ..base.clone() };
+    for plate in 0..6_usize {
+        data.runs.push(format!("plate {plate}"));
+        let turn = 1e-3 * 400.0 * [1.0, -0.7, 0.4, -0.2, 0.9, -1.0][plate];
+        for hole in 0..36 {
+            let mut row = base.rows[0];
+            row.run = plate;
+            row.command.linear_mm =
+                Vector::new(40.0 + 60.0 * f64::from(hole % 6), 40.0 + 60.0 * f64::from(hole / 6), 40.0);
+            row.command.direction = [0; 3];
+            row.conditions = Conditions::default();
+            let tip = row.command.linear_mm - Vector::new(190.0, 190.0, 0.0);
+            let clamped =
+                Vector::new(0.0, 0.0, turn).cross(&tip) + Vector::new(9.0, -7.0, 0.0) * plate as f64;
+            let noise = Vector::new(normal(&mut random), normal(&mut random), 0.0);
+            let gap = field_um(&row) + clamped + noise;
+            row.reading = Reading::Displacement([Some(gap.x), Some(gap.y), None]);
+            data.rows.push(row);
+        }
+    }
+    data
+}
+
+#[test]
+fn plates_turned_against_each_other_are_set_up_and_no_gap() {
+    let answer = diagnose(&plates(nothing), None, &Options::default());
+    assert_eq!(answer.verdict, Verdict::NoGap, "{} {:?}", answer.sentence, names(&answer));
+    // Two components of 1 µm.
+    assert!(answer.gap.rms_um < 1.6, "{:?}", answer.gap);
+    let turns = &answer.setup.run_rotations_urad;
+    let apart = turns[0].1[2] - turns[5].1[2];
+    assert!((apart - 800.0).abs() < 20.0, "{turns:?}");
+    // A scale is no turn: it is found beside them.
+    let stretched = |row: &Row| Vector::new(0.05 * row.command.linear_mm.x, 0.0, 0.0);
+    let answer = diagnose(&plates(stretched), None, &Options::default());
+    assert!(names(&answer).contains(&"scale.X"), "{} {:?}", answer.sentence, names(&answer));
+}
+
+#[test]
+fn two_instruments_that_disagree_are_said_to() {
+    let mut data = measured(GOOD, nothing);
+    data.instruments = vec!["tracker".to_owned(), "probe".to_owned()];
+    data.rows.iter_mut().enumerate().for_each(|(k, row)| row.instrument = Some(usize::from(k % 3 == 0)));
+    let data = changed(data, |row| Vector::new(0.0, if row.instrument == Some(1) { 40.0 } else { 0.0 }, 0.0));
+    let answer = diagnose(&data, None, &Options::default());
+    assert!(answer.causes.is_empty(), "{:?}", names(&answer));
+    let said = answer.notes.iter().find(|n| n.contains("tracker and probe disagree by 40")).is_some();
+    assert!(said, "{:?}", answer.notes);
+}
+
+/// The hold-out knows nothing of the play: a name that unseen rows contradict does not stay.
+#[test]
+fn unseen_rows_that_refute_a_name_change_the_headline() {
+    let data = measured(GOOD, backlash_um);
+    let other = |row: &Row| Vector::new(3.0 * f64::from(row.command.direction[0]), 0.0, 0.0);
+    let holdout = measured(Plan { seed: 2, ..GOOD }, other);
+    let answer = diagnose(&data, Some(&holdout), &Options::default());
+    assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+    assert!(answer.sentence.contains("refute"), "{}", answer.sentence);
+    assert!(answer.causes.iter().all(|c| c.remedy.starts_with("Do not act on this")));
+    // And a gap that only unseen rows show is one.
+    let answer = diagnose(
+        &measured(GOOD, nothing),
+        Some(&measured(Plan { seed: 2, ..GOOD }, |row| 5.0 * backlash_um(row))),
+        &Options::default(),
+    );
+    assert_eq!(answer.verdict, Verdict::Unknown, "{}", answer.sentence);
+}
+
+/// A load that is one number per run: the forecast for other runs is what they show.
+#[test]
+fn a_load_that_is_constant_within_a_run_is_seen_between_the_runs() {
+    let loaded = |seed: u64| {
+        let loads = [0.0, 120.0, 40.0, 200.0, 80.0, 160.0, 20.0, 180.0, 60.0, 140.0, 100.0, 10.0];
+        let mut data = measured(Plan { seed, run_sigma_um: 0.3, ..GOOD }, nothing);
+        data.rows
+            .iter_mut()
+            .for_each(|r| r.conditions.load_kg = Some(loads[(r.run * 5 + seed as usize) % 12]));
+        changed(data, |row| Vector::new(0.0, 0.0, -0.09 * row.conditions.load_kg.unwrap()))
+    };
+    let answer = diagnose(&loaded(1), Some(&loaded(4)), &Options::default());
+    assert_eq!(names(&answer), ["load.Z"], "{}", answer.sentence);
+    let (promised, kept) = (answer.causes[0].shrink_predicted.mid, answer.holdout.unwrap().shrink);
+    assert!(kept > 0.5 && (promised - kept).abs() < 0.05, "{promised} {kept}");
+}
+
+#[test]
+fn play_of_the_wrong_sign_is_said_to_be_none() {
+    let over = |row: &Row| -backlash_um(row);
+    let answer = diagnose(&measured(GOOD, over), None, &Options::default());
+    assert_eq!(names(&answer), ["backlash.X"]);
+    let cause = &answer.causes[0];
+    assert!(
+        cause.words.contains("over-compensated") && cause.remedy.starts_with("This is no play"),
+        "{cause:?}"
+    );
+}
+
+/// Parts of other runs, artefacts and temperatures are no repeats; what is read twice in one run is.
+#[test]
+fn another_part_is_no_repeat() {
+    let mut data = measured(Plan { feeds: &[1000.0], ..GOOD }, nothing);
+    let noise = |data: &Measurements| {
+        let scalars = data.scalars(None);
+        let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+        estimate(&data.rows, &scalars, &values, 0.0).unwrap()
+    };
+    assert_eq!(noise(&data).source, NoiseSource::Repeats);
+    data.rows
+        .iter_mut()
+        .for_each(|row| row.artefact = Some(usize::from(row.conditions.time_s > Some(2000.0))));
+    let mut parts = data.clone();
+    parts.rows.iter_mut().enumerate().for_each(|(k, row)| row.artefact = Some(k / 34 % 2));
+    assert_eq!(noise(&parts).source, NoiseSource::Neighbours);
+    let mut warm = data.clone();
+    warm.rows
+        .iter_mut()
+        .enumerate()
+        .for_each(|(k, row)| row.conditions.temp_c = [Some(20.0 + 3.0 * (k / 34 % 2) as f64); 3]);
+    assert_eq!(noise(&warm).source, NoiseSource::Neighbours);
+}
+
+/// Two blunders of 100 µm among repeats of a micrometre do not make the noise 10 µm.
+#[test]
+fn blunders_do_not_hide_in_the_noise_they_make() {
+    let mut data = measured(Plan { feeds: &[1000.0], ..GOOD }, nothing);
+    // Every pass twice: four repeats of a command.
+    for k in 0..data.rows.len() {
+        data.rows[k].command.direction = [1, 0, 0];
+        data.rows[k].command.linear_mm.x = (data.rows[k].command.linear_mm.x / 25.0).round() * 25.0;
+    }
+    let mut nth = 0;
+    let data = changed(data, |_| {
+        nth += 1;
+        Vector::new(if nth % 200 == 7 { 100.0 } else { 0.0 }, 0.0, 0.0)
+    });
+    let scalars = data.scalars(None);
+    let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
+    let noise = estimate(&data.rows, &scalars, &values, 0.0).unwrap();
+    assert!(noise.variance.sqrt() < 1.5, "{noise:?}");
+}
+
+/// Readings in whole micrometres of a scatter of a tenth: the display's step is the noise.
+#[test]
+fn a_coarse_display_is_noise() {
+    let data = measured(Plan { sigma_um: 0.1, run_sigma_um: 0.0, ..GOOD }, nothing);
+    let rounded = changed(data.clone(), |row| match row.reading {
+        Reading::Displacement([Some(x), Some(y), Some(z)]) => {
+            Vector::new(x.round() - x, y.round() - y, z.round() - z)
+        }
+        _ => Vector::zeros(),
+    });
+    let rounded = changed(rounded, |row| Vector::repeat(f64::from(u8::from(row.run % 2 == 0))));
+    let scalars = rounded.scalars(None);
+    assert!((crate::noise::quantum_um(&scalars) - 1.0).abs() < 1e-9);
+    let answer = diagnose(&rounded, None, &Options::default());
+    assert!(answer.causes.is_empty(), "{:?}", names(&answer));
+}
