@@ -14,9 +14,11 @@ HEAD = """# Machines measured and found again
 
 What `vpost calibrate` makes of machines whose truth is known, as an outside judge sees it (`tests/judges/calibrate`, Python, no code in common with vpost):
 
-    cargo build --release -p vpost
-    python3 tests/judges/calibrate/judge.py --vpost target/release/vpost --count 300 --results results.jsonl{options}
-    python3 tests/judges/calibrate/page.py results.jsonl > docs/calibration-benchmark.md
+```console
+cargo build --release -p vpost
+python3 tests/judges/calibrate/judge.py --vpost target/release/vpost --count 300 --results results.jsonl{options}
+python3 tests/judges/calibrate/page.py results.jsonl > docs/calibration-benchmark.md
+```
 
 {version}, seed {seed}. The judge's machines are smooth functions of every axis with constant angles, play, squareness and lines measured anywhere, in
 every order of the axes, written down from [equations.md](equations.md) (5) to (9); instruments are turned by up to 50 mrad and stand anywhere. The profile that is written is
