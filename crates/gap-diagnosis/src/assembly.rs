@@ -21,6 +21,9 @@ use crate::space::Part;
 use crate::term::Term;
 use crate::verdict::{Evidence, Unseen, verdict};
 
+/// Readings that keep more than this of the one before are no noise that a verdict of NO GAP could rest on.
+const SLOW_PHI: f64 = 0.5;
+
 /// A solved model and what is needed to speak about it.
 pub(crate) struct Assembly<'a> {
     pub(crate) data: &'a Measurements,
@@ -223,7 +226,7 @@ impl<'a> Assembly<'a> {
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
             carries: corner_um <= gap_rms,
-            slow: self.noise.is_some_and(|n| n.is_slow()),
+            slow: self.noise.is_some_and(|n| n.is_slow()) || model.phi > SLOW_PHI,
             trifling: gap_rms - after < crate::verdict::WORTH_NAMING * gap_rms,
             unseen: None,
         };

@@ -28,6 +28,9 @@ pub(crate) struct Bounds {
     measured: usize,
     /// Largest reading, µm: measured minus predicted, from the median of its component.
     largest_um: f64,
+    /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
+    /// while the measuring frame takes up to half of it off each reading.
+    widest_um: f64,
 }
 
 impl Bounds {
@@ -51,14 +54,16 @@ impl Bounds {
                 }
             }
         }
-        let mut largest_um: f64 = 0.0;
+        let (mut largest_um, mut widest_um): (f64, f64) = (0.0, 0.0);
         for class in 0..4 {
             let gaps = || scalars.iter().filter(|s| s.class == class).map(|s| s.gap_um);
             if let Some(middle) = median(&mut gaps().collect::<Vec<f64>>()) {
                 largest_um = gaps().fold(largest_um, |most, gap| most.max((gap - middle).abs()));
+                let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
+                widest_um = widest_um.max(ends.1 - ends.0);
             }
         }
-        Self { probes, measured, largest_um }
+        Self { probes, measured, largest_um, widest_um }
     }
 
     /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.
@@ -82,7 +87,10 @@ impl Bounds {
         if let Some(reason) = implausible(kind, terms) {
             return Some(reason);
         }
-        let harmful = self.excursion_um(terms, geometry) > LARGEST * self.largest_um;
+        // What is straight does not swing between places.
+        let straight = matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..));
+        let largest_um = if straight { self.widest_um } else { self.largest_um };
+        let harmful = self.excursion_um(terms, geometry) > LARGEST * largest_um;
         harmful
             .then_some("between the places measured it would displace by more than twice the largest reading")
     }

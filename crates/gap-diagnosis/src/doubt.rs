@@ -30,6 +30,8 @@ const SERIAL_SIGMA: f64 = 3.0;
 const SERIAL: f64 = 0.1;
 /// More cannot be told from a random walk.
 const MOST_SERIAL: f64 = 0.98;
+/// A run must be so many times as long as its readings hang together.
+const LONG: f64 = 5.0;
 /// Readings of one place one after the other that show how they hang together, and how many pairs there must be.
 const STILL: usize = 8;
 const PAIRS: f64 = 30.0;
@@ -86,7 +88,12 @@ pub(crate) fn phi(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64
         .collect();
     let moving: Vec<Vec<f64>> =
         runs.values().filter(|l| l.len() > 3).map(|l| l.iter().map(|(_, v)| *v).collect()).collect();
-    lag_one(&standing).or_else(|| lag_one(&moving)).unwrap_or(0.0)
+    if let Some(phi) = lag_one(&standing) {
+        return phi;
+    }
+    // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
+    let length = moving.iter().map(Vec::len).sum::<usize>() as f64 / moving.len().max(1) as f64;
+    lag_one(&moving).filter(|phi| length >= LONG * (1.0 + phi) / (1.0 - phi)).unwrap_or(0.0)
 }
 
 /// Pooled lag-one correlation of some series; `None` of too few pairs, 0 where it is none.

@@ -33,7 +33,7 @@ pub(crate) fn sentence(verdict: Verdict, gap: &Gap, causes: &[Cause], leftover: 
         }
         Verdict::NoiseModelSuspect => {
             if names.is_empty() {
-                "There is no gap, but the scatter of the rows is not what the file says it is.".to_owned()
+                "No effect is seen above the scatter of the rows, but that scatter is not the independent noise that the file says or repeats show: look at the instrument first.".to_owned()
             } else {
                 format!("What looks like a gap of {size} is made by the instrument: {list}.")
             }
