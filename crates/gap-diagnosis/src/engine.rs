@@ -10,7 +10,7 @@ use crate::doubt::{self, Setting, could_be_turned};
 use crate::fit::Solution;
 use crate::gram::{Gram, Source};
 use crate::library::{Library, Variant, narrowest_mm};
-use crate::noise::{estimate, outliers};
+use crate::noise::{estimate, outliers, quantum_um};
 use crate::observation::{Measurements, Scalar};
 use crate::pool::Pool;
 use crate::propose::{self, Pitches};
@@ -271,6 +271,8 @@ pub(crate) struct State<'a, 'b> {
     pub(crate) bounds: Bounds,
     /// Correlation of neighbouring readings of a run.
     pub(crate) phi: f64,
+    /// Least variance of a reading, µm²: that of the display's step.
+    pub(crate) floor: f64,
 }
 
 impl<'a, 'b> State<'a, 'b> {
@@ -295,6 +297,7 @@ impl<'a, 'b> State<'a, 'b> {
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
         let (bounds, phi) = (Bounds::new(data, source.scalars), setting.phi);
+        let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
             data,
             source,
@@ -310,6 +313,7 @@ impl<'a, 'b> State<'a, 'b> {
             refused,
             bounds,
             phi,
+            floor,
         }
     }
 

@@ -58,7 +58,7 @@ impl State<'_, '_> {
         // Readings that hang together are as good as (1 - φ)/(1 + φ) times as many independent ones.
         let independent = degrees * (1.0 - self.phi) / (1.0 + self.phi);
         let effective = self.effective_degrees(part, fit.level, independent.max(1.0));
-        let ratio = gain / columns / (fit.residual / degrees).max(1e-12) / inflation;
+        let ratio = gain / columns / (fit.residual / degrees).max(self.floor) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
         let p = 2.0
@@ -145,7 +145,11 @@ impl State<'_, '_> {
             return 1.0;
         }
         let independent = (degrees * (1.0 - self.phi) / (1.0 + self.phi)).max(1.0);
-        f_tail((before - after) / columns / (after / degrees).max(1e-12) / inflation, columns, independent)
+        f_tail(
+            (before - after) / columns / (after / degrees).max(self.floor) / inflation,
+            columns,
+            independent,
+        )
     }
 
     /// By how much the readings' hanging together widens what is known of a part beside the rest: its columns with the

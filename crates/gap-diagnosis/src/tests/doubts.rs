@@ -148,7 +148,7 @@ fn two_instruments_that_disagree_are_said_to() {
     let data = changed(data, |row| Vector::new(0.0, if row.instrument == Some(1) { 40.0 } else { 0.0 }, 0.0));
     let answer = diagnose(&data, None, &Options::default());
     assert!(answer.causes.is_empty(), "{:?}", names(&answer));
-    let said = answer.notes.iter().find(|n| n.contains("tracker and probe disagree by 40")).is_some();
+    let said = answer.notes.iter().any(|n| n.contains("tracker and probe disagree by 40"));
     assert!(said, "{:?}", answer.notes);
 }
 
