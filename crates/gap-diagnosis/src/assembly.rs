@@ -97,7 +97,7 @@ impl<'a> Assembly<'a> {
     /// free offsets of the runs there would be neither gap nor gain.
     fn between_runs(&self) -> bool {
         /// Share of its information that lies within the runs.
-        const WITHIN: f64 = 0.3;
+        const WITHIN: f64 = 0.02;
         let (space, library) = (&self.model.space, &self.model.library);
         let free = crate::space::RHO_GRID.len() - 1;
         self.model.parts.iter().any(|part| {
