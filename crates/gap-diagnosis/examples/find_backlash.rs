@@ -41,14 +41,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 command: Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction },
                 conditions: Conditions { feed_mm_min: Some(feed), ..Conditions::default() },
                 predicted_mm: Vector::zeros(),
-                u_um: None,
+                u_um: [None; 3],
+                instrument: None,
+                artefact: None,
                 reading: Reading::Displacement([Some(read.x), Some(read.y), Some(read.z)]),
                 line: rows.len() as u64 + 2,
             });
         }
     }
     let runs = (0..12).map(|line| format!("line {line}")).collect();
-    let data = Measurements { runs, rows, geometry: EffectGeometry::default() };
+    let data = Measurements { runs, instruments: Vec::new(), rows, geometry: EffectGeometry::default() };
 
     let answer = diagnose(&data, None, &Options::default());
     let mut text = format!("verdict: {:?}\n", answer.verdict);

@@ -26,6 +26,8 @@ pub(crate) struct Bounds {
     probes: Vec<Row>,
     /// How many of them are rows.
     measured: usize,
+    /// How many places of each axis a curve can tell apart.
+    pub(crate) places: [f64; 3],
     /// Largest reading, µm: measured minus predicted, from the median of its component.
     largest_um: f64,
     /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
@@ -63,7 +65,8 @@ impl Bounds {
                 widest_um = widest_um.max(ends.1 - ends.0);
             }
         }
-        Self { probes, measured, largest_um, widest_um }
+        let places = [0, 1, 2].map(|axis| data.effective_places(axis));
+        Self { probes, measured, places, largest_um, widest_um }
     }
 
     /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.

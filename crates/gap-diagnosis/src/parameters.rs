@@ -36,9 +36,10 @@ impl Assembly<'_> {
             return vec![1.0; own.len()];
         }
         let terms = &model.solution.terms;
-        let beside = terms.iter().enumerate().filter(|(i, _)| !own.contains(i)).map(|(_, t)| *t).collect();
+        let beside: Vec<Term> =
+            terms.iter().enumerate().filter(|(i, _)| !own.contains(i)).map(|(_, t)| *t).collect();
         let source = crate::engine::source(self.data, &model.scalars);
-        crate::trial::inflations(beside, &terms[own], model.solution.rho, model.phi, &source)
+        crate::trial::inflations(&beside, &terms[own], model.solution.rho, model.phi, &source)
     }
 
     pub(crate) fn parameters(&self, place: usize) -> Vec<Parameter> {

@@ -23,7 +23,7 @@ pub(crate) const UNPROVEN: &str = "the F test";
 /// [`inflation`] of some columns, each beside others and the runs' offsets.
 #[must_use]
 pub(crate) fn inflations(
-    beside: Vec<Term>,
+    beside: &[Term],
     columns: &[Term],
     rho: f64,
     phi: f64,
@@ -38,7 +38,7 @@ pub(crate) fn inflations(
             .map(|(i, s)| Scalar { gap_um: column.value(i), ..*s })
             .collect();
         let source = Source { scalars: &alone, ..*source };
-        let left = Gram::new(beside.clone(), &source).solve(rho, &source).residuals_um;
+        let left = Gram::new(beside.to_vec(), &source).solve(rho, &source).residuals_um;
         inflation(source.rows, &alone, &left, phi)
     };
     columns.iter().map(of).collect()
@@ -91,7 +91,7 @@ impl State<'_, '_> {
                 candidate.variants[part.variant].columns.iter().filter(move |_| own)
             });
             let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
-            2.0 * columns.filter(seen).count() as f64 > self.data.effective_places(axis) + 0.5
+            2.0 * columns.filter(seen).count() as f64 > self.bounds.places[axis] + 0.5
         };
         let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
         crowded.then_some(
@@ -158,10 +158,13 @@ impl State<'_, '_> {
         if self.phi == 0.0 {
             return 1.0;
         }
-        let beside = model_columns(&self.library, rest).into_iter().map(|c| self.library.terms[c]).collect();
+        let beside: Vec<Term> =
+            model_columns(&self.library, rest).into_iter().map(|c| self.library.terms[c]).collect();
         let own = &self.library.candidates[part.candidate].variants[part.variant].columns;
         let own: Vec<Term> = own.iter().map(|c| self.library.terms[*c]).collect();
-        inflations(beside, &own, self.space.rho(level), self.phi, self.source).into_iter().fold(1.0, f64::max)
+        inflations(&beside, &own, self.space.rho(level), self.phi, self.source)
+            .into_iter()
+            .fold(1.0, f64::max)
     }
 
     /// Degrees of freedom of the noise that an effect competes with: few where only the differences

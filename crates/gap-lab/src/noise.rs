@@ -154,9 +154,9 @@ impl Character {
                 *noise = self.state;
             }
             NoiseKind::Walk => {
-                for i in 0..3 {
-                    self.state[i] = if new { 0.0 } else { self.state[i] + number * dice.normal() };
-                    noise[i] += self.state[i];
+                for (noise, state) in noise.iter_mut().zip(&mut self.state) {
+                    *state = if new { 0.0 } else { *state + number * dice.normal() };
+                    *noise += *state;
                 }
             }
             NoiseKind::Rounded => (0..3).for_each(|i| noise[i] = (noise[i] / number).round() * number),

@@ -248,7 +248,7 @@ fn blunders_do_not_hide_in_the_noise_they_make() {
 #[test]
 fn a_coarse_display_is_noise() {
     let data = measured(Plan { sigma_um: 0.1, run_sigma_um: 0.0, ..GOOD }, nothing);
-    let rounded = changed(data.clone(), |row| match row.reading {
+    let rounded = changed(data, |row| match row.reading {
         Reading::Displacement([Some(x), Some(y), Some(z)]) => {
             Vector::new(x.round() - x, y.round() - y, z.round() - z)
         }
