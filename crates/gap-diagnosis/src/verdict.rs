@@ -61,15 +61,16 @@ impl Unseen {
     }
 
     /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
-    /// noise.
+    /// noise, or hardly anything of it came true.
     fn refutes(&self) -> bool {
         let short = self.promised.0 - self.achieved();
-        self.after > NOISE_LEFT && short > f64::max(SHORT, 2.0 * self.error)
+        let little = self.achieved() < LITTLE * self.promised.1;
+        short > f64::max(SHORT, 2.0 * self.error) && (self.after > NOISE_LEFT || little)
     }
 
-    /// A forecast that does not hold, and of which a quarter at most is true.
+    /// A forecast that does not hold, and of which hardly anything came true, where noise is not all that is left.
     fn contradicts(&self) -> bool {
-        self.refutes() && self.achieved() < 0.25 * self.promised.1
+        self.refutes() && self.after > NOISE_LEFT && self.achieved() < LITTLE * self.promised.1
     }
 }
 
@@ -100,6 +101,8 @@ impl Unseen {
     }
 }
 
+/// Hardly anything of a forecast.
+const LITTLE: f64 = 0.25;
 /// A forecast may miss the low end of its interval by so much, as a share of the gap.
 const SHORT: f64 = 0.05;
 /// Up to this factor above the noise, what is left on unseen rows is noise: tails and blunders among them are not left out.
