@@ -65,6 +65,10 @@ pub struct Options {
     pub holdout_every: usize,
 }
 
+/// Each run has a set-up of its own, six unknowns that are solved for together with the machine's: time grows with the
+/// square of their number, and nobody sets an instrument up so often.
+const MOST_RUNS: usize = 200;
+
 /// Fits the change of every rigid-body term: equation (51).
 ///
 /// The gauge, so that nothing is counted twice: positioning and straightness change by nothing in the mean over their nodes,
@@ -74,13 +78,21 @@ pub struct Options {
 /// then taken from all.
 ///
 /// # Errors
-/// [`CalibrationError`]: places outside the base's volume, too few of them, numbers in another unit than they claim, an outlier,
+/// [`CalibrationError`]: places outside the base's volume, too few of them, more runs than are told apart, numbers in another unit than they claim, an outlier,
 /// play of the wrong sign, and mistakes after whose repair the readings fit far better.
 pub fn calibrate(
     points: &[Point],
     base: &Base,
     options: Options,
 ) -> Result<VolumetricCalibration, CalibrationError> {
+    let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
+    if runs > MOST_RUNS {
+        return Err(CalibrationError::TooFew(format!(
+            "{runs} runs, each with a set-up of its own, for {} points; at most {MOST_RUNS} are told apart: give one run id to what \
+             was measured in one set-up of the instrument",
+            points.len()
+        )));
+    }
     let kept = known_places(points, base)?;
     let left_out = points.len() - kept.len();
     let points: &[Point] = &kept.iter().map(|k| points[*k]).collect::<Vec<Point>>();

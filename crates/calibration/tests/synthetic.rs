@@ -1,5 +1,6 @@
 //! Machines of known truth, made by a generator that shares no code with the crate under test.
 
+use calibration::CalibrationError;
 use calibration::tracker::{Frame, calibrate};
 use calibration::volumetric::{self, Options, VolumetricCalibration};
 use calibration::{Base, MeanTraverse, Point, PointReading, Reading, quantile_95};
@@ -202,6 +203,16 @@ fn the_own_profile_comes_back() {
             assert!((a.position_mm - b.position_mm).norm() < 1e-5, "{interpolation:?} {p:?}");
         }
     }
+}
+
+/// Each run is a set-up: as many of them as points would take memory without end.
+#[test]
+fn a_run_for_every_point_is_refused() {
+    let (rows, _) = volume_points(7, 0, 1.0, 240);
+    let each: Vec<Point> =
+        points(&rows).into_iter().enumerate().map(|(run, point)| Point { run, ..point }).collect();
+    let refused = volumetric::calibrate(&each, &bare(), Options { nodes: 4, holdout_every: 5 });
+    assert!(matches!(refused, Err(CalibrationError::TooFew(why)) if why.starts_with("240 runs")));
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! The command: arguments, files, messages, exit status.
 //!
-//! The roof of the house and the only room where the text wing and the mathematics wing meet: see
-//! [`correct`] for the line that data takes.
+//! The roof of the house; [`rewrite`] below it is where the text wing and the mathematics wing meet.
 
 pub mod arguments;
 pub mod batch;
