@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use diagnostic::{Code, Diagnostic};
 
 use crate::correct::Growing;
-use crate::growing::{GrowingFile, Nursery};
+use crate::growing::{GrowingFile, Nursery, sweep};
 use crate::message::Failure;
 use crate::source::Still;
 use crate::terminal;
@@ -200,6 +200,7 @@ impl Output {
         match (self.place, self.path.as_deref()) {
             (Place::Beside(beside), Some(path)) => {
                 self.to_disk.finish(beside.file()).map_err(|error| fail(&error))?;
+                sweep(folder_of(path));
                 beside
                     .put_new(path)
                     .or_else(|(_, beside)| beside.replace(folder_of(path), path))

@@ -26,6 +26,8 @@ pub(crate) enum GrowingFile {
 
 /// Names of files that are in no place yet.
 const PREFIX: &str = ".vpost-";
+/// So many letters and digits by chance stand behind it.
+const RANDOM: usize = 6;
 
 impl Nursery {
     /// A folder that is there.
@@ -46,8 +48,11 @@ impl Nursery {
             Some(file) => GrowingFile::Nameless(file),
             None => {
                 let mut builder = tempfile::Builder::new();
-                for_everybody(builder.prefix(PREFIX));
-                GrowingFile::Named(builder.tempfile_in(&self.path)?)
+                for_everybody(builder.prefix(PREFIX).rand_bytes(RANDOM));
+                let named = builder.tempfile_in(&self.path)?;
+                // Where files cannot be locked, nothing is swept either.
+                let _ = named.as_file().try_lock();
+                GrowingFile::Named(named)
             }
         };
         if let Some(old) = old {
@@ -61,6 +66,25 @@ impl Nursery {
             grown.file().set_permissions(old.permissions())?;
         }
         Ok(grown)
+    }
+}
+
+/// Takes away what runs that were cut off left in a folder under names that are in no place: who grows a file holds its
+/// lock.
+pub(crate) fn sweep(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX));
+        let ours = random.is_some_and(|random| {
+            random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        });
+        if ours
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && File::open(entry.path()).is_ok_and(|left| left.try_lock().is_ok())
+        {
+            let _ = std::fs::remove_file(entry.path());
+        }
     }
 }
 
@@ -90,8 +114,11 @@ impl GrowingFile {
         match self {
             // A link takes no place that is taken; a name does.
             Self::Nameless(file) => {
-                let named =
-                    tempfile::Builder::new().prefix(PREFIX).make_in(folder, |name| link(&file, name))?;
+                let _ = file.try_lock();
+                let named = tempfile::Builder::new()
+                    .prefix(PREFIX)
+                    .rand_bytes(RANDOM)
+                    .make_in(folder, |name| link(&file, name))?;
                 named.persist(place).map(drop).map_err(|missed| missed.error)
             }
             Self::Named(named) => named.persist(place).map(drop).map_err(|missed| missed.error),
@@ -247,5 +274,21 @@ mod tests {
             nursery.file(Some(&old)).unwrap().replace(folder.path(), &place("usual")).unwrap();
             assert_eq!(mode("usual"), bits);
         }
+    }
+
+    #[test]
+    fn what_a_cut_left_is_swept_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in [".vpost-N6uS8t", ".vpost-kjFqfA", ".vpost-notes.txt", "vpost-N6uS8t", ".vpost"] {
+            std::fs::write(at(name), "G0\n").unwrap();
+        }
+        let growing = File::open(at(".vpost-kjFqfA")).unwrap();
+        growing.lock().unwrap();
+        sweep(folder.path());
+        let mut left: Vec<_> =
+            folder.path().read_dir().unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        assert_eq!(left, [".vpost", ".vpost-kjFqfA", ".vpost-notes.txt", "vpost-N6uS8t"]);
     }
 }
