@@ -318,6 +318,9 @@ impl<'a> Assembly<'a> {
             Some(Noise { source: NoiseSource::Neighbours, .. }) => notes.push(
                 "No command was measured twice in a run: the noise is estimated from neighbouring rows, and a gap finer than their distance counts as noise.".to_owned(),
             ),
+            Some(Noise { source: NoiseSource::Returns, .. }) => notes.push(
+                "No command was measured twice in a run: the noise is estimated from what the same commands read in other runs, for neighbouring rows differ by far more.".to_owned(),
+            ),
             None => notes.push("There are neither repeats nor neighbours to tell noise from gap.".to_owned()),
             Some(noise) if noise.is_slow() => notes.push(format!(
                 "Repeats of one command scatter {:.1} times as much as neighbouring readings: something changes between the passes (temperature, machine or instrument), and the repeats' scatter is not noise alone.",

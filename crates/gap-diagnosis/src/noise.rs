@@ -11,6 +11,8 @@ pub(crate) enum NoiseSource {
     Repeats,
     /// No repeats: differences of neighbouring rows of a run.
     Neighbours,
+    /// No repeats: differences of the same command in other runs, where neighbours differ by far more.
+    Returns,
 }
 
 /// Noise of a row of weight one.
@@ -58,7 +60,14 @@ pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], p
                 .max(1.0);
             Some(Noise { slow, ..noise })
         }
-        few => neighbours.or(few),
+        few => {
+            // What comes back in every run is no noise, however much neighbouring places differ by it.
+            let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH_REPEATS);
+            match (neighbours, returns) {
+                (Some(n), Some(r)) if r.variance.max(floor) * SLOW * SLOW < n.variance => Some(r),
+                _ => neighbours.or(few),
+            }
+        }
     };
     found.map(|noise| Noise { variance: noise.variance.max(floor), ..noise })
 }
@@ -134,6 +143,29 @@ fn from_repeats(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Optio
     }
     let source = NoiseSource::Repeats;
     (degrees > 0.0).then(|| Noise { variance: square / degrees, degrees, source, slow: 1.0 })
+}
+
+/// Differences of the same command in other runs, the runs' own offsets taken off, robustly. It holds the runs' differences
+/// too, so that no noise is larger; how much smaller, nobody knows.
+fn from_returns(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let mut runs: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
+    for (scalar, value) in scalars.iter().zip(&weighted) {
+        runs.entry((rows[scalar.row].run, scalar.class)).or_default().push(*value);
+    }
+    let offsets: BTreeMap<(usize, usize), f64> =
+        runs.into_iter().map(|(run, mut values)| (run, median(&mut values).unwrap_or(0.0))).collect();
+    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
+    for (scalar, value) in scalars.iter().zip(&weighted) {
+        let mut key = key(&rows[scalar.row], scalar);
+        key[0] = 0;
+        groups.entry(key).or_default().push(value - offsets[&(rows[scalar.row].run, scalar.class)]);
+    }
+    let mut differences: Vec<f64> =
+        groups.values().flat_map(|group| group.windows(2).map(|w| (w[1] - w[0]).abs())).collect();
+    let degrees = differences.len() as f64 / 3.0;
+    let sigma = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences)?;
+    Some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Returns, slow: 1.0 })
 }
 
 /// Second differences along a run, robustly: a smooth residual cancels, noise does not.

@@ -19,7 +19,7 @@ pub(crate) fn lack_of_fit(
     degrees: f64,
 ) -> f64 {
     let square: f64 = scalars.iter().zip(residuals_um).map(|(s, r)| s.weight * r * r).sum();
-    let against_repeats = noise.filter(|n| n.source == NoiseSource::Repeats).map_or(1.0, |n| {
+    let against_repeats = noise.filter(|n| n.source != NoiseSource::Neighbours).map_or(1.0, |n| {
         let rest = (degrees - n.degrees).max(1.0);
         let lack = ((square - n.variance * n.degrees) / rest).max(0.0);
         f_tail(lack / n.variance.max(1e-12), rest, n.degrees)
