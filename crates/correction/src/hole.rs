@@ -396,7 +396,12 @@ impl<'m> Corrector<'m> {
         let (r_mm, bottom_mm) = (hole.at_r.linear_mm[normal], hole.bottom_mm);
         let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
         let may = block.may_have_words();
+        // On the way to the next feed, even back, an axis is where it will be on that feed; else where it goes.
+        let drills = machine.state;
+        let mut leaves = drills;
+        leaves.direction[normal] = -drills.direction[normal];
         let rapid = |corrector: &mut Self,
+                     along: &Command,
                      to: Vector,
                      may: [bool; 3],
                      corrected: &mut Corrected|
@@ -404,7 +409,7 @@ impl<'m> Corrector<'m> {
             let before = corrector.standing;
             let mut turns = 0;
             let (state, wanted, axes) = loop {
-                let state = corrector.drilling(&machine.state, normal);
+                let state = corrector.drilling(along, normal);
                 let wanted = corrector.solve(&state, to)?;
                 let axes = corrector.go(block, &to, &wanted, &Wording::of(may));
                 let mut reached = corrector.standing;
@@ -462,10 +467,10 @@ impl<'m> Corrector<'m> {
             let mut rise = start;
             rise[normal] = above;
             // It leaves the axes of the plane where they are: their words say where the hole is.
-            rapid(self, rise, block.named, corrected)?;
+            rapid(self, &leaves, rise, block.named, corrected)?;
         }
-        rapid(self, place(above), may, corrected)?;
-        rapid(self, place(r_mm), may, corrected)?;
+        rapid(self, &drills, place(above), may, corrected)?;
+        rapid(self, &drills, place(r_mm), may, corrected)?;
         match (hole.cycle.kind, hole.cycle.peck_mm) {
             (CycleKind::PeckFull | CycleKind::PeckChip, Some(peck)) if peck > 0.0 => {
                 let pecks = (bottom_mm - r_mm).abs() / peck;
@@ -486,12 +491,12 @@ impl<'m> Corrector<'m> {
                         break;
                     }
                     if hole.cycle.kind == CycleKind::PeckFull {
-                        rapid(self, place(r_mm), may, corrected)?;
+                        rapid(self, &drills, place(r_mm), may, corrected)?;
                         from = depth - down * block.peck_clearance_mm.min((depth - r_mm).abs());
                     } else {
                         from = depth - down * block.chip_retreat_mm.min((depth - r_mm).abs());
                     }
-                    rapid(self, place(from), may, corrected)?;
+                    rapid(self, &drills, place(from), may, corrected)?;
                 }
             }
             _ => feed(self, r_mm, bottom_mm, corrected)?,
@@ -526,7 +531,7 @@ impl<'m> Corrector<'m> {
             };
             self.follow_line(&mut follow, &out)?;
         }
-        rapid(self, place(after(hole)), may, corrected)?;
+        rapid(self, &leaves, place(after(hole)), may, corrected)?;
         Ok(())
     }
 }

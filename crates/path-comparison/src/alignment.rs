@@ -34,6 +34,8 @@ struct Approach {
     start: Place,
     within_mm: f64,
     limit_mm: f64,
+    /// So far from its start the run may be met: an axis that takes up its play brings the tool beside it first.
+    first_part_mm: f64,
 }
 
 /// What a stretch of the real path reaches.
@@ -106,19 +108,26 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
         let first = self.wanted.feed(0)?;
         let (start, limit_mm) = (first.start(), first.limit_mm);
         let away_mm = (at - start).norm();
-        let airy = if first.airy[0] { MOST_APPROACH_MM } else { LEFT_OUT_LIMITS * limit_mm };
-        let skips = begins == Begins::Anywhere || away_mm <= airy;
+        let first_part_mm = if first.airy[0] { MOST_APPROACH_MM } else { LEFT_OUT_LIMITS * limit_mm };
         if away_mm <= MOST_APPROACH_MM {
             let within_mm = match begins {
                 Begins::Positioned => away_mm + LEFT_OUT_LIMITS * limit_mm,
                 _ if away_mm > limit_mm => away_mm + limit_mm,
                 _ => limit_mm,
             };
-            self.approach = Some(Approach { start, within_mm, limit_mm });
+            self.approach = Some(Approach { start, within_mm, limit_mm, first_part_mm });
         }
-        let (mut ahead, mut reaches, mut nearest_mm) = (0, away_mm <= limit_mm, None);
+        self.enter(at, begins == Begins::Anywhere || away_mm <= first_part_mm)
+    }
+
+    /// The real path stands at a place: what is reached there, at the start or, if so much may be left out, behind it, and
+    /// how far beside the first feed that is, mm.
+    fn enter(&mut self, at: &Place, skips: bool) -> Option<f64> {
+        let first = self.wanted.feed(0)?;
+        let mut reaches = (at - first.start()).norm() <= first.limit_mm;
+        let (mut ahead, mut nearest_mm) = (0, None);
         while let Some(feed) = self.wanted.feed(ahead) {
-            feed.left.asked = true;
+            feed.left = Left { asked: true, ..Left::default() };
             for (k, stretch) in feed.stretches.iter().enumerate() {
                 let free = stretch.free(at, feed.limit_mm);
                 let free = free.filter(|free| (reaches && free.is_at_start()) || (ahead == 0 && skips));
@@ -162,7 +171,13 @@ impl<'m, I: Iterator<Item = Step>> Alignment<'m, I> {
 
     /// The real path goes on by a stretch; the state is what it was where it reaches nothing.
     pub(crate) fn advance(&mut self, on: &Stretch, process: &Process, processes: Processes) -> Reached {
-        let end = on.at(1.0);
+        let (begin, end) = (on.at(0.0), on.at(1.0));
+        if let Some(approach) = &self.approach
+            && (begin - approach.start).norm() <= approach.first_part_mm
+            && self.wanted.feed(0).is_some_and(|feed| !feed.left.is_reached())
+        {
+            self.enter(&begin, true);
+        }
         // Of the stretch: where the programmed path may stand at the start of the next piece of it.
         let mut bottom = self.approach.as_ref().and_then(|a| on.free(&a.start, a.limit_mm));
         let on_the_way = self.approach.as_ref().is_some_and(|a| (end - a.start).norm() <= a.within_mm);

@@ -170,6 +170,8 @@ pub(crate) struct Positioning {
     pub(crate) error_mm: f64,
     /// How far aside the tool may end for axes that lie in their play, mm.
     pub(crate) aside_mm: f64,
+    /// How far the tool goes there, by the most, when every axis turns, mm.
+    pub(crate) turns_mm: f64,
     /// G0, which is corrected, unlike the others.
     pub(crate) rapid: bool,
     /// Made by a cycle.
@@ -382,10 +384,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         });
         let play_mm =
             |at: &Vector, axis| self.model.reversal_mm(axis, &common.command(*at, rotary_rad)).max(0.0);
-        let aside_mm = match (&self.play, &error) {
-            (Some(_), Some((at, _))) => (0..3).map(|axis| play_mm(at, axis)).sum(),
-            _ => 0.0,
-        };
+        let known = self.play.as_ref().and(error.as_ref());
+        let aside_mm = known.map_or(0.0, |(at, _)| (0..3).map(|axis| play_mm(at, axis)).sum());
+        let turns_mm = known.map_or(0.0, |(at, _)| {
+            let here = common.command(*at, rotary_rad);
+            (0..3).map(|axis| turned_by_mm(self.model, &here, axis)).sum()
+        });
         let tip_mm = error.map(|(at, error)| at + error);
         let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
         let place = linear.map(|linear| place(&linear, &rotary_rad));
@@ -396,6 +400,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             places: [std::mem::replace(&mut self.place, place), place],
             error_mm: error.map_or(0.0, |(_, error)| error.norm()),
             aside_mm,
+            turns_mm,
             rapid: kind != Kind::Uncorrected,
             of_cycle: kind == Kind::OfCycle,
             line: common.line,
@@ -615,6 +620,16 @@ fn place(linear_mm: &Vector, rotary_rad: &Vector) -> Place {
     Place::from_row_slice(&[linear_mm.x, linear_mm.y, linear_mm.z, rotary.x, rotary.y, rotary.z])
 }
 
+/// How far the tool goes when an axis turns, mm.
+fn turned_by_mm(model: &dyn PathModel, at: &Command, axis: usize) -> f64 {
+    let [up, down] = [1, -1].map(|side| {
+        let mut state = *at;
+        state.direction[axis] = side;
+        model.error_mm(&state)
+    });
+    (up - down).norm()
+}
+
 /// Where between two places an axis, going one way, has gone so far.
 fn where_gone(way: &Way, from: f64, to: f64, axis: usize, mm: f64) -> f64 {
     let start = way.at(from)[axis];
@@ -638,7 +653,9 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     }
     // A control does not correct the moves of a cycle: they are off by the machine's errors, there and where it began.
     let of_cycle_mm = if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
-    let near_mm = LIMITS * wanted.limit_mm + made.aside_mm + of_cycle_mm;
+    // Written as moves they stand as the next feed will want them, from whichever side they come.
+    let turns_mm = if wanted.of_cycle { made.turns_mm } else { made.aside_mm };
+    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm;
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));
