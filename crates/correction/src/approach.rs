@@ -115,13 +115,14 @@ impl<'m> Corrector<'m> {
         let from = Vector::new(x, y, z);
         let here = Command { linear_mm: from, ..machine.state };
         if !self.model.depends_on_direction() {
-            let off_mm = (from - start + self.model.error_mm(&here)).norm();
+            let off = from - start + self.model.error_mm(&here);
+            let beside_mm = (off - off.dot(&tangent) * tangent).norm();
             if self.approach_to(machine, wanted, start, block, length_mm, corrected)?
-                && off_mm <= self.limit_mm(block)
+                && beside_mm <= self.limit_mm(block)
             {
-                // The tool stands beside the path, and is fed to it from there.
+                // The tool stands beside the path, a little before or behind its start, and is fed to it from there.
                 let told = &mut corrected.correction.after_mm;
-                *told = told.max(off_mm);
+                *told = told.max(beside_mm);
             }
             return Ok(());
         }
