@@ -1,0 +1,86 @@
+//! Holes on a machine that stands sideways elsewhere when an axis turns: where they begin, and where they are left.
+
+use crate::common::{messages, run};
+
+const START: &str = "--start-at=20,20,400";
+const HEAD: &str = "G21 G17 G40 G49 G80 G90 G94 G54\nG0 X10. Y10.\nG43 H1 Z80.\nS900 M3\n";
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    /// A machine with tables for each direction. Z leans so much that holes are written as moves where `lean_urad` is large.
+    fn new(lean_urad: f64) -> Self {
+        let place = Self(tempfile::tempdir().expect("a temporary folder"));
+        let table = |axis: &str, low: &str, high: &str| {
+            let names = ["EX", "EY", "EZ"].map(|e| format!("{e}{axis}_um")).join(",");
+            let angles = ["EA", "EB", "EC"].map(|e| format!("{e}{axis}_urad")).join(",");
+            format!("position_mm,{names},{angles}\n-100,{low}\n600,{high}\n")
+        };
+        place.write("x.csv", &table("X", "0,0,0,0,0,0", "0,0,0,30,-20,0"));
+        place.write("x_negative.csv", &table("X", "4,0,0,0,0,0", "4,0,0,30,-20,0"));
+        place.write("y.csv", &table("Y", "0,0,0,0,0,0", "0,0,0,20,0,0"));
+        place.write("y_negative.csv", &table("Y", "0,8,0,0,0,0", "0,8,0,20,0,0"));
+        place.write("z.csv", &table("Z", "0,0,0,0,0,0", "30,20,20,80,40,0"));
+        place.write("z_negative.csv", &table("Z", "0,2.6,2.4,0,0,0", "30,22.6,22.4,80,40,0"));
+        let axes = ["X", "Y", "Z"].map(|name| {
+            let file = name.to_lowercase();
+            format!(
+                "axis.{name} = {{ travel_mm = [-100, 600], resolution_mm = 0.001, errors = \"{file}.csv\", \
+                 errors_negative = \"{file}_negative.csv\" }}\n"
+            )
+        });
+        place.write(
+            "machine.toml",
+            &format!(
+                "format = 1\nname = \"holes\"\ncontrol = \"fanuc\"\nchain = \"[w Y b X Z t]\"\n{}\
+                 squareness = {{ EB0Z_urad = {lean_urad} }}\nwork_offsets_mm = {{ G54 = [95, 88, 60] }}\n\
+                 tool = {{ lengths_mm = {{ H1 = 80.0 }} }}\n",
+                axes.concat()
+            ),
+        );
+        place
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().expect("a plain path").to_owned()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).expect("writable");
+    }
+
+    /// What is made of a program, which `check` must pass.
+    fn corrected(&self, program: &str) -> String {
+        self.write("in.nc", program);
+        let [from, to, machine] = ["in.nc", "out.nc", "machine.toml"].map(|name| self.path(name));
+        let ran = run(&[&from, "-m", &machine, START, "-o", &to]);
+        assert!(ran.status.success(), "{}", messages(&ran));
+        let check = run(&["check", &from, &to, "-m", &machine, START]);
+        assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+        std::fs::read_to_string(&to).expect("written")
+    }
+}
+
+#[test]
+fn a_hole_begins_beside_its_line_until_play_is_taken_up() {
+    // Each peck of the cycle begins upwards of its play: 2.6 um beside the line, and level with no place of it.
+    let drilled = format!("{HEAD}X40. Y39. Z58.\nG99 G73 X46.8 Y3.7 Z-11.5 R3.5 Q7.2 F406.\nX29.2\nG80\nG0 Z50.\nM30\n");
+    for lean_urad in [0.0, 250.0] {
+        let made = Place::new(lean_urad).corrected(&drilled);
+        assert_eq!(made.contains("G73"), lean_urad == 0.0, "{made}");
+    }
+}
+
+#[test]
+fn a_hole_written_as_moves_is_left_on_the_side_on_which_the_axis_leaves_it() {
+    // Z comes to 18 upwards before the hole and behind it: one place, one word.
+    let drilled =
+        format!("{HEAD}X46.8 Y3.7 Z12.\nZ18.\nG98 G82 X46.8 Y3.7 Z-11.5 R2.2 P200 F406.\nG80\nG0 Z50.\nM30\n");
+    let made = Place::new(250.0).corrected(&drilled);
+    let heights: Vec<&str> = made
+        .lines()
+        .filter_map(|line| line.split_whitespace().find(|word| word.starts_with("Z17.") || word.starts_with("Z18.")))
+        .collect();
+    let [up, .., out] = heights.as_slice() else { panic!("{made}") };
+    assert_eq!(up, out, "{made}");
+}
