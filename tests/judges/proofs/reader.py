@@ -80,7 +80,9 @@ def arc_of(start, end, plane, clockwise, words, scale, line):
     if abs(eu - su) < 1e-9 and abs(ev - sv) < 1e-9:
         sweep = turn
     else:
+        # Towards the same direction, be it with another radius, a control makes a whole turn (LinuxCNC: CIRCLE_FUZZ).
         sweep = ((a0 - a1) if clockwise else (a1 - a0)) % turn
+        sweep = sweep if 1e-6 < sweep else turn
     if clockwise:
         sweep = -sweep
     return {"axes": (u, v, w), "centre": (cu, cv), "r0": math.hypot(su - cu, sv - cv), "r1": math.hypot(eu - cu, ev - cv),
