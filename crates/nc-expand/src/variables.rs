@@ -55,7 +55,7 @@ pub(crate) enum Protected {
 #[derive(Clone, Debug)]
 pub(crate) struct Saved {
     numbered: Vec<Value>,
-    named: Vec<Option<Value>>,
+    named: BTreeMap<u32, Value>,
 }
 
 /// All variables.
@@ -67,9 +67,9 @@ pub(crate) struct Store {
     /// Given ones beyond.
     system: BTreeMap<u32, Value>,
     /// Of the running program, by name.
-    local: Vec<Option<Value>>,
+    local: BTreeMap<u32, Value>,
     /// `#<_name>`
-    global: Vec<Option<Value>>,
+    global: BTreeMap<u32, Value>,
     /// Which names are global.
     is_global: Vec<bool>,
     /// Variables that outlive the program and were written.
@@ -87,8 +87,8 @@ impl Store {
             macros,
             numbered: (0..size).map(|number| Value::Unknown(Variable::Numbered(number))).collect(),
             system: BTreeMap::new(),
-            local: Vec::new(),
-            global: Vec::new(),
+            local: BTreeMap::new(),
+            global: BTreeMap::new(),
             is_global: Vec::new(),
             kept: None,
         };
@@ -119,16 +119,15 @@ impl Store {
             self.is_global.push(names.is_global(NameId(at as u32)));
             at += 1;
         }
-        self.local.resize(at, None);
-        self.global.resize(at, None);
     }
 
     pub(crate) fn set_named(&mut self, id: NameId, value: Value) {
-        let at = id.0 as usize;
-        let slots = if self.is_global.get(at) == Some(&true) { &mut self.global } else { &mut self.local };
-        if let Some(slot) = slots.get_mut(at) {
-            *slot = Some(value);
-        }
+        let named = if self.has_global(id) { &mut self.global } else { &mut self.local };
+        named.insert(id.0, value);
+    }
+
+    fn has_global(&self, id: NameId) -> bool {
+        self.is_global.get(id.0 as usize) == Some(&true)
     }
 
     /// Writes a variable.
@@ -171,17 +170,14 @@ impl Store {
         for (number, value) in arguments {
             self.numbered[*number as usize] = *value;
         }
-        let fresh = vec![None; self.local.len()];
-        Saved { numbered, named: std::mem::replace(&mut self.local, fresh) }
+        Saved { numbered, named: std::mem::take(&mut self.local) }
     }
 
     /// Gives the caller its own back.
     pub(crate) fn leave(&mut self, saved: Saved) {
         let last = self.last_local();
         self.numbered[1..=last].copy_from_slice(&saved.numbered);
-        let known = self.local.len();
         self.local = saved.named;
-        self.local.resize(known, None);
     }
 }
 
@@ -197,21 +193,19 @@ impl Variables for Store {
                 None => Ok(self.system.get(&number).copied().unwrap_or(Value::Unknown(variable))),
             },
             Variable::Named(id) => {
-                let at = id.0 as usize;
-                let slots = if self.is_global.get(at) == Some(&true) { &self.global } else { &self.local };
-                Ok(slots.get(at).copied().flatten().unwrap_or(Value::Unknown(variable)))
+                let named = if self.has_global(id) { &self.global } else { &self.local };
+                Ok(named.get(&id.0).copied().unwrap_or(Value::Unknown(variable)))
             }
         }
     }
 
     fn exists(&self, variable: Variable) -> Option<bool> {
         let Variable::Named(id) = variable else { return Some(true) };
-        let at = id.0 as usize;
-        if self.is_global.get(at) == Some(&true) {
+        if self.has_global(id) {
             // An earlier program may have left it, or the machine has it.
-            self.global.get(at).copied().flatten().map(|_| true)
+            self.global.get(&id.0).map(|_| true)
         } else {
-            Some(self.local.get(at).copied().flatten().is_some())
+            Some(self.local.contains_key(&id.0))
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Readings of a ball bar: files to circles and tests.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use calibration::linear_ballbar::CircleReading;
@@ -92,10 +93,11 @@ impl Readings {
                 "a reading of a ball bar is a length between two balls",
             )?;
             let mut own: Vec<Run> = Vec::new();
+            let mut known = BTreeMap::new();
             for (number, row) in sheet.rows().enumerate() {
                 let name = row.text("run");
-                let at = own.iter().position(|run| run.name == name).unwrap_or_else(|| {
-                    own.push(Run { name, lines: Vec::new(), temperatures_c: Vec::new() });
+                let at = *known.entry(name).or_insert_with_key(|name| {
+                    own.push(Run { name: name.clone(), lines: Vec::new(), temperatures_c: Vec::new() });
                     own.len() - 1
                 });
                 let line = line(&row, (file, number))?;

@@ -1,5 +1,6 @@
 //! `vpost calibrate volumetric`.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -89,6 +90,7 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
         runs: Vec::new(),
     };
     let said = conditions(shared)?;
+    let mut known = BTreeMap::new();
     for path in &arguments.files {
         let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
         sheet.need(&["x_mm", "y_mm", "z_mm"], "the commanded position of all three axes is needed")?;
@@ -109,8 +111,8 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
             if arguments.files.len() > 1 || name.is_empty() {
                 name = format!("{} {name}", sheet.name).trim_end().to_owned();
             }
-            let run = all.runs.iter().position(|known| *known == name).unwrap_or_else(|| {
-                all.runs.push(name);
+            let run = *known.entry(name).or_insert_with_key(|name| {
+                all.runs.push(name.clone());
                 all.runs.len() - 1
             });
             let mut point = point(&row, run, output)?;
