@@ -64,7 +64,9 @@ impl Place {
 #[test]
 fn a_hole_begins_beside_its_line_until_play_is_taken_up() {
     // Each peck of the cycle begins upwards of its play: 2.6 um beside the line, and level with no place of it.
-    let drilled = format!("{HEAD}X40. Y39. Z58.\nG99 G73 X46.8 Y3.7 Z-11.5 R3.5 Q7.2 F406.\nX29.2\nG80\nG0 Z50.\nM30\n");
+    let drilled = format!(
+        "{HEAD}X40. Y39. Z58.\nG99 G73 X46.8 Y3.7 Z-11.5 R3.5 Q7.2 F406.\nX29.2\nG80\nG0 Z50.\nM30\n"
+    );
     for lean_urad in [0.0, 250.0] {
         let made = Place::new(lean_urad).corrected(&drilled);
         assert_eq!(made.contains("G73"), lean_urad == 0.0, "{made}");
@@ -74,12 +76,15 @@ fn a_hole_begins_beside_its_line_until_play_is_taken_up() {
 #[test]
 fn a_hole_written_as_moves_is_left_on_the_side_on_which_the_axis_leaves_it() {
     // Z comes to 18 upwards before the hole and behind it: one place, one word.
-    let drilled =
-        format!("{HEAD}X46.8 Y3.7 Z12.\nZ18.\nG98 G82 X46.8 Y3.7 Z-11.5 R2.2 P200 F406.\nG80\nG0 Z50.\nM30\n");
+    let drilled = format!(
+        "{HEAD}X46.8 Y3.7 Z12.\nZ18.\nG98 G82 X46.8 Y3.7 Z-11.5 R2.2 P200 F406.\nG80\nG0 Z50.\nM30\n"
+    );
     let made = Place::new(250.0).corrected(&drilled);
     let heights: Vec<&str> = made
         .lines()
-        .filter_map(|line| line.split_whitespace().find(|word| word.starts_with("Z17.") || word.starts_with("Z18.")))
+        .filter_map(|line| {
+            line.split_whitespace().find(|word| word.starts_with("Z17.") || word.starts_with("Z18."))
+        })
         .collect();
     let [up, .., out] = heights.as_slice() else { panic!("{made}") };
     assert_eq!(up, out, "{made}");

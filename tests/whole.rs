@@ -31,6 +31,7 @@ mod export;
 mod files;
 mod flow;
 mod gap_smoke;
+mod guard;
 mod holes;
 mod identity;
 mod large;

@@ -179,6 +179,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         decimals_mm: [3; 3],
         force: false,
         provenance: "BENCHMARK",
+        guards: rewrite::Guards::None,
     };
     let budget = budget::measure(&program, &job, options.repeat.max(5))?;
     let rows = |parts: &[(&str, f64)]| -> Vec<Vec<String>> {

@@ -147,6 +147,7 @@ fn corrected(
         decimals_mm: [3; 3],
         force: false,
         provenance: "",
+        guards: rewrite::Guards::None,
     };
     let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)

@@ -7,6 +7,7 @@
 
 mod edit;
 mod emitter;
+mod guard;
 mod habits;
 mod numbers;
 mod provenance;
@@ -14,6 +15,7 @@ mod splice;
 
 pub use edit::{Piece, WordEdit, WordEdits};
 pub use emitter::Emitter;
+pub use guard::{Asked, Stated, guard, without_guards};
 pub use numbers::BlockNumbers;
 pub use provenance::{
     find_provenance, insert_provenance, line_ending, provenance_comment, provenance_line, provenance_position,

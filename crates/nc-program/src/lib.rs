@@ -57,6 +57,6 @@ mod words;
 
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
-pub use modal::Modal;
+pub use modal::{Compensation, Modal, ToolLength};
 pub use plain::{PlainEnd, PlainFeeds};
 pub use setup::{AfterChange, Setup};

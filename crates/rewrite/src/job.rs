@@ -30,8 +30,20 @@ pub const TOO_MANY_PECKS: Code = Code(510);
 pub const SPIRAL: Code = Code(515);
 /// An axis would need a word, and the program has not named it in the frame in force.
 pub const UNNAMED: Code = Code(514);
+/// What the program was corrected for cannot be asked of the control.
+pub const UNGUARDED: Code = Code(520);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
 pub const SIDEWAYS: Code = Code(519);
+
+/// Whether the output asks the control for what it was corrected for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Guards {
+    /// No.
+    #[default]
+    None,
+    /// Blocks that stop it where a work offset, or the tool's length, is another.
+    Put,
+}
 
 /// Everything that decides what becomes of a program.
 pub struct Job<'a> {
@@ -49,6 +61,8 @@ pub struct Job<'a> {
     pub force: bool,
     /// What the comment in the output says after its marker.
     pub provenance: &'a str,
+    /// Whether the output asks the control for what it was corrected for.
+    pub guards: Guards,
 }
 
 /// What happened, in figures.

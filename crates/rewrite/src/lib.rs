@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use correction::{Options, Outside};
-//! use rewrite::{Job, correct};
+//! use rewrite::{Guards, Job, correct};
 //!
 //! let profile = include_str!("../../../machine-profiles/stan_s500.toml");
 //! # let tables = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machine-profiles");
@@ -24,6 +24,7 @@
 //!     decimals_mm: [3; 3],
 //!     force: false,
 //!     provenance: "AN EXAMPLE",
+//!     guards: Guards::None,
 //! };
 //! let posted = b"G21 G90 G54\nG0 X10. Y10. Z30.\nG1 X90. F500.\nM30\n";
 //! let corrected = correct::<Vec<diagnostic::Diagnostic>>(posted, &job, |_| Ok(())).expect("inside the volume");
@@ -33,6 +34,7 @@
 
 mod check;
 mod chunks;
+mod guards;
 mod job;
 mod large;
 mod notices;

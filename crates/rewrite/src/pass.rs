@@ -8,7 +8,8 @@ use nc_syntax::{Block, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
-use crate::job::{Figures, Job};
+use crate::guards::Guarded;
+use crate::job::{Figures, Guards, Job};
 use crate::notices::{Notices, hole_skipped, refusal};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -18,6 +19,7 @@ pub(crate) struct State<'a> {
     pub(crate) interpreter: Interpreter<'a>,
     pub(crate) corrector: Corrector<'a>,
     pub(crate) emitter: Emitter<'a>,
+    pub(crate) guarded: Guarded,
     /// [`nc_syntax::Place::expects_name`]
     pub(crate) expects_name: bool,
 }
@@ -33,16 +35,18 @@ impl<'a> State<'a> {
                 None => corrector,
             },
             emitter: Emitter::new(job.dialect).with_numbers(numbers),
+            guarded: Guarded::default(),
             expects_name: false,
         }
     }
 
     /// True where whatever follows comes out alike.
     pub(crate) fn continues_as(&self, other: &Self) -> bool {
-        let Self { interpreter, corrector, emitter, expects_name } = self;
+        let Self { interpreter, corrector, emitter, guarded, expects_name } = self;
         interpreter.modal() == other.interpreter.modal()
             && corrector.continues_as(&other.corrector)
             && emitter.continues_as(&other.emitter)
+            && *guarded == other.guarded
             && *expects_name == other.expects_name
     }
 
@@ -152,16 +156,26 @@ impl Pass<'_> {
     /// Corrects a block, whatever it is.
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
+        let before = self.state.interpreter.modal();
+        let (offset, unit_mm) = (before.work_offset, before.units.mm());
+        let guards = self.job.guards == Guards::Put;
+        let stated = if guards { self.stated() } else { None };
         let executed = self.state.interpreter.step(block);
         // Looked at where it lies: hundreds of bytes.
         let Ok(step) = &executed else { return executed.map(|_| ()) };
         self.tally.evidence.see(block, &self.questions);
         self.state.emitter.meet(block);
         let context = &step.context;
-        if step.states_position {
-            return self.state_position(block, context);
+        let chosen = self.state.interpreter.modal().work_offset != offset;
+        if guards && !chosen && !step.motions.is_empty() {
+            self.guard_before(block, stated, unit_mm)?;
         }
-        self.moved(block, context, letters(block), &step.motions)
+        if step.states_position {
+            self.state_position(block, context)?;
+        } else {
+            self.moved(block, context, letters(block), &step.motions)?;
+        }
+        if guards { self.guard_behind(block, chosen) } else { Ok(()) }
     }
 
     /// Corrects the motions of a block and writes it.

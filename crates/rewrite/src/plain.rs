@@ -29,6 +29,9 @@ impl Pass<'_> {
         reader: &mut Reader<'_>,
         ends: &mut impl FnMut(&mut Self, u64) -> Result<bool, E>,
     ) -> Result<bool, E> {
+        if self.lacks_guard() {
+            return Ok(false);
+        }
         let Some((feeds, mut start_mm)) = self.state.interpreter.plain_feeds() else { return Ok(false) };
         let (mut info, rotary_deg) = (info(self.job, &feeds.context, Letters::default()), feeds.rotary_deg);
         // The lines rely on the code before them, which must be in force in the output too.

@@ -442,6 +442,7 @@ mod tests {
                 decimals_mm: [3; 3],
                 force: true,
                 provenance: "",
+                guards: crate::job::Guards::None,
             };
             let mut text = "%\nO1\nG21 G90 G54 G43 H1\nG0 X0. Y0. Z30.\nG1 Z10. F500.\n".to_owned();
             parts.iter().for_each(|part| text.push_str(PARTS[*part]));

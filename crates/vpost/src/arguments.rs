@@ -154,6 +154,10 @@ pub struct Correct {
     /// Correct a program that says it was corrected before.
     #[arg(long)]
     pub force: bool,
+    /// Put in blocks that stop the program where the control's work offsets (LinuxCNC: and tool lengths) are others
+    /// than it was corrected for.
+    #[arg(long)]
+    pub guard: bool,
     /// Report progress in this style on standard error.
     #[arg(long, value_enum)]
     pub progress: Option<Progress>,

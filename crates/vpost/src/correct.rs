@@ -23,7 +23,10 @@ pub(crate) fn run(
     messages: &Messages,
 ) -> Result<(), Failure> {
     let path = arguments.input.as_deref().unwrap_or(Path::new("-"));
-    let settings = Settings::load(shared, messages)?;
+    let mut settings = Settings::load(shared, messages)?;
+    if arguments.guard {
+        settings.put_guards()?;
+    }
     Roles::default()
         .reads("the program", path)
         .reads_all("read by the profile", &settings.files)

@@ -7,8 +7,8 @@ use machine_model::{Engine, EngineId};
 use machine_profile::{BareLengths, Profile};
 use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{MCode, PointFree};
-use rewrite::Job;
+use nc_syntax::dialect::{MCode, Macros, PointFree};
+use rewrite::{Guards, Job};
 
 use crate::arguments::{self, Shared};
 use crate::expand::Flow;
@@ -29,6 +29,8 @@ pub(crate) struct Settings {
     pub flow: Flow,
     /// Doubtful programs are refused.
     pub strict: bool,
+    /// `--guard`
+    guards: Guards,
 }
 
 impl Settings {
@@ -84,7 +86,23 @@ impl Settings {
             options,
             flow,
             strict: shared.strict,
+            guards: Guards::None,
         })
+    }
+
+    /// `--guard`: the output asks the control for what it was corrected for.
+    ///
+    /// # Errors
+    /// A control that cannot be asked.
+    pub(crate) fn put_guards(&mut self) -> Result<(), Failure> {
+        if self.dialect.flow.macros == Macros::None {
+            return Err(Failure::option(
+                format!("no way is known to ask dialect {} for its work offsets", self.dialect.name),
+                "correct without `--guard`, and compare the offsets by hand",
+            ));
+        }
+        self.guards = Guards::Put;
+        Ok(())
     }
 
     /// What is asked of a whole program.
@@ -139,6 +157,7 @@ impl Settings {
             decimals_mm: self.decimals_mm(),
             force,
             provenance,
+            guards: self.guards,
         })
     }
 }

@@ -124,7 +124,10 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     let (mut all, angles_read) = read(arguments)?;
     let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
     if arguments.refine.is_some() && !writes {
-        return Err(Failure::option("`--refine` is for tables, and none are written", "add `-o PROFILE.toml`"));
+        return Err(Failure::option(
+            "`--refine` is for tables, and none are written",
+            "add `-o PROFILE.toml`",
+        ));
     }
     let mut out = String::new();
     let mut axes: [Functions; 3] = Default::default();
