@@ -118,7 +118,7 @@ impl<'m> Corrector<'m> {
             let off = from - start + self.model.error_mm(&here);
             let beside_mm = (off - off.dot(&tangent) * tangent).norm();
             if self.approach_to(machine, wanted, start, block, length_mm, corrected)?
-                && beside_mm <= self.limit_mm(block)
+                && beside_mm <= self.options.tolerance_mm + block.rounding_mm()
             {
                 // The tool stands beside the path, a little before or behind its start, and is fed to it from there.
                 let told = &mut corrected.correction.after_mm;

@@ -41,6 +41,8 @@ use crate::{Command, PathModel, Vector};
 /// Commands nearer than this are one place, mm: far below every output step, far above what a place changes by when it
 /// is carried into a frame and back.
 pub const SAME_PLACE_MM: f64 = 1e-9;
+/// So many steps of a search that gains three digits with each.
+const MOST_LAG_STEPS: u32 = 8;
 
 /// Where the axes stand in their play.
 ///
@@ -137,8 +139,19 @@ impl Play {
         std::array::from_fn(|axis| {
             let Some(carriage) = self.carriage_mm[axis].filter(|_| direction[axis] != 0) else { return 0.0 };
             let heading = f64::from(direction[axis]);
-            let behind = at.linear_mm[axis] - heading * half_play_mm(model, axis, at);
-            let lag_mm = (carriage - behind) * heading;
+            let ahead_mm = (carriage - at.linear_mm[axis]) * heading;
+            // The play where it is taken up, which is not quite that of where the axis stands: micrometres of way, on a
+            // slope of micrometres a millimetre.
+            let (mut lag_mm, mut here) = (0.0f64, *at);
+            for _ in 0..MOST_LAG_STEPS {
+                here.linear_mm[axis] = at.linear_mm[axis] + heading * lag_mm.max(0.0);
+                let next_mm = ahead_mm + half_play_mm(model, axis, &here);
+                let settled = (next_mm - lag_mm).abs() <= SAME_PLACE_MM;
+                lag_mm = next_mm;
+                if settled {
+                    break;
+                }
+            }
             if lag_mm > SAME_PLACE_MM { lag_mm } else { 0.0 }
         })
     }
@@ -275,6 +288,24 @@ mod tests {
         };
         // At 40 mm the reversal value is 10 µm.
         assert_eq!([40.0, 40.003, 40.009, 40.011, 39.0].map(&mut unsure_um), [5.0, 7.0, 1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn play_is_taken_up_where_it_changes_on_the_way() {
+        let model = machine();
+        for (from, to) in [(9.0, 30.0), (41.0, 20.0)] {
+            let (mut play, heading) = (Play::unknown(), if to > from { 1 } else { -1 });
+            [from - 10.0 * f64::from(heading), to].map(|x| play.go(&model, &command(x, 0.0)));
+            let back = [-heading, 0, 0];
+            let lag_mm = play.lag_mm(&model, &command(to, 0.0), back)[0];
+            let side_behind = |mm: f64| {
+                let mut gone = play;
+                gone.go(&model, &command(to - f64::from(heading) * mm, 0.0));
+                gone.side()[0]
+            };
+            assert!(lag_mm > 1e-3, "{lag_mm}");
+            assert_eq!([lag_mm - 1e-8, lag_mm + 1e-8].map(side_behind), [heading, -heading]);
+        }
     }
 
     proptest! {
