@@ -295,7 +295,9 @@ mod tests {
         let model = machine();
         for (from, to) in [(9.0, 30.0), (41.0, 20.0)] {
             let (mut play, heading) = (Play::unknown(), if to > from { 1 } else { -1 });
-            [from - 10.0 * f64::from(heading), to].map(|x| play.go(&model, &command(x, 0.0)));
+            for x in [from - 10.0 * f64::from(heading), to] {
+                play.go(&model, &command(x, 0.0));
+            }
             let back = [-heading, 0, 0];
             let lag_mm = play.lag_mm(&model, &command(to, 0.0), back)[0];
             let side_behind = |mm: f64| {
