@@ -1,0 +1,158 @@
+"""Forward model of a crooked five-axis machine, from the formulas of the field and by hand of another than vpost's.
+
+Written with homogeneous transformations: ISO 230-1 (tables of six functions for each of X Y Z A B C), ISO 230-7 (location
+errors of rotary axes), Zhang 2024 (table-table), LinuxCNC's xyzac-trt, xyzbc-trt and 5axiskins (ideal kinematics). mm, rad,
+machine frame; rotary axes in degrees where commanded. All functions take n places at once: q (n, 3), rot (n, k), k the rotary
+axes in the order of `Machine.rotary`.
+
+    p = M_1^-1 .. M_t^-1 T_1 T_2 T_3 M_a .. M_b t        M_1.. table axes from the workpiece on, M_a.. head axes to the tool
+    T(x) = q n + delta(q) + l + R(eps(q)) (x - l)         n: direction with squareness, l: lever to the line measured (here 0)
+    M(x) = c + s + delta + L R(eps) Rot(theta) (x - c)              tilt = "body": what it carries leans with the axis
+    M(x) = c + s + delta + L R(eps) Rot(theta) L^-1 (x - c)         tilt = "axis": it turns about the leaning line
+
+A table's centre is in machine coordinates of the tip, a head's in those of the tool (from the gauge point, at angle 0).
+"""
+
+import math
+
+import numpy as np
+
+UNIT = {"X": (1, 0, 0), "Y": (0, 1, 0), "Z": (0, 0, 1), "A": (1, 0, 0), "B": (0, 1, 0), "C": (0, 0, 1)}
+LOCATIONS = {"A": ("EY0A", "EZ0A", "EB0A", "EC0A"), "B": ("EX0B", "EZ0B", "EA0B", "EC0B"), "C": ("EX0C", "EY0C", "EA0C", "EB0C")}
+
+
+def turn(vector):
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3): Rodrigues' formula, exact."""
+    v = np.atleast_2d(np.asarray(vector, float))
+    angle = np.linalg.norm(v, axis=1)
+    k = np.zeros((len(v), 3, 3))
+    k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
+    k[:, 1, 0], k[:, 2, 0], k[:, 2, 1] = v[:, 2], -v[:, 1], v[:, 0]
+    small = angle < 1e-12
+    a = np.where(small, 1.0, np.sin(angle) / np.where(small, 1.0, angle))
+    # 2 sin^2(w/2)/w^2: 1 - cos w would lose digits at small angles.
+    b = np.where(small, 0.5, 2 * np.sin(angle / 2) ** 2 / np.where(small, 1.0, angle) ** 2)
+    return np.eye(3) + a[:, None, None] * k + b[:, None, None] * (k @ k)
+
+
+def about(axis, degrees):
+    """Rotation by degrees (n,) about a fixed unit vector."""
+    axis = np.asarray(axis, float) / np.linalg.norm(axis)
+    return turn(np.radians(np.asarray(degrees, float))[:, None] * axis)
+
+
+def times(m, x):
+    """m (n or 1, 3, 3) times x (n or 1, 3)."""
+    return (m @ x[..., None])[..., 0]
+
+
+class Machine:
+    """`spec`: see generate.py. `perfect`: without errors; `centres`: other centres (those that a control computes with)."""
+
+    def __init__(self, spec, perfect=False, centres=None):
+        words = spec["chain"].strip("[] ").split()
+        w, t = words.index("w"), words.index("t")
+        names = [x for x in words[w + 1 : t] if x != "b"]
+        linear = [i for i, x in enumerate(names) if x in "XYZ"]
+        first, last = linear[0], linear[-1]
+        self.table, self.linear, self.head = names[:first], names[first : last + 1], names[last + 1 :]
+        assert sorted(self.linear) == list("XYZ"), spec["chain"]
+        self.rotary = self.table + self.head
+        self.spec, self.perfect = spec, perfect
+        self.direction = {k: np.array(spec["rotary"][k].get("direction", UNIT[k]), float) for k in self.rotary}
+        self.direction = {k: v / np.linalg.norm(v) for k, v in self.direction.items()}
+        self.centre = {k: np.array((centres or {}).get(k, spec["rotary"][k]["centre"]), float) for k in self.rotary}
+        ec0y, eb0z, ea0z = (0, 0, 0) if perfect else np.array(spec["squareness_urad"]) * 1e-6
+        self.lean = {"X": np.array([1.0, 0, 0]), "Y": np.array([-ec0y, 1, 0]), "Z": np.array([eb0z, -ea0z, 1])}
+
+    def functions(self, name, at):
+        """The six error functions (n, 6) of an axis, mm and rad, straight between nodes, constant beyond."""
+        table = self.spec["rotary" if name in "ABC" else "axes"][name].get("table")
+        if self.perfect or table is None:
+            return np.zeros((len(at), 6))
+        nodes, rows = np.array(table[0], float), np.array(table[1], float)
+        return np.stack([np.interp(at, nodes, rows[:, k]) for k in range(6)], axis=1) * np.array([1e-3] * 3 + [1e-6] * 3)
+
+    def play(self, travel):
+        """Half reversal values with the side of each axis along a sequence of commands (n, 3), mm: the play operator."""
+        out = np.zeros((len(travel), 3))
+        if self.perfect:
+            return out
+        for i, name in enumerate("XYZ"):
+            half = self.spec["axes"][name].get("backlash_um", 0.0) * 0.5e-3
+            if half > 0:
+                stands = travel[0, i]
+                for n, q in enumerate(travel[:, i]):
+                    stands = min(max(stands, q - half), q + half)
+                    out[n, i] = stands - q
+        return out
+
+    def rotary_map(self, name, degrees):
+        """R (n, 3, 3) and shift (n, 3) of M(x) = R x + shift."""
+        nominal = about(self.direction[name], degrees)
+        c = self.centre[name]
+        if self.perfect:
+            return nominal, c - times(nominal, np.broadcast_to(c, (len(degrees), 3)))
+        one = self.spec["rotary"][name]
+        f = self.functions(name, degrees)
+        s, lean = np.zeros(3), np.zeros(3)
+        for key in LOCATIONS[name]:
+            value = one.get("location", {}).get(key, 0.0)
+            place = "XYZ".find(key[1])
+            if place >= 0:
+                s[place] = value * 1e-3
+            else:
+                lean["ABC".index(key[1])] = value * 1e-6
+        tilt = turn(lean)
+        r = tilt @ turn(f[:, 3:]) @ nominal
+        if one.get("tilt", "body") == "axis":
+            r = r @ np.transpose(tilt, (0, 2, 1))
+        return r, c + s + f[:, :3] - times(r, np.broadcast_to(c, (len(degrees), 3)))
+
+    def place(self, q, rot, tool, play=None):
+        """Tip (n, 3) and tool direction (n, 3; from tip to spindle) in the workpiece, which is the machine frame at angles 0."""
+        q, rot = np.atleast_2d(np.asarray(q, float)), np.atleast_2d(np.asarray(rot, float))
+        n = len(q)
+        x = np.broadcast_to(np.asarray(tool, float), (n, 3)).copy()
+        d = np.broadcast_to(np.array([0, 0, 1.0]), (n, 3)).copy()
+        for name in reversed(self.head):
+            r, shift = self.rotary_map(name, rot[:, self.rotary.index(name)])
+            x, d = times(r, x) + shift, times(r, d)
+        for name in reversed(self.linear):
+            at = q[:, "XYZ".index(name)]
+            f = self.functions(name, at)
+            r = turn(f[:, 3:])
+            x = at[:, None] * self.lean[name] + f[:, :3] + times(r, x)
+            if play is not None:
+                x = x + play[:, "XYZ".index(name)][:, None] * np.array(UNIT[name], float)
+            d = times(r, d)
+        for name in reversed(self.table):
+            r, shift = self.rotary_map(name, rot[:, self.rotary.index(name)])
+            back = np.transpose(r, (0, 2, 1))
+            x, d = times(back, x - shift), times(back, d)
+        return x, d
+
+    def joints(self, tip, rot, tool):
+        """What a control with these centres commands X, Y, Z so that the tip is there (n, 3): its own kinematics, perfect."""
+        tip, rot = np.atleast_2d(np.asarray(tip, float)), np.atleast_2d(np.asarray(rot, float))
+        x = tip.copy()
+        for name in self.table:
+            r = about(self.direction[name], rot[:, self.rotary.index(name)])
+            x = self.centre[name] + times(r, x - self.centre[name])
+        t = np.broadcast_to(np.asarray(tool, float), x.shape).copy()
+        for name in reversed(self.head):
+            r = about(self.direction[name], rot[:, self.rotary.index(name)])
+            t = self.centre[name] + times(r, t - self.centre[name])
+        return x - t
+
+    def reach(self, q, rot, tool):
+        """Arm of each rotary axis (n, k), mm: distance of the tip from the axis' line; what a step of it moves the tip by."""
+        q, rot = np.atleast_2d(np.asarray(q, float)), np.atleast_2d(np.asarray(rot, float))
+        ideal = Machine(self.spec, perfect=True)
+        base = ideal.place(q, rot, tool)[0]
+        out = np.zeros(rot.shape)
+        for k in range(rot.shape[1]):
+            moved = rot.copy()
+            moved[:, k] += 0.01
+            out[:, k] = np.linalg.norm(ideal.place(q, moved, tool)[0] - base, axis=1) / math.radians(0.01)
+        return out
