@@ -106,30 +106,35 @@ def same_reading(text, spec, motions):
             end = end - [0, 0, -m.tool[2] if spec["lengths"] and m.tool[2] else 0.0]
         rot = dict(zip(rotary, m.rot1))
         ours.append((m.kind, m.arc is not None, end, [rot.get(n, 0.0) for n in names], m))
-    ours = [o for o in ours if o[4].kind == "rapid" or o[4].moves()]
-    kept, last = [], None
-    for t in theirs:
-        key = t[1:]
-        if t[0] == "STRAIGHT_FEED" and last == key and len(kept) > 0:
-            continue
-        kept.append(t)
-        last = key if t[0] != "ARC_FEED" else None
-    theirs = [t for t in kept]
+    # Blocks that move nothing are told by one and not by the other.
+    def moving(rows, end, arc):
+        out, last = [], None
+        for row in rows:
+            key = tuple(np.round(end(row), 4) + 0.0)
+            if key != last or arc(row):
+                out.append(row)
+            last = key
+        return out
+
+    def their_end(t):
+        if t[0] != "ARC_FEED":
+            return np.array(t[1:7])
+        return np.array([t[1], t[2], t[6], *t[7:10]])
+
+    def our_end(o):
+        if not o[1]:
+            return np.concatenate([o[2], o[3]])
+        u, v, w = o[4].arc["axes"]
+        return np.concatenate([[o[2][u], o[2][v], o[2][w]], o[3]])
+
+    theirs = moving(theirs, their_end, lambda t: t[0] == "ARC_FEED")
+    ours = moving(ours, our_end, lambda o: o[1])
     if len(theirs) != len(ours):
         return f"{len(theirs)} motions for {len(ours)}"
-    known = 0
-    for t, (kind, arc, end, rot, m) in zip(theirs, ours):
-        known += 1
-        if t[0] == "ARC_FEED":
-            u, v, w = m.arc["axes"]
-            place = np.zeros(3)
-            place[u], place[v], place[w] = t[1], t[2], t[6]
-            far = max(np.abs(place - end).max(), np.abs(np.array(t[7:10]) - rot).max())
-        else:
-            place = np.array(t[1:4])
-            far = max(np.abs(place - end).max(), np.abs(np.array(t[4:7]) - rot).max())
-        if far > 1.01e-4 and known > 3:
-            return f"line {m.line}: {t} for {end} {rot}"
+    for n, (t, o) in enumerate(zip(theirs, ours)):
+        # The first three may start from different zeros.
+        if n > 2 and np.abs(their_end(t) - our_end(o)).max() > 1.01e-4:
+            return f"line {o[4].line}: {t} for {our_end(o)}"
     return None
 
 

@@ -1,0 +1,219 @@
+"""The judge's own test: closed forms, right outputs of a corrector of its own, and damages that it has to reject."""
+
+import math
+import random
+import shutil
+import subprocess
+
+import numpy as np
+
+import compare
+import damages
+import generate
+import judge
+import mock
+import reader
+from machine import Machine, about
+
+
+def plain(chain="[w C A b X Y Z t]", control="linuxcnc", **more):
+    """A machine without errors, centres at known places."""
+    names = [x for x in chain.strip("[]").split() if x in "ABC"]
+    centre = {"A": [10, 20, -30], "B": [-5, 8, -40], "C": [10, 24, -36]}
+    spec = {"chain": chain, "control": control, "axes": {k: {"travel": [-900, 900], "resolution": 0.001} for k in "XYZ"}, "squareness_urad": [0, 0, 0],
+            "rotary": {k: {"centre": centre[k], "travel": [-1080, 1080], "resolution": 0.001, "location": {}} for k in names},
+            "tool": [0, 0, 0], "lengths": {"H1": 100.0}, "offset": [0, 0, 0], "tolerance_um": 1.0}
+    spec.update(more)
+    return spec
+
+
+def rz(d):
+    c, s = math.cos(math.radians(d)), math.sin(math.radians(d))
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+def rx(d):
+    c, s = math.cos(math.radians(d)), math.sin(math.radians(d))
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def ry(d):
+    c, s = math.cos(math.radians(d)), math.sin(math.radians(d))
+    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+
+
+def close(a, b):
+    return float(np.abs(np.asarray(a) - np.asarray(b)).max())
+
+
+def forms():
+    """(name, found, expected, within): places of machines worked out by hand."""
+    joint = np.array([33.0, -21.0, 55.0])
+    ac = Machine(plain())
+    o, d = np.array([10, 24, -36.0]), np.array([0, -4, 6.0])
+    yield "xyzac-trt", close(ac.place([joint], [[40, 30]], [0, 0, 0])[0][0], o + rz(-40) @ (d + rx(-30) @ (joint - o - d))), 0, 1e-12
+    bc = Machine(plain("[w C B b X Y Z t]"))
+    d = np.array([-5, 8, -40]) - o
+    yield "xyzbc-trt", close(bc.place([joint], [[-70, 25]], [0, 0, 0])[0][0], o + rz(70) @ (d + ry(-25) @ (joint - o - d))), 0, 1e-12
+    five = plain("[w b X Y Z C B t]")
+    five["rotary"]["B"].update(centre=[0, 0, 0], direction=[0, -1, 0])
+    five["rotary"]["C"].update(centre=[0, 0, 0])
+    b, c, length = math.radians(35), math.radians(80), 250.0
+    tip = joint + length * np.array([math.sin(b) * math.cos(c), math.sin(b) * math.sin(c), -math.cos(b)])
+    yield "5axiskins", close(Machine(five).place([joint], [[80, 35]], [0, 0, -length])[0][0], tip), 0, 1e-12
+    nut = plain("[w b X Y Z C B t]")
+    nut["rotary"]["B"].update(centre=[0, 0, 0], direction=[0, 1, 1])
+    nut["rotary"]["C"].update(centre=[0, 0, 0])
+    yield "a 45 degree head at 180 lies level", close(Machine(nut).place([[0, 0, 0]], [[0, 180]], [0, 0, -100])[1][0], [0, 1, 0]), 0, 1e-12
+    yield "half a turn of a nutating axis", close(about([0, 1, 1], [180.0])[0], [[-1, 0, 0], [0, 0, 1], [0, 1, 0]]), 0, 1e-12
+    for chain in ("[w C A b X Y Z t]", "[w C b X Y Z B t]", "[w b X Y Z C B t]", "[w C A Y b X Z t]"):
+        m = Machine(plain(chain))
+        rot = np.array([[33.0, -47.0]])
+        back = m.place(m.joints([joint], rot, [3, 4, -90]), rot, [3, 4, -90])[0][0]
+        yield f"control's inverse, {chain}", close(back, joint), 0, 1e-11
+    lean = plain()
+    lean["squareness_urad"] = [100.0, 0, 0]
+    yield "squareness", Machine(lean).place([[0, 100, 0]], [[0, 0]], [0, 0, 0])[0][0, 0] * 1e3, -10, 1e-6
+    shifted = plain()
+    shifted["rotary"]["C"]["location"] = {"EX0C": 40.0}
+    for angle in (0, 90):
+        # The workpiece is 40 um further in X than it should be: the tool is seen at -40 um, turned with the table.
+        yield f"EX0C at {angle}", close(Machine(shifted).place([joint], [[angle, 0]], [0, 0, 0])[0][0] - ac.place([joint], [[angle, 0]], [0, 0, 0])[0][0], rz(-angle) @ [-0.04, 0, 0]), 0, 1e-12
+    for way, expected in (("body", 0.1 * 60), ("axis", 0.0)):
+        leaning = plain()
+        leaning["rotary"]["C"].update(location={"EA0C": 100.0}, tilt=way, centre=[0, 0, 0])
+        leaning["rotary"]["A"].update(centre=[0, 0, 0])
+        yield f"a leaning C at 0, {way}", abs(Machine(leaning).place([[0, 0, 60]], [[0, 0]], [0, 0, 0])[0][0, 1]) * 1e3, expected, 1e-4
+    leaning["rotary"]["C"]["tilt"] = "axis"
+    yield "a leaning C at 180, axis: twice", abs(Machine(leaning).place([[0, 0, 60]], [[180, 0]], [0, 0, 0])[0][0, 1]) * 1e3, 12, 1e-4
+    grown = plain()
+    grown["rotary"]["C"]["table"] = ([0, 90], [[0] * 6, [0, 0, 0, 0, 0, 50.0]])
+    yield "ECC times the arm", close(np.linalg.norm(Machine(grown).place([o + [100, 0, 0]], [[90, 0]], [0, 0, 0])[0][0] - ac.place([o + [100, 0, 0]], [[90, 0]], [0, 0, 0])[0][0]), 0.005), 0, 1e-8
+    yield "arm of C", Machine(plain()).reach([o + [0, 70, 5]], [[0, 0]], [0, 0, 0])[0, 0], 70, 1e-4
+
+
+def program(*lines):
+    return "\n".join(["G21 G17 G90 G94 G54", "G0 X0 Y0 Z100 A0 C0", "G0 X50 Y10 Z20 A10 C350", *lines, "M30"]) + "\n"
+
+
+def words():
+    """(name, found, expected, within): what words mean."""
+    spec, sin, fan = plain(lengths={}), plain(control="sinumerik", lengths={}), plain(control="fanuc")
+    last = lambda text, s=spec: reader.read(text, s)[0][-1]  # noqa: E731
+    head = "G0 X0 Y0 Z0 A=0 C=350\n"
+    for text, c in (("C=DC(10)", 370), ("C=AC(10)", 10), ("C=IC(20)", 370), ("C=ACP(10)", 370), ("C=ACN(10)", 10), ("C=10", 10), ("C=DC(340)", 340), ("C=ACN(340)", 340), ("C=ACP(340)", 700)):
+        yield f"Sinumerik {text} from 350", last(head + "G1 " + text + " F100\n", sin).rot1[0], c, 1e-12
+    m = last("G0 X0 Y0 Z0 A0 C0\nM428\nG0 X30 Y0 Z0 A0 C90\nG1 X40 F100\n")
+    yield "M428: the tip goes straight in the workpiece", close(m.at([0.5])[0][0], [35, 0, 0]), 0, 1e-12
+    c = Machine(spec, perfect=True)
+    yield "and the axes follow the table", close(c.joints(m.at([0.5])[0], m.at([0.5])[1], [0, 0, 0])[0], np.array([10, 24, 0]) + rz(90) @ (np.array([35, 0, 0]) - [10, 24, 0])), 0, 1e-12
+    m = last("G0 X10 Y20 Z130\nG43.4 H1\nG1 Z25 A30 C40 F100\n", fan)
+    yield "G43.4 H1: the axes stand", m.start[2], 30, 1e-12
+    yield "G43.4 H1: words are the tip", m.end[2], 25, 1e-12
+    m = last("G0 X10 Y20 Z130 A10 C20\nG43.5 H1\nG1 X0 I0 J0.5 K0.8660254 F100\n", fan)
+    yield "G43.5: direction of I J K", close(Machine(fan).place([[0, 0, 0]], m.rot1[None, :], [0, 0, 0])[1][0], [0, 0.5, 0.8660254]), 0, 1e-7
+    m = last("G0 X10 Y20 Z130 A=10 C=20\nTRAORI\nG1 X0 A3=1 B3=0 C3=1 F100\n", sin)
+    yield "A3 B3 C3", close(Machine(sin).place([[0, 0, 0]], m.rot1[None, :], [0, 0, 0])[1][0], np.array([1, 0, 1]) / math.sqrt(2)), 0, 1e-9
+
+
+class NewKeys:
+    """As if the command knew every key."""
+
+    def __call__(self, key):
+        return True
+
+
+def outputs():
+    """(name, problems of a right output, must be empty): the judge accepts what is right, in every kind of motion."""
+    for number in range(2 * len(generate.CHAINS) * len(generate.KINDS)):
+        chain, kind, spec, text = generate.pair("self", number, NewKeys())
+        for a in spec["axes"].values():
+            a.pop("backlash_um", None)
+        out = mock.correct(text, spec)
+        problems, found = judge.assess(spec, text, out, None)
+        if spec["control"] == "linuxcnc":
+            for what in (text, out):
+                differs = judge.same_reading(what, spec, reader.read(what, spec)[0])
+                problems += [("reading", differs)] if differs else []
+        yield number, chain, kind, spec, text, out, problems, found
+
+
+def run(vpost=None):
+    failures = 0
+
+    def tell(ok, text):
+        nonlocal failures
+        failures += not ok
+        print(f"{'ok    ' if ok else 'FAILED'} {text}", flush=True)
+
+    for name, found, expected, within in list(forms()) + list(words()):
+        tell(abs(found - expected) <= within, f"{name}: {found:.6g}, expected {expected:.6g} within {within:g}")
+    seen, missed, accepted, uncorrected = {}, [], 0, 0
+    rng = random.Random(1)
+    for number, chain, kind, spec, text, out, problems, found in outputs():
+        accepted += not problems
+        if problems:
+            tell(False, f"{chain} {kind} {number}: a right output is called wrong: {problems[:2]}")
+        raw, _ = judge.assess(spec, text, text, None)
+        uncorrected += any(p[0] == "path" for p in raw)
+        wanted = reader.read(text, spec)[0]
+        for name, damaged in damages.all_of(out, spec, rng):
+            if damaged is None:
+                continue
+            try:
+                found_bad = bool(judge.assess(spec, text, damaged, None)[0])
+                moved = reader.read(damaged, spec)[0]
+                same = len(moved) == len(reader.read(out, spec)[0]) and all(np.allclose(a.end, b.end) and np.allclose(a.rot1, b.rot1) and a.f == b.f for a, b in zip(moved, reader.read(out, spec)[0]))
+            except (reader.Unreadable, ValueError):
+                continue
+            n = seen.setdefault(name, [0, 0])
+            n[0] += 1
+            n[1] += found_bad or same
+            if not found_bad and not same:
+                missed.append((name, number, chain, kind))
+        del wanted
+    count = 2 * len(generate.CHAINS) * len(generate.KINDS)
+    tell(accepted == count, f"right outputs accepted: {accepted} of {count}")
+    tell(uncorrected >= count - 2, f"programs left as they were rejected: {uncorrected} of {count}")
+    for name, (n, hit) in seen.items():
+        must = name in ("one degree", "a turn more", "other branch", "rotary words swapped", "F times ten")
+        tell(hit == n if must else hit >= 0.8 * n, f"damage, {name}: rejected {hit} of {n}" + ("" if hit == n else f"; passed {[m[1:] for m in missed if m[0] == name][:3]}"))
+    if vpost and shutil.which(vpost):
+        worst, points = against(vpost)
+        tell(worst < 1e-6, f"model against `predict`: {worst:.2g} mm at {points} points")
+    print(f"self-test: {failures} failures")
+    return 1 if failures else 0
+
+
+def against(vpost):
+    """Largest difference from `vpost predict`, mm, over random machines, places, angles and a tool."""
+    import tempfile
+
+    has, worst, points = judge.Has(vpost), 0.0, 0
+    for number in range(30):
+        chain, _, spec, _ = generate.pair("predict", number, has)
+        if chain == "nutating" and not has("direction"):
+            continue
+        for a in spec["axes"].values():
+            a.pop("backlash_um", None)
+        spec["control"] = "linuxcnc"
+        machine, rng = Machine(spec), np.random.default_rng(number)
+        q, rot, tool = rng.uniform(-500, 500, (20, 3)), rng.uniform(-100, 100, (20, len(machine.rotary))), [3.0, -4.0, -120.0]
+        head = "x_mm,y_mm,z_mm," + ",".join(f"{k.lower()}_deg" for k in machine.rotary) + ",tool_x_mm,tool_y_mm,tool_z_mm\n"
+        rows = head + "\n".join(",".join(f"{v:.12g}" for v in [*a, *b, *tool]) for a, b in zip(q, rot)) + "\n"
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([vpost, "predict", "-", "-m", generate.write_profile(spec, folder, has)], input=rows, capture_output=True, text=True)
+        if done.returncode:
+            print(done.stderr[:400])
+            return math.inf, 0
+        lines = [x.split(",") for x in done.stdout.splitlines()]
+        at = lines[0].index("px_mm")
+        worst = max(worst, close(machine.place(q, rot, tool)[0], [[float(v) for v in x[at : at + 3]] for x in lines[1:]]))
+        points += len(q)
+    return worst, points
+
+
+if __name__ == "__main__":
+    import sys
+
+    sys.exit(run(sys.argv[1] if len(sys.argv) > 1 else None))
