@@ -95,7 +95,11 @@ def follow(path, places, limit):
         s[0] = max(s[0], t)
         gap = a[i:j] + s[:, None] * way[i:j] - places[k]
         d = (gap * gap).sum(axis=1)
-        best = int(np.argmin(d))
+        # The first place from which it grows again: at a turn back the way out lies as near as the way back.
+        grows = np.flatnonzero(d[1:] > d[:-1])
+        best = int(grows[0]) if len(grows) else len(d) - 1
+        if d[best] > limit * limit:
+            best = int(np.argmin(d))
         i, t = i + best, float(s[best])
         index[k], share[k] = i, t
     return index, share
@@ -162,7 +166,7 @@ def compare(spec, wanted, taken):
         for d, line in ((float(turned[k]), wanted[int(a.number[i[k]])].line), (float(ends), wanted[numbers[-1]].line)):
             if d > out["turned"]:
                 out["turned"], out["turned_line"] = d, line
-        out["share"].append((numbers, taken_numbers, a.number[i], b.number))
+        out["share"].append((numbers, taken_numbers, a.number[i], b.number, b.share))
     return out
 
 
@@ -170,12 +174,12 @@ def times(wanted, taken, found):
     """Under G93: lines whose pieces do not take, together, the time of the programmed block; under G94, G95: lines of another F.
     A piece belongs to the block on which its middle lies; a short move before the stretch to none."""
     wrong = []
-    for numbers, taken_numbers, blocks, pieces in found["share"]:
+    for numbers, taken_numbers, blocks, pieces, shares in found["share"]:
         spent = {n: 0.0 for n in numbers}
         for p in taken_numbers:
             rows = np.flatnonzero(pieces == p)
-            if not len(rows):
-                continue
+            if not len(rows) or shares[rows[0]] > 0 or not taken[p].moves():
+                continue  # the short move to the start, or none
             n = int(blocks[rows[len(rows) // 2]])
             m, o = taken[p], wanted[n]
             if o.mode != m.mode:

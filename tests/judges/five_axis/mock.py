@@ -79,7 +79,7 @@ def correct(text, spec, split=True):
         rest = re.sub(r"F-?[\d.]+", " ", rest)
         feed = (f" F{m.f * pieces:.5f}" if m.mode == 93 else f" {f.group(0)}" if f else "")
         if before == "rapid":
-            out.append(f"G1 {words(x[0], rot[0])}" + (feed if m.mode != 93 else " F6000"))
+            out.append(f"G1 {words(x[0], rot[0])}" + (feed if m.mode != 93 else " F60000"))
         before = "feed"
         for k in range(1, pieces + 1):
             out.append(" ".join(f"{rest if k == 1 else ''} G1 {words(x[k], rot[k])}{feed if m.mode == 93 or k == 1 else ''}".split()))
