@@ -91,7 +91,7 @@ def follow(path, places, limit):
         j = int(np.searchsorted(run, at + 2 * steps[k] + 4 * limit, side="left"))
         j = min(max(j, i + 2), last)
         s = ((places[k] - a[i:j]) * way[i:j]).sum(axis=1) / square[i:j]
-        np.clip(s, 0.0, 1.0, out=s)
+        np.minimum(np.maximum(s, 0.0, out=s), 1.0, out=s)
         s[0] = max(s[0], t)
         gap = a[i:j] + s[:, None] * way[i:j] - places[k]
         d = (gap * gap).sum(axis=1)
@@ -188,8 +188,13 @@ def times(wanted, taken, found):
                 spent[n] += 1 / m.f if m.f else 0.0
             elif o.f != m.f:
                 wrong.append((o.line, f"F{m.f} for F{o.f}"))
+        # A block of a few micrometres may lie at its neighbours' foot: with them it has to fit as well.
+        def off(ns):
+            ns = [n for n in ns if n in spent and wanted[n].mode == 93 and wanted[n].f and wanted[n].moves()]
+            due = sum(1 / wanted[n].f for n in ns)
+            return bool(ns) and abs(sum(spent[n] for n in ns) / due - 1) > 0.02
+
         for n in numbers:
-            o = wanted[n]
-            if o.mode == 93 and o.f and o.moves() and abs(spent[n] * o.f - 1) > 0.02:
-                wrong.append((o.line, f"takes {spent[n] * o.f:.3f} of its time"))
+            if all(off(ns) for ns in ([n], [n - 1, n, n + 1], [n - 1, n], [n, n + 1])):
+                wrong.append((wanted[n].line, f"takes {spent[n] * wanted[n].f:.3f} of its time"))
     return wrong

@@ -108,7 +108,7 @@ def same_reading(text, spec, motions):
         ours.append((m.kind, m.arc is not None, end, [rot.get(n, 0.0) for n in names], m))
     # Blocks that move nothing are told by one and not by the other.
     def moving(rows, end, arc):
-        out, last = [], None
+        out, last = [], (0.0,) * 6
         for row in rows:
             key = tuple(np.round(end(row), 4) + 0.0)
             if key != last or arc(row):

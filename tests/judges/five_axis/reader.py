@@ -143,7 +143,7 @@ def read(text, spec, start=None):
         tcp = on
 
     for number, raw in enumerate(text.splitlines(), 1):
-        code = re.sub(r"\([^)=]*\)" if dialect != "sinumerik" else r"\x00", " ", raw).split(";")[0].upper().strip()
+        code = re.sub(r"\([^)]*\)" if dialect != "sinumerik" else r"\x00", " ", raw).split(";")[0].upper().strip()
         if not code or code == "%" or re.match(r"O\d+$", code):
             continue
         if code.startswith("MSG"):
@@ -165,7 +165,7 @@ def read(text, spec, start=None):
                 raise Unreadable(f"line {number}: {raw.strip()}")
             pairs.append((m.group(1), m.group(3), float(m.group(4) if m.group(3) else m.group(5))))
             rest = rest[m.end():]
-        words, how = {}, {}
+        words, how, machine_frame = {}, {}, False
         g_length = None
         for letter, manner, value in pairs:
             if letter == "G":
@@ -182,6 +182,8 @@ def read(text, spec, start=None):
                     state["feed mode"] = feed_mode
                 elif value in (43, 49, 43.4, 43.5, 234):
                     g_length = value
+                elif value == 53:
+                    machine_frame = True
                 elif value not in SILENT:
                     raise Unreadable(f"line {number}: G{value:g}")
                 else:
@@ -218,7 +220,7 @@ def read(text, spec, start=None):
         if not letters and not (mode in (2, 3) and any(c in words for c in "IJK")):
             continue
         end, turned = here.copy(), rot.copy()
-        s = shift()
+        s = np.zeros(3) if machine_frame else shift()
         for i, c in enumerate("XYZ"):
             if c in words:
                 add = how[c] == "IC" or (not absolute and how[c] != "AC")
