@@ -40,6 +40,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import compare  # noqa: E402
 import damages  # noqa: E402
+import directed  # noqa: E402
 import generate  # noqa: E402
 import reader  # noqa: E402
 
@@ -241,6 +242,7 @@ def main():
     parser.add_argument("--kind", choices=generate.KINDS, action="append")
     parser.add_argument("--orientation", choices=["xyz", "full"])
     parser.add_argument("--damage", type=int, default=3, metavar="N", help="damage every Nth pair; 0 for none")
+    parser.add_argument("--directed", action="store_true", help="bad input and perfect machines as well")
     parser.add_argument("--keep", metavar="DIR", help="reproducers of failures go here; a temporary folder if not given")
     parser.add_argument("--json", metavar="FILE", help="write all verdicts")
     parser.add_argument("--self-test", action="store_true")
@@ -264,7 +266,13 @@ def main():
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as out:
             json.dump(verdicts, out, indent=1, default=str)
-    return report(verdicts, keep, time.time() - begun)
+    status = report(verdicts, keep, time.time() - begun)
+    if arguments.directed:
+        answers = directed.run(shutil.which(arguments.vpost), keep, Has(arguments.vpost), correct)
+        for (name, wrong, said), n in collections.Counter(answers).items():
+            print(f"directed {'WRONG' if wrong else 'ok   '} {n:3} {name}: {wrong or ''} {said[:110]}")
+            status |= bool(wrong)
+    return status
 
 
 def report(verdicts, keep, seconds):
