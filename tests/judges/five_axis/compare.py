@@ -95,11 +95,14 @@ def follow(path, places, limit):
         s[0] = max(s[0], t)
         gap = a[i:j] + s[:, None] * way[i:j] - places[k]
         d = (gap * gap).sum(axis=1)
-        # The first place from which it grows again: at a turn back the way out lies as near as the way back.
-        grows = np.flatnonzero(d[1:] > d[:-1])
-        best = int(grows[0]) if len(grows) else len(d) - 1
-        if d[best] > limit * limit:
-            best = int(np.argmin(d))
+        # Not past a place from which the way leads off by more than a third of the limit: at a turn back the way out lies as
+        # near as the way back.
+        near = np.sqrt(d)
+        hump = a[i + 1 : j] - places[k]
+        shut = np.flatnonzero(np.sqrt((hump * hump).sum(axis=1)) > np.minimum.accumulate(near)[:-1] + 0.3 * limit)
+        best = int(np.argmin(near[: shut[0] + 1])) if len(shut) else int(np.argmin(near))
+        if near[best] > limit:
+            best = int(np.argmin(near))
         i, t = i + best, float(s[best])
         index[k], share[k] = i, t
     return index, share

@@ -284,7 +284,7 @@ def joints(m, control, u):
 CANON = re.compile(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|COMMENT)\((.*)\)")
 
 
-def rs274(text, lengths=None):
+def rs274(text, lengths=None, tries=3):
     """LinuxCNC's reading: [(kind, x, y, z, a, b, c)] in program coordinates; M428 and M429 are passed over (no remap here)."""
     folder = tempfile.mkdtemp(prefix="rs274-")
     source, tools = os.path.join(folder, "in.ngc"), os.path.join(folder, "tool.tbl")
@@ -299,6 +299,8 @@ def rs274(text, lengths=None):
         for name in os.listdir(folder):
             os.remove(os.path.join(folder, name))
         os.rmdir(folder)
+    if "PROGRAM_END" not in done.stdout and tries > 1:
+        return rs274(text, lengths, tries - 1)  # its file of variables is not always written in time
     if "PROGRAM_END" not in done.stdout:
         raise Unreadable("rs274: " + (done.stdout + done.stderr).strip()[-300:])
     out = []
