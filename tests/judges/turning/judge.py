@@ -161,7 +161,7 @@ def surfaces(spec, motions_in, motions_out, angles):
     limit = limit_mm(spec)
     floor = floor_of(spec, lathe)
     low = min(m.b[1] for m in motions_in) + spec["work_offsets_mm"]["G54"][2]
-    high = max(m.b[1] for m in motions_in if m.kind != "rapid") + spec["work_offsets_mm"]["G54"][2]
+    high = max(max(m.a[1], m.b[1]) for m in motions_in if m.kind != "rapid") + spec["work_offsets_mm"]["G54"][2]
     z = np.arange(max(low, high - 400), high, GRID) + 0.0123
     turns = angles if lathe.wobbles() else 1
     got = surface(spec, lathe, motions_out, z, turns, False)
