@@ -37,7 +37,7 @@ RAPID_FACTOR = 4.0
 GRID = 0.05
 MILLS = {"fanuc-lathe": "fanuc", "sinumerik-turn": "sinumerik", "linuxcnc-lathe": "linuxcnc"}
 CYCLES = {"g71", "g72", "g73", "g74", "g75", "g76", "turn", "threads", "face", "hole"}
-PROBLEMS = ("profile", "status", "passed-as-mill", "unreadable", "structure", "path", "surface", "rapid", "process", "perfect", "check-blind", "check-alarm", "damage-missed")
+PROBLEMS = ("profile", "status", "passed-as-mill", "unreadable", "interference", "structure", "path", "surface", "rapid", "process", "perfect", "check-blind", "check-alarm", "damage-missed")
 
 
 def limit_mm(spec):
@@ -215,6 +215,8 @@ def assess(spec, text, out, angles=12):
         return [("unreadable", f"input: {error}")], figures
     try:
         motions_out, player_out = reader.read(out, spec)
+    except reader.Interference as error:
+        return [("interference", f"output: {error}")], figures
     except (reader.Unreadable, ValueError, ZeroDivisionError, TypeError) as error:
         return [("unreadable", f"output: {error}")], figures
     cycles = any(m.cycle in CYCLES for m in motions_in)
@@ -356,7 +358,7 @@ def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
     verdict["problems"] += problems
     verdict["figures"] = figures
     passed = check(vpost, spec, folder, "out.nc")
-    wrong = any(name in ("path", "surface", "process", "structure") for name, _ in problems)
+    wrong = any(name in ("path", "surface", "process", "structure", "interference") for name, _ in problems)
     if passed and wrong:
         verdict["problems"].append(("check-blind", str(problems[0])))
     if passed is False and not problems:
@@ -365,7 +367,7 @@ def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
         return
     verdict["damages"] = []
     for name, damaged, _ in damages(spec, text, out):
-        if not any(p in ("path", "surface", "unreadable", "structure") for p, _ in assess(spec, text, damaged, 4)[0]):
+        if not any(p in ("path", "surface", "unreadable", "interference", "structure") for p, _ in assess(spec, text, damaged, 4)[0]):
             continue
         put(folder, "damaged.nc", damaged)
         found = check(vpost, spec, folder, "damaged.nc") is not True
@@ -400,7 +402,7 @@ def check(vpost, spec, folder, name):
 def report(verdicts, keep, seconds):
     print(f"\n{len(verdicts)} programs, {seconds:.0f} s; reproducers in {keep}")
     print(f"{'kind':16} programs refused judged surface-only | path ratio: median largest | surface: largest | WRONG")
-    wrong_names = ("path", "surface", "structure", "passed-as-mill", "process")
+    wrong_names = ("path", "surface", "structure", "interference", "passed-as-mill", "process")
     for kind in (*generate.KINDS, "all"):
         mine = [v for v in verdicts if kind in ("all", v["kind"])]
         if not mine:

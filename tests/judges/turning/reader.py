@@ -33,6 +33,10 @@ class Unreadable(Exception):
     """The program says what this reader does not know."""
 
 
+class Interference(Unreadable):
+    """A block under compensation is shorter than its corners take: controls stop with an alarm (Fanuc PS0041)."""
+
+
 class Motion:
     """One move of the tip in program coordinates, (x radius, z), mm; `arc` = (cx, cz, sweep), sweep > 0 from +Z to +X."""
 
@@ -744,6 +748,10 @@ def offset_path(motions, nose):
             hit = crossing(p, q)
             if hit is not None:
                 p[1], q[0] = list(hit), list(hit)
+        for a, b, k in pieces:
+            hx, hz = k.heading()
+            if not k.arc and (b[0] - a[0]) * hx + (b[1] - a[1]) * hz < -1e-6:
+                raise Interference(f"line {k.line}: interference under compensation")
         lead = motions[i]
         out.append(Motion(lead.kind, lead.a, tip(pieces[0][0]), None, lead.line, lead.state, lead.tool, 0, "lead"))
         last = None
