@@ -1,7 +1,7 @@
 """A corrector for the self-test only: writes each move as short lines solved on workpiece.py, and makes mistakes on request.
 
 It proves that the judge passes what is right and finds what is wrong; it is no model of the product. Programs with G70..G73
-(blocks P to Q) and LinuxCNC's are not played. Mistakes: "diameter" (half the correction in X: a radius taken for a diameter),
+(blocks P to Q) and LinuxCNC's are written out flat: head, every move, tail. Mistakes: "diameter" (half the correction in X: a radius taken for a diameter),
 "U" (one X written as U), "alpha" (tailstock and headstock the wrong way), "tip" (the compensated way written out for another
 tip direction), "20um".
 """
@@ -17,7 +17,7 @@ import workpiece
 from generate import CODES
 
 
-def unplayable(spec, text):
+def flat(spec, text):
     return spec["control"] == "linuxcnc-lathe" or any(f"{c} P" in text for code in CODES.values() for c in (code["71"], code["72"]))
 
 
@@ -62,12 +62,23 @@ def correct(spec, text, mistake=None, explicit=False):
         believed["tool"]["noses"]["H1"]["direction"] = {3: 4, 2: 1}[spec["tool"]["noses"]["H1"]["direction"]]
     lathe = workpiece.Lathe(believed)
     floor = judge.floor_of(spec, lathe)
-    player = (reader.Sinumerik if spec["control"] == "sinumerik-turn" else reader.Fanuc)(believed).play(text)
-    motions = player.motions
+    explicit = explicit or spec["control"] == "linuxcnc-lathe"
     if explicit:
         motions = reader.read(text, believed)[0]
+    else:
+        motions = (reader.Sinumerik if spec["control"] == "sinumerik-turn" else reader.Fanuc)(believed).play(text).motions
     lines = text.split("\n")
     moving = {m.line for m in motions}
+    if flat(spec, text):
+        # head: up to the first move, without subroutines; tail: from M9
+        first = next(k for k, line in enumerate(lines) if line.startswith("G0 ") and not any("endsub" in later for later in lines[k:]))
+        last = max(k for k, line in enumerate(lines) if line == "M9")
+        begun = max([k + 1 for k, line in enumerate(lines) if "endsub" in line] or [0])
+        tail = "\n".join(lines[last:])
+        lines = lines[begun:first]
+        moving = set()
+        for m in motions:
+            m.line = len(lines) + 1
     codes = CODES.get(spec.get("g_code_system", "A"))
     thread = codes["thread"] if spec["control"] == "fanuc-lathe" else "G33"
     factor = 2.0 if spec["x"] == "diameter" else 1.0
@@ -98,7 +109,7 @@ def correct(spec, text, mistake=None, explicit=False):
             if f:
                 feed = m.state[0]
             out.append(f"{change}{code} X{factor * p[0]:.4f} Z{p[1]:.4f}{f}")
-    out += [line for k, line in enumerate(lines) if k >= copied]
+    out += [tail] if flat(spec, text) else lines[copied:]
     result = "\n".join(out)
     if explicit:
         result = result.replace("G41", "G40").replace("G42", "G40")

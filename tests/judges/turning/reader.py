@@ -59,7 +59,7 @@ class Motion:
             return np.array(self.a) + t * (np.array(self.b) - np.array(self.a))
         cx, cz, sweep = self.arc
         r0, r1 = math.hypot(self.a[0] - cx, self.a[1] - cz), math.hypot(self.b[0] - cx, self.b[1] - cz)
-        n = max(4, math.ceil(abs(sweep) / math.sqrt(8 * 2e-5 / max(r0, 1e-6))))
+        n = max(4, math.ceil(abs(sweep) / math.sqrt(8 * 4e-5 / max(r0, 1e-6))))
         t = np.linspace(0, 1, n + 1)
         angle = math.atan2(self.a[0] - cx, self.a[1] - cz) + t * sweep
         r = r0 + t * (r1 - r0)
