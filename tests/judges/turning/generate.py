@@ -344,7 +344,8 @@ def program(rng, spec, kind):
     elif kind == "linuxcnc-cycle":
         w.to("G0", 31, 2)
         if rng.random() < 0.6:
-            pieces = merged(contour(rng, length))
+            pieces = contour(rng, length)
+            pieces = merged([("L", pieces[0][1], 1.0), *pieces])[1:]
             w.lines.insert(0, "o100 sub")
             body = Words(spec, rng)
             body.to("G0", pieces[0][1], 1)

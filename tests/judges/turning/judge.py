@@ -304,15 +304,15 @@ def judge_pair(task):
     return verdict
 
 
-def put(folder, name, text):
-    with open(os.path.join(folder, name), "w", encoding="utf-8", newline="") as out:
+def put(folder, name, text, encoding="utf-8"):
+    with open(os.path.join(folder, name), "w", encoding=encoding, newline="") as out:
         out.write(text)
 
 
 def judge_mill(vpost, spec, text, folder, _angles, verdict, _number):
     """A mill's dialect and profile: the program must be refused as a lathe's, naming the lathe's dialect."""
     dialect = MILLS[spec["control"]]
-    put(folder, "in.nc", text)
+    put(folder, "in.nc", text, "latin-1")
     z = spec["work_offsets_mm"]["G54"][2]
     put(folder, "lathe.toml", f'format = 1\nname = "mill"\ncontrol = "{dialect}"\nchain = "[w X Y b Z t]"\n'
         + "".join(f"[axis.{a}]\ntravel_mm = [-1000, 1000]\n" for a in "XYZ")
@@ -321,6 +321,10 @@ def judge_mill(vpost, spec, text, folder, _angles, verdict, _number):
     done = run(command(vpost, {**spec, "control": dialect}, folder, extra=extra))
     put(folder, "stderr.txt", done.stderr)
     if done.returncode == 0:
+        with open(os.path.join(folder, "out.nc"), encoding="latin-1", newline="") as file:
+            if file.read() == text:
+                verdict["refused"] = "unchanged"
+                return
         verdict["problems"].append(("passed-as-mill", f"exit 0 under -d {dialect}"))
     elif done.returncode != 1:
         verdict["problems"].append(("status", f"exit {done.returncode}: {done.stderr[:200]}"))
