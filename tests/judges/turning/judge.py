@@ -358,6 +358,10 @@ def judge_lathe(vpost, spec, text, folder, angles, verdict, number):
             verdict["problems"].append(("perfect", "a perfect lathe's program is changed"))
         return
     problems, figures = assess(spec, text, out, angles)
+    if any(name == "unreadable" and message.startswith("input") for name, message in problems):
+        # LinuxCNC's interpreter refuses some lead-ins of its compensation: nothing to compare with
+        verdict["unjudged"] = problems[0][1]
+        return
     verdict["problems"] += problems
     verdict["figures"] = figures
     passed = check(vpost, spec, folder, "out.nc")
@@ -416,6 +420,7 @@ def report(verdicts, keep, seconds):
         print(f"{kind:16} {len(mine):8} {sum('refused' in v for v in mine):7} {sum(bool(v['figures']) for v in mine):6} {sum('surface-only' in v['figures'] for v in mine):12} | "
               + (f"{path[len(path) // 2]:18.3f} {path[-1]:7.3f}" if path else f"{'-':>18} {'-':>7}") + " | " + (f"{max(rough):16.3f}" if rough else f"{'-':>16}") + f" | {wrong:5}")
     print("refused:", dict(collections.Counter(v["refused"] for v in verdicts if "refused" in v)) or "none")
+    print("unjudged (the control itself refuses the input):", sum("unjudged" in v for v in verdicts))
     print("warned:", dict(collections.Counter(w for v in verdicts for w in v.get("warned", ()))) or "none")
     found = collections.Counter((name, hit) for v in verdicts for name, hit in v.get("damages", ()))
     for name in sorted({n for n, _ in found}):
