@@ -657,15 +657,12 @@ def play_linuxcnc(text, spec):
             text = "G7\n" + text
         with open(source, "w", encoding="latin-1") as out:
             out.write(text)
-        # the stand-alone interpreter refuses a sound program once in some hundred runs (state it does not set): ask again
-        for _ in range(3):
-            try:
-                done = subprocess.run(["rs274", "-g", "-t", table, "-v", var, source], capture_output=True, text=True, timeout=20, cwd=folder)
-            except subprocess.TimeoutExpired:
-                raise Unreadable("rs274 does not end") from None
-            if "PROGRAM_END" in done.stdout or "PROGRAM_STOP" in done.stdout:
-                break
-        else:
+        # the interpreter keeps the tool table in $HOME/.tool.mmap: with one HOME, runs at the same time mix their tools
+        try:
+            done = subprocess.run(["rs274", "-g", "-t", table, "-v", var, source], capture_output=True, text=True, timeout=20, cwd=folder, env={**os.environ, "HOME": folder})
+        except subprocess.TimeoutExpired:
+            raise Unreadable("rs274 does not end") from None
+        if "PROGRAM_END" not in done.stdout and "PROGRAM_STOP" not in done.stdout:
             raise Unreadable("rs274: " + " ".join((done.stdout + done.stderr).split("\n")[-5:])[:200])
         player = Player(spec)
         sync, pos, scale = None, [0.0, 0.0], 1.0
