@@ -141,7 +141,8 @@ def surface(spec, lathe, motions, z, angles, perfect):
     out = {}
     for inside in (False, True):
         s = workpiece.Surface(z, angles, inside)
-        for kind, ms in runs([m for m in motions if m.kind != "thread"]):
+        # threads are no surface, and a drill on the axis would take all of it away
+        for kind, ms in runs([m for m in motions if m.kind != "thread" and not abs(m.a[0]) < 0.01 > abs(m.b[0])]):
             if kind == "rapid":
                 continue
             work, length, nose = offsets(spec, ms[0].tool)
