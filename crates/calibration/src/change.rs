@@ -104,6 +104,74 @@ pub fn compare(
     })
 }
 
+/// Where one error function differs most between two calibrations of an axis, at the nodes of both their tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FunctionChange {
+    /// Index of the axis, X first.
+    pub axis: usize,
+    /// Index of the function: EX, EY, EZ, EA, EB, EC.
+    pub function: usize,
+    /// Command of that axis where the mean of both directions differs most, mm.
+    pub at_mm: f64,
+    /// By how much there, new minus old, mm or rad; zero and, where it is sideways, slope of the two set-ups taken off.
+    pub by: f64,
+    /// By how much the mean reversal value (coming from above less coming from below) differs, mm or rad.
+    pub reversal: f64,
+}
+
+/// Changes of every function of every axis that has tables or play in both; equation (37) function by function.
+///
+/// Zero and slope are medians, so that a change at one place does not move what it is measured from.
+#[must_use]
+pub fn by_function(old: &Description, new: &Description) -> Vec<FunctionChange> {
+    let mut found = Vec::new();
+    for (axis, (a, b)) in old.linear.iter().zip(&new.linear).enumerate() {
+        let low = a.calibrated_mm().low.max(b.calibrated_mm().low);
+        let high = a.calibrated_mm().high.min(b.calibrated_mm().high);
+        let tables = [a, b].into_iter().flat_map(|x| x.errors.iter().chain(&x.errors_negative));
+        let mut nodes: Vec<f64> = tables.flat_map(|t| t.nodes().iter().copied()).collect();
+        nodes.retain(|q| (low..=high).contains(q));
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        if nodes.len() < 3 {
+            continue;
+        }
+        for function in 0..6 {
+            let of = |x: &machine_model::LinearAxis, q: f64| {
+                let above = x.errors.as_ref().map_or(0.0, |t| t.at(q)[function]);
+                let play = if function == axis { x.backlash_mm } else { 0.0 };
+                match &x.errors_negative {
+                    Some(t) => (0.5 * (above + t.at(q)[function]), t.at(q)[function] - above),
+                    None => (above, play),
+                }
+            };
+            let differences: Vec<(f64, f64)> = nodes.iter().map(|q| (of(b, *q).0 - of(a, *q).0, of(b, *q).1 - of(a, *q).1)).collect();
+            let half = nodes.len() / 2;
+            let sideways = function < 3 && function != axis;
+            let slope = if sideways {
+                let rises = (0..nodes.len() - half)
+                    .map(|i| (differences[i + half].0 - differences[i].0) / (nodes[i + half] - nodes[i]));
+                median(rises.collect())
+            } else {
+                0.0
+            };
+            let level = |i: usize| differences[i].0 - slope * nodes[i];
+            let zero = median((0..nodes.len()).map(level).collect());
+            let size = |i: &usize| (level(*i) - zero).abs();
+            let Some(worst) = (0..nodes.len()).max_by(|i, j| size(i).total_cmp(&size(j))) else { continue };
+            let reversal = differences.iter().map(|d| d.1).sum::<f64>() / differences.len() as f64;
+            found.push(FunctionChange { axis, function, at_mm: nodes[worst], by: level(worst) - zero, reversal });
+        }
+    }
+    found
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+}
+
 /// What 95 % of the lengths keep.
 fn p95(vectors: &[Vector]) -> f64 {
     let mut lengths: Vec<f64> = vectors.iter().map(Vector::norm).collect();

@@ -328,11 +328,11 @@ impl<'a> Assembly<'a> {
             )),
             Some(_) => {}
         }
-        if self.model.phi > 0.0 {
+        if self.model.caution > 0.0 {
             notes.push(format!(
                 "Neighbouring readings hang together (correlation {:.2} from one to the next): intervals and tests count them as {:.0} % of as many independent ones.",
-                self.model.phi,
-                100.0 * (1.0 - self.model.phi) / (1.0 + self.model.phi)
+                self.model.caution,
+                100.0 * (1.0 - self.model.caution) / (1.0 + self.model.caution)
             ));
         }
         notes.extend(self.setup_notes());

@@ -14,8 +14,10 @@ use crate::observation::{Measurements, Row, Scalar};
 /// What a search takes for granted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Setting {
-    /// Correlation of a reading with the next one of its run.
+    /// Correlation of a reading with the next one of its run, where runs are long enough to call it noise.
     pub phi: f64,
+    /// The correlation that tests and intervals count with, however short the runs.
+    pub caution: f64,
     /// Runs are turned against each other, not only shifted.
     pub turned: bool,
 }
@@ -71,6 +73,30 @@ pub(crate) fn weighed(data: &Measurements, first: &Explained, scalars: &[Scalar]
 /// The lag-one correlation of n readings less their mean is low by (1 + 4φ)/n (Marriott and Pope 1954).
 #[must_use]
 pub(crate) fn phi(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64 {
+    let Series { standing, moving } = series(rows, scalars, residuals_um);
+    if let Some(phi) = lag_one(&standing) {
+        return phi;
+    }
+    // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
+    let length = moving.iter().map(Vec::len).sum::<usize>() as f64 / moving.len().max(1) as f64;
+    lag_one(&moving).filter(|phi| length >= LONG * (1.0 + phi) / (1.0 - phi)).unwrap_or(0.0)
+}
+
+/// The same for runs of any length: what tests and intervals must count with, for noise that hangs together over a run is
+/// as smooth as an effect and no evidence for one.
+#[must_use]
+pub(crate) fn caution(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64 {
+    let Series { standing, moving } = series(rows, scalars, residuals_um);
+    lag_one(&standing).or_else(|| lag_one(&moving)).unwrap_or(0.0)
+}
+
+/// Residuals of runs and components in order: stretches at one place, and whole runs.
+struct Series {
+    standing: Vec<Vec<f64>>,
+    moving: Vec<Vec<f64>>,
+}
+
+fn series(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Series {
     let mut runs: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
         let line = runs.entry((rows[scalar.row].run, scalar.class)).or_default();
@@ -88,12 +114,7 @@ pub(crate) fn phi(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64
         .collect();
     let moving: Vec<Vec<f64>> =
         runs.values().filter(|l| l.len() > 3).map(|l| l.iter().map(|(_, v)| *v).collect()).collect();
-    if let Some(phi) = lag_one(&standing) {
-        return phi;
-    }
-    // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
-    let length = moving.iter().map(Vec::len).sum::<usize>() as f64 / moving.len().max(1) as f64;
-    lag_one(&moving).filter(|phi| length >= LONG * (1.0 + phi) / (1.0 - phi)).unwrap_or(0.0)
+    Series { standing, moving }
 }
 
 /// Pooled lag-one correlation of some series; `None` of too few pairs, 0 where it is none.
@@ -118,6 +139,9 @@ fn lag_one(series: &[Vec<f64>]) -> Option<f64> {
 /// Variance of a weighted sum of readings that hang together, over that of independent ones: `Σ φ^|s-t| x_s x_t / Σ x²`
 /// within the runs, component by component. Below one for what changes from reading to reading, and then taken as one:
 /// the correlation itself is estimated.
+///
+/// The variance that the second is of was estimated about the means of the runs, and these take a part of the first with
+/// them: about the mean of n readings `σ²(1 - Σ φ^|s-t| / n²)·n/(n-1)` is left.
 #[must_use]
 pub(crate) fn inflation(rows: &[Row], scalars: &[Scalar], column: &[f64], phi: f64) -> f64 {
     if phi == 0.0 {
@@ -127,16 +151,32 @@ pub(crate) fn inflation(rows: &[Row], scalars: &[Scalar], column: &[f64], phi: f
     let mut before = [0.0; 4];
     let mut run = usize::MAX;
     let (mut square, mut cross) = (0.0, 0.0);
+    // By component of a run: readings, and what the ones before say of them all.
+    let (mut own, mut within, mut degrees) = ([(0.0, 0.0, 0.0); 4], 0.0, 0.0);
+    let mut close = |own: &mut [(f64, f64, f64); 4]| {
+        for (count, together, _) in own.iter().filter(|o| o.0 > 1.0) {
+            within += count - (count + 2.0 * together) / count;
+            degrees += count - 1.0;
+        }
+        *own = [(0.0, 0.0, 0.0); 4];
+    };
     for (scalar, x) in scalars.iter().zip(column) {
         if rows[scalar.row].run != run {
             (run, before) = (rows[scalar.row].run, [0.0; 4]);
+            close(&mut own);
         }
+        let (count, together, faded) = &mut own[scalar.class];
+        *together += *faded;
+        *faded = phi * (*faded + 1.0);
+        *count += 1.0;
         let value = x * scalar.weight.sqrt();
         square += value * value;
         cross += value * before[scalar.class];
         before[scalar.class] = phi * (before[scalar.class] + value);
     }
-    if square > 0.0 { (1.0 + 2.0 * cross / square).max(1.0) } else { 1.0 }
+    close(&mut own);
+    let left = if degrees > 0.0 { (within / degrees).clamp(0.02, 1.0) } else { 1.0 };
+    if square > 0.0 { ((1.0 + 2.0 * cross / square) / left).max(1.0) } else { 1.0 }
 }
 
 /// True where most runs see an area or a volume, so that a turned run shows and is not taken for a slope of one line.

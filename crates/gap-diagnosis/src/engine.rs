@@ -28,6 +28,8 @@ pub(crate) const LEVEL: f64 = 3e-2;
 pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Most causes named.
 const MOST_CAUSES: usize = 8;
+/// A correlation that falls by less is the same.
+const LESS: f64 = 0.05;
 /// Passes of dropping outliers and searching again.
 const PASSES: usize = 3;
 
@@ -56,6 +58,8 @@ pub(crate) struct Explained {
     pub refused: Option<Refused>,
     /// Correlation of a reading with the next one of its run.
     pub phi: f64,
+    /// The same as tests and intervals count with, for runs of any length.
+    pub caution: f64,
     /// The set-up holds an angle of every run.
     pub turned: bool,
 }
@@ -138,7 +142,7 @@ fn settled(
     let scalars = source.scalars;
     let mut pool = Pool::new(source);
     let mut dropped: Vec<usize> = Vec::new();
-    let mut setting = Setting { phi: 0.0, turned };
+    let mut setting = Setting { phi: 0.0, caution: 0.0, turned };
     let mut result = pass(data, &mut pool, &dropped, without, setting, start, Task::Search);
     let lone = |solution: &Solution| {
         let residuals = conditional_residuals(solution, source);
@@ -155,8 +159,23 @@ fn settled(
         result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
     }
     setting.phi = doubt::phi(&data.rows, &result.scalars, &result.solution.residuals_um);
-    if setting.phi > 0.0 {
-        result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
+    let hanging = |model: &Explained| {
+        doubt::caution(&data.rows, &model.scalars, &model.solution.residuals_um).max(setting.phi)
+    };
+    if hanging(&result) > 0.0 {
+        // What hangs together is noise until an effect explains it in spite of that; what one does explain counts no more.
+        let bare = Explained { parts: Vec::new(), ..result.clone() };
+        let bare = pass(data, &mut pool, &dropped, without, setting, Some(bare), Task::Imitate);
+        let mut caution = hanging(&bare).max(hanging(&result));
+        for _ in 0..PASSES {
+            setting.caution = caution;
+            result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
+            let now = hanging(&result);
+            if now > caution - LESS {
+                break;
+            }
+            caution = now;
+        }
     }
     result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Imitate);
     result.outliers.clone_from(&dropped);
@@ -247,6 +266,7 @@ fn pass(
         equally_good: Vec::new(),
         refused,
         phi: setting.phi,
+        caution: setting.caution.max(setting.phi),
         turned: setting.turned,
         scalars,
     }
@@ -296,7 +316,7 @@ impl<'a, 'b> State<'a, 'b> {
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
-        let (bounds, phi) = (Bounds::new(data, source.scalars), setting.phi);
+        let (bounds, phi) = (Bounds::new(data, source.scalars), setting.caution.max(setting.phi));
         let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
             data,
@@ -478,6 +498,17 @@ impl<'a, 'b> State<'a, 'b> {
                 self.library.add_variants(kind, variants, asked);
             }
         }
+        for axis in 0..3 {
+            let kind = EffectKind::Joint(axis);
+            if self.without.contains(&kind) || self.uses(kind) || !self.library.has(kind) {
+                continue;
+            }
+            if let Some((centre, asked)) = propose::joint(self.source, &solution.residuals_um, axis) {
+                let width = 0.4 * narrowest_mm(self.data, axis);
+                let variants = self.library.join(kind, centre, width);
+                self.library.add_variants(kind, variants, asked.min(48));
+            }
+        }
         self.refine_shapes(rho);
         self.grow();
     }
@@ -509,6 +540,7 @@ impl<'a, 'b> State<'a, 'b> {
                     propose::pitch_variants(&mut self.library, self.data, axis, better.pitch_mm)
                 }
                 EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
+                EffectKind::Joint(_) => self.library.join(kind, better.centre_mm, better.width_mm),
                 _ => {
                     let columns = self.library.add_columns(kind, better, &indices);
                     vec![Variant { columns, enriched: false, only_rival: false }]

@@ -21,6 +21,7 @@ mod library;
 mod linear;
 mod locate;
 mod magnitude;
+mod motion;
 mod next;
 mod noise;
 mod observation;

@@ -3,7 +3,7 @@
 use machine_model::effects::{EffectKind, Shape};
 
 use crate::noise::median;
-use crate::observation::{Measurements, Row};
+use crate::observation::{Measurements, Reading, Row};
 use crate::term::Term;
 
 /// One form of an effect: columns of the design.
@@ -54,6 +54,10 @@ pub(crate) struct Library {
 const LOCAL_PLACES: usize = 14;
 /// Times at which a knock is looked for; finer ones are proposed by the search.
 const STEP_TIMES: usize = 24;
+/// A joint is looked for where an axis has so many places: with fewer it is any curve.
+const JOINT_PLACES: f64 = 8.0;
+/// Ways over which a spike at a turning point fades, mm.
+const SPIKES_MM: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 /// Time constants as shares of the time the measurement took.
 const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
 
@@ -75,6 +79,15 @@ struct Seen {
     /// Different loads.
     loads: usize,
     rotary: [bool; 3],
+    /// Tools of different lengths.
+    tools: bool,
+    /// Every row has its station's place.
+    station: bool,
+    /// Typical step between rows that are read while an axis moves on after it turned, mm; infinite where none is.
+    turns_mm: [f64; 3],
+    /// Levers, by the axis that carries and the direction turned about, that are one number all over the file: such an angle
+    /// is a straightness, a squareness or a scale to these rows.
+    one_lever: [[bool; 3]; 3],
 }
 
 impl Seen {
@@ -112,8 +125,44 @@ impl Seen {
             loads: distinct(rows, &|r| r.conditions.load_kg),
             rotary: [0, 1, 2]
                 .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
+            tools: varies(&|r| Some(r.command.tool_mm.z)),
+            station: rows.iter().all(|r| r.conditions.station_mm.is_some()),
+            turns_mm: [0, 1, 2].map(|a| step_after_turning(rows, a)),
+            one_lever: [0, 1, 2].map(|axis| [0, 1, 2].map(|about| one_lever(data, about, axis))),
         }
     }
+}
+
+/// Median difference of the ways since an axis turned, of rows in a row that are nearer to the turn than thirty steps.
+fn step_after_turning(rows: &[Row], axis: usize) -> f64 {
+    let pairs = rows.windows(2).filter(|w| w[0].run == w[1].run);
+    let ways = pairs.filter_map(|w| Some((w[0].conditions.since_turn_mm[axis]?, w[1].conditions.since_turn_mm[axis]?)));
+    let mut steps: Vec<f64> =
+        ways.filter(|(a, b)| b > a && *a < 30.0 * (b - a)).map(|(a, b)| b - a).collect();
+    if steps.len() < 12 { f64::INFINITY } else { median(&mut steps).unwrap_or(f64::INFINITY) }
+}
+
+/// True where a rotation about a direction along an axis acts, in what the rows see, through levers that never change.
+fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
+    /// Share of the lever that it may change by, and a change that is none, mm.
+    const SAME: f64 = 0.01;
+    let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+    for row in &data.rows {
+        let lever = data.geometry.lever_mm(axis, &row.command);
+        let moved = crate::term::unit(about).cross(&lever);
+        let seen = match row.reading {
+            Reading::Displacement(components) => components.map(|c| c.is_some()),
+            Reading::Magnitude(_) => [true; 3],
+            Reading::Length { ball_mm, .. } => {
+                let bar = data.geometry.nominal_tip_mm(&row.command) - ball_mm;
+                [0, 1, 2].map(|c| bar[c].abs() > SAME * bar.norm())
+            }
+        };
+        for c in (0..3).filter(|c| seen[*c]) {
+            range[c] = (range[c].0.min(moved[c]), range[c].1.max(moved[c]));
+        }
+    }
+    range.iter().all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
 }
 
 /// The axis along which an effect is a curve.
@@ -165,12 +214,15 @@ pub(crate) fn frame(data: &Measurements, turned: bool) -> Vec<Term> {
     terms
 }
 
-/// Columns of the zero of every instrument but the first.
+/// Columns of the zero of every instrument, and of the frame of every station, but the first.
 fn instruments(data: &Measurements) -> Vec<Term> {
     let count = data.rows.iter().filter_map(|r| r.instrument).max().map_or(0, |m| m + 1);
-    (1..count)
-        .flat_map(|instrument| (0..3).map(move |axis| Term::InstrumentShift { instrument, axis }))
-        .collect()
+    let zeros =
+        (1..count).flat_map(|instrument| (0..3).map(move |axis| Term::InstrumentShift { instrument, axis }));
+    let stations = data.rows.iter().filter_map(|r| r.station).max().map_or(0, |m| m + 1);
+    let frames = (1..stations)
+        .flat_map(|station| (0..6).map(move |component| Term::StationFrame { station, component }));
+    zeros.chain(frames).collect()
 }
 
 impl Library {
@@ -199,6 +251,11 @@ impl Library {
             }
         }
         library
+    }
+
+    /// True where the rows could show an effect.
+    pub(crate) fn has(&self, kind: EffectKind) -> bool {
+        self.candidates.iter().any(|c| c.kind == kind)
     }
 
     /// Adds columns of an effect, unless they are there, and returns their positions.
@@ -268,13 +325,15 @@ impl Library {
                 forms.iter_mut().for_each(|f| f.enriched = f.columns.len() > 4);
                 forms
             }
-            EffectKind::Angular { axis: a, .. } if travels(a) => {
+            EffectKind::Angular { axis: a, about } if travels(a) => {
                 let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
                 let lists: Vec<&[usize]> = lists
                     .into_iter()
                     .filter(|l| l.len() <= 2 || 10 * (l.len() + 1) <= 7 * seen.places[a])
                     .collect();
-                self.selections(kind, interval(a), &lists)
+                let mut forms = self.selections(kind, interval(a), &lists);
+                forms.iter_mut().for_each(|form| form.only_rival = seen.one_lever[a][about]);
+                forms
             }
             EffectKind::Sag(a) if travels(a) => {
                 // The overhang begins where the ram leaves its support: at the end of travel, before or behind.
@@ -317,6 +376,23 @@ impl Library {
             }
             EffectKind::Step(_) => self.steps(kind, seen),
             EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a], seen.narrowest_mm[a]),
+            EffectKind::Joint(a) if travels(a) && seen.effective[a] >= JOINT_PLACES => {
+                let (low, high) = seen.range[a];
+                (1..LOCAL_PLACES)
+                    .flat_map(|k| {
+                        let centre_mm = low + (high - low) * k as f64 / LOCAL_PLACES as f64;
+                        self.join(kind, centre_mm, 0.4 * seen.narrowest_mm[a])
+                    })
+                    .collect()
+            }
+            EffectKind::Spike(a) => SPIKES_MM
+                .into_iter()
+                .filter(|width| seen.direction[a] && *width >= seen.turns_mm[a])
+                .flat_map(|width_mm| self.selections(kind, Shape { width_mm, ..Shape::default() }, &[&[0]]))
+                .collect(),
+            EffectKind::SpindleTilt(_) if seen.tools => self.selections(kind, none, &[&[0]]),
+            EffectKind::Tracker(2 | 3) if seen.station => self.selections(kind, none, &[&[0, 1]]),
+            EffectKind::Tracker(_) if seen.station => self.selections(kind, none, &[&[0]]),
             _ => Vec::new(),
         }
     }
@@ -360,6 +436,18 @@ impl Library {
                 self.place(kind, centre_mm, width_mm)
             })
             .collect()
+    }
+
+    /// Rails that do not meet at a place: sideways in one direction or both.
+    pub(crate) fn join(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
+        let EffectKind::Joint(axis) = kind else { return Vec::new() };
+        let sideways: Vec<usize> = (0..3).filter(|d| *d != axis).collect();
+        let shape = Shape { centre_mm, width_mm, ..Shape::default() };
+        let columns = self.add_columns(kind, shape, &sideways);
+        let one = |c: &usize| Variant { columns: vec![*c], enriched: false, only_rival: false };
+        let mut variants: Vec<Variant> = columns.iter().map(one).collect();
+        variants.push(Variant { columns, enriched: true, only_rival: false });
+        variants
     }
 
     /// Damage at one place: along one direction or all three.

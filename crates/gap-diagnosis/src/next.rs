@@ -107,11 +107,14 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let base = Row {
         conditions: machine_model::effects::Conditions {
             time_s: time.map(|t| t + 60.0),
+            share: None,
+            since_turn_mm: [None; 3],
             ..typical.conditions
         },
         predicted_mm: Vector::zeros(),
         u_um: [None; 3],
         instrument: None,
+        station: None,
         artefact: None,
         reading: Reading::Displacement([Some(0.0); 3]),
         ..typical

@@ -220,9 +220,17 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
         let step = |v: f64| (v * 1e4).round() as i64;
         (row.run, scalar.class, [step(q.x), step(q.y), step(q.z), step(t.x), step(t.y), step(t.z)])
     };
+    // Sum and count at one place reached one way, whatever the run.
+    let mut returns: BTreeMap<([i64; 6], usize, [i8; 3]), (f64, f64)> = BTreeMap::new();
+    let return_of = |scalar: &Scalar| {
+        let (_, class, place) = place_of(scalar);
+        (place, class, rows[scalar.row].command.direction)
+    };
     for (index, scalar) in scalars.iter().enumerate() {
         lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
         let entry = places.entry(place_of(scalar)).or_default();
+        *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
+        let entry = returns.entry(return_of(scalar)).or_default();
         *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
     }
     let mut found: Vec<usize> = Vec::new();
@@ -238,8 +246,11 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
                 there * value.signum() < ACCOMPLICE
             });
             // Repeats that say the same make it structure, too.
-            let (sum, count) = places[&place_of(&scalars[*index])];
-            let confirmed = count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE;
+            let says = |(sum, count): (f64, f64)| {
+                count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE
+            };
+            let scalar = &scalars[*index];
+            let confirmed = says(places[&place_of(scalar)]) || says(returns[&return_of(scalar)]);
             if alone && !confirmed {
                 found.push(scalars[*index].row);
             }

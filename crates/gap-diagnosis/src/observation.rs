@@ -36,6 +36,8 @@ pub struct Row {
     pub instrument: Option<usize>,
     /// Which artefact (workpiece, ball plate, mirror) was read; `None` where the file does not say.
     pub artefact: Option<usize>,
+    /// Which station of a tracker it was read from; `None` where the file does not say. Its place is in the conditions.
+    pub station: Option<usize>,
     /// What was read.
     pub reading: Reading,
     /// Line of the file, for messages.

@@ -32,14 +32,14 @@ impl Assembly<'_> {
     /// By how much the variance of a part's numbers grows because readings hang together.
     fn inflations(&self, place: usize) -> Vec<f64> {
         let (model, own) = (self.model, self.positions(place));
-        if model.phi == 0.0 {
+        if model.caution == 0.0 {
             return vec![1.0; own.len()];
         }
         let terms = &model.solution.terms;
         let beside: Vec<Term> =
             terms.iter().enumerate().filter(|(i, _)| !own.contains(i)).map(|(_, t)| *t).collect();
         let source = crate::engine::source(self.data, &model.scalars);
-        crate::trial::inflations(&beside, &terms[own], model.solution.rho, model.phi, &source)
+        crate::trial::inflations(&beside, &terms[own], model.solution.rho, model.caution, &source)
     }
 
     pub(crate) fn parameters(&self, place: usize) -> Vec<Parameter> {

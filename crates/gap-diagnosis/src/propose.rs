@@ -162,6 +162,41 @@ pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
     best.map(|(time, _)| (time, asked))
 }
 
+/// The place of an axis at which the residual of one other component jumps most, and how many were looked at.
+#[must_use]
+pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let mut best: Option<(f64, f64)> = None;
+    let mut asked = 0;
+    for class in (0..3).filter(|class| *class != axis) {
+        let mut points: Vec<(f64, f64)> = thinned(source.scalars)
+            .into_iter()
+            .filter(|i| source.scalars[*i].along[class].abs() > 0.3)
+            .map(|i| {
+                let s = &source.scalars[i];
+                (source.rows[s.row].command.linear_mm[axis], residuals_um[i] * s.along[class])
+            })
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let count = points.len() as f64;
+        let total: f64 = points.iter().map(|p| p.1).sum();
+        let mut before = 0.0;
+        for (place, pair) in points.windows(2).enumerate() {
+            before += pair[0].1;
+            if pair[1].0 - pair[0].0 < 1e-3 {
+                continue;
+            }
+            asked += 1;
+            let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
+            let gap = before / n - (total - before) / m;
+            let power = gap * gap * n * m / count;
+            if best.is_none_or(|(_, p)| power > p) {
+                best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+            }
+        }
+    }
+    best.map(|(place, _)| (place, asked))
+}
+
 /// Place and width where a bump along one axis explains most of the residual, all components together; how many
 /// were looked at.
 #[must_use]

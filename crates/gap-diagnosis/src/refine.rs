@@ -197,10 +197,18 @@ impl<'a> Stage<'a> {
         let (axis, timed) = match kind {
             EffectKind::Pitch(a) | EffectKind::Local(a) => (a, false),
             EffectKind::Warmup(a) | EffectKind::Step(a) => (a, true),
+            EffectKind::Joint(a) | EffectKind::Spike(a) => (a, false),
             _ => return None,
         };
-        let variable =
-            |row: &Row| if timed { row.conditions.time_s } else { Some(row.command.linear_mm[axis]) };
+        let variable = |row: &Row| match kind {
+            _ if timed => row.conditions.time_s,
+            // Both ways round, beyond anything it fades over where it is not known.
+            EffectKind::Spike(_) => {
+                let way = row.conditions.since_turn_mm[axis].unwrap_or(1e9);
+                Some((1.0 + way) * f64::from(row.command.direction[axis]))
+            }
+            _ => Some(row.command.linear_mm[axis]),
+        };
         let rest = self.rest(own, variable);
         let gain = |shape: &Shape| self.gain(&rest, kind, shape, indices);
         if let EffectKind::Step(_) = kind {
@@ -260,6 +268,20 @@ fn free_numbers(kind: EffectKind, shape: &Shape, length_mm: f64, narrowest_mm: f
             step: 0.4 * shape.tau_s,
             low: 1.0,
             high: f64::INFINITY,
+        }],
+        EffectKind::Joint(_) => vec![Free {
+            get: |s| s.centre_mm,
+            set: |s, v| s.centre_mm = v,
+            step: shape.width_mm,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        }],
+        EffectKind::Spike(_) => vec![Free {
+            get: |s| s.width_mm,
+            set: |s, v| s.width_mm = v,
+            step: 0.3 * shape.width_mm,
+            low: 0.3,
+            high: 30.0,
         }],
         EffectKind::Local(_) => vec![
             Free {

@@ -58,5 +58,15 @@ pub const fn remedy(kind: EffectKind) -> &'static str {
             "Ask what happened at that time (collision, clamping, restart) and measure again."
         }
         EffectKind::Local(_) => "Inspect the guideway or scale at that place for damage or dirt.",
+        EffectKind::Joint(_) => "Realign the rails where they join, or enter a table with a node on each side of the joint.",
+        EffectKind::Spike(_) => {
+            "Set the control's friction (quadrant) compensation for this axis; check lubrication and gibs."
+        }
+        EffectKind::SpindleTilt(_) => {
+            "Tram the spindle, or correct each tool by its length: the axes are not the cause."
+        }
+        EffectKind::Tracker(_) => {
+            "Run the tracker's own two-face and ranging checks and compensate it; the machine is not the cause."
+        }
     }
 }

@@ -28,6 +28,13 @@ pub(crate) enum Term {
         /// Component.
         axis: usize,
     },
+    /// A station's frame lies otherwise than the first one's; coefficient in µm for 0 to 2 (shift), µrad for 3 to 5 (turn).
+    StationFrame {
+        /// Its number.
+        station: usize,
+        /// Component.
+        component: usize,
+    },
     /// The ball bar is longer than it says; coefficient in µm.
     BarLength,
     /// Rows whose direction of approach on an axis is not known, among others where it is: their mean may
@@ -65,6 +72,11 @@ impl Term {
                     Vector::zeros()
                 }
             }
+            Self::StationFrame { station, component } => match (row.station == Some(*station), component) {
+                (false, _) => Vector::zeros(),
+                (true, 0..=2) => unit(*component),
+                (true, _) => unit(component - 3).cross(&geometry.nominal_tip_mm(&row.command)) * 1e-3,
+            },
             Self::BarLength => Vector::zeros(),
             Self::UnknownApproach(axis) => {
                 if row.command.direction[*axis] == 0 {
@@ -104,7 +116,8 @@ impl Term {
             | EffectKind::Positioning(axis)
             | EffectKind::Straightness { axis, .. }
             | EffectKind::Pitch(axis)
-            | EffectKind::Local(axis) => Some(axis),
+            | EffectKind::Local(axis)
+            | EffectKind::Joint(axis) => Some(axis),
             EffectKind::Sag(axis) if index < 3 => Some(axis),
             _ => None,
         }
@@ -119,6 +132,8 @@ impl Term {
             Self::SetupShift(axis) | Self::UnknownApproach(axis) => axis == component,
             Self::SetupRotation(axis) | Self::RunRotation { about: axis, .. } => axis != component,
             Self::InstrumentShift { axis, .. } => axis == component,
+            Self::StationFrame { component: shift @ 0..=2, .. } => shift == component,
+            Self::StationFrame { component: turn, .. } => turn - 3 != component,
             Self::BarLength => false,
             Self::Effect { kind, index, .. } => match kind {
                 EffectKind::Scale(a)
@@ -130,13 +145,15 @@ impl Term {
                 | EffectKind::Load(a)
                 | EffectKind::ServoLag(a)
                 | EffectKind::Step(a)
+                | EffectKind::Spike(a)
+                | EffectKind::SpindleTilt(a)
                 | EffectKind::Squareness(a, _) => a == component,
                 EffectKind::LostMotion { direction, .. } | EffectKind::Straightness { direction, .. } => {
                     direction == component
                 }
                 EffectKind::ServoMismatch(a, b) => a == component || b == component,
                 EffectKind::Angular { about, .. } => about != component,
-                EffectKind::Local(_) => index == component,
+                EffectKind::Local(_) | EffectKind::Joint(_) => index == component,
                 EffectKind::InstrumentDrift => index % 3 == component,
                 EffectKind::Sag(a) => {
                     if index < 3 {
@@ -145,13 +162,16 @@ impl Term {
                         component != 1 - a
                     }
                 }
-                EffectKind::ProbeLobing | EffectKind::Rotary { .. } | EffectKind::Eccentricity(_) => true,
+                EffectKind::ProbeLobing
+                | EffectKind::Rotary { .. }
+                | EffectKind::Eccentricity(_)
+                | EffectKind::Tracker(_) => true,
             },
         }
     }
 }
 
-fn unit(axis: usize) -> Vector {
+pub(crate) fn unit(axis: usize) -> Vector {
     let mut v = Vector::zeros();
     v[axis] = 1.0;
     v

@@ -112,6 +112,25 @@ impl Assembly<'_> {
             EffectKind::Step(a) => {
                 format!("something moved by {:.1} µm along {} at {:.0} s", first.abs(), axis(a), shape.time_s)
             }
+            EffectKind::Joint(a) => {
+                format!("the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm", axis(a), shape.centre_mm)
+            }
+            EffectKind::Spike(a) => format!(
+                "{} sticks where it turns: {:.1} µm, gone after {:.1} mm of way",
+                axis(a),
+                first.abs(),
+                2.3 * shape.width_mm
+            ),
+            EffectKind::SpindleTilt(a) => format!(
+                "the spindle leans {:.0} µrad towards {}: {:.1} µm per 100 mm of tool",
+                first.abs(),
+                axis(a),
+                0.1 * first.abs()
+            ),
+            EffectKind::Tracker(fault) => format!(
+                "the tracker reads its {} wrong: {swing:.1} µm",
+                machine_model::effects::TRACKER[fault].replace('-', " ")
+            ),
             EffectKind::Local(a) => format!(
                 "{} errs by {swing:.1} µm near {:.0} mm, over {:.0} mm",
                 axis(a),

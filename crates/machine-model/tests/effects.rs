@@ -16,6 +16,9 @@ const KNOWN: Conditions = Conditions {
     time_s: Some(900.0),
     load_kg: Some(40.0),
     feed_mm_min: Some(1500.0),
+    share: None,
+    since_turn_mm: [Some(2.0), Some(40.0), None],
+    station_mm: Some([900.0, -700.0, 100.0]),
 };
 
 const CHAINS: [&str; 3] = ["[w X Y b Z t]", "[w C A Y X b Z t]", "[w b Z X Y B t]"];
@@ -90,7 +93,8 @@ fn leaves_chord(values: &[Vector]) -> f64 {
 #[test]
 fn no_effect_leaves_its_chord_by_more_than_its_bound() {
     let mut random = Random::new(77);
-    for kind in EffectKind::all() {
+    // A tracker's faults are never corrected, and so not bounded.
+    for kind in EffectKind::all().into_iter().filter(|kind| kind.family() != "tracker") {
         let (mut largest, mut ratio) = (0.0_f64, f64::INFINITY);
         for round in 0..60 {
             let term = term(kind, &mut random, CHAINS[round % 3], true);

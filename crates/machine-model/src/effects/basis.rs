@@ -33,6 +33,12 @@ pub struct Conditions {
     pub load_kg: Option<f64>,
     /// Feed along the path, mm/min.
     pub feed_mm_min: Option<f64>,
+    /// Share of that feed that each linear axis runs at, 0 to 1; `None`: all that move run alike.
+    pub share: Option<[f64; 3]>,
+    /// Way along the path since each axis last turned, mm; not known before it first turns.
+    pub since_turn_mm: [Option<f64>; 3],
+    /// Where the instrument stands, machine coordinates, mm.
+    pub station_mm: Option<[f64; 3]>,
 }
 
 /// A condition an effect needs and was not given.
@@ -147,7 +153,13 @@ impl EffectKind {
                 &["x_um_per_h", "y_um_per_h", "z_um_per_h", "x_um_per_h2", "y_um_per_h2", "z_um_per_h2"]
             }
             Self::Step(_) => &["shift_um"],
-            Self::Local(_) => &["x_um", "y_um", "z_um"],
+            Self::Local(_) | Self::Joint(_) => &["x_um", "y_um", "z_um"],
+            Self::Spike(_) => &["spike_um"],
+            Self::SpindleTilt(_) => &["tilt_urad"],
+            Self::Tracker(0) => &["scale_um_per_m"],
+            Self::Tracker(1) => &["offset_um"],
+            Self::Tracker(2 | 3) => &["sin_urad", "cos_urad"],
+            Self::Tracker(_) => &["angle_urad"],
         }
     }
 
@@ -164,7 +176,8 @@ impl EffectKind {
             | Self::Sag(_) => &["from_mm", "to_mm"],
             Self::Pitch(_) => &["pitch_mm", "from_mm", "to_mm"],
             Self::Step(_) => &["time_s"],
-            Self::Local(_) => &["centre_mm", "width_mm"],
+            Self::Local(_) | Self::Joint(_) => &["centre_mm", "width_mm"],
+            Self::Spike(_) => &["width_mm"],
             _ => &[],
         }
     }
@@ -192,7 +205,7 @@ impl EffectKind {
     /// What a linear axis, its drive or the spindle does, and what turns with the table for the workpiece; a table's
     /// own errors and the drift of an instrument are seen from the workpiece as they are.
     const fn arises_along_linear_axes(&self) -> bool {
-        !matches!(self, Self::Rotary { .. } | Self::Eccentricity(_) | Self::InstrumentDrift)
+        !matches!(self, Self::Rotary { .. } | Self::Eccentricity(_) | Self::InstrumentDrift | Self::Tracker(_))
     }
 
     /// The displacement where it arises: along the linear axes, or as the workpiece sees it.
@@ -252,16 +265,20 @@ impl EffectKind {
             }
             Self::ServoLag(a) => {
                 let speed = feed_mm_ms()?;
-                along(a, -dir(a) * [speed, path_speed(speed, command), speed * speed * 60.0][index.min(2)])
+                let own = axis_speed(speed, a, command, conditions);
+                along(a, -dir(a) * [speed, own, speed * speed * 60.0][index.min(2)])
             }
             Self::ServoMismatch(a, b) => {
                 let (da, db) = (dir(a), dir(b));
                 if da == 0.0 || db == 0.0 {
                     return feed_mm_ms().map(|_| Vector::zeros());
                 }
-                let path = path_speed(feed_mm_ms()?, command);
-                let speed = if index == 0 { path } else { path * path * 60.0 };
-                along(a, -0.5 * da * speed) + along(b, 0.5 * db * speed)
+                let feed = feed_mm_ms()?;
+                let speed = |axis: usize| {
+                    let own = axis_speed(feed, axis, command, conditions);
+                    if index == 0 { own } else { own * own * 60.0 }
+                };
+                along(a, -0.5 * da * speed(a)) + along(b, 0.5 * db * speed(b))
             }
             Self::Rotary { component, axis } => {
                 let (offset, tilt) = if component < 3 {
@@ -307,14 +324,55 @@ impl EffectKind {
                 let wave = math::cos(0.5 * std::f64::consts::PI * place.min(1.0));
                 along(index, 1e-3 * wave * wave)
             }
+            Self::Joint(a) => {
+                let place = (q[a] - shape.centre_mm) / (0.5 * shape.width_mm).max(1e-9);
+                let ramp = math::sin(0.5 * std::f64::consts::PI * place.clamp(-1.0, 1.0));
+                along(index, 0.5e-3 * (1.0 + ramp))
+            }
+            Self::Spike(a) => {
+                let faded =
+                    conditions.since_turn_mm[a].map_or(0.0, |way| math::exp(-way / shape.width_mm.max(1e-9)));
+                along(a, -1e-3 * dir(a) * faded)
+            }
+            Self::SpindleTilt(a) => along(a, -1e-6 * command.tool_mm.z),
+            Self::Tracker(fault) => {
+                let station = conditions.station_mm.ok_or(MissingCondition("place of the station"))?;
+                tracker(fault, index, geometry.nominal_tip_mm(command) - Vector::from(station))
+            }
         })
     }
 }
 
-/// Feed of one of several axes that move at once at equal speed, mm/ms.
-fn path_speed(speed_mm_ms: f64, command: &Command) -> f64 {
-    let moving = command.direction.iter().filter(|d| **d != 0).count().max(1);
-    speed_mm_ms / (moving as f64).sqrt()
+/// Speed of an axis, mm/ms: its share of the feed, or that of all that move where the shares are not known.
+fn axis_speed(speed_mm_ms: f64, axis: usize, command: &Command, conditions: &Conditions) -> f64 {
+    conditions.share.map_or_else(
+        || {
+            let moving = command.direction.iter().filter(|d| **d != 0).count().max(1);
+            speed_mm_ms / (moving as f64).sqrt()
+        },
+        |share| speed_mm_ms * share[axis],
+    )
+}
+
+/// What a tracker reads wrong of a tip at `v` mm from its station, mm per unit; azimuth about Z from +X, elevation from the
+/// horizontal. Equation (59).
+fn tracker(fault: usize, index: usize, v: Vector) -> Vector {
+    let (range, level) = (v.norm(), (v.x * v.x + v.y * v.y).sqrt());
+    if range <= 0.0 || level <= 0.0 {
+        return Vector::zeros();
+    }
+    let out = v / range;
+    let aside = Vector::new(-v.y, v.x, 0.0) / level;
+    let up = out.cross(&aside);
+    let pick = |sin: f64, cos: f64| if index == 0 { sin } else { cos };
+    match fault {
+        0 => 1e-6 * v,
+        1 => 1e-3 * out,
+        2 => 1e-6 * level * pick(v.y / level, v.x / level) * aside,
+        3 => 1e-6 * range * pick(v.z / range, level / range) * up,
+        4 => 1e-6 * v.z * aside,
+        _ => 1e-6 * range * aside,
+    }
 }
 
 /// Droop of an overhanging beam (Euler–Bernoulli): end load goes with the cube of the overhang, an end

@@ -83,7 +83,11 @@ impl EffectTerm {
             | EffectKind::ServoMismatch(..)
             | EffectKind::ProbeLobing
             | EffectKind::InstrumentDrift
+            | EffectKind::SpindleTilt(_)
             | EffectKind::Step(_) => 0.0,
+            // Turning points and a tracker's place are none of a program's: it is never corrected.
+            EffectKind::Spike(_) => 0.0,
+            EffectKind::Tracker(_) => return None,
             EffectKind::Backlash(axis) | EffectKind::LostMotion { axis, .. } => {
                 let reversed = f64::from(stretch.state.direction[axis].abs());
                 direct(axis, self.polynomial(0, stretch.range_mm[axis]).times(1e-3 * reversed))
@@ -111,6 +115,10 @@ impl EffectTerm {
             EffectKind::Local(axis) => {
                 let size = Vector::new(first(0), first(1), first(2)).norm();
                 direct(axis, self.window(stretch.range_mm[axis]).times(1e-3 * size))
+            }
+            EffectKind::Joint(axis) => {
+                let size = Vector::new(first(0), first(1), first(2)).norm();
+                direct(axis, self.ramp(stretch.range_mm[axis]).times(1e-3 * size))
             }
         })
     }
@@ -213,6 +221,16 @@ impl EffectTerm {
             return Growth::default();
         }
         let per_mm = std::f64::consts::PI / half_mm;
+        Growth { value: 1.0, slope: 0.5 * per_mm, curvature: 0.5 * per_mm * per_mm, kinks: 0.0 }
+    }
+
+    /// The ramp `(1 + sin)/2` of a joint: level where the stretch does not come near it.
+    fn ramp(&self, range: Range) -> Growth {
+        let half_mm = (0.5 * self.shape.width_mm).max(1e-9);
+        if range.high <= self.shape.centre_mm - half_mm || self.shape.centre_mm + half_mm <= range.low {
+            return Growth { value: 1.0, ..Growth::default() };
+        }
+        let per_mm = 0.5 * std::f64::consts::PI / half_mm;
         Growth { value: 1.0, slope: 0.5 * per_mm, curvature: 0.5 * per_mm * per_mm, kinks: 0.0 }
     }
 

@@ -85,7 +85,20 @@ pub enum EffectKind {
     Step(AxisIndex),
     /// `local.X`: damage at a place.
     Local(AxisIndex),
+    /// `joint.X`: rails that do not meet where they join.
+    Joint(AxisIndex),
+    /// `spike.X`: the axis sticks where it turns.
+    Spike(AxisIndex),
+    /// `spindle-tilt.X`: the tip goes aside with the tool's length.
+    SpindleTilt(AxisIndex),
+    /// `tracker.range-scale` and so on: a fault of a laser tracker, index into [`TRACKER`].
+    Tracker(usize),
 }
+
+/// Faults of a laser tracker, seen from its station (ISO 10360-10, Hughes et al. 2011): range in proportion, range zero,
+/// eccentric circles of azimuth and elevation, a transit axis that leans, a beam beside the axes' crossing.
+pub const TRACKER: [&str; 6] =
+    ["range-scale", "range-zero", "azimuth-circle", "elevation-circle", "transit-axis", "collimation"];
 
 impl EffectKind {
     /// Every effect of the catalogue, in a fixed order.
@@ -123,6 +136,10 @@ impl EffectKind {
         kinds.push(Self::InstrumentDrift);
         kinds.extend(axes.map(Self::Step));
         kinds.extend(axes.map(Self::Local));
+        kinds.extend(axes.map(Self::Joint));
+        kinds.extend(axes.map(Self::Spike));
+        kinds.extend([0, 1].map(Self::SpindleTilt));
+        kinds.extend((0..TRACKER.len()).map(Self::Tracker));
         kinds
     }
 
@@ -150,13 +167,17 @@ impl EffectKind {
             Self::InstrumentDrift => "instrument-drift",
             Self::Step(_) => "step",
             Self::Local(_) => "local",
+            Self::Joint(_) => "joint",
+            Self::Spike(_) => "spike",
+            Self::SpindleTilt(_) => "spindle-tilt",
+            Self::Tracker(_) => "tracker",
         }
     }
 
     /// True where the effect is a fault of the measuring instrument, not of the machine.
     #[must_use]
     pub const fn is_instrument(&self) -> bool {
-        matches!(self, Self::ProbeLobing | Self::InstrumentDrift)
+        matches!(self, Self::ProbeLobing | Self::InstrumentDrift | Self::Tracker(_))
     }
 
     /// True where the coefficients can only be positive: a ram droops, it does not rise.
@@ -175,6 +196,7 @@ impl EffectKind {
                 | Self::ServoLag(_)
                 | Self::ServoMismatch(..)
                 | Self::ProbeLobing
+                | Self::Spike(_)
         )
     }
 }
@@ -192,7 +214,10 @@ impl fmt::Display for EffectKind {
             | Self::Load(a)
             | Self::ServoLag(a)
             | Self::Step(a)
-            | Self::Local(a) => write!(f, "{family}.{}", LINEAR[a]),
+            | Self::Local(a)
+            | Self::Joint(a)
+            | Self::Spike(a)
+            | Self::SpindleTilt(a) => write!(f, "{family}.{}", LINEAR[a]),
             Self::Squareness(a, b) | Self::ServoMismatch(a, b) => {
                 write!(f, "{family}.{}{}", LINEAR[a], LINEAR[b])
             }
@@ -206,6 +231,7 @@ impl fmt::Display for EffectKind {
                 write!(f, "{family}.E{symbol}0{}", ROTARY[axis])
             }
             Self::Eccentricity(a) => write!(f, "{family}.{}", ROTARY[a]),
+            Self::Tracker(fault) => write!(f, "{family}.{}", TRACKER[fault]),
             Self::ProbeLobing | Self::InstrumentDrift => f.write_str(family),
         }
     }
@@ -244,7 +270,7 @@ mod tests {
         for kind in &all {
             assert_eq!(kind.to_string().parse::<EffectKind>().as_ref(), Ok(kind));
         }
-        assert_eq!(all.len(), 3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3);
+        assert_eq!(all.len(), 3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3 + 3 + 3 + 2 + 6);
         for id in [
             "lost-motion.EYX",
             "straightness.EZY",

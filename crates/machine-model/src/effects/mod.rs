@@ -13,5 +13,5 @@ mod term;
 
 pub use basis::{Conditions, MissingCondition, Shape, legendre};
 pub use chain::{EffectGeometry, Joint};
-pub use kind::{AxisIndex, EffectKind, UnknownEffect};
+pub use kind::{AxisIndex, EffectKind, TRACKER, UnknownEffect};
 pub use term::{EffectError, EffectTerm};

@@ -245,6 +245,8 @@ impl EffectTerm {
             | EffectKind::ServoMismatch(..)
             | EffectKind::InstrumentDrift
             | EffectKind::ProbeLobing
+            | EffectKind::SpindleTilt(_)
+            | EffectKind::Spike(_)
             | EffectKind::Step(_) => true,
             EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
                 self.coefficients.iter().skip(2).all(|c| *c == 0.0)

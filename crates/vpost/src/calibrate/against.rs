@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibration::change::compare;
+use calibration::change::{by_function, compare};
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
 
@@ -60,5 +60,32 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
         _ => "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n".to_owned(),
     };
     text.push_str(&verdict);
+    if let (Some(true), Some(u)) = (change.is_beyond_uncertainty(), change.uncertainty_mm) {
+        text.push_str(&functions(&old, new, u, &volume));
+    }
     file::print(text.as_bytes())
+}
+
+/// What changed, function by function: place and amount at the tables' nodes, and the reversal value.
+///
+/// An angle counts by what it does over the longest side of the volume.
+fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume) -> String {
+    let arm_mm = volume.0.iter().map(|range| range.high - range.low).fold(0.0, f64::max);
+    let mut text = String::new();
+    for change in by_function(&old.description, &new.description) {
+        let name = format!("E{}{}", ["X", "Y", "Z", "A", "B", "C"][change.function], ["X", "Y", "Z"][change.axis]);
+        let (factor, unit, arm) =
+            if change.function < 3 { (1e3, "um", 1.0) } else { (1e6, "urad", arm_mm) };
+        if change.by.abs() * arm > 1.5 * uncertainty_mm {
+            text.push_str(&format!(
+                "  {name} by {:+.2} {unit} at {} mm\n",
+                change.by * factor,
+                short(change.at_mm, 3)
+            ));
+        }
+        if change.reversal.abs() * arm > 1.5 * uncertainty_mm {
+            text.push_str(&format!("  reversal value of {name} by {:+.2} {unit}\n", change.reversal * factor));
+        }
+    }
+    text
 }

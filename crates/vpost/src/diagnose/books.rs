@@ -9,6 +9,8 @@ use machine_model::Vector;
 
 /// The gap must fall to less than this share of what it is: two effects of one machine do not cancel so by chance.
 const SHARE: f64 = 0.6;
+/// The same for a slip with numbers that are fitted.
+const SHARE_FITTED: f64 = 0.35;
 /// Fewer rows prove nothing.
 const ROWS: usize = 12;
 
@@ -33,6 +35,7 @@ struct Trial {
 pub(super) fn slip<E>(
     data: &Measurements,
     work_offsets: &[(String, [f64; 3])],
+    travel_mm: [(f64, f64); 3],
     predict: impl Fn(&mut Row) -> Result<(), E>,
 ) -> Option<Slip> {
     // A model that predicts nothing fits as well whatever a column is taken for.
@@ -56,7 +59,75 @@ pub(super) fn slip<E>(
             best = Some(Slip { words, column, before_um, after_um });
         }
     }
-    best
+    best.or_else(|| offset_left_in(data, travel_mm, before_um, &predict))
+}
+
+/// A work offset that the profile does not know: the rows, moved by one vector, fit the model's curves.
+///
+/// Three numbers are fitted, so that more must be explained than by a slip without any; and the curves must be seen: what
+/// is a straight line in the model fits wherever it is laid.
+fn offset_left_in<E>(
+    data: &Measurements,
+    travel_mm: [(f64, f64); 3],
+    before_um: f64,
+    predict: &impl Fn(&mut Row) -> Result<(), E>,
+) -> Option<Slip> {
+    /// Rows that the search looks at.
+    const SOME: usize = 160;
+    /// Steps per axis that it begins with.
+    const STEPS: i32 = 12;
+    /// Rounds over the axes.
+    const ROUNDS: usize = 7;
+    let stride = data.rows.len().div_ceil(SOME).max(1);
+    let few = Measurements { rows: data.rows.iter().step_by(stride).copied().collect(), ..data.clone() };
+    let left = |rows: &Measurements, offset: Vector| {
+        let mut moved = rows.clone();
+        let fits = moved.rows.iter_mut().all(|row| {
+            row.command.linear_mm += offset;
+            predict(row).is_ok()
+        });
+        fits.then(|| gap_rms_um(&moved))
+    };
+    let start_um = left(&few, Vector::zeros())?;
+    let free = [0, 1, 2].map(|axis| {
+        let (low, high) = data.range_mm(axis);
+        (travel_mm[axis].0 - low, travel_mm[axis].1 - high)
+    });
+    let (mut offset, mut least) = (Vector::zeros(), start_um);
+    let mut steps = free.map(|(low, high)| (high - low).max(0.0) / f64::from(STEPS));
+    for round in 0..ROUNDS {
+        for axis in 0..3 {
+            if steps[axis] < 1e-3 {
+                continue;
+            }
+            let here = offset[axis];
+            let tries: Vec<f64> = if round == 0 {
+                (0..=STEPS).map(|k| free[axis].0 + steps[axis] * f64::from(k)).collect()
+            } else {
+                (-3..=3).map(|k| here + 0.35 * steps[axis] * f64::from(k)).collect()
+            };
+            for place in tries {
+                let mut other = offset;
+                other[axis] = place.clamp(free[axis].0, free[axis].1.max(free[axis].0));
+                if let Some(um) = left(&few, other).filter(|um| *um < least) {
+                    (offset, least) = (other, um);
+                }
+            }
+        }
+        // The first look at one axis was made with the others where they do not belong.
+        if round > 0 {
+            steps = steps.map(|step| 0.4 * step);
+        }
+    }
+    if least > SHARE_FITTED * start_um {
+        return None;
+    }
+    let after_um = left(data, offset).filter(|after| *after < SHARE_FITTED * before_um)?;
+    let words = format!(
+        "a work offset of about X {:.1} Y {:.1} Z {:.1} mm was left in: the commanded positions are not machine coordinates",
+        offset.x, offset.y, offset.z
+    );
+    Some(Slip { words, column: "x_mm", before_um, after_um })
 }
 
 fn trials(work_offsets: &[(String, [f64; 3])]) -> Vec<Trial> {
@@ -87,6 +158,10 @@ fn trials(work_offsets: &[(String, [f64; 3])]) -> Vec<Trial> {
         "dir_x",
         Box::new(|row| row.command.direction = row.command.direction.map(|d| -d)),
     );
+    for (axis, column) in ["dir_x", "dir_y", "dir_z"].into_iter().enumerate() {
+        let words = format!("the direction of approach {column} is inverted");
+        trial(words, column, Box::new(move |row| row.command.direction[axis] *= -1));
+    }
     trial(
         "feed_mm_min holds mm/s: the unit is wrong".to_owned(),
         "feed_mm_min",

@@ -96,6 +96,9 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     let unseen = arguments.holdout.as_deref();
     let holdout =
         unseen.map(|path| read(path, &model, &arguments.ignore_column, arguments.as_written)).transpose()?;
+    if let (Some(path), Some(held)) = (unseen, &holdout) {
+        of_one_machine(path, &measured, held)?;
+    }
     let without = arguments
         .without
         .iter()
@@ -206,6 +209,40 @@ fn geometry(profile: &Profile) -> EffectGeometry {
     geometry
 }
 
+/// Refuses a hold-out whose rows move what the measurements hold still: a rotary axis, or nothing that they move.
+fn of_one_machine(path: &std::path::Path, measured: &Measured, held: &Measured) -> Result<(), Failure> {
+    /// An angle that is the same, rad.
+    const SAME_RAD: f64 = 1e-6;
+    let turns = |data: &Measurements, axis: usize| {
+        let angles = || data.rows.iter().map(|row| row.command.rotary_rad[axis]);
+        let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        high - low > SAME_RAD
+    };
+    let refuse = |message: String| {
+        Failure::option(
+            format!("the hold-out {}: {message}", file::name(path)),
+            "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
+        )
+    };
+    for (axis, letter) in ["A", "B", "C"].into_iter().enumerate() {
+        if turns(&held.data, axis) && !turns(&measured.data, axis) {
+            return Err(refuse(format!("{letter} turns there, and stands still in the measurements")));
+        }
+    }
+    let moves = |data: &Measurements, axis: usize| {
+        let (low, high) = data.range_mm(axis);
+        high - low > 1e-3
+    };
+    let letters = |data: &Measurements| -> Vec<&str> {
+        ["X", "Y", "Z"].into_iter().enumerate().filter(|(a, _)| moves(data, *a)).map(|(_, l)| l).collect()
+    };
+    let (fitted, unseen) = (letters(&measured.data), letters(&held.data));
+    if !unseen.is_empty() && unseen.iter().all(|letter| !fitted.contains(letter)) {
+        return Err(refuse(format!("it moves {}, and the measurements {}", unseen.join(", "), fitted.join(", "))));
+    }
+    Ok(())
+}
+
 /// Reads measurements, and leaves it at that.
 pub(crate) fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
     let (data, table) =
@@ -243,7 +280,9 @@ fn read(
     };
     data.rows.iter_mut().try_for_each(predict)?;
     measurements::readings_against_model(&table, &data)?;
-    if !as_written && let Some(slip) = books::slip(&data, &model.profile.work_offsets, predict) {
+    let travel_mm =
+        [0, 1, 2].map(|axis| model.profile.description.linear[axis].travel_mm).map(|r| (r.low, r.high));
+    if !as_written && let Some(slip) = books::slip(&data, &model.profile.work_offsets, travel_mm, predict) {
         return Err(table.slipped(&slip));
     }
     in_order_of_time(&mut data);

@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use diagnostic::Code;
 use gap_diagnosis::{Diagnosis, Verdict};
+use machine_model::effects::EffectKind;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use super::json::{number, round};
@@ -26,7 +27,12 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
     let causes = if diagnosis.verdict == Verdict::Unknown { &[] } else { diagnosis.causes.as_slice() };
     let effects = document.entry("effect").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
     if let Some(effects) = effects.as_array_of_tables_mut() {
-        for cause in causes {
+        // What a fault of the instrument could have shown as well is no correction of the machine.
+        let of_the_machine = |cause: &&gap_diagnosis::Cause| {
+            let rivals = cause.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
+            cause.term.kind().is_instrument() || !rivals.into_iter().any(|kind| matches!(kind, EffectKind::Tracker(_)))
+        };
+        for cause in causes.iter().filter(of_the_machine) {
             let mut entry = Table::new();
             entry.insert("id", Item::Value(cause.effect.as_str().into()));
             for (name, value) in cause.term.entry() {

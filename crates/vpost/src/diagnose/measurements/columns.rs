@@ -70,7 +70,7 @@ pub(super) fn agree(table: &Table<'_>) -> Result<(), Failure> {
 pub(super) fn everywhere(table: &Table<'_>) -> Result<(), Failure> {
     let uncertainties = ["u_x_um", "u_y_um", "u_z_um"];
     let conditions =
-        ["load_kg", "temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "instrument", "artefact"];
+        ["load_kg", "temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "instrument", "artefact", "station"];
     if let (Some(column), Some(missing)) =
         (uncertainties.into_iter().find(|c| table.has(c)), uncertainties.into_iter().find(|c| !table.has(c)))
     {
@@ -102,6 +102,29 @@ pub(super) fn everywhere(table: &Table<'_>) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Two stations of a tracker without their places: what one of them reads wrong cannot be told from the machine.
+pub(super) fn placed(table: &Table<'_>, stations: &[String]) -> Result<(), Failure> {
+    let place = ["bx_mm", "by_mm", "bz_mm"];
+    let Some(column) = table.place.get("station").copied().filter(|_| stations.len() > 1) else {
+        return Ok(());
+    };
+    let missing = |record: &csv::ByteRecord| {
+        place.into_iter().find(|name| {
+            table.place.get(name).is_none_or(|at| record.get(*at).unwrap_or_default().is_empty())
+        })
+    };
+    let Some((record, name)) = table.records.iter().find_map(|r| missing(r).map(|name| (r, name))) else {
+        return Ok(());
+    };
+    Err(table.refuse(
+        COLUMNS,
+        Some((record, column)),
+        format!("{} stations ({}), and no place of this one: `{name}` is missing", stations.len(), stations.join(", ")),
+        "this station",
+        "give bx_mm, by_mm and bz_mm, where the tracker stood in machine coordinates, to a few centimetres",
+    ))
 }
 
 /// Reading columns that are empty, or the same number, in every row.

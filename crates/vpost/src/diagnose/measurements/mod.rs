@@ -32,7 +32,7 @@ pub(super) fn read<'a>(
         rows: Vec::new(),
         geometry: geometry.clone(),
     };
-    let mut artefacts: Vec<String> = Vec::new();
+    let (mut artefacts, mut stations): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let mut places = BTreeMap::new();
     for record in &table.records {
         let run_place = table.place["run"];
@@ -54,11 +54,14 @@ pub(super) fn read<'a>(
         let mut row = row(&table, record, index, tool_mm)?;
         row.instrument = table.text(record, "instrument").map(|name| numbered(&mut data.instruments, name));
         row.artefact = table.text(record, "artefact").map(|name| numbered(&mut artefacts, name));
+        row.station = table.text(record, "station").map(|name| numbered(&mut stations, name));
         data.rows.push(row);
     }
     columns::alive(&table)?;
     columns::everywhere(&table)?;
+    columns::placed(&table, &stations)?;
     columns::no_copies(&table)?;
+    data.follow();
     Ok((data, table))
 }
 
@@ -122,13 +125,25 @@ fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3
             time_s: table.number(record, "time_s")?,
             load_kg: table.number(record, "load_kg")?,
             feed_mm_min: table.number(record, "feed_mm_min")?,
+            station_mm: if table.has("length_mm") { None } else { station(table, record)? },
+            ..Conditions::default()
         },
         predicted_mm: Vector::zeros(),
         u_um,
         instrument: None,
+        station: None,
         artefact: None,
         reading,
         line: record.position().map_or(0, csv::Position::line),
+    })
+}
+
+/// Where the station of a tracker stands; nothing where the file does not say.
+fn station(table: &Table<'_>, record: &csv::ByteRecord) -> Result<Option<[f64; 3]>, Failure> {
+    let place = [table.number(record, "bx_mm")?, table.number(record, "by_mm")?, table.number(record, "bz_mm")?];
+    Ok(match place {
+        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+        _ => None,
     })
 }
 

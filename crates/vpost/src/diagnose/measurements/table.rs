@@ -18,7 +18,7 @@ const SLIP: Code = Code(919);
 /// A field is not what its column says.
 pub(super) const FIELD: Code = Code(912);
 
-const NAMES: [&str; 39] = [
+const NAMES: [&str; 40] = [
     "run",
     "x_mm",
     "y_mm",
@@ -57,6 +57,7 @@ const NAMES: [&str; 39] = [
     "u_z_um",
     "instrument",
     "artefact",
+    "station",
     "note",
 ];
 

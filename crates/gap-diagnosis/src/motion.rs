@@ -1,0 +1,115 @@
+//! How the axes moved when a row was read: each one's share of the feed, and the way since it last turned.
+//!
+//! Rows of a run are taken as points of one path, in the order of their times where all have one, else as they stand. The
+//! feed is the path's: on a circle, and on a diagonal of unequal sides, an axis runs at the share that the tangent has along
+//! it. A path that ends where it began is taken to have been entered on itself.
+
+use machine_model::Vector;
+
+use crate::observation::Measurements;
+
+/// Steps below this are no motion, mm.
+const STILL_MM: f64 = 1e-6;
+
+impl Measurements {
+    /// Fills in the shares and the ways of every row from its neighbours in the run.
+    pub fn follow(&mut self) {
+        let timed = self.rows.iter().all(|row| row.conditions.time_s.is_some());
+        let mut runs: Vec<Vec<usize>> = vec![Vec::new(); self.runs.len()];
+        for (index, row) in self.rows.iter().enumerate() {
+            runs[row.run].push(index);
+        }
+        for mut run in runs {
+            if timed {
+                let time = |index: &usize| self.rows[*index].conditions.time_s.unwrap_or_default();
+                run.sort_by(|a, b| time(a).total_cmp(&time(b)));
+            }
+            let at = |place: usize| self.rows[run[place]].command.linear_mm;
+            let last = run.len() - 1;
+            let steps: Vec<Vector> = (0..last).map(|place| at(place + 1) - at(place)).collect();
+            let closed = last > 8 && (at(0) - at(last)).norm() < 2.0 * steps[0].norm();
+            let tangents: Vec<Option<Vector>> = (0..=last)
+                .map(|place| {
+                    let round = at(0) - at(last);
+                    let before = place.checked_sub(1).map(|p| steps[p]).or(closed.then_some(round));
+                    let after = steps.get(place).copied().or(closed.then_some(round));
+                    self.tangent(run[place], before, after)
+                })
+                .collect();
+            let ways: [Vec<Option<f64>>; 3] = [0, 1, 2].map(|axis| ways(axis, &tangents, &steps, closed));
+            for (place, index) in run.iter().enumerate() {
+                let conditions = &mut self.rows[*index].conditions;
+                conditions.share = tangents[place].map(|t| [t.x.abs(), t.y.abs(), t.z.abs()]);
+                conditions.since_turn_mm = [0, 1, 2].map(|axis| ways[axis][place]);
+            }
+        }
+    }
+
+    /// Unit vector along which a row was passed; `None` where its neighbours do not tell, or contradict its directions.
+    fn tangent(&self, row: usize, before: Option<Vector>, after: Option<Vector>) -> Option<Vector> {
+        let moves = |step: &Vector| step.norm() > STILL_MM;
+        let (before, after) = (before.filter(moves), after.filter(moves));
+        let way = match (before, after) {
+            // Passed through; where it turned, what led to it counts.
+            (Some(b), Some(a)) if a.dot(&b) > 0.0 => a.normalize() + b.normalize(),
+            (Some(b), _) => b,
+            (None, Some(a)) => a,
+            (None, None) => return None,
+        }
+        .normalize();
+        let stated = self.rows[row].command.direction;
+        let agrees = (0..3).all(|a| match stated[a] {
+            0 => true,
+            d => way[a] * f64::from(d) > -0.02,
+        });
+        let still = stated == [0; 3] || (0..3).all(|a| stated[a] == 0 || way[a].abs() > 1e-9);
+        (agrees && still).then_some(way)
+    }
+}
+
+/// Way since an axis last turned, mm, at every point of a path.
+fn ways(axis: usize, tangents: &[Option<Vector>], steps: &[Vector], closed: bool) -> Vec<Option<f64>> {
+    let mut found = vec![None; tangents.len()];
+    let mut way: Option<f64> = None;
+    // Round a closed path twice: what the end knows, the beginning learns.
+    for pass in 0..=usize::from(closed) {
+        for place in 0..tangents.len() {
+            let from = place.checked_sub(1).or((pass > 0).then_some(tangents.len() - 1));
+            if let Some((from, before, now)) =
+                from.and_then(|f| Some((f, tangents[f]?[axis], tangents[place]?[axis])))
+            {
+                let length = steps.get(from).or(steps.last()).map_or(0.0, Vector::norm);
+                way = if before * now < 0.0 {
+                    Some(length * now.abs() / (now.abs() + before.abs()))
+                } else {
+                    way.map(|w| w + length)
+                };
+            }
+            found[place] = way;
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_turns_four_times_in_a_circle_both_axes_counted() {
+        let angle = |k: usize| 0.005 + f64::to_radians(k as f64);
+        let tangents: Vec<Option<Vector>> =
+            (0..360).map(|k| Some(Vector::new(-angle(k).sin(), angle(k).cos(), 0.0))).collect();
+        let steps: Vec<Vector> = (0..359)
+            .map(|k| 100.0 * Vector::new(angle(k + 1).cos() - angle(k).cos(), angle(k + 1).sin() - angle(k).sin(), 0.0))
+            .collect();
+        let open = ways(0, &tangents, &steps, false);
+        assert_eq!(open[100], None, "nobody knows where X turned before the run");
+        let closed = ways(0, &tangents, &steps, true);
+        for k in [0, 3, 100, 181, 350] {
+            let expected = 100.0 * (angle(k) % std::f64::consts::PI);
+            assert!((closed[k].unwrap_or(-1.0) - expected).abs() < 0.3, "{k}: {:?} {expected}", closed[k]);
+        }
+        assert_eq!(ways(2, &tangents, &steps, true)[10], None, "Z stands still");
+    }
+}
