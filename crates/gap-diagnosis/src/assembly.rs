@@ -247,6 +247,11 @@ impl<'a> Assembly<'a> {
         let mut notes = self.notes();
         notes.extend(evidence.unseen.filter(|_| holdout.is_none()).and_then(|u| u.kept_back_note()));
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
+        let formulas = match verdict {
+            Verdict::Unknown | Verdict::Partial => crate::formula::formulas(self.data, &model.scalars),
+            _ => Vec::new(),
+        };
+        notes.extend(formulas.iter().map(|f| format!("{} ({}).", f.words, f.text)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
         let sentence = if unsure {
             notes.extend(causes.iter().map(seen_but_unsure));
@@ -279,6 +284,7 @@ impl<'a> Assembly<'a> {
             holdout,
             outlier_lines: model.outliers.iter().map(|r| self.data.rows[*r].line).collect(),
             detectable: self.detectable(),
+            formulas,
             notes,
             residuals: crate::unseen::residuals(&model.scalars, &before, &self.gap_after(self.ordered.len())),
         }
@@ -320,6 +326,9 @@ impl<'a> Assembly<'a> {
             ),
             Some(Noise { source: NoiseSource::Returns, .. }) => notes.push(
                 "No command was measured twice in a run: the noise is estimated from what the same commands read in other runs, for neighbouring rows differ by far more.".to_owned(),
+            ),
+            Some(Noise { source: NoiseSource::Forms, .. }) => notes.push(
+                "No command was measured twice in a run: the noise is what a form of second degree leaves of each run, for rows measured one after the other differ by far more.".to_owned(),
             ),
             None => notes.push("There are neither repeats nor neighbours to tell noise from gap.".to_owned()),
             Some(noise) if noise.is_slow() => notes.push(format!(

@@ -71,6 +71,7 @@ pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
         next_measurement: None,
         outlier_lines: Vec::new(),
         detectable: Vec::new(),
+        formulas: Vec::new(),
         notes: missing,
         residuals: Vec::new(),
     }

@@ -248,6 +248,8 @@ pub struct Diagnosis {
     pub outlier_lines: Vec<u64>,
     /// What could have been seen.
     pub detectable: Vec<Detectable>,
+    /// What the gap depends on where no effect explains it, the best first: a description, no cause.
+    pub formulas: Vec<crate::formula::Formula>,
     /// What the reader should know about how this was found.
     pub notes: Vec<String>,
     /// Equation by equation, outliers left out.

@@ -16,7 +16,7 @@ use crate::pool::Pool;
 use crate::propose::{self, Pitches};
 use crate::refine::Stage;
 use crate::rivals::WITHIN;
-use crate::search::{MOST_TRIED, Move, next_move};
+use crate::search::{MOST_TRIED, Move, next_move, without};
 use crate::space::{Fit, Part, Space};
 use crate::term::Term;
 use crate::trial::UNPROVEN;
@@ -28,8 +28,8 @@ pub(crate) const LEVEL: f64 = 3e-2;
 pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Most causes named.
 const MOST_CAUSES: usize = 8;
-/// A correlation that falls by less is the same.
-const LESS: f64 = 0.05;
+/// A correlation that grows by less is the same.
+const MORE: f64 = 0.05;
 /// Passes of dropping outliers and searching again.
 const PASSES: usize = 3;
 
@@ -162,20 +162,14 @@ fn settled(
     let hanging = |model: &Explained| {
         doubt::caution(&data.rows, &model.scalars, &model.solution.residuals_um).max(setting.phi)
     };
-    if hanging(&result) > 0.0 {
-        // What hangs together is noise until an effect explains it in spite of that; what one does explain counts no more.
-        let bare = Explained { parts: Vec::new(), ..result.clone() };
-        let bare = pass(data, &mut pool, &dropped, without, setting, Some(bare), Task::Imitate);
-        let mut caution = hanging(&bare).max(hanging(&result));
-        for _ in 0..PASSES {
-            setting.caution = caution;
-            result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
-            let now = hanging(&result);
-            if now > caution - LESS {
-                break;
-            }
-            caution = now;
+    // Names that noise made take its smoothness with them: as they go, what is left hangs together more.
+    for _ in 0..PASSES {
+        let now = hanging(&result);
+        if now < setting.caution + MORE {
+            break;
         }
+        setting.caution = now;
+        result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
     }
     result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Imitate);
     result.outliers.clone_from(&dropped);
@@ -339,8 +333,13 @@ impl<'a, 'b> State<'a, 'b> {
 
     fn search(&mut self) {
         self.refused = None;
-        // What an earlier search named must pass the tests on these rows, too.
-        for part in std::mem::take(&mut self.parts) {
+        // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang together,
+        // for what one cause leaves of the others does so as well.
+        if self.phi > 0.0 {
+            self.weed();
+        }
+        let earlier = if self.phi > 0.0 { Vec::new() } else { std::mem::take(&mut self.parts) };
+        for part in earlier {
             let mut with = self.parts.clone();
             with.push(part);
             let fit = self.space.fit(&self.library, &with);
@@ -378,6 +377,20 @@ impl<'a, 'b> State<'a, 'b> {
         }
         self.prune();
         self.restrain();
+    }
+
+    /// Takes out causes that fail their tests beside all others, the weakest first.
+    fn weed(&mut self) {
+        loop {
+            let full = self.space.fit(&self.library, &self.parts);
+            let failed = (0..self.parts.len()).filter_map(|place| {
+                let rest = without(&self.parts, place);
+                let refused = self.objection(&rest, self.parts[place], &full)?;
+                Some((refused.p, rest, refused))
+            });
+            let Some((_, rest, refused)) = failed.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            (self.parts, self.refused) = (rest, Some(refused));
+        }
     }
 
     /// The first of some effects that passes its tests, or why the best did not.

@@ -16,6 +16,7 @@ mod doubt;
 mod engine;
 mod fit;
 mod forecast;
+mod formula;
 mod gram;
 mod library;
 mod linear;
@@ -52,5 +53,6 @@ pub use diagnosis::{
     Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter,
     Residual, Setup, Shrinkage, Step, Verdict,
 };
+pub use formula::Formula;
 pub use observation::{Believed, Measurements, Reading, Row};
 pub use remedy::remedy;

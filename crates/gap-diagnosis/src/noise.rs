@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::observation::{Row, Scalar};
 
 /// Where the noise figure comes from.
@@ -13,6 +15,8 @@ pub(crate) enum NoiseSource {
     Neighbours,
     /// No repeats: differences of the same command in other runs, where neighbours differ by far more.
     Returns,
+    /// No repeats: what a form of second degree leaves of every run, where neighbouring rows differ by far more.
+    Forms,
 }
 
 /// Noise of a row of weight one.
@@ -63,10 +67,15 @@ pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], p
         few => {
             // What comes back in every run is no noise, however much neighbouring places differ by it.
             let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH_REPEATS);
-            match (neighbours, returns) {
-                (Some(n), Some(r)) if r.variance.max(floor) * SLOW * SLOW < n.variance => Some(r),
-                _ => neighbours.or(few),
-            }
+            let smaller = |found: &Noise| {
+                neighbours.is_some_and(|n| found.variance.max(floor) * SLOW * SLOW < n.variance)
+            };
+            // Rows measured in no order of place have no neighbours: a smooth form of each run shows what is no noise.
+            returns
+                .filter(smaller)
+                .or_else(|| from_forms(rows, scalars, residuals_um).filter(smaller))
+                .or(neighbours)
+                .or(few)
         }
     };
     found.map(|noise| Noise { variance: noise.variance.max(floor), ..noise })
@@ -166,6 +175,40 @@ fn from_returns(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Optio
     let degrees = differences.len() as f64 / 3.0;
     let sigma = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences)?;
     Some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Returns, slow: 1.0 })
+}
+
+/// What a polynomial of second degree in the place leaves of every run that has readings enough for it.
+fn from_forms(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    /// Coefficients of the form, and readings that a run must have.
+    const FORM: usize = 10;
+    const READINGS: usize = 24;
+    let mut runs: BTreeMap<(usize, usize), Vec<(machine_model::Vector, f64)>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let row = &rows[scalar.row];
+        let place = row.command.linear_mm + row.command.tool_mm;
+        runs.entry((row.run, scalar.class)).or_default().push((place, r * scalar.weight.sqrt()));
+    }
+    let (mut square, mut degrees) = (0.0, 0.0);
+    for points in runs.values().filter(|points| points.len() >= READINGS) {
+        let count = points.len() as f64;
+        let middle = points.iter().map(|p| p.0).sum::<machine_model::Vector>() / count;
+        let reach = points.iter().map(|p| (p.0 - middle).amax()).fold(1e-9, f64::max);
+        let form = |place: machine_model::Vector| {
+            let u = (place - middle) / reach;
+            [1.0, u.x, u.y, u.z, u.x * u.x, u.y * u.y, u.z * u.z, u.x * u.y, u.x * u.z, u.y * u.z]
+        };
+        let columns = DMatrix::from_fn(points.len(), FORM, |i, j| form(points[i].0)[j]);
+        let values = DVector::from_iterator(points.len(), points.iter().map(|p| p.1));
+        let turned = columns.svd(true, false);
+        let largest = turned.singular_values.max();
+        let kept: Vec<usize> = (0..FORM).filter(|k| turned.singular_values[*k] > 1e-6 * largest).collect();
+        let Some(directions) = turned.u else { continue };
+        let taken: f64 = kept.iter().map(|k| directions.column(*k).dot(&values).powi(2)).sum();
+        square += (values.norm_squared() - taken).max(0.0);
+        degrees += count - kept.len() as f64;
+    }
+    let source = NoiseSource::Forms;
+    (degrees >= 5.0 * ENOUGH_REPEATS).then(|| Noise { variance: square / degrees, degrees, source, slow: 1.0 })
 }
 
 /// Second differences along a run, robustly: a smooth residual cancels, noise does not.

@@ -21,6 +21,7 @@ struct Document<'a> {
     next_measurement: Value,
     outlier_lines: &'a [u64],
     detectable: Vec<Value>,
+    formulas: Vec<Value>,
     notes: &'a [String],
 }
 
@@ -67,6 +68,11 @@ pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             .detectable
             .iter()
             .map(|s| json!({ "effect": s.effect, "parameter": s.parameter, "smallest": s.smallest.map(round) }))
+            .collect(),
+        formulas: d
+            .formulas
+            .iter()
+            .map(|f| json!({ "formula": f.text, "share_unseen": round(f.share) }))
             .collect(),
         notes: &d.notes,
     };
