@@ -9,7 +9,7 @@ use crate::columns::{Kept, Places};
 use crate::doubt::{self, Setting, could_be_turned};
 use crate::fit::Solution;
 use crate::gram::{Gram, Source};
-use crate::library::{Library, Variant, narrowest_mm};
+use crate::library::{JOINT_PLACES, Library, Variant, narrowest_mm};
 use crate::noise::{estimate, outliers, quantum_um};
 use crate::observation::{Measurements, Scalar};
 use crate::pool::Pool;
@@ -513,7 +513,8 @@ impl<'a, 'b> State<'a, 'b> {
         }
         for axis in 0..3 {
             let kind = EffectKind::Joint(axis);
-            if self.without.contains(&kind) || self.uses(kind) || !self.library.has(kind) {
+            let few = self.bounds.places[axis] < JOINT_PLACES;
+            if self.without.contains(&kind) || self.uses(kind) || few {
                 continue;
             }
             if let Some((centre, asked)) = propose::joint(self.source, &solution.residuals_um, axis) {

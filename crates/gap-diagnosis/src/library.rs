@@ -54,8 +54,8 @@ pub(crate) struct Library {
 const LOCAL_PLACES: usize = 14;
 /// Times at which a knock is looked for; finer ones are proposed by the search.
 const STEP_TIMES: usize = 24;
-/// A joint is looked for where an axis has so many places: with fewer it is any curve.
-const JOINT_PLACES: f64 = 8.0;
+/// A joint is proposed by the search where an axis has so many places: with fewer it is any curve.
+pub(crate) const JOINT_PLACES: f64 = 8.0;
 /// Ways over which a spike at a turning point fades, mm.
 const SPIKES_MM: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
 /// Time constants as shares of the time the measurement took.
@@ -253,11 +253,6 @@ impl Library {
         library
     }
 
-    /// True where the rows could show an effect.
-    pub(crate) fn has(&self, kind: EffectKind) -> bool {
-        self.candidates.iter().any(|c| c.kind == kind)
-    }
-
     /// Adds columns of an effect, unless they are there, and returns their positions.
     pub(crate) fn add_columns(&mut self, kind: EffectKind, shape: Shape, indices: &[usize]) -> Vec<usize> {
         let place = |term: Term, terms: &mut Vec<Term>| {
@@ -376,15 +371,6 @@ impl Library {
             }
             EffectKind::Step(_) => self.steps(kind, seen),
             EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a], seen.narrowest_mm[a]),
-            EffectKind::Joint(a) if travels(a) && seen.effective[a] >= JOINT_PLACES => {
-                let (low, high) = seen.range[a];
-                (1..LOCAL_PLACES)
-                    .flat_map(|k| {
-                        let centre_mm = low + (high - low) * k as f64 / LOCAL_PLACES as f64;
-                        self.join(kind, centre_mm, 0.4 * seen.narrowest_mm[a])
-                    })
-                    .collect()
-            }
             EffectKind::Spike(a) => SPIKES_MM
                 .into_iter()
                 .filter(|width| seen.direction[a] && *width >= seen.turns_mm[a])

@@ -70,7 +70,7 @@ impl State<'_, '_> {
             return refuse(UNPROVEN);
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
-        if gain / reducible < LEAST_SHARE {
+        if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
             return refuse("its share is below 2 % of what can be explained");
         }
         if let Some(reason) = self.crowded(&with).or_else(|| self.out_of_bounds(&with, fit.level)) {
@@ -80,6 +80,25 @@ impl State<'_, '_> {
             return refuse("it does not predict lines it has not seen");
         }
         None
+    }
+
+    /// True where the last of `with` is small only because the others took its part over: it explains most of what they
+    /// leave, and beside it they have other numbers, so that its own displacement is no trifle.
+    fn was_taken_over(&self, with: &[Part], gain: f64, before: f64, level: usize) -> bool {
+        /// Share of what is left that it must explain.
+        const MOST: f64 = 0.5;
+        if gain < MOST * before {
+            return false;
+        }
+        let values = self.space.gram.select(&model_columns(&self.library, with)).coefficients(self.space.rho(level));
+        let own = values.get(positions(&self.library, with, with.len() - 1)).unwrap_or_default();
+        let columns = with.last().map_or_else(Vec::new, |part| self.space.columns(&self.library, &[*part]));
+        let products = self.space.products(level);
+        let square: f64 = (0..own.len())
+            .flat_map(|i| (0..own.len()).map(move |j| (i, j)))
+            .map(|(i, j)| own[i] * own[j] * products.product(columns[i], columns[j]))
+            .sum();
+        square >= LEAST_SHARE * self.space.total(level)
     }
 
     /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
@@ -211,9 +230,13 @@ impl State<'_, '_> {
             let (full, _) = self.space.left(&self.library, &self.parts, level);
             let reducible = (self.space.total(level) - full).max(1e-12);
             let weakest = (0..self.parts.len())
-                .map(|place| {
+                .filter_map(|place| {
                     let rest = without(&self.parts, place);
-                    ((self.space.left(&self.library, &rest, level).0 - full) / reducible, rest)
+                    let left = self.space.left(&self.library, &rest, level).0;
+                    let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
+                    let share = (left - full) / reducible;
+                    let stays = share < LEAST_SHARE && self.was_taken_over(&with, left - full, left, level);
+                    (!stays).then_some((share, rest))
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             match weakest {
