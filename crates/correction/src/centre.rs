@@ -180,7 +180,7 @@ impl Search<'_> {
     pub(crate) fn candidates(&self) -> Candidates {
         let mut found = Candidates(SmallVec::new());
         let Curve::Arc { axes: [u, v, _], centre, radius, .. } = *self.part else { return found };
-        let block = self.block;
+        let block = &*self.block.of_centres();
         let has_centre = [u, v].map(|axis| block.letters.contains(b"IJK"[axis]));
         let by_radius = !has_centre.contains(&true) && (block.letters.contains(b'R') || !block.centre_words);
         let scale = in_plane(self.part, block).map_or(1.0, |map| map.scale);
@@ -250,7 +250,7 @@ impl Search<'_> {
     /// Rounded centres around the fitted one, as words of the plane.
     fn by_offsets(&self, fitted: [f64; 2], has_centre: [bool; 2], push: &mut impl FnMut(Centre, [f64; 2])) {
         let Curve::Arc { axes: [u, v, _], .. } = *self.part else { return };
-        let block = self.block;
+        let block = &*self.block.of_centres();
         let mut centre = self.from;
         (centre[u], centre[v]) = (fitted[0], fitted[1]);
         let (centre_program, from_program) = (block.program(&centre), block.program(&self.from));
@@ -286,7 +286,8 @@ impl Search<'_> {
     /// R words around the fitted radius; `scale`: of the frame.
     fn by_radius(&self, fitted: [f64; 2], scale: f64, push: &mut impl FnMut(Centre, [f64; 2])) {
         let Curve::Arc { axes: [u, v, _], sweep, radius, .. } = *self.part else { return };
-        let Self { block, from, to, .. } = self;
+        let Self { from, to, .. } = self;
+        let block = &*self.block.of_centres();
         // Near a half turn the centre runs away with the last digit of R, near a full one R says nothing.
         let chord = [to[u] - from[u], to[v] - from[v]];
         let length = length(chord);

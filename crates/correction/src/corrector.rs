@@ -229,6 +229,14 @@ impl<'m> Corrector<'m> {
         self
     }
 
+    /// One axis stands here at the start, mm, the others wherever.
+    #[must_use]
+    pub fn with_axis_at(mut self, axis: usize, start_mm: f64) -> Self {
+        self.standing[axis] = Some(start_mm);
+        self.play.forget(axis, Some(start_mm));
+        self
+    }
+
     /// Corrects one motion of a block.
     ///
     /// # Errors
@@ -423,7 +431,7 @@ impl<'m> Corrector<'m> {
                 let moves = block.has_axis(i) || !block.frame.is_shift();
                 if moves || end.linear_mm[i].is_none() || stood[i].is_none() {
                     let step = end.linear_mm[i].zip(start.linear_mm[i]).map(|(end, start)| end - start);
-                    self.standing[i] = match (block.incremental, stood[i], step) {
+                    self.standing[i] = match (block.incremental[i], stood[i], step) {
                         (true, Some(stood), Some(step)) => Some(stood + step),
                         _ => end.linear_mm[i],
                     };
@@ -439,7 +447,7 @@ impl<'m> Corrector<'m> {
         let end_mm = Vector::from(nominal.linear_mm);
         let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
         self.turn_towards(&from, &end_mm);
-        let own_end = if block.incremental { self.standing_or(&from) + (end_mm - from) } else { end_mm };
+        let own_end = block.own_end(&self.standing_or(&from), &(end_mm - from), &end_mm);
         let before = self.standing;
         let mut turns = 0;
         let (state, wanted, axes) = loop {
@@ -702,7 +710,7 @@ impl<'m> Corrector<'m> {
 
     /// An axis that the block names first: where on its way it is at a place in between, no block has said.
     fn guessed_own(&self, block: &Block) -> Option<usize> {
-        (0..3).find(|axis| !block.incremental && block.has_axis(*axis) && !block.named[*axis])
+        (0..3).find(|axis| !block.incremental[*axis] && block.has_axis(*axis) && !block.named[*axis])
     }
 
     /// Why a part that is off its path must not be split.
@@ -759,7 +767,7 @@ impl Follow<'_, '_> {
     ///
     /// Absolute words bring them to the nominal end; incremental ones add the nominal step to where they stand.
     pub(crate) fn own_end(&self, part: &Curve, standing: &Vector) -> Vector {
-        if self.block.incremental { standing + self.nominal_step } else { part.at(1.0) }
+        self.block.own_end(standing, &self.nominal_step, &part.at(1.0))
     }
 
     /// The words of a piece: the block's own may stay where it stands for the block.

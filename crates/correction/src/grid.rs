@@ -48,10 +48,12 @@ pub struct Block {
     pub frame: Frame,
     /// Millimetres in one program unit: 1 or 25.4.
     pub unit_mm: f64,
+    /// X words are diameters: their step moves the axis by half of itself. Centre and radius words are not.
+    pub diameters: bool,
     /// Decimals of the output step of X, Y, Z in program units.
     pub decimals: [u8; 3],
-    /// G91.
-    pub incremental: bool,
+    /// Axes whose words are increments: all under G91, those of U and W on a lathe.
+    pub incremental: [bool; 3],
     /// G90.1.
     pub arc_centres_absolute: bool,
     /// Words of the block.
@@ -84,11 +86,18 @@ const POWERS_OF_TEN: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1
 const STEPS: [f64; 10] = [1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
 impl Block {
-    /// A length in program units.
+    /// What one in an axis' word moves the axis by, mm.
     #[inline]
-    fn in_units(&self, mm: f64) -> f64 {
+    fn unit_mm_of(&self, axis: usize) -> f64 {
+        if self.diameters && axis == 0 { 0.5 * self.unit_mm } else { self.unit_mm }
+    }
+
+    /// A length in units of an axis' word.
+    #[inline]
+    fn in_units(&self, axis: usize, mm: f64) -> f64 {
         // A division takes as long as all the rest.
-        if self.unit_mm == 1.0 { mm } else { mm / self.unit_mm }
+        let unit_mm = self.unit_mm_of(axis);
+        if unit_mm == 1.0 { mm } else { mm / unit_mm }
     }
 
     /// Steps in one program unit of an axis.
@@ -101,7 +110,8 @@ impl Block {
     #[inline]
     pub fn step_mm(&self, axis: usize) -> f64 {
         let decimals = usize::from(self.decimals[axis].min(9));
-        if self.unit_mm == 1.0 { STEPS[decimals] } else { self.unit_mm / POWERS_OF_TEN[decimals] }
+        let unit_mm = self.unit_mm_of(axis);
+        if unit_mm == 1.0 { STEPS[decimals] } else { unit_mm / POWERS_OF_TEN[decimals] }
     }
 
     /// What an output step moves a machine axis by, mm: of its own word, or in a turned frame of any.
@@ -178,7 +188,7 @@ impl Block {
     /// The word that brings an axis nearest to `wanted_mm`.
     #[inline]
     pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (AxisWord, f64) {
-        let origin = if self.incremental { standing_mm.unwrap_or(0.0) } else { 0.0 };
+        let origin = if self.incremental[axis] { standing_mm.unwrap_or(0.0) } else { 0.0 };
         let counts = round(self.steps(axis, wanted_mm - origin));
         (AxisWord::Write(counts), origin + self.from_counts(axis, counts))
     }
@@ -186,13 +196,13 @@ impl Block {
     /// A length as a number of output steps.
     #[inline]
     pub(crate) fn steps(&self, axis: usize, mm: f64) -> f64 {
-        self.in_units(mm) * self.per_unit(axis)
+        self.in_units(axis, mm) * self.per_unit(axis)
     }
 
     /// Millimetres of a whole number of output steps.
     #[inline]
     pub(crate) fn steps_mm(&self, axis: usize, steps: f64) -> f64 {
-        steps / self.per_unit(axis) * self.unit_mm
+        steps / self.per_unit(axis) * self.unit_mm_of(axis)
     }
 
     /// Adds words for the axes that must not be left out beside others; `reached`: where the words bring the axes.
@@ -214,6 +224,24 @@ impl Block {
     /// Nearest count of steps for a length in mm.
     pub fn to_counts(&self, axis: usize, mm: f64) -> i64 {
         round(self.steps(axis, mm))
+    }
+
+    /// Where the block's own words bring the axes, as an axis command: absolute ones to the nominal end, incremental ones by
+    /// the nominal step from where the axes stand.
+    #[inline]
+    pub(crate) fn own_end(&self, standing: &Vector, step: &Vector, end: &Vector) -> Vector {
+        Vector::from_fn(|i, _| if self.incremental[i] { standing[i] + step[i] } else { end[i] })
+    }
+
+    /// The block as its centre and radius words are written: a radius is none of a diameter.
+    #[must_use]
+    pub(crate) fn of_centres(&self) -> std::borrow::Cow<'_, Self> {
+        use std::borrow::Cow;
+        if self.diameters {
+            Cow::Owned(Self { diameters: false, ..self.clone() })
+        } else {
+            Cow::Borrowed(self)
+        }
     }
 
     /// True where the block has a word for the axis.

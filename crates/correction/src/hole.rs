@@ -278,7 +278,8 @@ impl<'m> Corrector<'m> {
         // In the plane: half way between what the top and what the bottom need.
         let middle = block.program(&(0.5 * (top + bottom)));
         let step = at_r - Vector::from(hole.start.linear_mm);
-        let own = block.program(&if block.incremental { standing + step } else { at_r });
+        let own = block.program(&block.own_end(&standing, &step, &at_r));
+        let is_incremental = block.incremental[normal];
         let mut axes = [AxisWord::Omit; 3];
         let mut reached = block.program(&standing);
         let may = block.may_have_words();
@@ -293,17 +294,17 @@ impl<'m> Corrector<'m> {
         let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
         let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
         let (r_origin, own_r_origin) =
-            if block.incremental { (level(began_mm), level(hole.began_mm)) } else { (0.0, 0.0) };
+            if is_incremental { (level(began_mm), level(hole.began_mm)) } else { (0.0, 0.0) };
         // What the control remembers of R and bottom: what the program told it while nothing was rewritten;
         // else what this output told it last, in the same of G90 and G91. Of holes written as moves it knows nothing.
         let last = self.remembered;
         let remembered = |own: f64, told: fn(&Remembered) -> f64| match &last {
             None => Some(own).filter(|_| !self.expanding),
             Some(last) if last.as_programmed => Some(own),
-            Some(last) if !last.incremental && !block.incremental => Some(told(last)),
+            Some(last) if !last.incremental && !is_incremental => Some(told(last)),
             Some(_) => None,
         };
-        let absolute = Block { incremental: false, ..block.clone() };
+        let absolute = Block { incremental: [false; 3], ..block.clone() };
         let own_r = r_own - own_r_origin;
         let r_told = block.letters.contains(b'R').then_some(own_r);
         let (mut r, mut r_value) =
@@ -321,8 +322,7 @@ impl<'m> Corrector<'m> {
         }
         let b_told = block.has_axis(normal);
         let choose_bottom = |r_value: f64| {
-            let (origin, own_origin) =
-                if block.incremental { (r_origin + r_value, r_own) } else { (0.0, 0.0) };
+            let (origin, own_origin) = if is_incremental { (r_origin + r_value, r_own) } else { (0.0, 0.0) };
             let own = b_own - own_origin;
             let told = b_told.then_some(own);
             let (word, value) =
@@ -331,12 +331,12 @@ impl<'m> Corrector<'m> {
         };
         let (mut b, mut b_value, mut b_origin) = choose_bottom(r_value);
         let written = |word: AxisWord| matches!(word, AxisWord::Write(_));
-        if block.incremental && written(b) && r == AxisWord::Omit {
+        if is_incremental && written(b) && r == AxisWord::Omit {
             // Under G91 controls differ in what a remembered R means beside a new bottom: both are said.
             (r, r_value) = absolute.write(normal, r_wanted - r_origin, None);
             (b, b_value, b_origin) = choose_bottom(r_value);
         }
-        if block.incremental && written(r) && b == AxisWord::Omit {
+        if is_incremental && written(r) && b == AxisWord::Omit {
             (b, b_value) = absolute.write(normal, b_wanted - b_origin, None);
         }
         let r_reached = r_origin + r_value;
@@ -352,7 +352,7 @@ impl<'m> Corrector<'m> {
             bottom: b_value,
             r: r_value,
             began_mm,
-            incremental: block.incremental,
+            incremental: is_incremental,
             as_programmed,
         });
         let mut place = reached;

@@ -80,7 +80,7 @@ impl Corrector<'_> {
     #[inline]
     pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
         self.heed(block, rotary_deg);
-        let ordinary = !block.incremental
+        let ordinary = block.incremental == [false; 3]
             && block.frame.is_shift()
             && block.whole == [false; 3]
             && block.named == [true; 3];

@@ -36,8 +36,9 @@ pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
     Block {
         frame: Default::default(),
         unit_mm: 1.0,
+        diameters: false,
         decimals: [3; 3],
-        incremental: false,
+        incremental: [false; 3],
         arc_centres_absolute: false,
         letters: Default::default(),
         whole: [false; 3],

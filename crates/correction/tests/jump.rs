@@ -41,8 +41,9 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
     let block = Block {
         frame: Frame::shift([0.0; 3]),
         unit_mm: 1.0,
+        diameters: false,
         decimals: [3; 3],
-        incremental: false,
+        incremental: [false; 3],
         arc_centres_absolute: false,
         letters,
         whole: [false; 3],

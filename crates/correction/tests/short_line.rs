@@ -67,8 +67,9 @@ fn block() -> Block {
     Block {
         frame: Frame::shift([60.0, 60.0, 60.0]),
         unit_mm: 1.0,
+        diameters: false,
         decimals: [3; 3],
-        incremental: false,
+        incremental: [false; 3],
         arc_centres_absolute: false,
         letters: Letters::axes([true; 3]),
         whole: [false; 3],

@@ -2,10 +2,11 @@
 
 use machine_model::effects::{Conditions, EffectError, EffectGeometry, EffectKind, EffectTerm};
 use machine_model::engines::{BuildError, build};
-use machine_model::{Engine, EngineId, UnknownCondition, WithEffects};
+use machine_model::{Engine, EngineId, PathModel, UnknownCondition, Vector, WithEffects};
 use thiserror::Error;
+use turning::Lathe;
 
-use crate::Profile;
+use crate::{LatheParts, Profile};
 
 /// Why a profile gives no engine.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -26,6 +27,12 @@ pub enum EngineError {
     ReferenceTemperature {
         /// The effect.
         effect: EffectKind,
+    },
+    /// An engine of mills.
+    #[error("engine `{engine}` models no lathe")]
+    Lathe {
+        /// The engine.
+        engine: &'static str,
     },
     /// An engine that knows nothing but its tables.
     #[error("engine `{engine}` cannot take the profile's effects into account: {effects}")]
@@ -94,11 +101,34 @@ impl Profile {
         Ok(WithEffects::new(self.rigid_body.clone(), terms, *conditions)?)
     }
 
+    /// The lathe under these conditions; `None` for a mill.
+    ///
+    /// # Errors
+    /// [`EngineError`], as [`Profile::machine`].
+    pub fn lathe(&self, conditions: &Conditions) -> Result<Option<Lathe>, EngineError> {
+        let Some(parts) = &self.lathe else { return Ok(None) };
+        let linear: Box<dyn PathModel> = if self.effects.is_empty() {
+            Box::new(self.rigid_body.clone())
+        } else {
+            Box::new(self.machine(conditions)?)
+        };
+        let tools = self.tools.iter().map(|(_, length)| -Vector::from(*length));
+        let tools: Vec<Vector> = tools.chain([Vector::from(self.default_tool_mm)]).collect();
+        let LatheParts { spindle, bending, tip, .. } = parts.clone();
+        Ok(Some(Lathe::new(linear, spindle, bending, tip, &tools)))
+    }
+
     /// An engine for this profile under these conditions, effects included.
     ///
     /// # Errors
     /// [`EngineError`], also where the engine cannot take the profile's effects into account.
     pub fn engine(&self, id: EngineId, conditions: &Conditions) -> Result<Box<dyn Engine>, EngineError> {
+        if let Some(lathe) = self.lathe(conditions)? {
+            if id != EngineId::RigidBody {
+                return Err(EngineError::Lathe { engine: id.name() });
+            }
+            return Ok(Box::new(lathe));
+        }
         let terms = self.effect_terms(false)?;
         if terms.is_empty() {
             return Ok(build(id, self.engine_inputs_without_effects())?);

@@ -44,7 +44,7 @@ pub(crate) struct Document {
     pub(crate) name: String,
     /// The control's dialect: a file in grammars/.
     pub(crate) control: Option<String>,
-    /// Axes from workpiece to tool, like "[w X Y b Z t]".
+    /// Axes from workpiece to tool, like "[w X Y b Z t]"; of a lathe, S its spindle, like "[w S b Z X t]".
     #[schemars(with = "String")]
     pub(crate) chain: Spanned<String>,
     /// Between table nodes: "linear" (default) or "monotone" (shape-preserving cubic).
@@ -63,6 +63,18 @@ pub(crate) struct Document {
     /// The rotary axes.
     #[serde(default)]
     pub(crate) rotary: Rotary,
+    /// A lathe's spindle.
+    #[schemars(with = "Option<Spindle>")]
+    pub(crate) spindle: Option<Spanned<Spindle>>,
+    /// A lathe's headstock.
+    #[schemars(with = "Option<Headstock>")]
+    pub(crate) headstock: Option<Spanned<Headstock>>,
+    /// A lathe's tailstock.
+    #[schemars(with = "Option<Tailstock>")]
+    pub(crate) tailstock: Option<Spanned<Tailstock>>,
+    /// What a lathe turns, and how it is held.
+    #[schemars(with = "Option<Workpiece>")]
+    pub(crate) workpiece: Option<Spanned<Workpiece>>,
     /// Tool vectors.
     #[serde(default)]
     pub(crate) tool: Tool,
@@ -251,6 +263,106 @@ pub(crate) struct Tool {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Length>")]
     pub(crate) lengths_mm: BTreeMap<String, Spanned<Length>>,
+    /// H number → nose of a turning tool.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Nose>")]
+    pub(crate) noses: BTreeMap<String, Spanned<Nose>>,
+    /// A turning tool's holder, turned about Z against where it was measured: γ.
+    pub(crate) gamma_urad: Option<Finite>,
+    /// About Y: ω.
+    pub(crate) omega_urad: Option<Finite>,
+}
+
+/// The nose of a turning tool.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Nose {
+    pub(crate) radius_mm: Finite,
+    /// 0 to 9, as the control numbers the directions of the imaginary tip.
+    pub(crate) direction: Option<u8>,
+    /// Tip above the spindle's axis.
+    pub(crate) height_um: Option<Finite>,
+    /// κ', angle of the minor cutting edge to the axis.
+    pub(crate) minor_edge_deg: Option<Finite>,
+}
+
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[allow(non_snake_case, reason = "the standard's symbols")]
+pub(crate) struct Spindle {
+    /// Machine X and Y of its axis; [0, 0] where left out.
+    pub(crate) centre_mm: Option<[Finite; 2]>,
+    /// Machine Z of the chuck's face, from which Z of workpiece and tailstock counts; 0 where left out.
+    pub(crate) face_mm: Option<Finite>,
+    /// Real minus nominal axis, at machine Z 0.
+    pub(crate) EX0S_um: Option<Finite>,
+    pub(crate) EY0S_um: Option<Finite>,
+    /// Tilt, signs as those of the axis Z.
+    pub(crate) EA0S_urad: Option<Finite>,
+    pub(crate) EB0S_urad: Option<Finite>,
+    /// Growth of the spindle: X, Y, Z.
+    pub(crate) growth_um: Option<Triple>,
+    /// Error motion that repeats each turn: cosines and sines of the harmonics 1, 2, … of the spindle's angle.
+    pub(crate) EXS_cos_um: Vec<Finite>,
+    pub(crate) EXS_sin_um: Vec<Finite>,
+    pub(crate) EYS_cos_um: Vec<Finite>,
+    pub(crate) EYS_sin_um: Vec<Finite>,
+    pub(crate) EZS_cos_um: Vec<Finite>,
+    pub(crate) EZS_sin_um: Vec<Finite>,
+    pub(crate) EAS_cos_urad: Vec<Finite>,
+    pub(crate) EAS_sin_urad: Vec<Finite>,
+    pub(crate) EBS_cos_urad: Vec<Finite>,
+    pub(crate) EBS_sin_urad: Vec<Finite>,
+    /// Width of the error motion that does not repeat.
+    pub(crate) asynchronous_um: Option<Finite>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Headstock {
+    /// X and Y, positive: the radius at the chuck grows.
+    pub(crate) offset_um: [Finite; 2],
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Tailstock {
+    /// From the chuck's face.
+    #[schemars(with = "f64")]
+    pub(crate) at_mm: Spanned<Finite>,
+    /// X and Y, positive: the radius there grows.
+    pub(crate) offset_um: Option<[Finite; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ClampingName {
+    Chuck,
+    ChuckTailstock,
+    Centres,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Workpiece {
+    /// Z from the chuck's face and diameter there; even between rows, two rows at one Z are a step.
+    #[schemars(with = "Vec<[f64; 2]>")]
+    pub(crate) diameters_mm: Option<Spanned<Vec<[Finite; 2]>>>,
+    /// Young's modulus.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) e_gpa: Option<Spanned<Finite>>,
+    pub(crate) clamping: Option<ClampingName>,
+    /// A steady rest, from the chuck's face.
+    pub(crate) steady_mm: Option<Finite>,
+    /// Radial cutting force.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) radial_force_n: Option<Spanned<Finite>>,
+    /// Radial force per area of the chip, with `depth_mm` and `feed_mm`.
+    pub(crate) specific_force_n_mm2: Option<Finite>,
+    /// Depth of cut on the radius.
+    pub(crate) depth_mm: Option<Finite>,
+    /// Feed a turn.
+    pub(crate) feed_mm: Option<Finite>,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -281,6 +393,17 @@ pub(crate) struct Program {
     /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,
+    /// X words of a lathe's programs: "diameter" or "radius".
+    pub(crate) x: Option<XName>,
+    /// G-code system of a lathe's control: "A", "B" or "C".
+    pub(crate) g_code_system: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum XName {
+    Diameter,
+    Radius,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

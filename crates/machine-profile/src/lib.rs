@@ -7,6 +7,7 @@ mod columns;
 mod effects;
 mod error;
 mod format;
+mod lathe;
 mod load;
 mod profile;
 mod show;
@@ -18,8 +19,8 @@ pub use effects::EngineError;
 pub use error::ProfileError;
 pub use load::{Read, load};
 pub use profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile,
-    ProgramRules,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, LatheParts, MeasuringFrame, Nose,
+    Outside, Profile, ProgramRules,
 };
 pub use show::schema;
 pub use tables::ErrorRows;

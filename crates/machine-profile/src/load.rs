@@ -13,7 +13,7 @@ use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, closest, span};
 use crate::format::{
-    self, ChangePlace, DecimalName, Document, Finite, InterpolationName, OutsideName, ToolChange,
+    self, ChangePlace, DecimalName, Document, Finite, InterpolationName, OutsideName, ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile,
@@ -41,9 +41,9 @@ pub fn load(text: &str, read: Read<'_>) -> Result<Profile, Vec<ProfileError>> {
     }
 }
 
-struct Loader<'r> {
+pub(crate) struct Loader<'r> {
     read: Read<'r>,
-    errors: Vec<ProfileError>,
+    pub(crate) errors: Vec<ProfileError>,
 }
 
 fn triple(values: Option<[Finite; 3]>) -> [f64; 3] {
@@ -58,9 +58,11 @@ fn vector(values: Option<[Finite; 3]>) -> Vector {
 const MOST_ARC_TOLERANCE_MM: f64 = 10.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
 const COARSEST_MM: f64 = 0.1;
+/// The Y that a lathe does not have stands at 0; so far it may be named.
+const STANDING_MM: f64 = 1.0;
 
 impl Loader<'_> {
-    fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
+    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
         self.errors.push(ProfileError::profile(diagnostic.at(span(&at.span()), label)));
     }
 
@@ -72,7 +74,11 @@ impl Loader<'_> {
             self.refuse(&document.format, diagnostic, "expected 1");
             return None;
         }
-        let chain = match Chain::parse(document.chain.get_ref()) {
+        let lathe_chain = self.lathe_chain(&document);
+        let is_lathe = lathe_chain.is_some();
+        let lathe = is_lathe.then(|| self.lathe(&document));
+        let written = lathe_chain.as_ref().unwrap_or(document.chain.get_ref());
+        let chain = match Chain::parse(written) {
             Ok(chain) => Some(chain),
             Err(e) => {
                 let diagnostic = Diagnostic::error(CHAIN, e.to_string()).help(
@@ -92,12 +98,16 @@ impl Loader<'_> {
         let axes = &document.axis;
         let mut linear = Vec::new();
         for (axis, written) in Axis::ALL.into_iter().zip([&axes.X, &axes.Y, &axes.Z]) {
+            if is_lathe && axis == Axis::Y && written.is_none() {
+                linear.push(Some(LinearAxis::perfect(Range { low: -STANDING_MM, high: STANDING_MM })));
+                continue;
+            }
             linear.push(self.linear(axis, written.as_ref(), interpolation, &mut rows, &mut resolution_mm));
         }
         let rotary = self.rotary(&document, chain.as_ref(), interpolation);
         let squareness = self.squareness(&document.squareness);
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
-        let tools = self.tools(&document.tool);
+        let mut tools = self.tools(&document.tool);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
@@ -108,6 +118,10 @@ impl Loader<'_> {
         };
         let linear: [LinearAxis; 3] = linear.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()?;
         let description = Description { chain: chain?, linear, rotary, squareness };
+        let lathe = lathe.map(|mut parts| {
+            parts.noses = self.noses(&document.tool, &mut tools);
+            parts
+        });
         let rigid_body = match RigidBody::new(description.clone()) {
             Ok(model) => model,
             Err(e) => {
@@ -134,6 +148,7 @@ impl Loader<'_> {
             program,
             effects,
             setup,
+            lathe,
             rigid_body,
         })
     }
@@ -202,7 +217,14 @@ impl Loader<'_> {
                 );
             }
         }
-        ProgramRules { bare_lengths, tool_change, arc_tolerance_mm, harmless_m_codes }
+        ProgramRules {
+            bare_lengths,
+            tool_change,
+            arc_tolerance_mm,
+            harmless_m_codes,
+            diameters: program.x.map(|x| matches!(x, XName::Diameter)),
+            g_code_system: program.g_code_system.clone(),
+        }
     }
 
     /// Axes that a tool change leaves, and where it puts the others.

@@ -75,6 +75,10 @@ pub struct ProgramRules {
     pub harmless_m_codes: Vec<u16>,
     /// Largest difference of an arc's radii that the control takes, mm; `None`: the dialect's.
     pub arc_tolerance_mm: Option<f64>,
+    /// X words of a lathe's programs are diameters; `None`: not said.
+    pub diameters: Option<bool>,
+    /// G-code system of a lathe's control; `None`: not said.
+    pub g_code_system: Option<String>,
 }
 
 /// An effect beyond the tables, as the profile names it; [`machine_model::effects::EffectTerm::from_entry`] reads it.
@@ -93,6 +97,32 @@ pub struct MeasuringFrame {
     pub shift_mm: [f64; 3],
     /// Rotation, rad.
     pub rotation_rad: [f64; 3],
+}
+
+/// The nose of a turning tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nose {
+    /// Its radius, mm.
+    pub radius_mm: f64,
+    /// Direction of the imaginary tip, 0 to 9, as the control numbers it.
+    pub direction: Option<u8>,
+    /// κ', angle of the minor cutting edge to the axis, rad.
+    pub minor_edge_rad: Option<f64>,
+}
+
+/// What makes a machine a lathe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LatheParts {
+    /// As it is written, S the spindle.
+    pub chain: String,
+    /// The spindle, with the tailstock where it bears the workpiece.
+    pub spindle: turning::Spindle,
+    /// How far the workpiece bends away from the tool.
+    pub bending: turning::Bending,
+    /// How the tool's holder stands.
+    pub tip: turning::Tip,
+    /// By H number.
+    pub noses: Vec<(u32, Nose)>,
 }
 
 /// Everything a profile says, checked: values are finite, tables ordered, the chain complete.
@@ -129,6 +159,8 @@ pub struct Profile {
     pub effects: Vec<EffectEntry>,
     /// The measuring frame.
     pub setup: MeasuringFrame,
+    /// Of a lathe; its Y, which it does not have, stands at 0 without errors.
+    pub lathe: Option<LatheParts>,
     /// The model of `description`: made once, while loading.
     pub(crate) rigid_body: RigidBody,
 }

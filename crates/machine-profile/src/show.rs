@@ -30,7 +30,30 @@ impl Profile {
         if let Some(control) = &self.control {
             writeln!(out, "control      {control}")?;
         }
-        writeln!(out, "chain        {}", self.chain())?;
+        match &self.lathe {
+            None => writeln!(out, "chain        {}", self.chain())?,
+            Some(lathe) => {
+                let spindle = &lathe.spindle;
+                let [x, y, z] = [spindle.centre_mm.x, spindle.centre_mm.y, spindle.centre_mm.z];
+                writeln!(out, "chain        {}, a lathe", lathe.chain)?;
+                writeln!(out, "spindle      axis at X {x} Y {y} mm, chuck's face at Z {z} mm")?;
+                if let Some(tail) = spindle.tailstock {
+                    let [x, y] = tail.offset_mm.map(|mm| mm * 1e3);
+                    writeln!(
+                        out,
+                        "tailstock    {} mm from the chuck, offset X {x:.1} Y {y:.1} um",
+                        tail.at_mm
+                    )?;
+                }
+                if !lathe.bending.is_none() {
+                    writeln!(
+                        out,
+                        "workpiece    bends by {:.3} um at most",
+                        lathe.bending.largest_mm() * 1e3
+                    )?;
+                }
+            }
+        }
         if let Some(c) = &self.calibrated {
             let temperature = c.temperature_c.map(|t| format!("{t} °C"));
             let parts: Vec<String> =

@@ -3,7 +3,7 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 54] = [
+pub const ACTION_NAMES: [&str; 57] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -56,6 +56,9 @@ pub const ACTION_NAMES: [&str; 54] = [
     "polar-off",
     "length-from-words",
     "dwell-p",
+    "diameter-on",
+    "diameter-off",
+    "limit-or-preset",
     "pass",
     "pass-with-words",
 ];
@@ -116,6 +119,9 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "polar-off" => Action::PolarOff,
         "length-from-words" => Action::LengthFromWords,
         "dwell-p" => Action::DwellP,
+        "diameter-on" => Action::DiameterOn,
+        "diameter-off" => Action::DiameterOff,
+        "limit-or-preset" => Action::LimitOrPreset,
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         _ => return None,

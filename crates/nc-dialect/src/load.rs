@@ -1,12 +1,13 @@
 //! TOML text to a dialect.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
-    Macros, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon,
+    Macros, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon, System, Turning,
 };
 use toml::Spanned;
 
@@ -14,7 +15,7 @@ use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
     CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, Levels, MRow, MacroLanguage, RoundBrackets,
-    SemicolonRule, StartUnit, TWord, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
+    SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -29,20 +30,8 @@ use crate::table::{
 pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
     let grammar: Grammar = toml::from_str(text).map_err(|error| vec![refused_by_toml(&error)])?;
     let mut wrong = Vec::new();
-    let mut codes = Vec::new();
     let mut m_codes = Vec::new();
     let mut commands = Vec::new();
-    for (key, row) in &grammar.codes {
-        match number_behind(key.get_ref(), 'G').and_then(tenths) {
-            None => wrong.push(no_code(key, "G81 or \"G54.1\"")),
-            Some(code) => match action(GCode(code), key, row) {
-                Err(diagnostic) => wrong.push(diagnostic),
-                Ok(action) => {
-                    codes.push((key.span(), CodeEntry { code: GCode(code), group: row.group, action }))
-                }
-            },
-        }
-    }
     for (key, row) in &grammar.m_codes {
         match number_behind(key.get_ref(), 'M').and_then(|digits| digits.parse().ok()) {
             None => wrong.push(no_code(key, "M6")),
@@ -58,19 +47,72 @@ pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
             Ok(found) => commands.push((key.span(), found)),
         }
     }
-    let codes = unique(codes, |entry| entry.code, &mut wrong);
+    let codes = g_codes(&grammar.codes, &mut wrong);
     let m_codes = unique(m_codes, |entry| entry.number, &mut wrong);
     let commands = unique(commands, |entry| entry.name.clone(), &mut wrong);
     let lathe = grammar.lathe.iter().filter_map(|row| lathe(row, &mut wrong)).collect();
     let initial = checks::start_codes(&grammar.start.codes, &codes, &mut wrong);
+    let turning = grammar.turning.as_ref().map(|rules| turning(rules, &codes, &initial, &mut wrong));
     checks::letters(&grammar.text.letters, &mut wrong);
     checks::numbers(&grammar, &mut wrong);
     if !wrong.is_empty() {
         wrong.sort_by_key(|diagnostic| diagnostic.span.as_ref().map_or(0, |span| span.start));
         return Err(wrong);
     }
-    let rows = Rows { codes, m_codes, commands, lathe };
+    let rows = Rows { codes, m_codes, commands, lathe, turning };
     Ok(dialect(name, grammar, rows, initial))
+}
+
+/// The rows of a table of G codes, sorted.
+fn g_codes(table: &BTreeMap<Spanned<String>, CodeRow>, wrong: &mut Vec<Diagnostic>) -> Vec<CodeEntry> {
+    let mut codes = Vec::new();
+    for (key, row) in table {
+        match number_behind(key.get_ref(), 'G').and_then(tenths) {
+            None => wrong.push(no_code(key, "G81 or \"G54.1\"")),
+            Some(code) => match action(GCode(code), key, row) {
+                Err(diagnostic) => wrong.push(diagnostic),
+                Ok(action) => {
+                    codes.push((key.span(), CodeEntry { code: GCode(code), group: row.group, action }));
+                }
+            },
+        }
+    }
+    unique(codes, |entry| entry.code, wrong)
+}
+
+/// What a lathe's programs have; the table's own codes are a system too, where it has a name.
+fn turning(
+    rules: &TurningRules,
+    codes: &[CodeEntry],
+    initial: &[GCode],
+    wrong: &mut Vec<Diagnostic>,
+) -> Turning {
+    let own = rules.system.iter().map(|name| System {
+        name: name.clone(),
+        codes: Vec::new(),
+        without: Vec::new(),
+        increments: rules.increments,
+        initial: initial.to_vec(),
+    });
+    let mut systems: Vec<System> = own.collect();
+    for (name, system) in &rules.systems {
+        let rows = g_codes(&system.codes, wrong);
+        let mut without = Vec::new();
+        for code in &system.without {
+            match number_behind(code.get_ref(), 'G').and_then(tenths) {
+                Some(tenths) => without.push(GCode(tenths)),
+                None => wrong.push(no_code(code, "G32")),
+            }
+        }
+        let others = codes
+            .iter()
+            .filter(|entry| !without.contains(&entry.code) && rows.iter().all(|own| own.code != entry.code));
+        let all: Vec<CodeEntry> = others.chain(&rows).cloned().collect();
+        let initial = checks::start_codes(&system.start, &all, wrong);
+        let increments = system.increments;
+        systems.push(System { name: name.clone(), codes: rows, without, increments, initial });
+    }
+    Turning { increments: rules.increments, offset_in_t: rules.offset_in_t, systems }
 }
 
 /// Rows that were read.
@@ -79,6 +121,7 @@ struct Rows {
     m_codes: Vec<MCode>,
     commands: Vec<Command>,
     lathe: Vec<LatheSign>,
+    turning: Option<Turning>,
 }
 
 /// The table as a value, once nothing in it is wrong.
@@ -86,7 +129,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
     let Grammar {
         title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, start, ..
     } = grammar;
-    let Rows { codes, m_codes, commands, lathe } = rows;
+    let Rows { codes, m_codes, commands, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
     let polar_words = codes.iter().any(|entry| entry.action == Action::PolarOn);
@@ -128,6 +171,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
         initial,
         unit_is_kept: start.unit == StartUnit::Kept,
         lathe,
+        turning,
         flow: Flow {
             macros: match flow.macros {
                 MacroLanguage::None => Macros::None,

@@ -7,11 +7,13 @@ use nc_syntax::Dialect;
 use crate::load;
 
 /// Names and texts, in alphabetical order.
-pub(crate) const TEXTS: [(&str, &str); 6] = [
+pub(crate) const TEXTS: [(&str, &str); 8] = [
     ("balt-system", include_str!("../../../grammars/balt-system.toml")),
     ("centroid", include_str!("../../../grammars/centroid.toml")),
     ("fanuc", include_str!("../../../grammars/fanuc.toml")),
+    ("fanuc-lathe", include_str!("../../../grammars/fanuc-lathe.toml")),
     ("linuxcnc", include_str!("../../../grammars/linuxcnc.toml")),
+    ("linuxcnc-lathe", include_str!("../../../grammars/linuxcnc-lathe.toml")),
     ("perspektiva", include_str!("../../../grammars/perspektiva.toml")),
     ("sinumerik", include_str!("../../../grammars/sinumerik.toml")),
 ];

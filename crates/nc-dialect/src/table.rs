@@ -29,6 +29,7 @@ pub(crate) struct Grammar {
     pub(crate) commands: BTreeMap<Spanned<String>, CommandRow>,
     #[serde(default)]
     pub(crate) lathe: Vec<LatheRow>,
+    pub(crate) turning: Option<TurningRules>,
 }
 
 /// How a block is written.
@@ -96,6 +97,29 @@ pub(crate) struct Start {
     pub(crate) codes: Vec<Spanned<String>>,
     #[serde(default)]
     pub(crate) unit: StartUnit,
+}
+
+/// What a lathe's programs have.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct TurningRules {
+    pub(crate) increments: bool,
+    pub(crate) offset_in_t: bool,
+    /// Name of the G-code system of `[codes]`, where there are several.
+    pub(crate) system: Option<String>,
+    pub(crate) systems: BTreeMap<String, SystemRules>,
+}
+
+/// Another G-code system: what it has in place of `[codes]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SystemRules {
+    #[serde(default)]
+    pub(crate) increments: bool,
+    #[serde(default)]
+    pub(crate) without: Vec<Spanned<String>>,
+    pub(crate) start: Vec<Spanned<String>>,
+    pub(crate) codes: BTreeMap<Spanned<String>, CodeRow>,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]

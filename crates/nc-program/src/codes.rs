@@ -83,3 +83,13 @@ pub const UNKNOWN_M_CODE: Code = Code(243);
 pub const UNIT_UNSTATED: Code = Code(244);
 /// Doubt: the program may have been cut off. Remedy: the whole one.
 pub const CUT_OFF: Code = Code(245);
+/// Whether X words of a lathe's program are diameters or radii is not said. Remedy: `[program] x` in the profile, or G7
+/// and G8.
+pub const X_UNSTATED: Code = Code(250);
+/// An axis that a lathe does not have, a plane that it does not turn in, or an increment where none can stand. Remedy: in the
+/// message.
+pub const NO_TURNING: Code = Code(251);
+/// A feed along Z, or an arc, at negative X. Remedy: X above zero.
+pub const BELOW_THE_AXIS: Code = Code(252);
+/// G96 without a limit of the spindle's speed. Remedy: G50 S, G92 S, D beside G96.
+pub const UNLIMITED_SPEED: Code = Code(253);

@@ -10,7 +10,7 @@
 use crate::codes;
 use crate::modal::{
     Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress, ReturnLevel,
-    Stated, ToolLength, Units, Why,
+    Stated, ToolLength, Units, Why, XWords,
 };
 use crate::words::{Outcome, Words};
 
@@ -37,7 +37,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         both.tool_loaded = None;
     }
     let lost = Axis::Unknown(Lost { why: Why::BlockDelete, line });
-    for i in 0..3 {
+    for i in (0..3).filter(|i| *i != 1 || !words.turns()) {
         if aside.moved || executed.axes.linear[i] != skipped.axes.linear[i] {
             both.axes.linear[i] = lost;
         }
@@ -55,6 +55,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         tool_length: executed.stated.tool_length && skipped.stated.tool_length,
         units: executed.stated.units && skipped.stated.units,
     };
+    both.speed_limited = executed.speed_limited && skipped.speed_limited;
     both.feed_is_inverse_time = executed.feed_is_inverse_time || skipped.feed_is_inverse_time;
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.
@@ -98,6 +99,13 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
                 Units::Millimetre => "millimetre",
             }
             .to_owned()
+        })
+    })
+    .or_else(|| {
+        pair(&with.x_words, &without.x_words, |v| match v {
+            XWords::Diameter => "X as a diameter".to_owned(),
+            XWords::Radius => "X as a radius".to_owned(),
+            XWords::Unstated => "X as nobody said".to_owned(),
         })
     })
     .or_else(|| pair(&with.plane, &without.plane, |v| format!("plane {v:?}")))

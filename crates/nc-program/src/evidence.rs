@@ -381,15 +381,27 @@ impl Evidence {
         let [x, y, z] = self.names;
         let tells = rows.iter().any(|(sign, _)| sign.sure) || rows.len() > 1 || (x && z && !y);
         let (sign, place) = rows.first().filter(|_| tells)?;
-        let mut message =
-            "this is a program of a lathe, and vpost corrects those of mills only so far".to_owned();
+        let mut message = format!("this is a program of a lathe, and dialect {} is of mills", dialect.name);
         if !sign.sure && x && z && !y {
             message.push_str("; it never names Y");
         }
         let diagnostic = Diagnostic::error(codes::LATHE, message)
             .at(place.span.clone(), sign.says.as_str())
-            .help(format!("leave it as it is; if it is a mill's: {}", sign.mill));
+            .help(format!(
+                "use {} and the profile of a lathe; if it is a mill's: {}",
+                lathe_dialect(&dialect.name),
+                sign.mill
+            ));
         Some((diagnostic, place.line))
+    }
+}
+
+/// What a lathe's dialect of the same control is called.
+fn lathe_dialect(mill: &str) -> &'static str {
+    match mill {
+        "fanuc" => "the dialect fanuc-lathe",
+        "linuxcnc" => "the dialect linuxcnc-lathe",
+        _ => "a dialect of lathes (`vpost grammar list`)",
     }
 }
 

@@ -10,13 +10,14 @@ use crate::codes;
 use crate::delete;
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming,
-    Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset,
+    Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
 };
 use crate::motion::{self, Moved};
 use crate::naming;
 use crate::plain::Plain;
 use crate::settings::{self, Environment};
 use crate::setup::{AfterChange, Setup};
+use crate::turning;
 use crate::words::{Letters, Outcome, Words};
 
 /// What a block means.
@@ -41,10 +42,14 @@ pub struct Context {
     pub frame: Frame,
     /// One unit of the program in mm: 1.0 or 25.4.
     pub unit_mm: f64,
+    /// X words are diameters.
+    pub diameters: bool,
     /// G93, G94, G95.
     pub feed_mode: FeedMode,
-    /// G91.
-    pub incremental: bool,
+    /// Axes whose words are increments: all under G91, those that U or W stands for.
+    pub incremental: [bool; 3],
+    /// X, Y, Z that U, V or W stands for in this block.
+    pub by_increment: [bool; 3],
     /// G90.1.
     pub arc_centres_absolute: bool,
     /// Working plane.
@@ -67,6 +72,14 @@ pub struct Context {
     /// X, Y, Z: since when the program has not named the axis in the frame in force, before this block; `None` where it
     /// has. No word may be added for one that is not named.
     pub unnamed: [Option<Lost>; 3],
+}
+
+impl Context {
+    /// What one in the word of an axis moves it by, mm.
+    #[must_use]
+    pub fn word_mm(&self, axis: usize) -> f64 {
+        if self.diameters && axis == 0 { 0.5 * self.unit_mm } else { self.unit_mm }
+    }
 }
 
 /// Executes a program block by block.
@@ -94,6 +107,12 @@ impl<'d> Interpreter<'d> {
             plane: Plane::Xy,
             distance: Distance::Absolute,
             units: Units::Millimetre,
+            x_words: match (&dialect.turning, setup.diameters) {
+                (None, _) | (Some(_), Some(false)) => XWords::Radius,
+                (Some(_), Some(true)) => XWords::Diameter,
+                (Some(_), None) => XWords::Unstated,
+            },
+            speed_limited: false,
             feed_mode: FeedMode::PerMinute,
             feed_is_inverse_time: false,
             arc_centres: ArcCentres::Incremental,
@@ -119,6 +138,9 @@ impl<'d> Interpreter<'d> {
             progress: Progress::Leader,
             aside: None,
         };
+        if dialect.turning.is_some() {
+            modal.axes.linear[1] = Axis::At(0.0);
+        }
         settings::initial(&env, &mut modal);
         Self { env, modal, plain: Plain::default() }
     }
@@ -168,7 +190,8 @@ impl<'d> Interpreter<'d> {
             let aside = Aside { switches, line: block.line, skipped: before.clone(), moved: false };
             state.aside = Some(Box::new(aside));
         }
-        run(env, &words, before, state, &mut moved)?;
+        run(env, &mut words, before, state, &mut moved)?;
+        moved.by_increment = words.by_increment;
         let mut step = stepped(env, before, state, moved);
         if let Some(mut aside) = state.aside.take() {
             aside.moved |= !step.motions.is_empty();
@@ -197,7 +220,7 @@ fn stepped(env: &Environment<'_>, before: &Modal, state: &Modal, moved: Moved) -
 #[inline]
 fn run<'d>(
     env: &Environment<'d>,
-    words: &Words<'_, '_, 'd>,
+    words: &mut Words<'_, '_, 'd>,
     before: &Modal,
     state: &mut Modal,
     moved: &mut Moved,
@@ -217,12 +240,22 @@ fn run<'d>(
         return Err(opened_twice(words));
     }
     state.progress = Progress::Running;
+    if env.dialect.turning.is_some() {
+        turning::read(words, state)?;
+    }
+    let words = &*words;
     let demand = settings::apply(env, words, before, state)?;
+    if env.dialect.turning.is_some() {
+        turning::check(words, &demand, state)?;
+    }
     state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
         || (state.feed_is_inverse_time && !words.has(Letters::of(b"F")));
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
+    if env.dialect.turning.is_some() {
+        turning::check_motions(words, state, &moved.motions)?;
+    }
     if !words.m_codes.is_empty() {
         miscellaneous(env, words, state, moved)?;
     }
@@ -255,7 +288,8 @@ fn after_end(block: &Block<'_>) -> Outcome<()> {
 fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> SmallVec<[Motion; 1]> {
     let why = Why::Miscellaneous { code: row.number, changes_tool: row.changes_tool };
     let known = |i: usize| if row.changes_tool { env.setup.tool_change[i] } else { AfterChange::Unknown };
-    let moved = [0, 1, 2].map(|i| row.loses_position[i] && known(i) != AfterChange::Stays);
+    let moved =
+        [0, 1, 2].map(|i| row.loses_position[i] && known(i) != AfterChange::Stays && env.moves_axis(i));
     if moved == [false; 3] {
         return SmallVec::new();
     }
@@ -329,7 +363,9 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         frame: state.frame.clone().unwrap_or_default(),
         unit_mm: state.units.mm(),
         feed_mode: state.feed_mode,
-        incremental: state.distance == Distance::Incremental,
+        diameters: state.x_words == XWords::Diameter,
+        incremental: moved.by_increment.map(|by_letter| by_letter || state.distance == Distance::Incremental),
+        by_increment: moved.by_increment,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
         plane: state.plane,
         tool_mm,

@@ -53,6 +53,7 @@ mod settings;
 mod setup;
 mod tool_length;
 mod transform;
+mod turning;
 mod words;
 
 pub use evidence::{Evidence, Finding, Place, Questions};

@@ -73,6 +73,17 @@ impl Units {
     }
 }
 
+/// What X words are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum XWords {
+    /// A mill's X; G8, DIAMOF.
+    Radius,
+    /// G7, DIAMON.
+    Diameter,
+    /// A lathe's, and nobody said.
+    Unstated,
+}
+
 /// What F means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeedMode {
@@ -366,6 +377,10 @@ pub struct Modal {
     pub distance: Distance,
     /// G20 G21.
     pub units: Units,
+    /// G7 G8.
+    pub x_words: XWords,
+    /// A limit holds the spindle of a lathe under G96.
+    pub speed_limited: bool,
     /// G93 G94 G95.
     pub feed_mode: FeedMode,
     /// The last F was one of G93.

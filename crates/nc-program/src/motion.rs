@@ -28,6 +28,8 @@ pub(crate) struct Moved {
     pub(crate) arc_by_radius: bool,
     pub(crate) repeats: u32,
     pub(crate) states_position: bool,
+    /// X, Y, Z that U, V or W stands for.
+    pub(crate) by_increment: [bool; 3],
     /// Axes that the program has not named in the frame of the block before it.
     pub(crate) unnamed: [Option<Lost>; 3],
 }
@@ -370,7 +372,7 @@ fn lose(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal, why
     let all = !words.has(AXIS_LETTERS);
     let Axes { linear, rotary } = &mut state.axes;
     for i in 0..3 {
-        if all || words.has(Letters::of(&[LINEAR[i]])) {
+        if (all || words.has(Letters::of(&[LINEAR[i]]))) && env.moves_axis(i) {
             linear[i] = lost;
         }
         if (all && env.setup.has_rotary[i]) || words.has(Letters::of(&[ROTARY[i]])) {

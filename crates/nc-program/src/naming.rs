@@ -9,7 +9,7 @@
 //! Where controls also differ in whether the axis moves (a tool length that changes without a motion of the axis in the
 //! same block), its position is unknown.
 
-use nc_syntax::dialect::{Action, CodeEntry};
+use nc_syntax::dialect::{Action, CodeEntry, GCode};
 
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
 use crate::motion::Moved;
@@ -32,6 +32,12 @@ fn written(words: &Words<'_, '_, '_>) -> Set {
     LINEAR.map(|letter| words.has(Letters::of(&[letter])))
 }
 
+/// Those of them that say a place, not an increment.
+fn absolutely_written(words: &Words<'_, '_, '_>, state: &Modal) -> Set {
+    let own = written(words);
+    [0, 1, 2].map(|i| own[i] && !words.by_increment[i] && state.distance == Distance::Absolute)
+}
+
 /// Takes the name from the axes that the codes of a block concern, before anything moves.
 ///
 /// * `before` – the state before the block
@@ -43,7 +49,7 @@ pub(crate) fn disturb(
     before: &Modal,
     state: &mut Modal,
 ) {
-    if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(Letters::of(b"DH")) {
+    if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(Letters::of(b"DHT")) {
         return;
     }
     for code in &words.codes {
@@ -61,7 +67,10 @@ pub(crate) fn disturb(
     }
     // Beside cutter compensation D is a radius, which is in no frame.
     let by_radius = [before, state].iter().any(|state| state.compensation == Compensation::On);
-    if words.has(Letters::of(b"D")) && !by_radius {
+    // Beside G96 of a lathe it limits the spindle's speed.
+    let by_speed =
+        env.dialect.turning.is_some() && words.codes.iter().any(|code| code.entry.code == GCode(960));
+    if words.has(Letters::of(b"D")) && !by_radius && !by_speed {
         forget(words, state, ALL, Why::ToolOffset);
     }
 }
@@ -126,6 +135,9 @@ fn length(
     use Action::{LengthOff, LengthOn, LengthOnNegative};
     let says =
         words.codes.iter().any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff));
+    let by_tool = words.has(Letters::of(b"T"))
+        && env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_t);
+    let says = says || by_tool;
     if !says && !words.has(Letters::of(b"H")) {
         return;
     }
@@ -141,8 +153,8 @@ fn length(
     forget(words, state, concerned, Why::ToolLength);
     // An absolute word in the same block leads to one place on all controls; in a cycle it is a depth.
     let along_cycle = state.cycle.map(|_| state.plane.axes()[2]);
-    let absolute = state.distance == Distance::Absolute && demand.owner == Owner::Motion;
-    let own = written(words);
+    let absolute = demand.owner == Owner::Motion;
+    let own = absolutely_written(words, state);
     for i in (0..3).filter(|i| changed[*i]) {
         let led = absolute && own[i] && along_cycle != Some(i);
         if !led && matches!(state.axes.linear[i], Axis::At(_)) {
@@ -171,11 +183,11 @@ pub(crate) fn name(
         transformed(words, before, state);
     }
     let motion = matches!(demand.owner, Owner::Motion | Owner::DwellP) && !moved.motions.is_empty();
-    if motion && state.distance == Distance::Absolute {
-        for (i, own) in written(words).into_iter().enumerate() {
+    if motion {
+        for (i, own) in absolutely_written(words, state).into_iter().enumerate() {
             // A hole's depth is no place where the axis stands; its R level is, where that is said in the frame in force.
             let named = match state.cycle {
-                Some(cycle) if state.plane.axes()[2] == i => {
+                Some(cycle) if state.plane.axes()[2] == i && state.distance == Distance::Absolute => {
                     state.return_level == ReturnLevel::R
                         && cycle.retract.is_some_and(|level| !level.incremental)
                 }

@@ -61,6 +61,7 @@ impl Plain {
         };
         let known = |axes: &[Axis; 3]| axes.iter().all(|axis| axis.known().is_some());
         let plain = modal.progress == Progress::Running
+            && env.dialect.turning.is_none()
             && modal.aside.is_none()
             && modal.cycle.is_none()
             && modal.distance == Distance::Absolute

@@ -88,9 +88,11 @@ pub(crate) fn end(words: &Words<'_, '_, '_>, state: &Modal, frame: &Frame) -> Ou
     for i in 0..if frame.is_shift() { 3 } else { 0 } {
         if let Some(value) = words.coordinate(LINEAR[i], inch) {
             let value_mm = value * unit_mm;
-            end.linear[i] = Axis::At(match state.distance {
-                Distance::Absolute => value_mm + shift_mm[i],
-                Distance::Incremental => increment_base(words, state.axes.linear[i], i)? + value_mm,
+            let incremental = words.by_increment[i] || state.distance == Distance::Incremental;
+            end.linear[i] = Axis::At(if incremental {
+                increment_base(words, state.axes.linear[i], i)? + value_mm
+            } else {
+                value_mm + shift_mm[i]
             });
         }
     }

@@ -11,7 +11,7 @@ use crate::modal::{
 };
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
-use crate::words::{Letters, Outcome, Words};
+use crate::words::{LINEAR_LETTERS, Letters, Outcome, Words};
 use crate::{frames, transform::Transform};
 
 /// What a program is read against.
@@ -21,6 +21,13 @@ pub(crate) struct Environment<'d> {
     pub(crate) setup: &'d Setup,
     /// Modal group of G1: a G80 of the same group cancels it too.
     pub(crate) motion_group: Option<u8>,
+}
+
+impl Environment<'_> {
+    /// False for the Y of a lathe, which stands at 0 whatever moves.
+    pub(crate) fn moves_axis(&self, axis: usize) -> bool {
+        axis != 1 || self.dialect.turning.is_none()
+    }
 }
 
 /// Whose the axis words of the block are.
@@ -95,6 +102,14 @@ pub(crate) fn apply<'d>(
     for code in &words.codes {
         let action = &code.entry.action;
         let owner = match (action, &env.dialect.frames) {
+            (Action::LimitOrPreset, _) => {
+                if words.has(LINEAR_LETTERS) {
+                    demand.frame = Some(&Action::Preset);
+                    demand.owner = Owner::Frame;
+                    demand.owner_span = Some(code.span);
+                }
+                continue;
+            }
             (Action::PresetCancel, rules) if rules.local_is_preset => {
                 wanted.shift = Some((action, code.span));
                 Owner::Motion
@@ -366,7 +381,9 @@ fn set<'d>(
         Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
         // Written out before; where it is not, refused below.
         Action::PolarOn => {}
-        Action::Pass { takes_words: true } => return Owner::Arguments,
+        // Read before, since X words of the same block are of the new kind.
+        Action::DiameterOn | Action::DiameterOff => {}
+        Action::LimitOrPreset | Action::Pass { takes_words: true } => return Owner::Arguments,
         Action::Dwell => return Owner::Dwell,
         Action::DwellBySetting => return Owner::DwellBySetting,
         Action::Reference => return Owner::Reference,

@@ -31,6 +31,8 @@ pub struct Setup {
     pub start_mm: Option<[f64; 3]>,
     /// X, Y, Z behind a tool change.
     pub tool_change: [AfterChange; 3],
+    /// X words of a lathe's program are diameters, or radii; `None`: not said.
+    pub diameters: Option<bool>,
     /// What a length without a point is was said by profile or command line: the dialect's numbers are not open.
     pub lengths_settled: bool,
 }

@@ -22,6 +22,9 @@ pub(crate) enum Length {
 /// T, and the M6 that brings it into the spindle. A T that is no whole number selects nothing known.
 pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
     const T: Letters = Letters::of(b"T");
+    if words.has(T) && env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_t) {
+        return turret(env, words, state);
+    }
     if words.has(T) {
         if env.dialect.t_may_change_tool {
             let message = format!("{} may change the tool at once", words.text(words.span(T)));
@@ -40,6 +43,50 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     if words.m_codes.iter().any(|(number, _)| changes(*number)) {
         state.tool_loaded = state.tool_selected;
     }
+    Ok(())
+}
+
+/// T of a turret: tool and offset in one number, `T0101`; offset 00 is none.
+fn turret(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    const T: Letters = Letters::of(b"T");
+    let span = words.span(T);
+    let Some((number, digits)) = words
+        .whole(b'T')?
+        .zip(words.number(b'T'))
+        .map(|(number, (_, span))| (number, words.text(span).bytes().filter(u8::is_ascii_digit).count()))
+    else {
+        return Ok(());
+    };
+    if !(3..=4).contains(&digits) {
+        return Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                format!("{} is not a tool and its offset", words.text(span)),
+                span,
+                "which digits are the offset's depends on a parameter (5028)",
+            )
+            .help("write two digits for the tool and two for its offset, like T0101; T0100 for no offset"));
+    }
+    state.tool_selected = Some(number / 100);
+    state.tool_loaded = state.tool_selected;
+    let offset = number % 100;
+    if offset == 0 {
+        state.tool_length = ToolLength::Off;
+        return Ok(());
+    }
+    let Some(applied_mm) = env.setup.tool(offset) else {
+        return Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                format!("tool offset {offset:02} is not given"),
+                span,
+                "neither in the profile nor on the command line",
+            )
+            .help(format!(
+                "`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile"
+            )));
+    };
+    state.tool_length = ToolLength::On { number: offset, negative: false, applied_mm };
     Ok(())
 }
 

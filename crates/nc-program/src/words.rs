@@ -96,6 +96,10 @@ pub(crate) struct Words<'b, 'a, 'd> {
     pub(crate) letters: Letters,
     /// `%`
     pub(crate) percent: bool,
+    /// X, Y, Z whose word is an increment by its letter: U or W.
+    pub(crate) by_increment: [bool; 3],
+    /// X words are diameters: half of them is meant.
+    pub(crate) diameters: bool,
     dialect: &'d Dialect,
     /// 1 + index of the item, by letter.
     at: [u32; 26],
@@ -111,6 +115,8 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             m_codes: SmallVec::new(),
             letters: Letters::NONE,
             percent: false,
+            by_increment: [false; 3],
+            diameters: false,
             dialect,
             at: [0; 26],
         }
@@ -171,7 +177,37 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 ItemKind::Invalid(reason) => return Err(Box::new(block.unreadable_at(reason, item.span))),
             }
         }
+        if words.dialect.turning.as_ref().is_some_and(|turning| turning.increments) {
+            words.increments()?;
+        }
         Ok(())
+    }
+
+    /// U and W stand for X and Z.
+    fn increments(&mut self) -> Outcome<()> {
+        for (own, axis) in [(b'U', 0), (b'W', 2)] {
+            let (letter, at) = (LINEAR[axis], usize::from(own - b'A'));
+            if self.at[at] == 0 {
+                continue;
+            }
+            if self.has(Letters::of(&[letter])) {
+                let span = self.span(Letters::of(&[own, letter]));
+                let message = format!("{} stands beside {} in this block", own as char, letter as char);
+                let help = format!("write {} or {}", letter as char, own as char);
+                return Err(self
+                    .refuse(codes::LETTER_TWICE, message, span, "both say where one axis goes")
+                    .help(help));
+            }
+            self.by_increment[axis] = true;
+            self.at[usize::from(letter - b'A')] = std::mem::take(&mut self.at[at]);
+            self.letters = self.letters.without(Letters::of(&[own])).or(Letters::of(&[letter]));
+        }
+        Ok(())
+    }
+
+    /// True in a lathe's program.
+    pub(crate) fn turns(&self) -> bool {
+        self.dialect.turning.is_some()
     }
 
     /// True where nothing is executed: names, comments, `%`, N and O alone.
@@ -205,7 +241,8 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     /// increment of millimetre words (0.001 degree at IS-B).
     pub(crate) fn coordinate(&self, letter: u8, inch: bool) -> Option<f64> {
         let (number, _) = self.number(letter)?;
-        Some(self.dialect.numbers.length(number, inch).to_f64())
+        let value = self.dialect.numbers.length(number, inch).to_f64();
+        Some(if self.diameters && letter == b'X' { 0.5 * value } else { value })
     }
 
     /// Value as written: F, P, L.

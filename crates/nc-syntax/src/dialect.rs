@@ -264,6 +264,12 @@ pub enum Action {
         /// Axis words of the block belong to this code.
         takes_words: bool,
     },
+    /// G7, DIAMON: X words are diameters.
+    DiameterOn,
+    /// G8, DIAMOF: X words are radii.
+    DiameterOff,
+    /// G50, G92 of lathes: with S a limit of the spindle, with X and Z where the axes stand.
+    LimitOrPreset,
     /// Known, and refused.
     Refuse {
         /// Why.
@@ -620,6 +626,40 @@ pub struct Flow {
     pub polar_words: bool,
 }
 
+/// What a lathe's programs have and a mill's have not.
+///
+/// ```
+/// let turning = |dialect| nc_dialect::builtin(dialect).unwrap().turning.clone();
+/// assert_eq!(turning("fanuc"), None);
+/// // System A writes increments as U and W, and an offset's number into T.
+/// let fanuc = turning("fanuc-lathe").unwrap();
+/// assert!(fanuc.increments && fanuc.offset_in_t);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Turning {
+    /// U and W are increments of X and Z.
+    pub increments: bool,
+    /// The last two digits of T choose the tool's offset (`T0101`).
+    pub offset_in_t: bool,
+    /// G-code systems by name, of which the machine has one; empty where there is only one.
+    pub systems: Vec<System>,
+}
+
+/// A G-code system of a lathe's control: what its table has in place of the dialect's own rows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct System {
+    /// `A`, `B`, `C`.
+    pub name: String,
+    /// Rows that replace those of their codes, or come to them.
+    pub codes: Vec<CodeEntry>,
+    /// Codes that it does not have.
+    pub without: Vec<GCode>,
+    /// U and W are increments of X and Z.
+    pub increments: bool,
+    /// State at the start of a program.
+    pub initial: Vec<GCode>,
+}
+
 /// Everything that differs between controls.
 ///
 /// ```
@@ -667,6 +707,8 @@ pub struct Dialect {
     pub unit_is_kept: bool,
     /// Blocks by which a program of a lathe is known.
     pub lathe: Vec<LatheSign>,
+    /// Programs of lathes; `None`: of mills.
+    pub turning: Option<Turning>,
     /// Variables, program flow and subprograms.
     pub flow: Flow,
     /// How cycles carry R and Z on.
@@ -691,6 +733,29 @@ pub struct Dialect {
 }
 
 impl Dialect {
+    /// The dialect with one of its G-code systems chosen; `None` where it does not have it.
+    ///
+    /// ```
+    /// use nc_syntax::dialect::{Action, GCode};
+    ///
+    /// let lathe = nc_dialect::builtin("fanuc-lathe").unwrap();
+    /// let code = |system| lathe.in_system(system).unwrap().code(GCode(980)).unwrap().action.clone();
+    /// assert_eq!((code("A"), code("B")), (Action::FeedPerMinute, Action::ReturnInitial));
+    /// assert!(lathe.in_system("D").is_none());
+    /// ```
+    #[must_use]
+    pub fn in_system(&self, name: &str) -> Option<Self> {
+        let turning = self.turning.as_ref()?;
+        let System { codes, without, increments, initial, .. } =
+            turning.systems.iter().find(|system| system.name == name)?;
+        let other = |entry: &&CodeEntry| {
+            !without.contains(&entry.code) && codes.iter().all(|own| own.code != entry.code)
+        };
+        let rows: Vec<CodeEntry> = self.codes.iter().filter(other).chain(codes).cloned().collect();
+        let turning = Turning { increments: *increments, systems: Vec::new(), ..turning.clone() };
+        Some(Self { codes: rows.into(), initial: initial.clone(), turning: Some(turning), ..self.clone() })
+    }
+
     /// The table's row for a code.
     #[must_use]
     #[inline]

@@ -135,7 +135,7 @@ fn stands_at(axis: usize, motion: &Motion, context: &Context) -> String {
             start.linear_mm.map(Option::unwrap_or_default)
         }
     };
-    let place = context.frame.to_program(start_mm)[axis] / context.unit_mm;
+    let place = context.frame.to_program(start_mm)[axis] / context.word_mm(axis);
     let number = format!("{place:.4}");
     let number = number.trim_end_matches('0');
     format!("{}{}", AXIS_NAMES[axis], if number == "-0." { "0." } else { number })

@@ -27,7 +27,11 @@ pub(crate) struct State<'a> {
 impl<'a> State<'a> {
     /// At the start of a program.
     pub(crate) fn new(job: &Job<'a>, numbers: &'a BlockNumbers) -> Self {
-        let corrector = Corrector::new(job.model, job.options);
+        let mut corrector = Corrector::new(job.model, job.options);
+        if job.dialect.turning.is_some() {
+            // A lathe's Y stands on the axis, whatever moves.
+            corrector = corrector.with_axis_at(1, 0.0);
+        }
         Self {
             interpreter: Interpreter::new(job.dialect, job.setup),
             corrector: match job.setup.start_mm {
@@ -173,7 +177,7 @@ impl Pass<'_> {
         if step.states_position {
             self.state_position(block, context)?;
         } else {
-            self.moved(block, context, letters(block), &step.motions)?;
+            self.moved(block, context, letters(block, context), &step.motions)?;
         }
         if guards { self.guard_behind(block, chosen) } else { Ok(()) }
     }
@@ -248,7 +252,7 @@ impl Pass<'_> {
                 continue;
             };
             let Some(number) = word.number() else { continue };
-            let away = (standing - nominal) / context.unit_mm;
+            let away = (standing - nominal) / context.word_mm(i);
             if away.abs() < 1e-7 {
                 continue;
             }
@@ -446,6 +450,7 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
     correction::Block {
         frame: context.frame.clone(),
         unit_mm: context.unit_mm,
+        diameters: context.diameters,
         decimals: decimals(job, context),
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,

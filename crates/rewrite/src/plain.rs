@@ -180,10 +180,10 @@ impl Pass<'_> {
         let context = feeds.context.clone();
         let Some(corrected) = corrected else {
             self.tally.figures.blocks_in += 1;
-            return self.moved(&block, &context, letters(&block), &[feed]);
+            return self.moved(&block, &context, letters(&block, &context), &[feed]);
         };
         let piece = correction::Piece { kind: PieceKind::Line, axes: corrected.axes, share: 1.0 };
-        let edited = self.editing(&context, letters(&block), &feed).edit(&piece, true, true);
+        let edited = self.editing(&context, letters(&block, &context), &feed).edit(&piece, true, true);
         self.state
             .emitter
             .rewrite(&block, &[edited], &mut self.out)

@@ -34,13 +34,16 @@ impl MotionCodes {
     }
 }
 
-/// The letters of a block's words.
-pub(crate) fn letters(block: &Block<'_>) -> Letters {
+/// The letters of a block's words; those of the axes also where U or W stands for them.
+pub(crate) fn letters(block: &Block<'_>, context: &Context) -> Letters {
     let mut letters = Letters::default();
     for word in block.words() {
         if word.letter.is_ascii_uppercase() {
             letters.insert(word.letter);
         }
+    }
+    for axis in (0..3).filter(|axis| context.by_increment[*axis]) {
+        letters.insert(b"XYZ"[axis]);
     }
     letters
 }
@@ -97,7 +100,8 @@ impl Editing<'_> {
         };
         if piece.kind != PieceKind::Dwell {
             for axis in 0..3 {
-                push(b"XYZ"[axis], piece.axes[axis], self.decimals[axis]);
+                let names = if self.context.by_increment[axis] { b"UVW" } else { b"XYZ" };
+                push(names[axis], piece.axes[axis], self.decimals[axis]);
             }
         }
         let [u, v, n] = self.context.plane.axes();

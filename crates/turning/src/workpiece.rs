@@ -182,6 +182,16 @@ impl Bending {
         piece.value(z_mm.clamp(piece.range_mm.low, piece.range_mm.high))
     }
 
+    /// Largest deflection of all places, mm, looked for in steps of a hundredth of each piece.
+    #[must_use]
+    pub fn largest_mm(&self) -> f64 {
+        let places = self.pieces.iter().flat_map(|piece| {
+            let Range { low, high } = piece.range_mm;
+            (0..=100).map(move |k| low + (high - low) * f64::from(k) * 0.01)
+        });
+        places.map(|z| self.at_mm(z).abs()).fold(0.0, f64::max)
+    }
+
     /// Bounds of it and its derivatives on a range.
     ///
     /// It has no kinks: a beam's slope is continuous, and so is a moving load's deflection. It stops growing at the bar's

@@ -190,12 +190,24 @@ pub struct Check {
 /// `vpost predict`
 #[derive(Debug, Args)]
 pub struct Predict {
-    /// Commanded points (CSV); - for standard input.
+    /// Commanded points (CSV), or with --lathe the program; - for standard input.
     #[arg(value_name = "POINTS.csv")]
     pub points: PathBuf,
     /// Give positions in the measuring frame: apply the profile's `[setup]`.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "lathe")]
     pub include_setup: bool,
+    /// Predict what a lathe turns by a program: radius along Z, roundness, cylindricity, roughness.
+    #[arg(long)]
+    pub lathe: bool,
+    /// With --lathe: distance of the places along Z, mm.
+    #[arg(long, value_name = "MM", default_value_t = 1.0, requires = "lathe")]
+    pub step: f64,
+    /// With --lathe: the tool cuts a bore, so that the largest radius counts.
+    #[arg(long, requires = "lathe")]
+    pub bore: bool,
+    /// With --lathe: the result as JSON on standard output.
+    #[arg(long, requires = "lathe")]
+    pub json: bool,
 }
 
 /// `vpost solve`

@@ -127,6 +127,7 @@ pub(crate) fn failure(error: &EngineError) -> Failure {
         EngineError::ReferenceTemperature { .. } => {
             (UNKNOWN_CONDITION, "add it to the profile: calibrated = { temperature_c = 20.0 }".to_owned())
         }
+        EngineError::Lathe { .. } => (OPTION, "use `--engine rigid-body`".to_owned()),
         EngineError::WithoutEffects { .. } => (
             ENGINE_WITHOUT_EFFECTS,
             "use `--engine rigid-body`, which can, or take the [[effect]] entries out of the profile"

@@ -125,7 +125,7 @@ fn curves_lost(profile: &Profile, format: Format) -> Option<String> {
 
 /// `vpost profile export`
 pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure> {
-    let profile = profile::load(&arguments.profile)?.profile;
+    let profile = profile::load_mill(&arguments.profile)?.profile;
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
         return Err(Failure::option("a step is above zero", "write `--step 50`"));
     }

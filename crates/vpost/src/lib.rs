@@ -31,6 +31,7 @@ mod source;
 mod summary;
 mod terminal;
 mod to_disk;
+mod turned;
 
 use std::ffi::OsString;
 use std::io::Write;

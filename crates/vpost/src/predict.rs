@@ -16,7 +16,10 @@ pub(crate) const POINT_OUTSIDE: Code = Code(909);
 
 /// `vpost predict POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let profile = profile::load(machine(shared)?)?.profile;
+    if arguments.lathe {
+        return crate::turned::run(arguments, shared, messages);
+    }
+    let profile = profile::load_mill(machine(shared)?)?.profile;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
     let points = Points::read(&name, &bytes, setup_tool(&profile), &profile)?;

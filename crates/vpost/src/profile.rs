@@ -17,6 +17,18 @@ pub(crate) struct Loaded {
     pub files: Vec<PathBuf>,
 }
 
+/// Reads the profile of a mill: what a command that knows points of space takes.
+pub(crate) fn load_mill(path: &Path) -> Result<Loaded, Failure> {
+    let loaded = load(path)?;
+    match &loaded.profile.lathe {
+        None => Ok(loaded),
+        Some(lathe) => Err(Failure::option(
+            format!("{} is the profile of a lathe, {}", file::name(path), lathe.chain),
+            "of lathes `vpost correct`, `batch`, `check` and `predict --lathe PROGRAM` know",
+        )),
+    }
+}
+
 /// Reads a profile and the tables it names; everything wrong with them is one failure.
 pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
     let bytes = std::fs::read(path)

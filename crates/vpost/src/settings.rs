@@ -44,7 +44,7 @@ impl Settings {
             None => profile.correction.engine,
         };
         let engine = conditions::engine(&profile, engine_id, shared)?;
-        let mut dialect = dialect(shared, &profile)?;
+        let mut dialect = turning_dialect(dialect(shared, &profile)?, &profile)?;
         let mut files = loaded.files;
         let tables = shared.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
         files.extend(tables.map(PathBuf::from));
@@ -160,6 +160,48 @@ impl Settings {
             guards: self.guards,
         })
     }
+}
+
+/// A lathe's dialect for a lathe and a mill's for a mill; of its G-code systems that of the profile.
+fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failure> {
+    let name = &dialect.name;
+    let Some(turning) = &dialect.turning else {
+        return match &profile.lathe {
+            None => Ok(dialect),
+            Some(lathe) => Err(Failure::option(
+                format!("dialect {name} is of mills, and {} is a lathe", lathe.chain),
+                format!("use a dialect of lathes: {}", lathe_dialects()),
+            )),
+        };
+    };
+    let Some(lathe) = &profile.lathe else {
+        return Err(Failure::option(
+            format!("dialect {name} is of lathes, and {} has no spindle", profile.chain()),
+            "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+        ));
+    };
+    if turning.systems.is_empty() {
+        return Ok(dialect);
+    }
+    let systems: Vec<&str> = turning.systems.iter().map(|system| system.name.as_str()).collect();
+    let Some(system) = &profile.program.g_code_system else {
+        return Err(Failure::option(
+            format!("which G-code system? the profile of {} does not say", lathe.chain),
+            format!("write `g_code_system = \"A\"` under `[program]`, one of: {}", systems.join(", ")),
+        ));
+    };
+    dialect.in_system(system).ok_or_else(|| {
+        Failure::option(
+            format!("dialect {name} has no G-code system {system}"),
+            format!("one of: {}", systems.join(", ")),
+        )
+    })
+}
+
+/// Their names.
+fn lathe_dialects() -> String {
+    let of_lathes = |name: &&str| nc_dialect::builtin(name).is_some_and(|dialect| dialect.turning.is_some());
+    nc_dialect::builtin_names().into_iter().filter(of_lathes).collect::<Vec<_>>().join(", ")
 }
 
 /// Puts into the dialect what command line or profile say of lengths without a point; true where one of them does.
@@ -297,6 +339,7 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
             machine_profile::AfterChange::Stays => AfterChange::Stays,
             machine_profile::AfterChange::At(place_mm) => AfterChange::At(place_mm),
         }),
+        diameters: profile.program.diameters,
         lengths_settled: false,
     };
     for option in &shared.work_offset {

@@ -12,7 +12,7 @@ use rewrite::OUTSIDE;
 
 /// `vpost solve POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
-    let profile = profile::load(machine(shared)?)?.profile;
+    let profile = profile::load_mill(machine(shared)?)?.profile;
     let id = match &shared.engine {
         Some(name) => engine_named(name)?,
         None => profile.correction.engine,

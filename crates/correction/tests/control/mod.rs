@@ -19,8 +19,9 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
     Block {
         frame: Frame::shift([10.0, -20.0, 5.5]),
         unit_mm: 1.0,
+        diameters: false,
         decimals: [3; 3],
-        incremental,
+        incremental: [incremental; 3],
         arc_centres_absolute: false,
         letters: letters(text),
         whole: [false; 3],
@@ -58,7 +59,7 @@ impl Control {
         let value = |axis: usize, word: AxisWord| match word {
             AxisWord::Omit => standing[axis],
             AxisWord::Keep => own[axis],
-            AxisWord::Write(counts) if block.incremental => standing[axis] + counts as f64 * 1e-3,
+            AxisWord::Write(counts) if block.incremental[axis] => standing[axis] + counts as f64 * 1e-3,
             AxisWord::Write(counts) => counts as f64 * 1e-3,
         };
         let end: Vector = block.frame.to_machine([0, 1, 2].map(|i| value(i, piece.axes[i]))).into();
@@ -188,7 +189,7 @@ pub(crate) fn tried(
         }
         Shape::Line => (Plane::Xy, None),
     };
-    let own_end = if block.incremental { control.at + (end - start) } else { end };
+    let own_end = if block.incremental[0] { control.at + (end - start) } else { end };
     let untouched = [Piece {
         kind: match shape {
             Shape::Line => PieceKind::Line,

@@ -223,6 +223,7 @@ impl Iterator for Program<'_, '_> {
 fn rounding_mm(job: &Job<'_>, context: &Context) -> f64 {
     let inch = context.unit_mm != 1.0;
     let decimals = if inch { [job.dialect.output.decimals_inch; 3] } else { job.decimals_mm };
-    let half = decimals.map(|d| 0.5 * context.unit_mm / f64::from(10u32.pow(u32::from(d))));
+    let half =
+        [0, 1, 2].map(|axis| 0.5 * context.word_mm(axis) / f64::from(10u32.pow(u32::from(decimals[axis]))));
     context.frame.largest_scale().max(1.0) * half.iter().map(|h| h * h).sum::<f64>().sqrt()
 }

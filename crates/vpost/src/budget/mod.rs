@@ -54,7 +54,7 @@ pub struct Budget {
 /// `vpost budget -m PROFILE`
 pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let path = machine(shared)?;
-    let profile::Loaded { profile, files, .. } = profile::load(path)?;
+    let profile::Loaded { profile, files, .. } = profile::load_mill(path)?;
     Roles::default()
         .reads_all("the control points", &arguments.points)
         .reads_all("read by the profile", &files)

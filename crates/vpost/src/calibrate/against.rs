@@ -15,7 +15,7 @@ use super::output::short;
 /// Prints the comparison.
 pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
     let name = file::name(old);
-    let old = profile::load(old)?.profile;
+    let old = profile::load_mill(old)?.profile;
     let (a, b) = (old.volume(), new.volume());
     let volume = Volume(
         [0, 1, 2].map(|i| Range { low: a.0[i].low.max(b.0[i].low), high: a.0[i].high.min(b.0[i].high) }),

@@ -82,7 +82,7 @@ impl Base {
             let description = Description { chain, linear, rotary, squareness: Squareness::default() };
             return Ok(Self { description, profile: None, tool_mm: Vector::zeros(), centred: Vec::new() });
         };
-        let profile = crate::profile::load(path)?.profile;
+        let profile = crate::profile::load_mill(path)?.profile;
         let tool_mm = Vector::from(profile.default_tool_mm);
         Ok(Self {
             description: profile.description.clone(),

@@ -64,7 +64,7 @@ impl Output {
         let stem = target.output.as_deref().and_then(Path::file_stem);
         let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
         if let Some(path) = &shared.machine {
-            let base = profile::load(path)?.profile;
+            let base = profile::load_mill(path)?.profile;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
                 return Err(question("the base profile cannot be edited", "run `vpost profile check` on it"));

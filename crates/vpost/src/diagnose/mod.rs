@@ -141,7 +141,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
 
 impl Model {
     fn load(shared: &Shared) -> Result<Self, Failure> {
-        let profile::Loaded { profile, hash, files } = profile::load(machine(shared)?)?;
+        let profile::Loaded { profile, hash, files } = profile::load_mill(machine(shared)?)?;
         let engine = match &shared.engine {
             None => None,
             Some(name) => {

@@ -69,7 +69,7 @@ pub struct Map {
 
 /// `vpost map -m PROFILE`
 pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let loaded = profile::load(machine(shared)?)?;
+    let loaded = profile::load_mill(machine(shared)?)?;
     let profile = loaded.profile;
     Roles::default()
         .reads_all("read by the profile", &loaded.files)

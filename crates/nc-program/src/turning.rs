@@ -1,0 +1,112 @@
+//! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
+
+use nc_syntax::dialect::{Action, GCode};
+use toolpath::{Motion, Plane, Shape};
+
+use crate::codes;
+use crate::modal::{Modal, MotionMode, XWords};
+use crate::settings::{Demand, Owner};
+use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
+
+/// The code that keeps the cutting speed constant, on every control.
+const CONSTANT_SPEED: GCode = GCode(960);
+/// Program coordinates this little below the axis are on it, mm: sums of increments have last bits.
+const ON_THE_AXIS_MM: f64 = 1e-9;
+
+/// G7 and G8, which hold for the words of their own block, and how X words are to be read then; and whether a limit holds the
+/// spindle where the speed rises towards the axis.
+pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    for code in &words.codes {
+        match code.entry.action {
+            Action::DiameterOn => state.x_words = XWords::Diameter,
+            Action::DiameterOff => state.x_words = XWords::Radius,
+            Action::LimitOrPreset => state.speed_limited |= words.has(Letters::of(b"S")),
+            _ => {}
+        }
+    }
+    words.diameters = state.x_words == XWords::Diameter;
+    if let Some(code) = words.codes.iter().find(|code| code.entry.code == CONSTANT_SPEED) {
+        state.speed_limited |= words.has(Letters::of(b"D"));
+        if !state.speed_limited {
+            return Err(words
+                .refuse(
+                    codes::UNLIMITED_SPEED,
+                    format!("{} without a limit of the spindle's speed", words.text(code.span)),
+                    code.span,
+                    "towards the axis the speed rises without end",
+                )
+                .help("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC)"));
+        }
+    }
+    Ok(())
+}
+
+/// Feeds beyond the axis: a face may pass the centre, what moves along Z may not.
+pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &[Motion]) -> Outcome<()> {
+    let Some(frame) = &state.frame else { return Ok(()) };
+    for motion in motions {
+        let Motion::Feed(feed) = motion else { continue };
+        let [start, end] = [&feed.start, &feed.end].map(|place| frame.to_program(place.linear_mm));
+        let along = feed.shape != Shape::Line || (end[2] - start[2]).abs() > ON_THE_AXIS_MM;
+        if along && start[0].min(end[0]) < -ON_THE_AXIS_MM {
+            return Err(words
+                .refuse(
+                    codes::BELOW_THE_AXIS,
+                    "turning below the axis",
+                    words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+                    format!("X is negative here: {:.4} mm on the radius", start[0].min(end[0])),
+                )
+                .help("a face may pass the centre; what is turned needs X above zero"));
+        }
+    }
+    Ok(())
+}
+
+/// What no lathe of two axes does, and what nobody said.
+pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Modal) -> Outcome<()> {
+    const X: Letters = Letters::of(b"X");
+    const Y: Letters = Letters::of(b"Y");
+    let places = !matches!(demand.owner, Owner::Dwell | Owner::DwellBySetting | Owner::Arguments);
+    let absent = Y.or(ROTARY_LETTERS);
+    if places && words.has(absent) {
+        let message = format!("{} on a lathe of two axes", words.names(absent));
+        return Err(words
+            .refuse(codes::NO_TURNING, message, words.span(absent), "the axes are X and Z")
+            .help("correct the turning apart from what is milled or drilled off the axis"));
+    }
+    if places && words.has(X) && state.x_words == XWords::Unstated {
+        return Err(words
+            .refuse(
+                codes::X_UNSTATED,
+                "whether X is a diameter or a radius is not said",
+                words.span(X),
+                "half of what is written, or all of it?",
+            )
+            .help("write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile, or G7 or G8 where the control has them"));
+    }
+    let increments = words.by_increment != [false; 3];
+    if increments && matches!(demand.owner, Owner::Frame | Owner::MachineCoordinates | Owner::Length) {
+        let named = [0, 2].into_iter().filter(|i| words.by_increment[*i]).map(|i| Letters::of(&[LINEAR[i]]));
+        let span = words.span(named.fold(Letters::NONE, Letters::or));
+        return Err(words
+            .refuse(
+                codes::NO_TURNING,
+                "an increment where a place was expected",
+                span,
+                "U and W add to X and Z",
+            )
+            .help("write the place with X and Z"));
+    }
+    let arc = matches!(state.motion, MotionMode::Arc(..)) && demand.owner == Owner::Motion;
+    if arc && words.has(AXIS_LETTERS.or(ARC_LETTERS)) && state.plane != Plane::Zx {
+        return Err(words
+            .refuse(
+                codes::NO_TURNING,
+                "an arc out of the plane of X and Z",
+                words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+                "a lathe turns arcs in G18",
+            )
+            .help("write G18 before it"));
+    }
+    Ok(())
+}
