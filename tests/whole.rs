@@ -41,4 +41,5 @@ mod points;
 mod real_machines;
 mod refusals;
 mod traps;
+mod turning;
 mod words;

@@ -1,6 +1,7 @@
 //! Printed numbers beside ours: `docs/reproduction.md`.
 
 mod calibration;
+mod lathe;
 mod rotations;
 mod solutions;
 mod targets;
@@ -30,6 +31,7 @@ pub(crate) fn page() -> String {
     text += &targets::section();
     text += "\n";
     text += &calibration::section();
+    text += &lathe::section();
     crate::wrap::wrapped(&text)
 }
 

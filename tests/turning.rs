@@ -1,0 +1,185 @@
+//! Lathes: programs are corrected in (r, z), judged by the closed loop and by what `predict --lathe` says of the output.
+
+use crate::common::{messages, run};
+
+const PROFILE: &str = "machine-profiles/generic_lathe.toml";
+
+/// A shaft of 40 mm along 120 mm, an arc, a collar, increments, and a face past the centre.
+const SHAFT: &str = "%\nO1000\nG21 G18 G40 G99 G54\nG50 S2500\nT0101\nG96 S180 M3\nG0 X80. Z5.\nX20. Z2.\nG1 Z0. F0.2\nX36.\nX40. Z-2.\n\
+Z-120.\nG2 X50. Z-125. R5.\nG1 X60.\nG3 X64. Z-127. I0. K-2.\nG1 W-20.\nU4.\nG0 X80.\nZ5.\nX34.\nG1 Z0.5\nX-1.6 F0.1\nG0 Z5.\nM9\nM5\nM30\n%\n";
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a temporary folder") }
+    }
+
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.folder.path().join(name);
+        std::fs::write(&path, text).expect("writable");
+        path.to_str().expect("a plain path").to_owned()
+    }
+
+    /// The shipped lathe with words of its profile replaced.
+    fn profile(&self, changes: &[(&str, &str)]) -> String {
+        let root = crate::common::root();
+        let mut text = std::fs::read_to_string(root.join(PROFILE)).expect("readable");
+        let tables = root.join("machine-profiles/generic_lathe");
+        text = text.replace("generic_lathe/", &format!("{}/", tables.display()));
+        for (from, to) in changes {
+            assert!(text.contains(from), "{from} is not in the profile");
+            text = text.replace(from, to);
+        }
+        self.file("lathe.toml", &text)
+    }
+
+    /// The output, which `check` has passed.
+    fn corrected(&self, program: &str, profile: &str) -> String {
+        let input = self.file("in.nc", program);
+        let output = run(&[&input, "-m", profile]);
+        assert!(output.status.success(), "{}", messages(&output));
+        let text = String::from_utf8(output.stdout).expect("ASCII");
+        let out = self.file("out.nc", &text);
+        let checked = run(&["check", &input, &out, "-m", profile]);
+        assert!(checked.status.success(), "{}\n{text}", messages(&checked));
+        text
+    }
+
+    fn refused(&self, program: &str, profile: &str) -> String {
+        let output = run(&[&self.file("bad.nc", program), "-m", profile]);
+        assert!(!output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+        messages(&output)
+    }
+
+    /// z from the chuck, radius and its error in µm, of the places that a program turns.
+    fn turned(&self, program: &str, profile: &str) -> Vec<[f64; 3]> {
+        let input = self.file("turned.nc", program);
+        let output = run(&["predict", "--lathe", &input, "-m", profile, "--step", "5"]);
+        assert!(output.status.success(), "{}", messages(&output));
+        let text = String::from_utf8(output.stdout).expect("ASCII");
+        let number = |field: &str| field.parse::<f64>().expect("a number");
+        text.lines()
+            .skip(1)
+            .map(|line| {
+                let fields: Vec<&str> = line.split(',').collect();
+                [number(fields[0]), number(fields[1]), number(fields[4])]
+            })
+            .collect()
+    }
+}
+
+#[test]
+fn a_shaft_is_turned_straight() {
+    let bench = Bench::new();
+    let before = bench.turned(SHAFT, PROFILE);
+    let corrected = bench.corrected(SHAFT, PROFILE);
+    assert_ne!(corrected, SHAFT);
+    // U and W stay what they are, cutting speed and limit too.
+    for kept in ["G50 S2500", "T0101", "G96 S180 M3", "W-", "U"] {
+        assert!(corrected.contains(kept), "{kept}:\n{corrected}");
+    }
+    // Along the cylinder of 40 mm: Z 360 of the machine is the program's zero, the chuck's face 60.
+    let along = |rows: &[[f64; 3]], nominal: f64| {
+        let on = |row: &&[f64; 3]| row[0] > 182.0 && row[0] < 297.0;
+        rows.iter().filter(on).map(|row| (row[1] - nominal).abs() * 1e3).fold(0.0, f64::max)
+    };
+    let largest_before = along(&before, 20.0);
+    let largest_after = along(&bench.turned(&corrected, PROFILE), 20.0);
+    assert!(largest_before > 10.0, "{largest_before}");
+    // 1 µm and half a step of 0.5 µm on the radius, as a distance with that of Z.
+    assert!(largest_after <= 1.0 + 0.56, "{largest_after}");
+}
+
+#[test]
+fn a_perfect_lathe_returns_the_input() {
+    let bench = Bench::new();
+    let text = "format = 1\nname = \"P\"\ncontrol = \"fanuc-lathe\"\nchain = \"[w S b Z X t]\"\n[program]\ng_code_system = \"A\"\nx = \"diameter\"\n\
+        [axis.X]\ntravel_mm = [-20, 160]\n[axis.Z]\ntravel_mm = [-20, 520]\n[tool]\nlengths_mm = { H1 = [12.5, 0, 41.25] }\n\
+        [work_offsets_mm]\nG54 = [0, 0, 360.0]\n";
+    let profile = bench.file("perfect.toml", text);
+    assert_eq!(bench.corrected(SHAFT, &profile), SHAFT);
+}
+
+#[test]
+fn diameters_and_radii_are_one_part() {
+    let bench = Bench::new();
+    let lines = |x: [&str; 3]| {
+        format!("G21 G99\nT0101\nG0 X{} Z2.\nG1 X{} F0.2\nZ-40.\nX{}\nM30\n", x[0], x[1], x[2])
+    };
+    let places = |output: &str| {
+        let words = output.split(|c: char| c.is_whitespace());
+        words.filter_map(|word| word.strip_prefix('X')?.parse::<f64>().ok()).collect::<Vec<_>>()
+    };
+    let by_diameter = places(&bench.corrected(&lines(["60.", "40.", "60."]), PROFILE));
+    let radius = bench.profile(&[("x             = \"diameter\"", "x = \"radius\"")]);
+    let by_radius = places(&bench.corrected(&lines(["30.", "20.", "30."]), &radius));
+    assert_eq!(by_diameter.len(), by_radius.len());
+    for (diameter, radius) in by_diameter.iter().zip(&by_radius) {
+        // Steps of 0.001 on the diameter and on the radius.
+        assert!((diameter - 2.0 * radius).abs() <= 0.0021, "{diameter} {radius}");
+    }
+}
+
+#[test]
+fn what_a_lathe_does_not_do_is_refused_by_name() {
+    let bench = Bench::new();
+    let block = |text: &str| format!("G21 G99\nG50 S2000\nT0101\nG0 X60. Z2.\nG1 X40. F0.2\n{text}\nM30\n");
+    for (text, code) in [
+        ("G0 C90.", "VP0251"),
+        ("Y5.", "VP0251"),
+        ("G17 G2 X42. Z-5. R5.", "VP0251"),
+        ("X-20.\nZ-30.", "VP0252"),
+        ("X10. U2.", "VP0206"),
+        ("G71 U2. R0.5", "VP0208"),
+        ("G90 X30. Z-20. F0.2", "VP0208"),
+        ("G92 X30. Z-20. F1.5", "VP0208"),
+        ("G76 P021060 Q100 R0.05", "VP0208"),
+        ("G42 X38.", "VP0208"),
+        ("T0202", "VP0215"),
+    ] {
+        let said = bench.refused(&block(text), PROFILE);
+        assert!(said.contains(code), "{text}: {said}");
+    }
+    let unlimited = bench.refused("G21 G99\nT0101\nG96 S180 M3\nM30\n", PROFILE);
+    assert!(unlimited.contains("VP0253"), "{unlimited}");
+    let unsaid = bench.profile(&[("x             = \"diameter\"", "")]);
+    assert!(bench.refused(&block("Z-5."), &unsaid).contains("VP0250"));
+    let systemless = bench.profile(&[("g_code_system = \"A\"", "")]);
+    assert!(bench.refused(&block("Z-5."), &systemless).contains("G-code system"));
+    // A mill's dialect for a lathe, and a lathe's for a mill.
+    let program = bench.file("part.nc", &block("Z-5."));
+    let mill = run(&[&program, "-m", PROFILE, "-d", "fanuc"]);
+    assert!(messages(&mill).contains("fanuc-lathe"), "{}", messages(&mill));
+    let lathe = run(&[&program, "-m", "machine-profiles/stan_s500.toml", "-d", "fanuc-lathe"]);
+    assert!(messages(&lathe).contains("no spindle"), "{}", messages(&lathe));
+}
+
+#[test]
+fn systems_b_and_c_read_their_own_codes() {
+    let bench = Bench::new();
+    for (system, unit, limit) in [("B", "G21", "G92 S2000"), ("C", "G71", "G92 S2000")] {
+        let profile = bench.profile(&[("g_code_system = \"A\"", &format!("g_code_system = \"{system}\""))]);
+        let program = format!(
+            "{unit} G90 G95 G54\n{limit}\nT0101\nG96 S150 M3\nG0 X60. Z2.\nG1 X40. F0.2\nZ-60.\nG91 X2.\nZ-20.\nG90 X60.\nM30\n"
+        );
+        let corrected = bench.corrected(&program, &profile);
+        assert!(corrected.contains(limit) && corrected != program, "{system}:\n{corrected}");
+    }
+}
+
+#[test]
+fn linuxcnc_says_diameters_itself() {
+    let bench = Bench::new();
+    let profile = bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\""), ("x             = \"diameter\"", "")]);
+    let program = |code: &str, x: [&str; 2]| {
+        format!("G21 G18 G90 {code}\nT1 M6\nG43 H1\nG95 G96 D2500 S180 M3\nG0 X{} Z2\nG1 X{} F0.2\nZ-60\nX{}\nM2\n", x[0], x[1], x[0])
+    };
+    for (code, x) in [("G7", ["60", "40"]), ("G8", ["30", "20"])] {
+        let program = program(code, x);
+        assert_ne!(bench.corrected(&program, &profile), program);
+    }
+    assert!(bench.refused(&program("", ["60", "40"]), &profile).contains("VP0250"));
+}
