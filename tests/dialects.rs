@@ -323,9 +323,7 @@ fn describe(dialect: &Dialect, setup: &Setup, missing: &mut Vec<String>) -> Stri
 fn every_code_is_listed_with_its_proof() {
     let setup = setup();
     let mut missing = Vec::new();
-    let lists: Vec<String> = mills()
-        .map(|dialect| describe(dialect, &setup, &mut missing))
-        .collect();
+    let lists: Vec<String> = mills().map(|dialect| describe(dialect, &setup, &mut missing)).collect();
     missing.retain(|row| PROVEN.iter().any(|name| row.starts_with(&format!("{name}:"))));
     assert!(missing.is_empty(), "{} rows without proof:\n{}", missing.len(), missing.join("\n"));
     let path = root().join(DOCUMENT);

@@ -173,9 +173,13 @@ fn systems_b_and_c_read_their_own_codes() {
 #[test]
 fn linuxcnc_says_diameters_itself() {
     let bench = Bench::new();
-    let profile = bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\""), ("x             = \"diameter\"", "")]);
+    let profile =
+        bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\""), ("x             = \"diameter\"", "")]);
     let program = |code: &str, x: [&str; 2]| {
-        format!("G21 G18 G90 {code}\nT1 M6\nG43 H1\nG95 G96 D2500 S180 M3\nG0 X{} Z2\nG1 X{} F0.2\nZ-60\nX{}\nM2\n", x[0], x[1], x[0])
+        format!(
+            "G21 G18 G90 {code}\nT1 M6\nG43 H1\nG95 G96 D2500 S180 M3\nG0 X{} Z2\nG1 X{} F0.2\nZ-60\nX{}\nM2\n",
+            x[0], x[1], x[0]
+        )
     };
     for (code, x) in [("G7", ["60", "40"]), ("G8", ["30", "20"])] {
         let program = program(code, x);

@@ -58,6 +58,8 @@ fn vector(values: Option<[Finite; 3]>) -> Vector {
 const MOST_ARC_TOLERANCE_MM: f64 = 10.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
 const COARSEST_MM: f64 = 0.1;
+/// The finest step that decimals are counted for, mm.
+const FINEST_MM: f64 = 1e-6;
 /// The Y that a lathe does not have stands at 0; so far it may be named.
 const STANDING_MM: f64 = 1.0;
 
@@ -99,6 +101,8 @@ impl Loader<'_> {
         let mut linear = Vec::new();
         for (axis, written) in Axis::ALL.into_iter().zip([&axes.X, &axes.Y, &axes.Z]) {
             if is_lathe && axis == Axis::Y && written.is_none() {
+                // It has no words that rounding could move it by.
+                resolution_mm[1] = FINEST_MM;
                 linear.push(Some(LinearAxis::perfect(Range { low: -STANDING_MM, high: STANDING_MM })));
                 continue;
             }

@@ -155,7 +155,7 @@ fn length(
     let along_cycle = state.cycle.map(|_| state.plane.axes()[2]);
     let absolute = demand.owner == Owner::Motion;
     let own = absolutely_written(words, state);
-    for i in (0..3).filter(|i| changed[*i]) {
+    for i in (0..3).filter(|i| changed[*i] && env.moves_axis(*i)) {
         let led = absolute && own[i] && along_cycle != Some(i);
         if !led && matches!(state.axes.linear[i], Axis::At(_)) {
             state.axes.linear[i] = Axis::Unknown(Lost { why: Why::ToolLength, line: words.block.line });

@@ -41,13 +41,17 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
     Ok(())
 }
 
+/// A face that was corrected leaves its plane by less than this share of its way.
+const FACE_SLOPE: f64 = 0.01;
+
 /// Feeds beyond the axis: a face may pass the centre, what moves along Z may not.
 pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &[Motion]) -> Outcome<()> {
     let Some(frame) = &state.frame else { return Ok(()) };
     for motion in motions {
         let Motion::Feed(feed) = motion else { continue };
         let [start, end] = [&feed.start, &feed.end].map(|place| frame.to_program(place.linear_mm));
-        let along = feed.shape != Shape::Line || (end[2] - start[2]).abs() > ON_THE_AXIS_MM;
+        let along =
+            feed.shape != Shape::Line || (end[2] - start[2]).abs() > FACE_SLOPE * (end[0] - start[0]).abs();
         if along && start[0].min(end[0]) < -ON_THE_AXIS_MM {
             return Err(words
                 .refuse(

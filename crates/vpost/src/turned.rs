@@ -31,8 +31,8 @@ const HIGHEST_WAVE: u32 = 8;
 const SHARE_OF_STEP: f64 = 0.2;
 /// Most places along Z.
 const MOST_PLACES: usize = 200_000;
-/// Radii of one cylinder differ by less, mm.
-const SAME_RADIUS_MM: f64 = 1e-6;
+/// Programmed radii of one cylinder differ by less, mm: more than a correction, less than a taper that is meant.
+const SAME_RADIUS_MM: f64 = 0.02;
 /// A cylinder is judged by so many sections at most, evenly chosen.
 const MOST_SECTIONS: usize = 20;
 
@@ -313,7 +313,7 @@ impl Surface {
                     .map(|wave: &Wave| um(wave.amplitude_mm))
                     .collect(),
             });
-            if run.last().is_some_and(|(_, radius, _)| (radius - nominal_radius_mm).abs() > SAME_RADIUS_MM) {
+            if run.first().is_some_and(|(_, radius, _)| (radius - nominal_radius_mm).abs() > SAME_RADIUS_MM) {
                 cylinders.extend(stretch(&std::mem::take(&mut run)));
             }
             run.push((self.z_mm(place), nominal_radius_mm, section));
