@@ -57,11 +57,20 @@ impl Tips {
 pub(crate) struct Whole {
     /// Where it starts as programmed.
     pub(crate) start: Vector,
+    /// The rotary axes there, rad, where they turn on the way.
+    pub(crate) rotary_rad: Option<Vector>,
     pub(crate) length_mm: f64,
     /// Rotary axes turn on the way.
     pub(crate) in_step: bool,
     /// Whether lines may be put before it.
     pub(crate) division: Division,
+}
+
+impl Whole {
+    /// True where a part of the motion is its first.
+    pub(crate) fn begins_with(&self, part: &Curve) -> bool {
+        part.at(0.0) == self.start && part.rotary_rad(0.0) == self.rotary_rad
+    }
 }
 
 /// By how much further than it was already the tool may be off on the way from a place that was not corrected, mm.
@@ -99,8 +108,9 @@ impl<'m> Corrector<'m> {
             // From where the axes stand the block holds or does not.
             return Ok(());
         }
-        let (start, length_mm) = (part.at(0.0), motion.length_mm);
-        let before_it = if start == motion.start { Before::Another } else { Before::Same };
+        let length_mm = motion.length_mm;
+        let before_it = if motion.begins_with(part) { Before::Another } else { Before::Same };
+        let start = machine.target(part, 0.0);
         let tangent = if motion.in_step { Vector::zeros() } else { part.tangent(0.0) };
         let mut wanted = self.start_within_reach(machine, start, block)?;
         if let Some(first) = self.first_moves(&wanted, machine.state.direction, block) {
@@ -341,7 +351,10 @@ impl<'m> Corrector<'m> {
             if let Some(axis) = reframed.filter(|_| corrected.pieces.is_empty()) {
                 return Err(CorrectionError::Unnamed { axis, distance_um: way_mm * 1e3 });
             }
-            corrected.pieces.push(Piece { kind: PieceKind::Line, axes, share: share.max(LEAST_SHARE) });
+            // No rotary axis turns on it, whatever the block's words say.
+            let rotary = machine.turns.then_some([AxisWord::Omit; 3]);
+            let share = share.max(LEAST_SHARE);
+            corrected.pieces.push(Piece { kind: PieceKind::Line, axes, rotary, share });
             corrected.correction.approach = true;
         }
         Ok(written)

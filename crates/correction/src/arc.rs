@@ -130,7 +130,7 @@ impl<'m> Corrector<'m> {
             match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
-                    let piece = Piece { kind, axes, share: follow.share(part) };
+                    let piece = Piece::new(kind, axes, follow.share(part));
                     follow.finish(piece, bound, (wanted - nominal_end).norm());
                     self.gone_along(&follow.machine.state, &curve);
                     self.note_end(&follow.machine.state, nominal_end, wanted);

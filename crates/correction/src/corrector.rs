@@ -11,6 +11,7 @@ use crate::curve::Curve;
 use crate::deviation::{Enclosed, Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
+use crate::turning::{Turned, Turning};
 use crate::{Piece, PieceKind};
 
 /// What happens to feed motion outside the calibrated volume.
@@ -31,6 +32,8 @@ pub struct Options {
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.
     pub minimum_segment_mm: f64,
+    /// Largest angle by which the rotary words of a split motion may turn the tool away from its programmed direction, rad.
+    pub orientation_rad: f64,
 }
 
 /// Why a motion cannot be corrected.
@@ -81,6 +84,19 @@ pub enum CorrectionError {
         axis: usize,
         /// How far it is from where it should be, µm.
         distance_um: f64,
+    },
+    /// The model has bounds for rotary axes that stand only.
+    #[error("the path cannot be proven while a rotary axis turns at feed rate")]
+    NoBoundsForTurns,
+    /// The rotary words of a piece cannot say its direction finely enough.
+    #[error(
+        "a split needs rotary words that turn the tool by {slip_urad:.1} urad away from its direction; {allowed_urad:.1} urad are allowed"
+    )]
+    Direction {
+        /// By how much, µrad.
+        slip_urad: f64,
+        /// What was asked for, µrad.
+        allowed_urad: f64,
     },
     /// Splitting does not help: a jump of the model, or the shortest piece allowed.
     #[error(
@@ -138,6 +154,8 @@ pub struct Correction {
     pub leaning_mm: Option<f64>,
     /// Nobody knows on which side of its play an axis stands: the tool is off by up to this much besides, mm.
     pub unknown_side_mm: f64,
+    /// Rotary axes turned on the way.
+    pub turned: Option<Turned>,
 }
 
 /// Corrects motions in the order of the program.
@@ -322,6 +340,7 @@ impl<'m> Corrector<'m> {
             state: self.state(block, rotary_deg),
             everywhere: self.everywhere.as_ref().and_then(|known| known.2.clone()),
             told_mm: self.told_mm[1],
+            turns: false,
         }
     }
 
@@ -478,7 +497,7 @@ impl<'m> Corrector<'m> {
         correction.largest_mm = (wanted - end_mm).norm();
         // The nearest point's correction is no answer for a feed motion that starts here.
         self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..state }, wanted));
-        Ok(one(Piece { kind: PieceKind::Rapid, axes, share: 1.0 }, correction))
+        Ok(one(Piece::new(PieceKind::Rapid, axes, 1.0), correction))
     }
 
     /// Chooses the words that bring the axes to `wanted` and takes note of where they then stand.
@@ -565,14 +584,27 @@ impl<'m> Corrector<'m> {
             && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
             && let Some(line) = self.short_line(&lines, block, feed.start.linear_mm, feed.end.linear_mm, None)
         {
-            return Ok(one(Piece { kind: PieceKind::Line, axes: line.axes, share: 1.0 }, line.correction));
+            return Ok(one(Piece::new(PieceKind::Line, line.axes, 1.0), line.correction));
         }
-        let whole = Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape);
+        let turns = feed.start.rotary_deg != feed.end.rotary_deg;
+        if turns && feed.division == Division::Any {
+            self.require_turns()?;
+        }
+        let turning = matches!(feed.shape, Shape::Line) && turns && self.model.follows_turns();
+        let whole = if turning {
+            Curve::Turn {
+                ends: [feed.start, feed.end].map(|place| place.linear_mm.into()),
+                rotary_rad: [feed.start, feed.end].map(|place| place.rotary_deg.map(f64::to_radians).into()),
+            }
+        } else {
+            Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape)
+        };
         let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
         let motion = Whole {
             start: whole.at(0.0),
+            rotary_rad: whole.rotary_rad(0.0),
             length_mm: whole.length_mm(),
-            in_step: feed.start.rotary_deg != feed.end.rotary_deg,
+            in_step: turns,
             division: feed.division,
         };
         let parts = self.monotone_parts(&whole);
@@ -580,11 +612,16 @@ impl<'m> Corrector<'m> {
         if feed.division == Division::One && !alone {
             return Err(self.turns_in_one_block(&whole, block, feed.end.rotary_deg));
         }
-        let (mut own_words, mut at_quarters_mm) = (true, None);
+        let (mut own_words, mut at_quarters_mm, mut commanded_mm) = (true, None, 0.0);
         for &(s0, s1) in &parts {
             let part = if alone { whole } else { whole.part(s0, s1) };
             self.turn_towards(&part.at(0.0), &part.at(1.0));
             let mut machine = self.machine(block, feed.end.rotary_deg);
+            if turning {
+                // Until the first piece is written it stands where the motion begins.
+                machine.state = self.state(block, feed.start.rotary_deg);
+                (machine.everywhere, machine.turns) = (None, true);
+            }
             self.approach(&mut machine, &part, block, &motion, &mut corrected)?;
             let mut follow = Follow {
                 machine,
@@ -596,6 +633,8 @@ impl<'m> Corrector<'m> {
                 solved: None,
                 enclosed: None,
                 foreseen: false,
+                turning: turning.then(|| Turning::of(feed)),
+                commanded_mm: 0.0,
                 corrected: &mut corrected,
             };
             match feed.shape {
@@ -610,12 +649,20 @@ impl<'m> Corrector<'m> {
                 Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
             }
             own_words &= follow.alone;
+            commanded_mm += follow.commanded_mm;
             let state = follow.machine.state;
             self.settle(&state, block);
         }
         if corrected.pieces.is_empty() && !own_words {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
             corrected.pieces.push(self.standstill(block)?);
+        }
+        if turning {
+            let pieces = corrected.pieces.len();
+            corrected.correction.turned = Some(self.turned(&whole, block, feed, commanded_mm, pieces));
+            corrected.correction.before_mm =
+                self.before_turning_mm(&whole, &self.state(block, feed.end.rotary_deg));
+            return Ok(corrected);
         }
         let (rotary_deg, largest_mm) = (feed.end.rotary_deg, corrected.correction.largest_mm);
         corrected.correction.before_mm = match at_quarters_mm {
@@ -647,7 +694,7 @@ impl<'m> Corrector<'m> {
             Some(mm) if named[i] => block.write(i, mm, standing[i]).0,
             _ => AxisWord::Omit,
         });
-        Ok(Piece { kind: PieceKind::Line, axes, share: 1.0 })
+        Ok(Piece::new(PieceKind::Line, axes, 1.0))
     }
 
     /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every
@@ -701,7 +748,9 @@ impl<'m> Corrector<'m> {
         let standing = self.standing_program(block);
         let ends = [(0.0, block.named), (1.0, block.may_have_words())];
         let off = ends.into_iter().filter_map(|(s, may)| {
-            let wanted = block.program(&self.solve(&follow.machine.state, part.at(s)).ok()?);
+            let mut state = follow.machine.state;
+            state.rotary_rad = part.rotary_rad(s).unwrap_or(state.rotary_rad);
+            let wanted = block.program(&self.solve(&state, part.at(s)).ok()?);
             let off = |i: usize| (wanted[i] - standing[i].unwrap_or(wanted[i])).abs();
             (0..3).filter(|i| !may[*i]).map(|i| (i, off(i))).max_by(|a, b| a.1.total_cmp(&b.1))
         });
@@ -759,6 +808,10 @@ pub(crate) struct Follow<'a, 'm> {
     pub(crate) enclosed: Option<Enclosed>,
     /// Places of a line were solved together ([`Corrector::foresee_places`]).
     pub(crate) foreseen: bool,
+    /// Where the rotary axes stand in the output, where they turn on the way.
+    pub(crate) turning: Option<Turning>,
+    /// Way of the linear axes that was written so far, mm: of turns only.
+    pub(crate) commanded_mm: f64,
     pub(crate) corrected: &'a mut Corrected,
 }
 

@@ -19,7 +19,10 @@ const LEANS: u32 = 5;
 /// The largest k for which both hold.
 const STEEPEST: f64 = 0.1;
 
-/// A line, or an arc whose radius and normal axis run linearly with the angle.
+/// A turn of a radian counts as a way of so many mm where lengths are compared: as far from the axis as a tip may be.
+const LEVER_MM: f64 = 1000.0;
+
+/// A line, or an arc whose radius and normal axis run linearly with the angle; a line on whose way rotary axes turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
     /// From, to.
@@ -38,6 +41,13 @@ pub enum Curve {
         radius: [f64; 2],
         /// The places at s = 0 and s = 1: in the first two axes what the angles lead to, but for rounding.
         ends: [Vector; 2],
+    },
+    /// A line of the linear axes while rotary axes turn in step.
+    Turn {
+        /// The places at s = 0 and s = 1.
+        ends: [Vector; 2],
+        /// A, B, C there, rad.
+        rotary_rad: [Vector; 2],
     },
 }
 
@@ -110,6 +120,7 @@ impl Curve {
             // The end itself, not what is left of it after a subtraction and an addition.
             Self::Line(_, b) if s >= 1.0 => *b,
             Self::Line(a, b) => a + (b - a) * s,
+            Self::Turn { ends, .. } => between(ends, s),
             Self::Arc { ends, .. } if s == 0.0 => ends[0],
             Self::Arc { ends, .. } if s == 1.0 => ends[1],
             Self::Arc { angle, sweep, .. } => self.at_turned(s, sin_cos(angle + sweep * s)),
@@ -119,8 +130,25 @@ impl Curve {
     /// Unit tangent at s; zero where the curve does not move.
     pub fn tangent(&self, s: f64) -> Vector {
         match self {
-            Self::Line(a, b) => unit(b - a),
+            Self::Line(a, b) | Self::Turn { ends: [a, b], .. } => unit(b - a),
             Self::Arc { angle, sweep, .. } => self.tangent_turned(s, sin_cos(angle + sweep * s)),
+        }
+    }
+
+    /// A, B, C at s, rad, where they turn on the way.
+    #[must_use]
+    pub fn rotary_rad(&self, s: f64) -> Option<Vector> {
+        match self {
+            Self::Turn { rotary_rad, .. } => Some(between(rotary_rad, s)),
+            Self::Line(..) | Self::Arc { .. } => None,
+        }
+    }
+
+    /// Length of the linear axes' way, mm.
+    pub(crate) fn linear_mm(&self) -> f64 {
+        match self {
+            Self::Turn { ends: [a, b], .. } => (b - a).norm(),
+            Self::Line(..) | Self::Arc { .. } => self.length_mm(),
         }
     }
 
@@ -226,6 +254,9 @@ impl Curve {
     fn part_to(&self, s0: f64, s1: f64, ends: [Vector; 2]) -> Self {
         match self {
             Self::Line(..) => Self::Line(ends[0], ends[1]),
+            Self::Turn { rotary_rad, .. } => {
+                Self::Turn { ends, rotary_rad: [between(rotary_rad, s0), between(rotary_rad, s1)] }
+            }
             Self::Arc { axes, centre, angle, sweep, radius, .. } => Self::Arc {
                 axes: *axes,
                 centre: *centre,
@@ -242,6 +273,9 @@ impl Curve {
     pub fn length_mm(&self) -> f64 {
         match self {
             Self::Line(a, b) => (b - a).norm(),
+            Self::Turn { ends: [a, b], rotary_rad: [from, to] } => {
+                ((b - a).norm_squared() + (to - from).norm_squared() * LEVER_MM * LEVER_MM).sqrt()
+            }
             Self::Arc { axes: [_, _, n], sweep, radius, ends: [start, end], .. } => {
                 let along = 0.5 * (radius[0] + radius[1]) * sweep;
                 let rise = end[*n] - start[*n];
@@ -253,7 +287,7 @@ impl Curve {
     /// How far the tangent turns in all, rad: an upper bound but for a steep spiral.
     pub fn turning_rad(&self) -> f64 {
         match self {
-            Self::Line(..) => 0.0,
+            Self::Line(..) | Self::Turn { .. } => 0.0,
             Self::Arc { sweep, .. } => sweep.abs() * SPIRAL,
         }
     }
@@ -262,7 +296,7 @@ impl Curve {
     /// steep spiral.
     pub fn curvature(&self) -> f64 {
         match self {
-            Self::Line(..) => 0.0,
+            Self::Line(..) | Self::Turn { .. } => 0.0,
             Self::Arc { radius, .. } => SPIRAL / radius[0].min(radius[1]).max(1e-9),
         }
     }
@@ -271,7 +305,7 @@ impl Curve {
     /// those of a circle.
     pub(crate) fn is_steep_spiral(&self) -> bool {
         match self {
-            Self::Line(..) => false,
+            Self::Line(..) | Self::Turn { .. } => false,
             Self::Arc { sweep, radius, .. } => {
                 (radius[1] - radius[0]).abs() > STEEPEST * sweep.abs() * radius[0].min(radius[1])
             }
@@ -340,7 +374,7 @@ impl Curve {
     pub fn extent(&self, s0: f64, s1: f64) -> Extent {
         let h = s1 - s0;
         match self {
-            Self::Line(a, b) => {
+            Self::Line(a, b) | Self::Turn { ends: [a, b], .. } => {
                 let (p, q) = (self.at(s0), self.at(s1));
                 let speed = (b - a) * h;
                 Extent {
@@ -418,7 +452,7 @@ impl Curve {
     /// True where all of the circle that an arc is a part of lies in the volume.
     pub(crate) fn lies_inside(&self, volume: &Volume) -> bool {
         match self {
-            Self::Line(a, b) => volume.contains(a) && volume.contains(b),
+            Self::Line(a, b) | Self::Turn { ends: [a, b], .. } => volume.contains(a) && volume.contains(b),
             Self::Arc { axes: [u, v, n], centre, radius, ends: [start, end], .. } => {
                 let r = radius[0].max(radius[1]);
                 let holds = |axis: usize, low: f64, high: f64| {
@@ -437,7 +471,7 @@ impl Curve {
     pub fn difference_bound(&self, other: &Self, s0: f64, s1: f64) -> f64 {
         let h2 = (s1 - s0) * (s1 - s0);
         match (self, other) {
-            (Self::Line(..), Self::Line(..)) => 0.0,
+            (Self::Line(..), Self::Line(..)) | (Self::Turn { .. }, Self::Turn { .. }) => 0.0,
             (Self::Line(..), Self::Arc { sweep, radius, .. })
             | (Self::Arc { sweep, radius, .. }, Self::Line(..)) => {
                 let (r, dr) = (radius[0].max(radius[1]), (radius[1] - radius[0]).abs());
@@ -480,6 +514,11 @@ fn turned_on<const N: usize>(mut next: (f64, f64), step: (f64, f64)) -> [(f64, f
         next = turned_on_once(now, step);
         now
     })
+}
+
+/// At s on the way between two ends, which are reached to the bit.
+fn between([a, b]: &[Vector; 2], s: f64) -> Vector {
+    if s >= 1.0 { *b } else { a + (b - a) * s }
 }
 
 /// A vector of length 1; zero where there is none.

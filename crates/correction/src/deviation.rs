@@ -3,7 +3,7 @@
 use std::array::from_fn;
 use std::sync::Arc;
 
-use machine_model::{Command, Everywhere, LANES, Move, PathModel, Vector};
+use machine_model::{Command, Everywhere, LANES, Move, PathModel, Turn, Vector};
 use smallvec::SmallVec;
 
 use crate::curve::{Curve, Extent};
@@ -30,6 +30,8 @@ pub(crate) struct Machine<'m> {
     pub(crate) everywhere: Option<Arc<Everywhere>>,
     /// A bound up to this need not be worked out exactly, mm: an earlier motion was told with it.
     pub(crate) told_mm: f64,
+    /// Rotary axes turn on the motion's way; those of the state stand where the next piece begins.
+    pub(crate) turns: bool,
 }
 
 impl Machine<'_> {
@@ -40,13 +42,31 @@ impl Machine<'_> {
 
     /// Upper bound of how far the error leaves its chord on a stretch, mm.
     pub(crate) fn leaves_chord_mm(&self, extent: &Extent, passes: u8) -> f64 {
+        self.leaves_chord_turning_mm(extent, passes, None)
+    }
+
+    /// The same while rotary axes turn.
+    fn leaves_chord_turning_mm(&self, extent: &Extent, passes: u8, turn: Option<Turn>) -> f64 {
         self.model.chord_bound_mm(&Move {
             range_mm: extent.range,
             speed_mm: extent.speed,
             acceleration_mm: extent.acceleration,
             passes,
             state: self.state,
+            turn,
         })
+    }
+
+    /// The command of an ideal machine for a place of a programmed motion with the rotary axes as they stand, mm: that
+    /// of the motion but for what their words were rounded by.
+    pub(crate) fn target(&self, part: &Curve, s: f64) -> Vector {
+        let at = part.at(s);
+        match part.rotary_rad(s) {
+            Some(programmed_rad) if programmed_rad != self.state.rotary_rad => {
+                self.model.same_tip_mm(&at, &self.state, &programmed_rad)
+            }
+            _ => at,
+        }
     }
 
     /// Commands that bring the tool to several places at once; `None` where the model has to be asked for each.
@@ -228,7 +248,20 @@ impl Pair<'_> {
     fn place(&self, machine: &Machine<'_>, s: f64) -> Place {
         let (wanted, tangent) = self.wanted.at_and_tangent(s);
         let commanded = self.commanded.at(s);
-        self.place_of(s, commanded - wanted + machine.error(commanded), tangent)
+        let error = match (self.commanded.rotary_rad(s), self.wanted.rotary_rad(s)) {
+            (Some(rotary_rad), Some(programmed_rad)) => {
+                let command = Command { linear_mm: commanded, rotary_rad, ..machine.state };
+                machine.model.error_from_mm(&command, &programmed_rad)
+            }
+            _ => machine.error(commanded),
+        };
+        self.place_of(s, commanded - wanted + error, tangent)
+    }
+
+    /// How rotary axes turn on the part from s0 to s1.
+    pub(crate) fn turn(&self, s0: f64, s1: f64) -> Option<Turn> {
+        let ends = |curve: &Curve| Some([curve.rotary_rad(s0)?, curve.rotary_rad(s1)?]);
+        Some(Turn { programmed_rad: ends(self.wanted)?, commanded_rad: ends(self.commanded)? })
     }
 
     /// Being early or late by so many mm is no deviation: (P2) looks along a tangent, which says nothing of the path where that turns
@@ -276,13 +309,14 @@ impl Pair<'_> {
             }
         }
         let extent = self.commanded.extent(a.s, b.s);
-        self.between(a, b, machine.leaves_chord_mm(&extent, self.passes()))
+        let turn = self.turn(a.s, b.s);
+        self.between(a, b, machine.leaves_chord_turning_mm(&extent, self.passes(), turn))
     }
 
     /// How often the commanded motion passes a place of an axis while it turns by less than half a turn.
     fn passes(&self) -> u8 {
         match self.commanded {
-            Curve::Line(..) => 1,
+            Curve::Line(..) | Curve::Turn { .. } => 1,
             // A spiral that grows fast may turn twice within less.
             Curve::Arc { .. } if self.commanded.is_steep_spiral() => 3,
             Curve::Arc { .. } => 2,
@@ -299,7 +333,8 @@ impl Pair<'_> {
         if self.commanded.turning_rad() * s > MOST_TURN_RAD {
             return f64::INFINITY;
         }
-        let of_model = machine.leaves_chord_mm(&self.commanded.extent(0.0, s), self.passes());
+        let extent = self.commanded.extent(0.0, s);
+        let of_model = machine.leaves_chord_turning_mm(&extent, self.passes(), self.turn(0.0, s));
         of_model + self.commanded.difference_bound(self.wanted, 0.0, s)
     }
 
@@ -557,7 +592,13 @@ mod tests {
             tool_mm: Vector::new(3.0, -5.0, -120.0),
             direction: [0; 3],
         };
-        Machine { model, state, everywhere: model.everywhere(&state).map(Arc::new), told_mm: f64::INFINITY }
+        Machine {
+            model,
+            state,
+            everywhere: model.everywhere(&state).map(Arc::new),
+            told_mm: f64::INFINITY,
+            turns: false,
+        }
     }
 
     /// The largest distance found at many places.

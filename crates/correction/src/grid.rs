@@ -52,6 +52,11 @@ pub struct Block {
     pub diameters: bool,
     /// Decimals of the output step of X, Y, Z in program units.
     pub decimals: [u8; 3],
+    /// Decimals of a degree with which A, B, C words are written: those of the output step, or of the block's own words where
+    /// they are finer.
+    pub rotary_decimals: [u8; 3],
+    /// The output step of A, B, C in units of these.
+    pub rotary_step: [i64; 3],
     /// Axes whose words are increments: all under G91, those of U and W on a lathe.
     pub incremental: [bool; 3],
     /// G90.1.

@@ -376,7 +376,7 @@ impl<'m> Corrector<'m> {
                 if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
         }
         self.standing = Into::<[f64; 3]>::into(end).map(Some);
-        let piece = Piece { kind: PieceKind::Cycle { r }, axes, share: 1.0 };
+        let piece = Piece::new(PieceKind::Cycle { r }, axes, 1.0);
         let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
         let feeds = matches!(hole.cycle.kind, CycleKind::Bore | CycleKind::Synchronised);
         let feeds_out = Some(normal).filter(|_| feeds && hole.bottom_mm != at_r[normal]);
@@ -424,7 +424,7 @@ impl<'m> Corrector<'m> {
                 }
             };
             if axes.iter().any(|word| *word != AxisWord::Omit) {
-                corrected.pieces.push(Piece { kind: PieceKind::Rapid, axes, share: 0.0 });
+                corrected.pieces.push(Piece::new(PieceKind::Rapid, axes, 0.0));
             }
             corrector.gone(&state);
             corrector.note_end(&state, to, wanted);
@@ -448,6 +448,7 @@ impl<'m> Corrector<'m> {
                 alone: false,
                 may_split: true,
                 whole: Whole {
+                    rotary_rad: None,
                     start: place(from),
                     length_mm: (bottom_mm - r_mm).abs(),
                     in_step: false,
@@ -457,6 +458,8 @@ impl<'m> Corrector<'m> {
                 solved: None,
                 enclosed: None,
                 foreseen: true,
+                turning: None,
+                commanded_mm: 0.0,
                 corrected,
             };
             corrector.follow_line(&mut follow, &part)
@@ -502,7 +505,7 @@ impl<'m> Corrector<'m> {
             _ => feed(self, r_mm, bottom_mm, corrected)?,
         }
         if hole.cycle.dwell.is_some() {
-            corrected.pieces.push(Piece { kind: PieceKind::Dwell, axes: [AxisWord::Omit; 3], share: 0.0 });
+            corrected.pieces.push(Piece::new(PieceKind::Dwell, [AxisWord::Omit; 3], 0.0));
         }
         if hole.cycle.kind == CycleKind::Bore {
             // Out again is a reversal like any other.
@@ -511,6 +514,7 @@ impl<'m> Corrector<'m> {
             let mut machine =
                 Machine { state: Command { direction: self.direction, ..machine.state }, ..machine.clone() };
             let whole = Whole {
+                rotary_rad: None,
                 start: out.at(0.0),
                 length_mm: out.length_mm(),
                 in_step: false,
@@ -527,6 +531,8 @@ impl<'m> Corrector<'m> {
                 solved: None,
                 enclosed: None,
                 foreseen: false,
+                turning: None,
+                commanded_mm: 0.0,
                 corrected,
             };
             self.follow_line(&mut follow, &out)?;

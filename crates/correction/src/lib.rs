@@ -23,12 +23,14 @@ mod short_line;
 mod short_run;
 #[cfg(test)]
 mod testing;
+mod turning;
 
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};
 pub use short_line::{Foreseen, ShortLine, ShortLines};
 pub use short_run::{Run, ShortRun};
+pub use turning::Turned;
 
 /// One block of output, in whole output steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +39,19 @@ pub struct Piece {
     pub kind: PieceKind,
     /// X, Y, Z words. In a [`PieceKind::Cycle`] the normal axis' word is the bottom of the hole.
     pub axes: [AxisWord; 3],
+    /// A, B, C words where rotary axes turn on the motion's way, in steps of [`Block::rotary_decimals`]; `None` where those of
+    /// the block stay with its first piece.
+    pub rotary: Option<[AxisWord; 3]>,
     /// Share of the motion's length: what inverse-time feed is divided by.
     pub share: f64,
+}
+
+impl Piece {
+    /// One whose block turns no rotary axis.
+    #[must_use]
+    pub const fn new(kind: PieceKind, axes: [AxisWord; 3], share: f64) -> Self {
+        Self { kind, axes, rotary: None, share }
+    }
 }
 
 /// What a block of output does.

@@ -51,39 +51,59 @@ impl<'m> Corrector<'m> {
         part: &Curve,
         creep: Creep,
     ) -> Result<Tried, CorrectionError> {
-        let nominal_end = part.at(1.0);
-        let wanted = self.solve(&follow.machine.state, nominal_end)?;
+        let rotary = follow.rotary_words(part);
+        let mut at_end = follow.machine.clone();
+        if let Some(rotary) = &rotary {
+            at_end.state.rotary_rad = rotary.end_rad;
+        }
+        let nominal_end = at_end.target(part, 1.0);
+        let wanted = self.solve(&at_end.state, nominal_end)?;
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
         let axes = self.go(follow.block, &own_end, &wanted, &follow.wording(creep.held()));
         if !matches!(creep, Creep::Counted)
-            && let Some(against) = self.against(&follow.machine.state, before, self.standing, follow.block)
+            && let Some(against) = self.against(&at_end.state, before, self.standing, follow.block)
         {
             self.standing = before;
             return Ok(Tried::Against(against));
         }
         let to: Vector = self.standing.map(|v| v.unwrap_or(f64::NAN)).into();
-        let commanded = Curve::Line(from, to);
+        let commanded = match &rotary {
+            Some(rotary) => Curve::Turn {
+                ends: [from, to],
+                rotary_rad: [follow.machine.state.rotary_rad, rotary.end_rad],
+            },
+            None => Curve::Line(from, to),
+        };
         let pair = Pair {
             wanted: part,
             commanded: &commanded,
             in_step: follow.whole.in_step,
             begun: self.begun(follow, part),
         };
+        if let Some(turn) = pair.turn(0.0, 1.0) {
+            self.require_direction(&turn)?;
+        }
         let solved =
             if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
         let limit_mm = self.limit_mm(follow.block);
         let verdict = pair.line_verdict_by(&follow.machine, solved.as_ref(), limit_mm);
         match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
             Verdict::Within(bound) => {
+                let words = rotary.as_ref().map(|rotary| rotary.words);
                 follow.finish(
-                    Piece { kind: PieceKind::Line, axes, share: follow.share(part) },
+                    Piece { kind: PieceKind::Line, axes, rotary: words, share: follow.share(part) },
                     bound,
                     (wanted - nominal_end).norm(),
                 );
-                self.gone_along(&follow.machine.state, &commanded);
-                self.note_end(&follow.machine.state, nominal_end, wanted);
+                self.gone_along(&at_end.state, &commanded);
+                self.note_end(&at_end.state, nominal_end, wanted);
+                if let Some(rotary) = rotary {
+                    follow.turning = Some(rotary.turning);
+                    follow.machine.state.rotary_rad = rotary.end_rad;
+                    follow.commanded_mm += commanded.linear_mm();
+                }
                 Ok(Tried::Done)
             }
             Verdict::Beyond { distance_mm, .. } => {
@@ -108,7 +128,7 @@ impl Follow<'_, '_> {
         let figures = &mut self.corrected.correction;
         figures.after_mm = figures.after_mm.max(bound_mm);
         figures.largest_mm = figures.largest_mm.max(correction_mm);
-        let still = piece.axes.iter().all(|word| *word == AxisWord::Omit);
+        let still = piece.axes.iter().all(|word| *word == AxisWord::Omit) && piece.rotary.is_none();
         let same_centre = match piece.kind {
             PieceKind::Arc { centre: Centre::Offsets(words), .. } => {
                 words.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit))
@@ -118,7 +138,8 @@ impl Follow<'_, '_> {
         };
         let untouched = self.alone
             && same_centre
-            && piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit));
+            && piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit))
+            && piece.rotary.is_none_or(|words| words.iter().all(|word| !matches!(word, AxisWord::Write(_))));
         if untouched || (still && !matches!(piece.kind, PieceKind::Arc { .. })) {
             return;
         }

@@ -256,7 +256,7 @@ impl<'m> Corrector<'m> {
     pub(crate) fn begun(&self, follow: &Follow<'_, 'm>, part: &Curve) -> Begun {
         if !self.model.depends_on_direction() {
             Begun::No
-        } else if part.at(0.0) == follow.whole.start {
+        } else if follow.whole.begins_with(part) {
             Begun::Reached
         } else {
             Begun::Inside
@@ -308,7 +308,17 @@ impl<'m> Corrector<'m> {
             let ends = (first + off).norm().max((first + (last - first) * until + off).norm());
             bound = bound.max((ends + pair.leaves_chord_mm(machine, until)).min(bound_mm + off.norm()));
         }
-        bound
+        bound + self.across_turns_mm(machine, pair)
+    }
+
+    /// What lies across the axes is computed for where a block begins: so much it changes by while rotary axes turn, mm.
+    fn across_turns_mm(&self, machine: &Machine<'_>, pair: &Pair<'_>) -> f64 {
+        let Some(turn) = pair.turn(0.0, 1.0) else { return 0.0 };
+        let at = |axis: usize, end: usize| {
+            let (linear_mm, rotary_rad) = (pair.commanded.at(end as f64), turn.commanded_rad[end]);
+            differs(self.model, &Command { linear_mm, rotary_rad, ..machine.state }, axis)
+        };
+        (0..3).map(|axis| (at(axis, 1) - at(axis, 0)).norm()).sum()
     }
 
     /// Some axis is on another side for some of a block than it was computed for.

@@ -38,6 +38,8 @@ pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         incremental: [false; 3],
         arc_centres_absolute: false,
         letters: Default::default(),

@@ -43,6 +43,8 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         incremental: [false; 3],
         arc_centres_absolute: false,
         letters,
@@ -55,7 +57,12 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         peck_clearance_mm: 0.5,
         chip_retreat_mm: 0.5,
     };
-    let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+    let options = Options {
+        tolerance_mm: 1e-3,
+        outside: Outside::Refuse,
+        minimum_segment_mm: 0.0,
+        orientation_rad: 5e-5,
+    };
     let mut corrector = Corrector::new(engine.path_model().expect("it is a path model"), options);
     corrector.correct(&Motion::Rapid { start: Partial::default(), end: position(start).into() }, &block)?;
     let feed = Feed {

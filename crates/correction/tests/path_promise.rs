@@ -410,7 +410,7 @@ fn a_full_turn_whose_ends_no_longer_meet_is_cut() {
                 .iter()
                 .map(|curve| match curve {
                     Curve::Arc { sweep, .. } => *sweep,
-                    Curve::Line(..) => 0.0,
+                    Curve::Line(..) | Curve::Turn { .. } => 0.0,
                 })
                 .sum();
             assert!((swept - turn).abs() < 0.02, "{swept}");

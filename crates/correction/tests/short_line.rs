@@ -69,6 +69,8 @@ fn block() -> Block {
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         incremental: [false; 3],
         arc_centres_absolute: false,
         letters: Letters::axes([true; 3]),
@@ -101,7 +103,7 @@ proptest! {
         let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
         let model = machine(&values, play, interpolation);
         let bare = Bare(model.clone());
-        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 };
         let (mut short, mut long) = (Corrector::new(&model, options), Corrector::new(&bare, options));
         let mut block = block();
         let at = |steps: [i32; 3]| Position {
@@ -166,7 +168,7 @@ proptest! {
         let ways: Vec<Way> = ways;
         let model =
             machine(&values, 0.0, if monotone { Interpolation::Monotone } else { Interpolation::Linear });
-        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 };
         let mut together = Corrector::new(&model, options);
         let mut block = block();
         let at = |steps: [i32; 3]| steps.map(|step| f64::from(step) / 1000.0 + 60.0);

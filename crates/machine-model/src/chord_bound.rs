@@ -10,10 +10,29 @@ use crate::axis_tables::SixBounds;
 use crate::everywhere::Everywhere;
 use crate::lanes::{Components, Together, together};
 use crate::rigid_body::Link;
-use crate::{Command, Move, Range, RigidBody};
+use crate::{Command, Move, Range, RigidBody, Vector, turning_bound};
 
 /// How far beyond the volume the box of a stretch may reach by rounding, mm.
 const ROUNDING_MM: f64 = 1e-9;
+
+/// Bounds of a vector's length along the stretch parameter: of itself, of its first and second derivative, and of the
+/// jumps of the first, weighted as those of [`Growth`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Length {
+    pub(crate) value: f64,
+    pub(crate) first: f64,
+    pub(crate) second: f64,
+    pub(crate) jumps: f64,
+}
+
+/// What a head carries along a stretch: the nominal tool vector as a box, and as it moves, and the head's own error.
+pub(crate) struct Carried {
+    pub(crate) low: Vector,
+    pub(crate) high: Vector,
+    pub(crate) first: f64,
+    pub(crate) second: f64,
+    pub(crate) error: Length,
+}
 
 /// Bounds of three components along the stretch parameter.
 #[derive(Clone, Copy)]
@@ -185,12 +204,24 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
     if (0..3).any(leaves) {
         return f64::INFINITY;
     }
-    let own = |link: &Link, range: Range, bounds: &mut SixBounds| {
-        let tables = link.tables(stretch.state.direction[link.axis]);
-        tables.map(|tables| tables.bounds_into(range, bounds)).is_some()
-    };
-    let bounded = together(Along { model, stretch, course: Course::Own, bounds: own });
+    let own = |link: &Link, range: Range, bounds: &mut SixBounds| own_tables(stretch, link, range, bounds);
+    if let Some(turn) = &stretch.turn {
+        return turning_bound::chord_bound_mm(model, stretch, turn);
+    }
+    let bounded = together(Along { model, stretch, course: Course::Own, bounds: own, carried: None });
     bounded.leaves_chord_mm + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+}
+
+/// Bounds of the tables of an axis for the direction in which it moves; false where it has none.
+fn own_tables(stretch: &Move, link: &Link, range: Range, bounds: &mut SixBounds) -> bool {
+    let tables = link.tables(stretch.state.direction[link.axis]);
+    tables.map(|tables| tables.bounds_into(range, bounds)).is_some()
+}
+
+/// Bounds of the error of the linear axes, (8), with what a head carries.
+pub(crate) fn linear_error(model: &RigidBody, stretch: &Move, carried: &Carried) -> Length {
+    let own = |link: &Link, range: Range, bounds: &mut SixBounds| own_tables(stretch, link, range, bounds);
+    together(Along { model, stretch, course: Course::Own, bounds: own, carried: Some(carried) }).error
 }
 
 #[inline]
@@ -211,13 +242,20 @@ pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
         acceleration_mm: [0.0; 3],
         passes,
         state: *state,
+        turn: None,
     };
     let worst = model.worst_bounds();
     let bounded = |class: usize, speed: f64, passes: u8| {
         let worst = |link: &Link, _: Range, bounds: &mut SixBounds| {
             worst[link.axis].as_ref().map(|worst| *bounds = worst[class]).is_some()
         };
-        together(Along { model, stretch: &stretch(speed, passes), course: Course::Any, bounds: worst })
+        together(Along {
+            model,
+            stretch: &stretch(speed, passes),
+            course: Course::Any,
+            bounds: worst,
+            carried: None,
+        })
     };
     // Along any unit direction no axis is faster than 1.
     let gradient = bounded(0, 1.0, 1).gradient;
@@ -239,6 +277,8 @@ struct Along<'a, F> {
     stretch: &'a Move,
     course: Course,
     bounds: F,
+    /// What a head that turns carries; `None` where nothing turns.
+    carried: Option<&'a Carried>,
 }
 
 /// What is known of the error along a stretch.
@@ -247,6 +287,8 @@ struct Bounded {
     gradient: f64,
     /// Upper bound of its distance from its chord, mm.
     leaves_chord_mm: f64,
+    /// The error itself; asked for where something is carried only.
+    error: Length,
 }
 
 impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
@@ -254,14 +296,24 @@ impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
 
     #[inline(always)]
     fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Bounded {
-        let Self { model, stretch, course, bounds } = self;
+        let Self { model, stretch, course, bounds, carried } = self;
         let volume = crate::Engine::volume(model);
-        let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
         let vector = Components::vector;
-        let (mut low, mut high) = (vector(simd, &tool), vector(simd, &tool));
-        let zero = low.all(0.0);
-        let (mut nominal_speed, mut nominal_acceleration) = (zero, zero);
-        let mut error = Growth::constant(vector(simd, &tool_error).abs());
+        let (mut low, mut high, mut nominal_speed, mut nominal_acceleration, mut error);
+        if let Some(carried) = carried {
+            (low, high) = (vector(simd, &carried.low), vector(simd, &carried.high));
+            (nominal_speed, nominal_acceleration) = (low.all(carried.first), low.all(carried.second));
+            let Length { value, first, second, jumps } = carried.error;
+            error = Growth::constant(low.all(value));
+            (error.first, error.jumps) = (low.all(first), low.all(jumps));
+            error.either(low.all(second));
+        } else {
+            let (tool, tool_error) = model.tool_for_bounds(&stretch.state);
+            (low, high) = (vector(simd, &tool), vector(simd, &tool));
+            let zero = low.all(0.0);
+            (nominal_speed, nominal_acceleration) = (zero, zero);
+            error = Growth::constant(vector(simd, &tool_error).abs());
+        }
         let passes = f64::from(stretch.passes);
         let mut tables = SixBounds::default();
         for link in model.links.iter().rev() {
@@ -300,6 +352,15 @@ impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
             nominal_speed = nominal_speed + way.scaled(speed);
             nominal_acceleration = nominal_acceleration + way.scaled(acceleration);
         }
-        Bounded { gradient: error.first.norm(), leaves_chord_mm: error.leaves_chord_mm() }
+        Bounded {
+            gradient: error.first.norm(),
+            leaves_chord_mm: error.leaves_chord_mm(),
+            error: carried.map_or_else(Length::default, |_| Length {
+                value: error.value.norm(),
+                first: error.first.norm(),
+                second: error.second().norm(),
+                jumps: error.jumps.norm(),
+            }),
+        }
     }
 }

@@ -56,6 +56,22 @@ impl LinearAxis {
     }
 }
 
+/// What a rotary axis' location tilt L means: the two readings differ by what the tilt turns at the angle of the axis.
+///
+/// ```
+/// use machine_model::{RotaryAxis, Tilt, Vector};
+///
+/// assert_eq!(RotaryAxis::perfect(Vector::zeros()).tilt, Tilt::Body);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tilt {
+    /// The body leans with its axis: `L Rot` (Zhang 2024; ISG's default).
+    #[default]
+    Body,
+    /// The body turns about the leaning line, upright at 0: `L Rot L⁻¹` (ISG's alternative).
+    Axis,
+}
+
 /// One rotary axis.
 ///
 /// ```
@@ -76,6 +92,10 @@ pub struct RotaryAxis {
     pub shift_mm: Vector,
     /// Tilt of the axis, rad.
     pub tilt_rad: Vector,
+    /// What leans by it.
+    pub tilt: Tilt,
+    /// Unit vector of the axis of rotation; `None` for that of its letter.
+    pub direction: Option<Vector>,
     /// Error motions of what turns against what carries it, mm and rad, over the angle in rad.
     pub errors: Option<AxisTables>,
 }
@@ -89,6 +109,8 @@ impl RotaryAxis {
             centre_mm,
             shift_mm: Vector::zeros(),
             tilt_rad: Vector::zeros(),
+            tilt: Tilt::Body,
+            direction: None,
             errors: None,
         }
     }

@@ -109,6 +109,7 @@ impl Volume {
 ///     acceleration_mm: [0.0; 3],
 ///     passes: 1,
 ///     state: at(0.0, 0.0, 0.0),
+///     turn: None,
 /// };
 /// assert!(machine().chord_bound_mm(&stretch) < 1e-9);
 /// ```
@@ -123,8 +124,40 @@ pub struct Move {
     pub acceleration_mm: [f64; 3],
     /// How often at most each axis passes one place: 1 on a line, 2 on an arc below half a turn.
     pub passes: u8,
-    /// Tool vector and directions on this stretch; its `linear_mm` is not used.
+    /// Tool vector and directions on this stretch; its `linear_mm` is not used, nor its `rotary_rad` where axes turn.
     pub state: Command,
+    /// How the rotary axes turn meanwhile; `None` where they stand as `state` says.
+    pub turn: Option<Turn>,
+}
+
+/// How the rotary axes turn along a stretch: evenly with s, as they are commanded and as they were programmed. The two
+/// differ by rounding only.
+///
+/// ```
+/// use machine_model::{Turn, Vector};
+///
+/// let turn = Turn {
+///     programmed_rad: [Vector::new(0.0, 0.0, 0.1), Vector::new(0.0, 0.0, 0.3)],
+///     commanded_rad: [Vector::new(0.0, 0.0, 0.1), Vector::new(0.0, 0.0, 0.300_001)],
+/// };
+/// assert!((turn.slip_rad() - 1e-6).abs() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// A, B, C at s = 0 and s = 1 by the program, rad.
+    pub programmed_rad: [Vector; 2],
+    /// The same as commanded.
+    pub commanded_rad: [Vector; 2],
+}
+
+impl Turn {
+    /// Upper bound of the angle between the tool's directions that an ideal machine makes of both, rad: as far as each axis
+    /// is off, all of them together.
+    #[must_use]
+    pub fn slip_rad(&self) -> f64 {
+        let [from, to] = [0, 1].map(|end| (self.commanded_rad[end] - self.programmed_rad[end]).abs());
+        from.sup(&to).sum()
+    }
 }
 
 /// What to command so that the tool goes to the target.
@@ -325,8 +358,42 @@ pub trait PathModel: Engine {
 
     /// Upper bound, mm, of `|e(s) - ((1-s)·e(0) + s·e(1))|` for all s in 0..=1, `e(s)` the error along
     /// the stretch: how far the error can leave its chord between the ends. Infinite where the
-    /// model jumps inside the stretch.
+    /// model jumps inside the stretch. Where rotary axes turn, `e` is [`PathModel::error_from_mm`].
     fn chord_bound_mm(&self, stretch: &Move) -> f64;
+
+    /// True where the bounds hold while rotary axes turn.
+    fn follows_turns(&self) -> bool {
+        false
+    }
+
+    /// Real tip for a command less the tip of an ideal machine whose linear axes stand there too, but its rotary axes
+    /// elsewhere, mm, in the directions of that machine's linear axes. [`PathModel::error_mm`] where they stand alike.
+    ///
+    /// * `programmed_rad` – A, B, C of the ideal machine
+    fn error_from_mm(&self, command: &Command, _programmed_rad: &Vector) -> Vector {
+        self.error_mm(command)
+    }
+
+    /// Where the linear axes of an ideal machine have to stand so that its tip is where `linear_mm` brings it with other
+    /// rotary axes, mm.
+    ///
+    /// * `state` – its rotary axes are those with which the tip shall be there
+    /// * `programmed_rad` – A, B, C with which it is there
+    fn same_tip_mm(&self, linear_mm: &Vector, _state: &Command, _programmed_rad: &Vector) -> Vector {
+        *linear_mm
+    }
+
+    /// The tip of an ideal machine as the workpiece sees it, mm, but for a shift that is the same everywhere.
+    ///
+    /// With the error added to `linear_mm` it is that of the machine as it is.
+    fn tip_mm(&self, linear_mm: &Vector, _state: &Command) -> Vector {
+        *linear_mm
+    }
+
+    /// Angle between the tool's real and its ideal direction, seen from the workpiece, rad.
+    fn tilt_rad(&self, _command: &Command) -> f64 {
+        0.0
+    }
 
     /// Bounds that hold in the whole volume for this tool and these rotary axes, whatever `linear_mm` and
     /// `direction` are; `None` where the model has none.

@@ -21,12 +21,15 @@ pub mod rotation;
 mod solve;
 mod table;
 mod traverse;
+mod turning_bound;
 mod with_effects;
 
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
-pub use description::{Description, LinearAxis, RotaryAxis, Squareness};
-pub use engine::{Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Vector, Volume};
+pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
+pub use engine::{
+    Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Turn, Vector, Volume,
+};
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
 pub use lanes::LANES;

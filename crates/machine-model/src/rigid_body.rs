@@ -10,11 +10,11 @@ use nalgebra::Matrix3;
 use crate::axis_tables::{AxisTables, SixBounds};
 use crate::everywhere::CLASSES;
 use crate::lanes::{LANES, Real, Triple};
-use crate::rotation::{around, small, turned};
+use crate::rotation::{around, of_any_size, small, turned};
 use crate::solve::solve;
 use crate::{
     Axis, Command, Description, Engine, EngineId, Everywhere, Move, PathModel, Range, RotaryAxis, Solution,
-    SolveError, Vector, Volume, chord_bound,
+    SolveError, Tilt, Vector, Volume, chord_bound,
 };
 
 /// One linear axis, ready to be evaluated.
@@ -344,6 +344,37 @@ impl RigidBody {
         (back * real, back * (real_shift - ideal_shift))
     }
 
+    /// Tip of an ideal machine, mm, workpiece frame.
+    fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        let (turn, shift) = self.table_transform(state, false);
+        turn * (linear_mm + self.nominal_tool(state)) + shift
+    }
+
+    /// The tool's direction as the workpiece sees it, unit vectors: of an ideal machine, and of this one. It is that of the
+    /// spindle, Z with all rotary axes at 0, from the tip up.
+    ///
+    /// Linear axes turn what they carry by their angles, in the order of the chain; squareness does not turn it.
+    #[must_use]
+    pub fn directions(&self, command: &Command) -> [Vector; 2] {
+        let turned_by_head = |real: bool| {
+            self.description.chain.head().iter().rev().fold(Vector::z(), |tool, axis| {
+                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, real).0 * tool
+            })
+        };
+        let q = self.volume.nearest(&command.linear_mm);
+        let linear = self.links.iter().rev().fold(turned_by_head(true), |tool, link| {
+            match link.tables(command.direction[link.axis]) {
+                Some(tables) => {
+                    let [.., a, b, c] = tables.at(q[link.axis]);
+                    small(&Vector::new(a, b, c)) * tool
+                }
+                None => tool,
+            }
+        });
+        let table = |real: bool| self.table_transform(command, real).0;
+        [table(false) * turned_by_head(false), table(true) * linear]
+    }
+
     /// That every rotary axis stands inside its travel and its tables.
     ///
     /// # Errors
@@ -373,10 +404,18 @@ impl RigidBody {
     }
 }
 
+/// What an ideal rotary axis does.
+pub(crate) fn ideally_turned(rotary: &RotaryAxis, axis: Axis, angle_rad: f64) -> Matrix3<f64> {
+    match rotary.direction {
+        None => around(axis.direction(), angle_rad),
+        Some(direction) => of_any_size(&(direction * angle_rad)),
+    }
+}
+
 /// Motion of what a rotary axis carries, seen from what carries the axis: turn and shift, equation (9).
 fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (Matrix3<f64>, Vector) {
     let angle = rotary_rad[axis.direction()];
-    let mut turn = around(axis.direction(), angle);
+    let mut turn = ideally_turned(rotary, axis, angle);
     let mut centre = rotary.centre_mm;
     if real {
         if let Some(tables) = &rotary.errors {
@@ -384,7 +423,11 @@ fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (M
             turn = small(&Vector::new(a, b, c)) * turn;
             centre += Vector::new(x, y, z);
         }
-        turn = small(&rotary.tilt_rad) * turn;
+        let lean = small(&rotary.tilt_rad);
+        turn = match rotary.tilt {
+            Tilt::Body => lean * turn,
+            Tilt::Axis => lean * turn * lean.transpose(),
+        };
         centre += rotary.shift_mm;
     }
     (turn, centre - turn * rotary.centre_mm)
@@ -471,6 +514,39 @@ impl PathModel for RigidBody {
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
         chord_bound::chord_bound_mm(self, stretch)
+    }
+
+    fn follows_turns(&self) -> bool {
+        true
+    }
+
+    fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
+        if command.rotary_rad == *programmed_rad {
+            return self.error_mm(command);
+        }
+        // Outside the volume the error is that of its nearest point, as everywhere.
+        let inside = Command { linear_mm: self.volume.nearest(&command.linear_mm), ..*command };
+        let programmed = Command { rotary_rad: *programmed_rad, ..inside };
+        let off = self.predict(&inside).position_mm - self.nominal_position(&inside.linear_mm, &programmed);
+        self.table_turn(&programmed).tr_mul(&off)
+    }
+
+    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
+        let programmed = Command { rotary_rad: *programmed_rad, ..*state };
+        let (turn, shift) = self.table_transform(state, false);
+        let tip = self.nominal_position(linear_mm, &programmed);
+        turn.tr_mul(&(tip - shift)) - self.nominal_tool(state)
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        // Where nothing turns the tool is the same on both sides of every comparison.
+        if self.description.chain.has_rotary() { self.nominal_position(linear_mm, state) } else { *linear_mm }
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        let [ideal, real] = self.directions(command);
+        // Unit vectors: as good for small angles as for large ones.
+        2.0 * units::math::asin((0.5 * (real - ideal).norm()).min(1.0))
     }
 
     fn everywhere(&self, state: &Command) -> Option<Everywhere> {

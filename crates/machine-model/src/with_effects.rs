@@ -174,9 +174,36 @@ impl PathModel for WithEffects {
 
     /// A sum leaves its chord by no more than its parts do.
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        if stretch.turn.is_some() && !self.follows_turns() {
+            return f64::INFINITY;
+        }
         self.terms.iter().fold(self.base.chord_bound_mm(stretch), |sum, term| {
             sum + term.chord_bound_mm(stretch, &self.conditions)
         })
+    }
+
+    /// Effects have bounds for rotary axes that stand.
+    fn follows_turns(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
+        let command = self.inside(command);
+        let programmed = Command { rotary_rad: *programmed_rad, ..command };
+        self.base.error_from_mm(&command, programmed_rad)
+            + self.base.table_turn(&programmed).tr_mul(&self.displacement(&command))
+    }
+
+    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
+        self.base.same_tip_mm(linear_mm, state, programmed_rad)
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        self.base.tip_mm(linear_mm, state)
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        self.base.tilt_rad(command)
     }
 
     fn depends_on_direction(&self) -> bool {

@@ -76,7 +76,10 @@ fn stretch(random: &mut Random, arc: bool) -> (Vec<[f64; 3]>, Move) {
     let mut state = command([0.0; 3], random.vector(150.0).into());
     state.rotary_rad = random.vector(1.5);
     state.direction = std::array::from_fn(|_| random.number(1.5) as i8);
-    (samples, Move { range_mm, speed_mm, acceleration_mm, passes: if arc { 2 } else { 1 }, state })
+    (
+        samples,
+        Move { range_mm, speed_mm, acceleration_mm, passes: if arc { 2 } else { 1 }, state, turn: None },
+    )
 }
 
 /// Largest distance of sampled values from their chord.

@@ -76,6 +76,7 @@ impl Stretch {
             acceleration_mm: std::array::from_fn(|i| 2.0 * self.bend[i].abs()),
             passes: if self.bend == Vector::zeros() { 1 } else { 2 },
             state: at(Vector::zeros()),
+            turn: None,
         }
     }
     /// Largest distance of the error from its chord, sampled.

@@ -276,7 +276,7 @@ proptest! {
             (by.map(f64::abs), [0.0; 3])
         };
         let bound = model.chord_bound_mm(&Move {
-            range_mm, speed_mm, acceleration_mm, passes: if arc { 2 } else { 1 }, state,
+            range_mm, speed_mm, acceleration_mm, passes: if arc { 2 } else { 1 }, state, turn: None,
         });
         for (i, e) in errors.iter().enumerate() {
             let s = i as f64 / f64::from(n);
@@ -315,6 +315,7 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
                     acceleration_mm: [0.0; 3],
                     passes,
                     state,
+                    turn: None,
                 });
                 assert!(own <= cheap * (1.0 + 1e-12), "{own} > {cheap}");
             }
@@ -332,6 +333,7 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
                     acceleration_mm: [bend, 0.5 * bend, bend],
                     passes,
                     state,
+                    turn: None,
                 });
                 assert!(curved <= cheap * (1.0 + 1e-12), "{curved}");
             }
@@ -414,7 +416,7 @@ proptest! {
         let range_mm = std::array::from_fn(|i| Range { low: q0[i].min(q1[i]), high: q0[i].max(q1[i]) });
         let own = |passes: u8, acceleration: f64| {
             let speed_mm = if acceleration > 0.0 { [speed; 3] } else { by.map(f64::abs) };
-            model.chord_bound_mm(&Move { range_mm, speed_mm, acceleration_mm: [acceleration; 3], passes, state })
+            model.chord_bound_mm(&Move { range_mm, speed_mm, acceleration_mm: [acceleration; 3], passes, state, turn: None })
         };
         let near = 1.0 + 1e-12;
         prop_assert!(own(1, 0.0) <= everywhere.chord_bound_mm(speed) * near);
@@ -461,6 +463,7 @@ fn the_bound_is_tight() {
                 acceleration_mm: [0.0; 3],
                 passes: 1,
                 state,
+                turn: None,
             });
             assert!(worst <= bound + 1e-12);
             ratios.push(bound / worst);

@@ -207,10 +207,21 @@ pub(crate) struct Rotary {
     pub(crate) C: Option<Spanned<RotaryC>>,
 }
 
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum TiltName {
+    #[default]
+    Body,
+    Axis,
+}
+
 /// What the three rotary axes have in common, with the location errors by direction.
 pub(crate) struct RotaryAxis<'d> {
     pub(crate) centre_mm: Option<Triple>,
     pub(crate) travel_deg: Option<&'d Spanned<[Finite; 2]>>,
+    pub(crate) direction: Option<&'d Spanned<Triple>>,
+    pub(crate) tilt: TiltName,
+    pub(crate) resolution_deg: Option<&'d Spanned<Finite>>,
     pub(crate) errors: Option<&'d Spanned<String>>,
     pub(crate) shift_um: [Option<Finite>; 3],
     pub(crate) tilt_urad: [Option<Finite>; 3],
@@ -227,6 +238,15 @@ macro_rules! rotary {
             /// Lower and upper end of the commands; no limit where left out.
             #[schemars(with = "Option<[f64; 2]>")]
             travel_deg: Option<Spanned<[Finite; 2]>>,
+            /// Direction of the axis, machine frame; that of its letter where left out. Of any length.
+            #[schemars(with = "Option<[f64; 3]>")]
+            direction: Option<Spanned<Triple>>,
+            /// What its location tilt means: "body" (default) leans with the axis, "axis" turns about the leaning line.
+            #[serde(default)]
+            tilt: TiltName,
+            /// Step of the output words; 0.001 where left out.
+            #[schemars(with = "Option<f64>")]
+            resolution_deg: Option<Spanned<Finite>>,
             /// CSV file of error functions over position_deg.
             #[schemars(with = "Option<String>")]
             errors: Option<Spanned<String>>,
@@ -242,6 +262,9 @@ macro_rules! rotary {
                 RotaryAxis {
                     centre_mm: self.centre_mm,
                     travel_deg: self.travel_deg.as_ref(),
+                    direction: self.direction.as_ref(),
+                    tilt: self.tilt,
+                    resolution_deg: self.resolution_deg.as_ref(),
                     errors: self.errors.as_ref(),
                     shift_um: $shifts,
                     tilt_urad: $tilts,
@@ -380,6 +403,10 @@ pub(crate) struct Correction {
     /// No piece is made shorter than this; 0 for no limit.
     #[schemars(with = "Option<f64>")]
     pub(crate) minimum_segment_mm: Option<Spanned<Finite>>,
+    /// Largest angle by which rounded rotary words may turn the tool away from its direction where a motion is split; 50 where
+    /// left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) orientation_urad: Option<Spanned<Finite>>,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]

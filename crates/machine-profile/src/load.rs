@@ -6,7 +6,7 @@ use diagnostic::Diagnostic;
 use machine_model::effects::EffectTerm;
 use machine_model::{
     Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
-    Traverse, Vector,
+    Tilt, Traverse, Vector,
 };
 use toml::Spanned;
 use units::{Angle, Length};
@@ -108,7 +108,8 @@ impl Loader<'_> {
             }
             linear.push(self.linear(axis, written.as_ref(), interpolation, &mut rows, &mut resolution_mm));
         }
-        let rotary = self.rotary(&document, chain.as_ref(), interpolation);
+        let mut resolution_deg = [0.001; 3];
+        let rotary = self.rotary(&document, chain.as_ref(), interpolation, &mut resolution_deg);
         let squareness = self.squareness(&document.squareness);
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
         let mut tools = self.tools(&document.tool);
@@ -142,6 +143,7 @@ impl Loader<'_> {
             calibrated,
             description,
             resolution_mm,
+            resolution_deg,
             interpolation,
             rows,
             traverses,
@@ -387,6 +389,7 @@ impl Loader<'_> {
         document: &Document,
         chain: Option<&Chain>,
         interpolation: Interpolation,
+        resolution_deg: &mut [f64; 3],
     ) -> [RotaryAxis; 3] {
         let written = &document.rotary;
         let parts = [
@@ -397,6 +400,15 @@ impl Loader<'_> {
         let mut all: [RotaryAxis; 3] = std::array::from_fn(|_| RotaryAxis::perfect(Vector::zeros()));
         for ((axis, parts), result) in Axis::ALL[3..].iter().zip(parts).zip(&mut all) {
             let Some((place, parts)) = parts else { continue };
+            if let Some(step) = parts.resolution_deg {
+                let Finite(value) = *step.get_ref();
+                resolution_deg[axis.direction()] = value;
+                if !(1e-7..=1.0).contains(&value) {
+                    let diagnostic = Diagnostic::error(VALUE, format!("resolution_deg of {axis} is {value}"))
+                        .help("the step of its words in degrees, like 0.001");
+                    self.refuse(step, diagnostic, "expected 0.0000001 to 1");
+                }
+            }
             if chain.is_some_and(|chain| !chain.axes().any(|known| known == *axis)) {
                 let diagnostic = Diagnostic::error(
                     CONFLICT,
@@ -407,6 +419,22 @@ impl Loader<'_> {
                 self.errors.push(ProfileError::profile(diagnostic));
             }
             result.centre_mm = vector(parts.centre_mm);
+            result.tilt = match parts.tilt {
+                format::TiltName::Body => Tilt::Body,
+                format::TiltName::Axis => Tilt::Axis,
+            };
+            if let Some(direction) = parts.direction {
+                let along = vector(Some(*direction.get_ref()));
+                let length = along.norm();
+                if length > 1e-9 {
+                    result.direction = Some(along / length);
+                } else {
+                    let diagnostic =
+                        Diagnostic::error(VALUE, format!("the direction of {axis} is no direction"))
+                            .help("write three numbers, not all zero, like [0, 0.7071, 0.7071]");
+                    self.refuse(direction, diagnostic, "a vector of length 0");
+                }
+            }
             result.shift_mm =
                 Vector::from(parts.shift_um.map(|v| v.map_or(0.0, |Finite(v)| Length::from_um(v).mm())));
             result.tilt_rad =
@@ -535,6 +563,7 @@ impl Loader<'_> {
                 OutsideName::Clamp => Outside::Clamp,
             },
             minimum_segment_mm: positive(&written.minimum_segment_mm, "minimum_segment_mm", 0.0, true),
+            orientation_urad: positive(&written.orientation_urad, "orientation_urad", 50.0, false),
         }
     }
 

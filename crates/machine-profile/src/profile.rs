@@ -41,6 +41,8 @@ pub struct CorrectionOptions {
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.
     pub minimum_segment_mm: f64,
+    /// Largest angle by which rounded rotary words may turn the tool where a motion is split, µrad.
+    pub orientation_urad: f64,
 }
 
 /// What a length without a decimal point is, where a parameter of the control decides.
@@ -138,6 +140,8 @@ pub struct Profile {
     pub description: Description,
     /// Step of the output of X, Y, Z, mm.
     pub resolution_mm: [f64; 3],
+    /// Step of the output of A, B, C, degrees.
+    pub resolution_deg: [f64; 3],
     /// What lies between table nodes.
     pub interpolation: Interpolation,
     /// Tables of X, Y, Z as measured (`errors`), for the engines that work on rows.

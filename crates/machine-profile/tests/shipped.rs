@@ -146,6 +146,10 @@ fn the_schema_knows_every_key_of_the_contract() {
         "EX0C_um",
         "lengths_mm",
         "minimum_segment_mm",
+        "orientation_urad",
+        "resolution_deg",
+        "direction",
+        "tilt",
         "rotation_urad",
     ] {
         assert!(schema.contains(&format!("\"{key}\"")), "{key}");

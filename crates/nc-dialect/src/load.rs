@@ -7,15 +7,16 @@ use diagnostic::{Code, Diagnostic};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
-    Macros, Numbers, OffsetL20, Output, Paren, PointFree, Semicolon, System, Turning,
+    Macros, Numbers, OffsetL20, Output, Paren, PointFree, RotaryFeed, Semicolon, System, Turning,
 };
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
-    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, Levels, MRow, MacroLanguage, RoundBrackets,
-    SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint, ZeroRepeats,
+    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, Levels, MRow, MacroLanguage, RotaryFeedName,
+    RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint,
+    ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -221,6 +222,10 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             radius_word: output.radius_word,
             arc_radius_tolerance_mm: output.arc_radius_tolerance_mm.into_inner(),
             arc_radius_tolerance_share: output.arc_radius_tolerance_share.map_or(0.0, Spanned::into_inner),
+            rotary_feed: output.rotary_feed.map(|counts| match counts {
+                RotaryFeedName::LinearAxes => RotaryFeed::LinearAxes,
+                RotaryFeedName::AllAxes => RotaryFeed::AllAxes,
+            }),
             peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
             chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
         },

@@ -296,6 +296,14 @@ pub(crate) struct OutputRules {
     pub(crate) radius_word: bool,
     pub(crate) arc_radius_tolerance_mm: Spanned<f64>,
     pub(crate) arc_radius_tolerance_share: Option<Spanned<f64>>,
+    pub(crate) rotary_feed: Option<RotaryFeedName>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum RotaryFeedName {
+    LinearAxes,
+    AllAxes,
 }
 
 /// One G code: `does`, or `refuse` with `help`.

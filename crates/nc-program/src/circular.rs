@@ -7,7 +7,7 @@ use crate::arc::{self, Circle, Fault, Tolerance};
 use crate::codes;
 use crate::frames::settle;
 use crate::modal::{ArcCentres, Modal, Turn, Units};
-use crate::motion::{Motions, division, feed_rate, simultaneous};
+use crate::motion::{Motions, arc_while_turning, division, feed_rate};
 use crate::position::{end, require_frame, require_known};
 use crate::settings::Environment;
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Letters, Outcome, Words};
@@ -30,7 +30,7 @@ pub(crate) fn circular(
     let to = require_known(words, &end, what)?;
     let turning = from.rotary_deg != to.rotary_deg;
     if turning && env.setup.rotary_matters {
-        return Err(simultaneous(words));
+        return Err(arc_while_turning(words));
     }
     let turns = turns(env, words)?;
     let [first, second, _] = state.plane.axes();

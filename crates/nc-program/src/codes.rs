@@ -48,7 +48,7 @@ pub const CYCLE_WORDS: Code = Code(217);
 pub const INVERSE_TIME: Code = Code(218);
 /// A rotary axis is programmed that the profile's chain does not have.
 pub const NO_SUCH_AXIS: Code = Code(219);
-/// Rotary axes move at feed rate, alone or together with linear ones: no path correction is available for that.
+/// Rotary axes turn at feed rate where no path can be corrected: along an arc, or under cutter compensation.
 pub const SIMULTANEOUS: Code = Code(220);
 /// U, V or W: increments on some controls, axes on others.
 pub const SECONDARY_AXIS: Code = Code(221);

@@ -214,10 +214,10 @@ fn straight(
     let end = end(words, state, require_frame(env, words, state)?)?;
     state.axes = end;
     let turns = words.has(ROTARY_LETTERS);
-    if turns && (!words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary)) {
-        if !rapid && env.setup.rotary_matters && end.rotary != start.rotary {
-            return Err(rotary_feed(words));
-        }
+    // While a rotary axis feeds, the tool cuts: along its real path, which the linear axes have to follow.
+    let cuts = !rapid && env.setup.rotary_matters && end.rotary != start.rotary;
+    let alone = !words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary);
+    if turns && alone && !cuts {
         // Rotary axes position, or their place does not matter: the linear axes stay where they are.
         motions.push(Motion::Uncorrected { end: end.partial() });
         return Ok(());
@@ -230,12 +230,12 @@ fn straight(
     let what = "the feed move";
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
-    let turns = from.rotary_deg != to.rotary_deg;
-    if turns && env.setup.rotary_matters {
-        return Err(simultaneous(words));
+    if cuts && compensated(before, state) {
+        return Err(compensated_turn(words));
     }
     let rate = feed_rate(words, state)?;
-    let division = division(before, state, turns);
+    // Where the rotary axes do not matter, nobody knows where they stand: their words cannot be shared out.
+    let division = division(before, state, !cuts && from.rotary_deg != to.rotary_deg);
     motions.push(Motion::Feed(Feed { start: from, end: to, shape: Shape::Line, rate, division }));
     Ok(())
 }
@@ -411,26 +411,25 @@ fn stray(words: &Words<'_, '_, '_>, why: &str) -> Box<Diagnostic> {
         .help("write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs")
 }
 
-/// While a rotary axis feeds, the tool cuts: along the rotary axis' real path, which the linear axes would have to
-/// follow.
-fn rotary_feed(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+/// The control would offset a path that turns with the workpiece.
+fn compensated_turn(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::SIMULTANEOUS,
-            format!("a feed of {} alone", words.names(ROTARY_LETTERS)),
+            format!("{} turn at feed rate under cutter compensation", words.names(ROTARY_LETTERS)),
             words.span(ROTARY_LETTERS),
-            "the linear axes would have to move with it to hold the path, and are not programmed",
+            "what the control offsets is no path in space while a rotary axis turns",
         )
-        .help("where nothing is cut turn at rapid (G0); where it cuts, this path cannot be corrected")
+        .help("cancel the compensation with G40 before this block; let the CAM write the tool's centre")
 }
 
-pub(crate) fn simultaneous(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
+pub(crate) fn arc_while_turning(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::SIMULTANEOUS,
-            "rotary and linear axes move together at feed rate",
+            "a rotary axis turns along an arc",
             words.span(AXIS_LETTERS),
-            "the path between the ends cannot be corrected",
+            "seen from the workpiece this is no arc, and no arc corrects it",
         )
-        .help("turn the rotary axis in a block of its own, then feed")
+        .help("let the CAM write lines, or turn the rotary axis in a block of its own")
 }

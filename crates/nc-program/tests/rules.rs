@@ -302,17 +302,27 @@ fn rotary_axes() {
     assert_eq!(feed(motion(5)).end.rotary_deg, [80.0, 0.0, 0.0]);
     let Motion::Rapid { end, .. } = motion(6) else { panic!("{:?}", motion(6)) };
     assert_eq!((end.linear_mm[0], end.rotary_deg[0]), (Some(6.0), 0.0));
-    // Together with linear axes at feed rate, in an arc, in a cycle: refused. Named but not turned: fine.
+    // In an arc, in a cycle, under compensation: refused. Named but not turned: fine.
     let begin = "G0 A0.\nX1. Y2. Z3.\n";
-    for block in ["G1 X5. A10.\n", "G2 I1. A10.\n", "G81 X5. Z-1. R1. A10.\n"] {
+    for block in ["G2 I1. A10.\n", "G81 X5. Z-1. R1. A10.\n", "G41 D1 G1 X5. A10. F500.\n"] {
         assert_eq!(code(&format!("{begin}{block}")), Some((220, 3)), "{block}");
     }
     assert_eq!(code(&format!("{begin}G1 X5. A0.\n")), None);
-    // Alone at feed rate, by whatever feed and with linear axes that stand still: it cuts, off its path.
-    for block in ["G1 A60. F500.\n", "G93 G1 A60. F2.\n", "G1 X1. A60. F500.\n", "G1 G91 A1. F500.\n"] {
-        assert_eq!(code(&format!("{begin}{block}")), Some((220, 3)), "{block}");
+    // At feed rate it cuts, alone too: a feed as any other, by whatever rate.
+    for (block, x, a) in [
+        ("G1 X5. A10.\n", 5.0, 10.0),
+        ("G1 A60. F500.\n", 1.0, 60.0),
+        ("G93 G1 A60. F2.\n", 1.0, 60.0),
+        ("G1 X1. A60. F500.\n", 1.0, 60.0),
+        ("G1 G91 A-1. F500.\n", 1.0, -1.0),
+    ] {
+        let run = go(&format!("{begin}{block}"));
+        assert!(run.refused.is_none(), "{block}: {:?}", run.refused);
+        let feed = feed(&run.steps[2].motions[0]);
+        assert_eq!((feed.end.linear_mm[0], feed.end.rotary_deg[0]), (x, a), "{block}");
+        assert_eq!((feed.start.rotary_deg[0], feed.division), (0.0, Division::Any), "{block}");
     }
-    assert_eq!(code("G1 A60. F500.\n"), Some((220, 1)));
+    assert_eq!(code("G1 A60. F500.\n"), Some((213, 1)));
     assert_eq!(code(&format!("{begin}G1 A0. F500.\n")), None);
     assert_eq!(code(&format!("{begin}G28 A0.\nG1 X5.\n")), Some((213, 4)));
     assert_eq!(code(&format!("{begin}G28\nG0 X5.\n")), Some((213, 4)));

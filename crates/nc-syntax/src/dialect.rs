@@ -579,10 +579,29 @@ pub struct Output {
     pub arc_radius_tolerance_mm: f64,
     /// The same as a share of the radius, where the control takes that too and it is more; 0 for none.
     pub arc_radius_tolerance_share: f64,
+    /// What F of G94 counts where rotary axes turn; `None` where the control's manual leaves it open.
+    pub rotary_feed: Option<RotaryFeed>,
     /// Distance above the last depth where a G83 peck resumes feeding when written as moves, mm.
     pub peck_clearance_mm: f64,
     /// Retreat of a G73 peck when written as moves, mm.
     pub chip_retreat_mm: f64,
+}
+
+/// What F of G94 counts where rotary axes turn at feed rate.
+///
+/// ```
+/// use nc_syntax::dialect::RotaryFeed;
+///
+/// let counts = |dialect| nc_dialect::builtin(dialect).unwrap().output.rotary_feed;
+/// assert_eq!(counts("linuxcnc"), Some(RotaryFeed::LinearAxes));
+/// assert_eq!(counts("perspektiva"), None);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotaryFeed {
+    /// The way of X, Y, Z alone; degrees where none of them moves.
+    LinearAxes,
+    /// The way of all axes, a degree as a millimetre or an inch.
+    AllAxes,
 }
 
 /// Which language of variables, expressions and program flow the control has.

@@ -19,8 +19,8 @@ const SAMPLE_MM: f64 = 0.5;
 const PARABOLA_MM: f64 = 1e-7;
 /// Largest turn between places, rad.
 const SAMPLE_RAD: f64 = 0.5;
-/// Largest turn of a rotary axis between them, rad.
-const TURN_RAD: f64 = 0.02;
+/// Largest turn of the rotary axes between them, rad: at 500 mm a place leaves the parabola by some nanometres.
+const TURN_RAD: f64 = 0.01;
 /// No motion is asked for at more places.
 const MOST_SAMPLES: f64 = 100_000.0;
 /// So near to where an axis turns it is asked for on either side, mm: above what counts as the same place.
@@ -392,7 +392,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         });
         let tip_mm = error.map(|(at, error)| at + error);
         let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
-        let place = linear.map(|linear| place(&linear, &rotary_rad));
+        let place = linear.map(|linear| self.place(&common.command(linear, rotary_rad)));
         self.ready.push_back(Item::Position(Box::new(Positioning {
             start,
             end,
@@ -417,6 +417,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
     }
 
+    /// Where the tool is with its linear axes here, errors included.
+    fn place(&self, command: &Command) -> Place {
+        let (tip, rotary) = (self.model.tip_mm(&command.linear_mm, command), command.rotary_rad * LEVER_MM);
+        Place::from_row_slice(&[tip.x, tip.y, tip.z, rotary.x, rotary.y, rotary.z])
+    }
+
     fn feeding(&mut self, common: &Common, way: Way, rate: FeedRate, airy: [bool; 2]) {
         let length_mm = way.length_mm();
         let (radius_mm, steep) = way.radius_and_steepness();
@@ -426,8 +432,14 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let pieces = (way.turning_rad() / turn_rad).max(way.rotary_turn_rad() / TURN_RAD);
         let samples = pieces.max(length_mm / SAMPLE_MM).ceil().clamp(1.0, MOST_SAMPLES);
         let real = self.real(common, &way, samples);
+        let seen =
+            |s: f64, error_mm: &Vector| self.place(&common.command(way.at(s) + error_mm, way.rotary_rad(s)));
+        let nominal = |s: f64| seen(s, &Vector::zeros());
         let stretch = |[(s0, e0), (s1, e1)]: [(f64, Vector); 2]| {
-            Stretch::new(way.place(s0, &e0), way.place(s1, &e1), way.bow(s0, s1))
+            // How far the middle lies beside the chord.
+            let bow =
+                (!way.is_straight()).then(|| nominal(0.5 * (s0 + s1)) - 0.5 * (nominal(s0) + nominal(s1)));
+            Stretch::new(seen(s0, &e0), seen(s1, &e1), bow)
         };
         let pairs = |places: &[(f64, Vector)]| {
             places.windows(2).map(|pair| stretch([pair[0], pair[1]])).collect::<SmallVec<[Stretch; 2]>>()
@@ -441,7 +453,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                 let stretches = pairs(&steps.collect::<SmallVec<[_; 4]>>());
                 for (s, error) in &real {
                     let k = ((s * pieces) as usize).min(stretches.len() - 1);
-                    off_mm = off_mm.max(stretches[k].distance_mm(&way.place(*s, error)));
+                    off_mm = off_mm.max(stretches[k].distance_mm(&seen(*s, error)));
                 }
                 stretches
             }
@@ -613,11 +625,6 @@ enum Kind {
     Rapid,
     OfCycle,
     Uncorrected,
-}
-
-fn place(linear_mm: &Vector, rotary_rad: &Vector) -> Place {
-    let rotary = rotary_rad * LEVER_MM;
-    Place::from_row_slice(&[linear_mm.x, linear_mm.y, linear_mm.z, rotary.x, rotary.y, rotary.z])
 }
 
 /// How far the tool goes when an axis turns, mm.

@@ -27,6 +27,7 @@ mod way;
 use machine_model::PathModel;
 use toolpath::Motion;
 
+pub use stretch::LEVER_MM;
 pub use way::Way;
 
 /// One thing that a program does, with what the comparison must know of it.

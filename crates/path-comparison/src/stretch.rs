@@ -2,11 +2,12 @@
 
 use nalgebra::SVector;
 
-/// X, Y, Z in mm, A, B, C in radians times [`LEVER_MM`].
+/// The tip as the workpiece sees it, mm; A, B, C in radians times [`LEVER_MM`].
 pub(crate) type Place = SVector<f64, 6>;
 
-/// A turn counts as the way of a point so far from its axis: farther than any tip is.
-pub(crate) const LEVER_MM: f64 = 1000.0;
+/// A turn counts as a way of so many mm a radian, besides what it moves the tip by: a step of 0.001° is seen, what angles are
+/// rounded by where a motion is split is not.
+pub const LEVER_MM: f64 = 50.0;
 
 /// A part of a stretch, in 0..=1 of its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,6 @@ use machine_model::Vector;
 use toolpath::{Feed, Position, Shape};
 use units::math::{atan2, sin_cos};
 
-use crate::stretch::{LEVER_MM, Place};
-
 /// The path of a feed motion in axis commands: a line, or an arc whose radius and normal axis run linearly with the
 /// angle; rotary axes turn in step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,17 +86,9 @@ impl Way {
         self.end.rotary_deg
     }
 
-    /// The place at s with the rotary axes, the linear axes displaced by `error_mm`.
-    pub(crate) fn place(&self, s: f64, error_mm: &Vector) -> Place {
-        let (linear, rotary) = (self.at(s) + error_mm, self.rotary_rad(s) * LEVER_MM);
-        Place::from_row_slice(&[linear.x, linear.y, linear.z, rotary.x, rotary.y, rotary.z])
-    }
-
-    /// How far the middle of a part lies beside its chord; `None` on a line.
-    pub(crate) fn bow(&self, s0: f64, s1: f64) -> Option<Place> {
-        self.arc.as_ref()?;
-        let bow = self.at(0.5 * (s0 + s1)) - 0.5 * (self.at(s0) + self.at(s1));
-        Some(Place::from_row_slice(&[bow.x, bow.y, bow.z, 0.0, 0.0, 0.0]))
+    /// True where neither an arc nor a turn bends it, seen from the workpiece.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.arc.is_none() && self.start.rotary_deg == self.end.rotary_deg
     }
 
     /// How far the tangent turns, rad.
@@ -115,9 +105,9 @@ impl Way {
         })
     }
 
-    /// How far the rotary axes turn, rad.
+    /// How far the rotary axes turn, rad, all together.
     pub(crate) fn rotary_turn_rad(&self) -> f64 {
-        (self.rotary_rad(1.0) - self.rotary_rad(0.0)).amax()
+        (self.rotary_rad(1.0) - self.rotary_rad(0.0)).abs().sum()
     }
 
     /// Length of the linear axes' way, mm.

@@ -32,6 +32,12 @@ pub const SPIRAL: Code = Code(515);
 pub const UNNAMED: Code = Code(514);
 /// What the program was corrected for cannot be asked of the control.
 pub const UNGUARDED: Code = Code(520);
+/// Rotary axes turn at feed rate, and engine or effects have no bounds for that.
+pub const NO_BOUNDS_FOR_TURNS: Code = Code(530);
+/// Rotary words cannot say the directions of a split motion finely enough.
+pub const DIRECTION: Code = Code(531);
+/// F would mean another speed in the corrected block.
+pub const ROTARY_FEED: Code = Code(532);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
 pub const SIDEWAYS: Code = Code(519);
 
@@ -57,6 +63,8 @@ pub struct Job<'a> {
     pub options: Options,
     /// Decimals of X, Y, Z in mm.
     pub decimals_mm: [u8; 3],
+    /// Output step of A, B, C: decimals of a degree, and how many of their steps.
+    pub rotary_steps: [(u8, u32); 3],
     /// Correct a program that was corrected before.
     pub force: bool,
     /// What the comment in the output says after its marker.
@@ -80,6 +88,8 @@ pub struct Figures {
     pub before: (f64, u64),
     /// Proven bound of the path deviation after, mm, and its line.
     pub after: (f64, u64),
+    /// Largest angle between the tool's real and its ideal direction while rotary axes turn, rad, and its line.
+    pub tilt: (f64, u64),
     /// Short moves to a corrected start that were put in.
     pub approaches: u64,
     /// What the user should know.

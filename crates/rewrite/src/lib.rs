@@ -20,8 +20,9 @@
 //!         ..Default::default()
 //!     },
 //!     model: engine.path_model().expect("it corrects programs"),
-//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 },
+//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 },
 //!     decimals_mm: [3; 3],
+//!     rotary_steps: [(3, 1); 3],
 //!     force: false,
 //!     provenance: "AN EXAMPLE",
 //!     guards: Guards::None,
@@ -34,6 +35,7 @@
 
 mod check;
 mod chunks;
+mod feed;
 mod guards;
 mod job;
 mod large;

@@ -10,8 +10,8 @@ use nc_syntax::Block;
 use toolpath::{AXIS_NAMES, Motion};
 
 use crate::job::{
-    COMPENSATED, LEANING_CYCLE, MUST_NOT_SPLIT, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE,
-    SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
+    COMPENSATED, DIRECTION, LEANING_CYCLE, MUST_NOT_SPLIT, NO_BOUNDS_FOR_TURNS, NOT_CONVERGED,
+    NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -201,6 +201,12 @@ pub(crate) fn refusal(
                 "no command undoes what changes at once: accept it with `--tolerance {:.1}` or more, or let the axis turn in a rapid above the part",
                 (distance_um * 10.0).ceil() / 10.0
             )),
+        CorrectionError::NoBoundsForTurns => Diagnostic::error(NO_BOUNDS_FOR_TURNS, error.to_string())
+            .at(whole, "this motion")
+            .help("use `--engine rigid-body`, and a profile without [[effect]] entries: both other engines and effects have bounds for rotary axes that stand only"),
+        CorrectionError::Direction { .. } => Diagnostic::error(DIRECTION, error.to_string())
+            .at(whole, "this motion")
+            .help("give the rotary axes a finer `resolution_deg` in the profile, if the control takes it; or raise `orientation_urad` under [correction]"),
         CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.to_string())
             .at(whole, "this motion")
             .help("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`"),

@@ -8,6 +8,7 @@ use nc_syntax::{Block, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
+use crate::feed;
 use crate::guards::Guarded;
 use crate::job::{Figures, Guards, Job};
 use crate::notices::{Notices, hole_skipped, refusal};
@@ -84,6 +85,7 @@ impl Tally {
         raise(&mut figures.largest, more.largest);
         raise(&mut figures.before, more.before);
         raise(&mut figures.after, more.after);
+        raise(&mut figures.tilt, more.tilt);
         self.notices.add(&later.notices);
         self.evidence.add(&later.evidence);
     }
@@ -192,6 +194,9 @@ impl Pass<'_> {
     ) -> Result<(), Vec<Diagnostic>> {
         let mut info = self.info(context, letters);
         info.reframed = context.unnamed.map(|lost| lost.is_some_and(|lost| lost.line == block.line));
+        if let [Motion::Feed(feed)] = motions {
+            finer_than_words(&mut info, feed);
+        }
         // A repeated cycle is one block while each of its holes may stay as it is, else one block a hole.
         let before = (motions.len() > 1).then(|| self.state.corrector.clone());
         let mut pieces = Pieces::new();
@@ -204,9 +209,13 @@ impl Pass<'_> {
                 .correct(motion, &info)
                 .map_err(|error| refusal(&error, motion, block, context))?;
             untouched &= corrected.pieces.is_empty();
+            if let Some(turned) = &corrected.correction.turned {
+                feed::require_same(self.job.dialect, turned, motion, block, context)?;
+            }
             corrections.push(corrected.correction);
             if motions.len() == 1 && !corrected.pieces.is_empty() {
-                let editing = self.editing(context, letters, motion);
+                let mut editing = self.editing(context, letters, motion);
+                editing.rotary_decimals = info.rotary_decimals;
                 let only = corrected.pieces.len() == 1;
                 for (k, piece) in corrected.pieces.iter().enumerate() {
                     pieces.push(editing.edit(piece, k == 0, only));
@@ -376,6 +385,7 @@ impl Pass<'_> {
             letters,
             original: Original::of(motion),
             decimals: decimals(self.job, context),
+            rotary_decimals: [0; 3],
             inverse_time: match motion {
                 Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
                 _ => None,
@@ -406,6 +416,7 @@ impl Pass<'_> {
             raise(&mut figures.largest, (correction.largest_mm, line));
             raise(&mut figures.before, (correction.before_mm, line));
             raise(&mut figures.after, (correction.after_mm, line));
+            raise(&mut figures.tilt, (correction.turned.map_or(0.0, |turned| turned.tilt_rad), line));
             figures.approaches += u64::from(correction.approach);
             if correction.clamped {
                 notices.clamped.see(&span, line, 0.0);
@@ -452,6 +463,8 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         unit_mm: context.unit_mm,
         diameters: context.diameters,
         decimals: decimals(job, context),
+        rotary_decimals: job.rotary_steps.map(|(decimals, _)| decimals),
+        rotary_step: job.rotary_steps.map(|(_, steps)| i64::from(steps)),
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,
         letters,
@@ -463,6 +476,24 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
         peck_clearance_mm: output.peck_clearance_mm,
         chip_retreat_mm: output.chip_retreat_mm,
+    }
+}
+
+/// Words of rotary axes may be finer than the output step: what is left of them behind a split is too.
+fn finer_than_words(info: &mut correction::Block, feed: &Feed) {
+    /// No angle is programmed finer.
+    const MOST: u8 = 9;
+    for axis in 0..3 {
+        let [from, to] = [feed.start, feed.end].map(|place| place.rotary_deg[axis]);
+        let word = if info.incremental == [true; 3] { to - from } else { to };
+        let whole = |decimals: u8| {
+            let steps = word * f64::from(10u32.pow(u32::from(decimals)));
+            (steps - steps.round()).abs() < 1e-9 * steps.abs().max(1.0)
+        };
+        while from != to && info.rotary_decimals[axis] < MOST && !whole(info.rotary_decimals[axis]) {
+            info.rotary_decimals[axis] += 1;
+            info.rotary_step[axis] *= 10;
+        }
     }
 }
 

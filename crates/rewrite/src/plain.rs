@@ -182,7 +182,7 @@ impl Pass<'_> {
             self.tally.figures.blocks_in += 1;
             return self.moved(&block, &context, letters(&block, &context), &[feed]);
         };
-        let piece = correction::Piece { kind: PieceKind::Line, axes: corrected.axes, share: 1.0 };
+        let piece = correction::Piece::new(PieceKind::Line, corrected.axes, 1.0);
         let edited = self.editing(&context, letters(&block, &context), &feed).edit(&piece, true, true);
         self.state
             .emitter

@@ -77,6 +77,8 @@ pub(crate) struct Editing<'a> {
     pub original: Original,
     /// Decimals of X, Y, Z in program units.
     pub decimals: [u8; 3],
+    /// Those of A, B, C words that a piece has of its own.
+    pub rotary_decimals: [u8; 3],
     /// F under G93 and the decimals it is written with.
     pub inverse_time: Option<f64>,
     pub decimals_feed: u8,
@@ -103,6 +105,9 @@ impl Editing<'_> {
                 let names = if self.context.by_increment[axis] { b"UVW" } else { b"XYZ" };
                 push(names[axis], piece.axes[axis], self.decimals[axis]);
             }
+        }
+        for (axis, word) in piece.rotary.into_iter().flatten().enumerate() {
+            push(b"ABC"[axis], word, self.rotary_decimals[axis]);
         }
         let [u, v, n] = self.context.plane.axes();
         edited.motion = match piece.kind {

@@ -286,6 +286,7 @@ fn the_error_stays_within_the_bound_of_its_chord() {
             acceleration_mm: [0.0; 3],
             passes: 1,
             state: at(0.0, 0.0),
+            turn: None,
         };
         let bound = lathe.chord_bound_mm(&stretch);
         let (first, last) = (lathe.error_mm(&on(0.0)), lathe.error_mm(&on(1.0)));
@@ -318,6 +319,7 @@ fn the_error_stays_within_the_bound_on_an_arc() {
         acceleration_mm: [acceleration, 0.0, acceleration],
         passes: 2,
         state: at(0.0, 0.0),
+        turn: None,
     };
     let bound = lathe.chord_bound_mm(&stretch);
     let (first, last) = (lathe.error_mm(&on(0.0)), lathe.error_mm(&on(1.0)));

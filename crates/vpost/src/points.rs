@@ -4,6 +4,7 @@ use diagnostic::{Code, Diagnostic};
 use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
+use crate::figures::fixed;
 use crate::message::Failure;
 
 /// A point file that cannot be used.
@@ -33,6 +34,17 @@ const NAMES: [&str; 12] = [
     "dir_y",
     "dir_z",
 ];
+
+/// Columns of the tool's direction, for machines that turn it or the workpiece.
+pub(crate) const DIRECTION_COLUMNS: &str = ",tool_i,tool_j,tool_k,tilt_urad";
+
+/// The tool's real direction as the workpiece sees it, from the tip up, and its angle from the ideal one, µrad.
+pub(crate) fn direction_fields(machine: &machine_model::RigidBody, command: &Command) -> String {
+    let [_, real] = machine.directions(command);
+    let tilt_urad = machine_model::PathModel::tilt_rad(machine, command) * 1e6;
+    let [i, j, k] = [real.x, real.y, real.z].map(|v| fixed(v, 9));
+    format!(",{i},{j},{k},{}", fixed(tilt_urad, 3))
+}
 
 impl Points {
     /// Reads points.

@@ -7,7 +7,7 @@ use crate::arguments::{Outside, Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages, Report};
-use crate::points::Points;
+use crate::points::{DIRECTION_COLUMNS, Points, direction_fields};
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{file, profile};
 
@@ -50,7 +50,10 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let mut outside: Option<(usize, usize)> = None;
     let setup = &profile.setup;
     let mut out = points.columns.join(",");
-    out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um\n");
+    out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um");
+    let turns = other.is_none() && profile.chain().has_rotary();
+    out.push_str(if turns { DIRECTION_COLUMNS } else { "" });
+    out.push('\n');
     for (row, (fields, command)) in points.rows.iter().enumerate() {
         if !volume.contains(&command.linear_mm) || machine.base().rotary_inside(command).is_err() {
             outside = Some(outside.map_or((row, 1), |(first, count)| (first, count + 1)));
@@ -80,6 +83,9 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
         for value in error.iter().copied().chain([error.norm()]) {
             out.push(',');
             out.push_str(&fixed(value * 1e3, 6));
+        }
+        if turns {
+            out.push_str(&direction_fields(machine.base(), command));
         }
         out.push('\n');
     }

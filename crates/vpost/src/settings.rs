@@ -72,6 +72,7 @@ impl Settings {
             tolerance_mm: tolerance_um * 1e-3,
             outside,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
+            orientation_rad: profile.correction.orientation_urad * 1e-6,
         };
         let profile_name = file::name(path);
         let flow = Flow::load(shared)?;
@@ -155,6 +156,7 @@ impl Settings {
             model: self.path_model()?,
             options: self.options,
             decimals_mm: self.decimals_mm(),
+            rotary_steps: self.profile.resolution_deg.map(decimal_steps),
             force,
             provenance,
             guards: self.guards,
@@ -202,6 +204,20 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
 fn lathe_dialects() -> String {
     let of_lathes = |name: &&str| nc_dialect::builtin(name).is_some_and(|dialect| dialect.turning.is_some());
     nc_dialect::builtin_names().into_iter().filter(of_lathes).collect::<Vec<_>>().join(", ")
+}
+
+/// A step as decimals and how many of their steps; what no seven decimals say is rounded to the next finer one that they do.
+fn decimal_steps(step: f64) -> (u8, u32) {
+    const MOST: u8 = 7;
+    let scaled = |decimals: u8| step * f64::from(10u32.pow(u32::from(decimals)));
+    let whole = |decimals: &u8| {
+        let steps = scaled(*decimals);
+        steps > 0.5 && (steps - steps.round()).abs() <= 1e-9 * steps
+    };
+    match (0..=MOST).find(whole) {
+        Some(decimals) => (decimals, scaled(decimals).round() as u32),
+        None => (MOST, (scaled(MOST).floor() as u32).max(1)),
+    }
 }
 
 /// Puts into the dialect what command line or profile say of lengths without a point; true where one of them does.

@@ -1,11 +1,12 @@
 //! Inverse: what to command so that the tool reaches points.
 
 use diagnostic::Diagnostic;
+use machine_model::{Command, EngineId};
 
 use crate::arguments::{Shared, Solve};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages};
-use crate::points::Points;
+use crate::points::{DIRECTION_COLUMNS, Points, direction_fields};
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{conditions, file, profile};
 use rewrite::OUTSIDE;
@@ -29,7 +30,10 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
             out.push_str(axis);
         }
     }
-    out.push_str(",iterations,residual_um\n");
+    out.push_str(",iterations,residual_um");
+    let turns = id == EngineId::RigidBody && profile.chain().has_rotary();
+    out.push_str(if turns { DIRECTION_COLUMNS } else { "" });
+    out.push('\n');
     for (row, (fields, command)) in points.rows.iter().enumerate() {
         let solution = engine.solve(command).map_err(|error| {
             let diagnostic =
@@ -46,7 +50,12 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
             out.push(',');
             out.push_str(&fixed(command.rotary_rad[axis].to_degrees(), 9));
         }
-        out.push_str(&format!(",{},{}\n", solution.iterations, fixed(solution.residual_mm * 1e3, 9)));
+        out.push_str(&format!(",{},{}", solution.iterations, fixed(solution.residual_mm * 1e3, 9)));
+        if turns {
+            let command = Command { linear_mm: solution.linear_mm, ..*command };
+            out.push_str(&direction_fields(profile.rigid_body_without_effects(), &command));
+        }
+        out.push('\n');
     }
     file::print(out.as_bytes())
 }

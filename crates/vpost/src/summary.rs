@@ -29,6 +29,10 @@ pub(crate) struct Summary<'a> {
     deviation_before_line: u64,
     deviation_after_um: f64,
     deviation_after_line: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tilt_urad: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tilt_line: Option<u64>,
     warnings: Vec<Warning>,
 }
 
@@ -64,6 +68,11 @@ pub(crate) fn um(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e3
 }
 
+/// What is left of the tool's direction where rotary axes turned.
+fn tilt(figures: &Figures) -> Option<(f64, u64)> {
+    Some(figures.tilt).filter(|(rad, _)| *rad > 0.0)
+}
+
 impl<'a> Summary<'a> {
     pub(crate) fn new(settings: &'a Settings, program: &'a Program) -> Self {
         let Program { name, input, output, changed, figures, .. } = program;
@@ -92,6 +101,8 @@ impl<'a> Summary<'a> {
             deviation_before_line: figures.before.1,
             deviation_after_um: um(figures.after.0),
             deviation_after_line: figures.after.1,
+            tilt_urad: tilt(figures).map(|(rad, _)| (rad * 1e9).round() / 1e3),
+            tilt_line: tilt(figures).map(|(_, line)| line),
             warnings: figures
                 .warnings
                 .iter()
@@ -113,8 +124,11 @@ impl<'a> Summary<'a> {
 
     /// The same in one line for people.
     pub(crate) fn line(figures: &Figures) -> String {
+        let tilt = tilt(figures).map_or_else(String::new, |(rad, line)| {
+            format!("; tool leans by {:.1} urad (line {line})", rad * 1e6)
+        });
         format!(
-            "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after",
+            "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{tilt}",
             figures.blocks_in,
             figures.blocks_out,
             figures.splits,

@@ -21,6 +21,8 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         incremental: [incremental; 3],
         arc_centres_absolute: false,
         letters: letters(text),
@@ -36,7 +38,7 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
 }
 
 pub(crate) const OPTIONS: Options =
-    Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+    Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 };
 /// What the promise allows at 0.001 mm: 1 µm and half a step on each axis.
 pub(crate) const ALLOWED_MM: f64 = 1e-3 + 0.000_866_1;
 
@@ -200,6 +202,7 @@ pub(crate) fn tried(
         },
         axes: [0, 1, 2]
             .map(|i| if block.letters.contains(b"XYZ"[i]) { AxisWord::Keep } else { AxisWord::Omit }),
+        rotary: None,
         share: 1.0,
     }];
     let pieces = if corrected.pieces.is_empty() { &untouched[..] } else { &corrected.pieces };

@@ -54,6 +54,7 @@ pub(crate) fn dialect() -> Dialect {
             radius_word: true,
             arc_radius_tolerance_mm: 0.01,
             arc_radius_tolerance_share: 0.0,
+            rotary_feed: None,
             peck_clearance_mm: 1.0,
             chip_retreat_mm: 0.5,
         },

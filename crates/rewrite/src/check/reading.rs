@@ -8,7 +8,7 @@ use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Reader};
-use path_comparison::{Act, Step};
+use path_comparison::{Act, LEVER_MM, Step};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
@@ -159,6 +159,8 @@ impl<'a, 'n> Program<'a, 'n> {
                 self.feed
             };
             let act = Act::Motion { motion: *motion, tool_mm: context.tool_mm, feed, dwell };
+            let turned_mm = self.turn_rounding_mm(motion);
+            let limit_mm = (limit_mm * limit_mm + turned_mm * turned_mm).sqrt();
             self.ready.push(Step { act, line, process, limit_mm, compensated: context.compensation });
         }
         says.behind.into_iter().for_each(|said| self.say(said, line, limit_mm));
@@ -182,6 +184,18 @@ impl<'a, 'n> Program<'a, 'n> {
     /// The number of the process in force.
     fn number(&mut self) -> u32 {
         *self.process_number.get_or_insert_with(|| self.numbers.borrow_mut().of_process(&self.process))
+    }
+
+    /// What the rounding of rotary words adds where they turn on a feed's way: half a step each, as the comparison sees it.
+    fn turn_rounding_mm(&self, motion: &Motion) -> f64 {
+        let Motion::Feed(Feed { start, end, .. }) = motion else { return 0.0 };
+        let half_rad = |axis: usize| {
+            let (decimals, steps) = self.job.rotary_steps[axis];
+            let step_deg = f64::from(steps) / f64::from(10u32.pow(u32::from(decimals)));
+            if start.rotary_deg[axis] == end.rotary_deg[axis] { 0.0 } else { 0.5 * step_deg.to_radians() }
+        };
+        let [a, b, c] = [0, 1, 2].map(half_rad);
+        LEVER_MM * (a * a + b * b + c * c).sqrt()
     }
 
     fn turned_at_feed(

@@ -1,0 +1,177 @@
+//! Rotary axes that turn while the tool feeds: their words where a motion is split, and what the motion comes to.
+//!
+//! The path of such a motion is what an ideal machine of the chain makes of it ([`crate::Curve::Turn`]); all else is as for a
+//! line. Rotary words are never corrected. Where a motion is split they are rounded, and the linear axes are told what
+//! brings the tip to its place with the angles as they are written.
+
+use machine_model::{Command, Move, Turn, Vector};
+use toolpath::Feed;
+
+use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::curve::Curve;
+use crate::grid::{AxisWord, Block};
+
+/// So far rotary axes turn at most between places where the error before correction is asked for, rad.
+const BEFORE_RAD: f64 = 0.05;
+
+/// What a feed motion with rotary axes comes to, for those who know what F means.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// Way of the linear axes as programmed, mm.
+    pub programmed_mm: f64,
+    /// The same as written.
+    pub commanded_mm: f64,
+    /// What rounding may make of that, mm.
+    pub rounding_mm: f64,
+    /// Way of the rotary axes, degrees: the root of the sum of their squares.
+    pub turned_deg: f64,
+    /// Largest angle between the tool's real and its ideal direction at both ends and in the middle, rad.
+    pub tilt_rad: f64,
+}
+
+/// Where the rotary axes stand in the output while a motion is written.
+#[derive(Clone, Copy)]
+pub(crate) struct Turning {
+    start_deg: [f64; 3],
+    end_deg: [f64; 3],
+    /// Of each axis that a piece has turned, in steps of [`Block::rotary_decimals`] from where its words count from.
+    written: [Option<i64>; 3],
+}
+
+impl Turning {
+    pub(crate) fn of(feed: &Feed) -> Self {
+        Self { start_deg: feed.start.rotary_deg, end_deg: feed.end.rotary_deg, written: [None; 3] }
+    }
+}
+
+/// Words for the rotary axes at the end of a part, and where they then stand.
+pub(crate) struct RotaryWords {
+    pub(crate) words: [AxisWord; 3],
+    pub(crate) end_rad: Vector,
+    pub(crate) turning: Turning,
+}
+
+impl Block {
+    /// Steps of [`Block::rotary_decimals`] in a degree.
+    fn per_degree(&self, axis: usize) -> f64 {
+        f64::from(10u32.pow(u32::from(self.rotary_decimals[axis].min(9))))
+    }
+
+    /// True under G91.
+    fn rotary_increments(&self) -> bool {
+        self.incremental == [true; 3]
+    }
+
+    /// Where from an axis' words count, degrees.
+    fn rotary_origin(&self, turning: &Turning, axis: usize) -> f64 {
+        if self.rotary_increments() { turning.start_deg[axis] } else { 0.0 }
+    }
+}
+
+impl Follow<'_, '_> {
+    /// The words that bring the rotary axes to the end of a part; `None` where none turns.
+    pub(crate) fn rotary_words(&self, part: &Curve) -> Option<RotaryWords> {
+        let (mut turning, programmed_rad) = (self.turning?, part.rotary_rad(1.0)?);
+        let whole_end = Vector::from(turning.end_deg.map(f64::to_radians));
+        let (block, first) = (self.block, self.corrected.pieces.is_empty());
+        let (mut words, mut end_rad) = ([AxisWord::Omit; 3], programmed_rad);
+        for axis in 0..3 {
+            let own = block.letters.contains(b"ABC"[axis]);
+            let (from, to) = (turning.start_deg[axis], turning.end_deg[axis]);
+            if from == to {
+                if own && first {
+                    words[axis] = AxisWord::Keep;
+                }
+                continue;
+            }
+            let (origin, per_degree) = (block.rotary_origin(&turning, axis), block.per_degree(axis));
+            let before = turning.written[axis];
+            if programmed_rad == whole_end {
+                words[axis] = match before.filter(|_| block.rotary_increments()) {
+                    Some(before) => {
+                        AxisWord::Write(units::decimal::round((to - origin) * per_degree) - before)
+                    }
+                    None => AxisWord::Keep,
+                };
+                continue;
+            }
+            let step = block.rotary_step[axis].max(1);
+            let steps = (programmed_rad[axis].to_degrees() - origin) * per_degree / step as f64;
+            let counts = units::decimal::round(steps) * step;
+            if before != Some(counts) {
+                let since = if block.rotary_increments() { before.unwrap_or(0) } else { 0 };
+                words[axis] = AxisWord::Write(counts - since);
+            }
+            turning.written[axis] = Some(counts);
+            end_rad[axis] = (origin + counts as f64 / per_degree).to_radians();
+        }
+        Some(RotaryWords { words, end_rad, turning })
+    }
+}
+
+impl Corrector<'_> {
+    /// Refuses what has no bounds while rotary axes turn.
+    pub(crate) fn require_turns(&self) -> Result<(), CorrectionError> {
+        if self.model.follows_turns() { Ok(()) } else { Err(CorrectionError::NoBoundsForTurns) }
+    }
+
+    /// Refuses a piece whose rotary words turn the tool away from its direction by more than is allowed.
+    pub(crate) fn require_direction(&self, turn: &Turn) -> Result<(), CorrectionError> {
+        let (slip_rad, allowed_rad) = (turn.slip_rad(), self.options.orientation_rad);
+        if slip_rad <= allowed_rad {
+            return Ok(());
+        }
+        Err(CorrectionError::Direction { slip_urad: slip_rad * 1e6, allowed_urad: allowed_rad * 1e6 })
+    }
+
+    /// What a motion comes to that was written with a way of so many mm of the linear axes.
+    pub(crate) fn turned(
+        &self,
+        whole: &Curve,
+        block: &Block,
+        feed: &Feed,
+        commanded_mm: f64,
+        pieces: usize,
+    ) -> Turned {
+        let state = self.state(block, feed.end.rotary_deg);
+        let tilt = |s: f64| {
+            let rotary_rad = whole.rotary_rad(s).unwrap_or(state.rotary_rad);
+            self.model.tilt_rad(&Command { linear_mm: whole.at(s), rotary_rad, ..state })
+        };
+        let turned_deg = [0, 1, 2].map(|axis| feed.end.rotary_deg[axis] - feed.start.rotary_deg[axis]);
+        Turned {
+            programmed_mm: whole.linear_mm(),
+            commanded_mm,
+            rounding_mm: 2.0 * block.rounding_mm() * pieces.max(1) as f64,
+            turned_deg: Vector::from(turned_deg).norm(),
+            tilt_rad: [0.0, 0.5, 1.0].map(tilt).into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// Upper bound of the deviation that a motion with rotary axes would have had uncorrected, mm.
+    pub(crate) fn before_turning_mm(&self, whole: &Curve, state: &Command) -> f64 {
+        let Some((from, to)) = whole.rotary_rad(0.0).zip(whole.rotary_rad(1.0)) else { return 0.0 };
+        let parts = ((to - from).abs().sum() / BEFORE_RAD).ceil().clamp(1.0, 1e4);
+        let error = |s: f64| {
+            let rotary_rad = whole.rotary_rad(s).unwrap_or(from);
+            self.model.error_mm(&Command { linear_mm: whole.at(s), rotary_rad, ..*state }).norm()
+        };
+        let mut worst = error(0.0);
+        for k in 0..parts as u32 {
+            let (s0, s1) = (f64::from(k) / parts, f64::from(k + 1) / parts);
+            let extent = whole.extent(s0, s1);
+            let ends = [s0, s1].map(|s| whole.rotary_rad(s).unwrap_or(from));
+            let between = self.model.chord_bound_mm(&Move {
+                range_mm: extent.range,
+                speed_mm: extent.speed,
+                acceleration_mm: extent.acceleration,
+                passes: 1,
+                state: *state,
+                turn: Some(Turn { programmed_rad: ends, commanded_rad: ends }),
+            });
+            let own = error(s0).max(error(s1)) + if between.is_finite() { between } else { 0.0 };
+            worst = worst.max(own);
+        }
+        worst
+    }
+}

@@ -1,0 +1,164 @@
+//! How far the error can leave its chord while rotary axes turn: equation (60) of `docs/equations.md`.
+//!
+//! The recursions (8) and (9), from the tool to the workpiece, with upper bounds of lengths. Nothing depends on the
+//! frame in which a length is taken, and what a turn adds is the error times the turn: a constant tilt ε at an arm X
+//! bends by `ε X ω²`, where the path itself bends by `X ω²`.
+
+use crate::axis_tables::SixBounds;
+use crate::chord_bound::{Carried, Length, linear_error};
+use crate::rigid_body::ideally_turned;
+use crate::{Axis, Command, Move, Range, RigidBody, RotaryAxis, Tilt, Turn, Vector};
+
+impl Length {
+    /// Of what does not change.
+    fn constant(value: f64) -> Self {
+        Self { value, ..Self::default() }
+    }
+
+    /// Seen from what turns by `speed` rad a stretch, evenly.
+    fn turned(self, speed: f64) -> Self {
+        let Self { value, first, second, jumps } = self;
+        Self {
+            value,
+            first: first + speed * value,
+            second: second + 2.0 * speed * first + speed * speed * value,
+            jumps,
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            first: self.first + other.first,
+            second: self.second + other.second,
+            jumps: self.jumps + other.jumps,
+        }
+    }
+
+    /// Product rule: of a matrix times a vector, or of two vectors.
+    fn times(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            first: self.first * other.value + self.value * other.first,
+            second: self.second * other.value + 2.0 * self.first * other.first + self.value * other.second,
+            jumps: self.jumps * other.value + self.value * other.jumps,
+        }
+    }
+
+    /// Upper bound of the distance from the chord: equation (12).
+    fn leaves_chord_mm(self) -> f64 {
+        0.25 * self.jumps + 0.125 * self.second
+    }
+}
+
+/// What a rotary axis does besides turning ideally by its programmed angle.
+struct Wobble {
+    /// How far it turns what it carries, `‖L R(ε) Rot(slip) - I‖`.
+    turn: Length,
+    /// How far it moves it, mm.
+    shift: Length,
+    /// Its programmed turn over the stretch, rad.
+    speed: f64,
+}
+
+impl Wobble {
+    fn of(rotary: &RotaryAxis, axis: Axis, turn: &Turn) -> Self {
+        let of_axis = |ends: &[Vector; 2]| [ends[0][axis.direction()], ends[1][axis.direction()]];
+        let (programmed, commanded) = (of_axis(&turn.programmed_rad), of_axis(&turn.commanded_rad));
+        let slip = [0, 1].map(|end| commanded[end] - programmed[end]);
+        let slip = Length {
+            value: slip[0].abs().max(slip[1].abs()),
+            first: (slip[1] - slip[0]).abs(),
+            ..Length::default()
+        };
+        let (mut shift, mut small) = (Length::default(), Length::default());
+        if let Some(tables) = &rotary.errors {
+            let range = Range { low: commanded[0].min(commanded[1]), high: commanded[0].max(commanded[1]) };
+            let bounds = tables.bounds(range);
+            let speed = range.high - range.low;
+            (shift, small) = (of_three(&bounds, 0, speed), of_three(&bounds, 3, speed));
+        }
+        // A product of rotations leaves the identity by no more than their angles together, and with their rates w its
+        // second derivative is at most Σ |w'| + (Σ |w|)².
+        let speed = (programmed[1] - programmed[0]).abs();
+        let lean = Length::constant(rotary.tilt_rad.norm());
+        let mut turn = small.plus(slip).plus(lean);
+        if rotary.tilt == Tilt::Axis {
+            // `L R Rot L⁻¹` is `L R (Rot L⁻¹ Rot⁻¹) Rot`: a tilt that turns with the axis.
+            turn = turn.plus(lean.turned(speed));
+        }
+        turn.second += turn.first * turn.first;
+        Self { turn, shift: shift.plus(Length::constant(rotary.shift_mm.norm())), speed }
+    }
+}
+
+/// Three of the six functions of a rotary axis that turns evenly from one end of a range to the other.
+fn of_three(bounds: &SixBounds, from: usize, speed: f64) -> Length {
+    let norm = |six: &[f64; 6]| Vector::from_column_slice(&six[from..from + 3]).norm();
+    Length {
+        value: norm(&bounds.value),
+        first: norm(&bounds.slope) * speed,
+        second: norm(&bounds.curvature) * speed * speed,
+        jumps: norm(&bounds.kinks_on_line) * speed,
+    }
+}
+
+/// Upper bound, mm, of the distance between the error and its chord over the stretch: equation (60).
+pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move, turn: &Turn) -> f64 {
+    let chain = &model.description.chain;
+    let rotary = |axis: Axis| &model.description.rotary[axis.direction()];
+    let middle = Command {
+        linear_mm: Vector::from_fn(|i, _| 0.5 * (stretch.range_mm[i].low + stretch.range_mm[i].high)),
+        rotary_rad: 0.5 * (turn.programmed_rad[0] + turn.programmed_rad[1]),
+        ..stretch.state
+    };
+
+    // The head, from the tool on: `nominal` is the ideal tool vector, seen from the centre of the axis at hand.
+    let (mut nominal, mut error) = (Length::constant(stretch.state.tool_mm.norm()), Length::default());
+    let mut centre = Vector::zeros();
+    for axis in chain.head().iter().rev() {
+        let data = rotary(*axis);
+        let wobble = Wobble::of(data, *axis, turn);
+        nominal.value += (data.centre_mm - centre).norm();
+        centre = data.centre_mm;
+        let real = nominal.plus(error).turned(wobble.speed);
+        error = wobble.shift.plus(wobble.turn.times(real)).plus(error.turned(wobble.speed));
+        nominal = nominal.turned(wobble.speed);
+    }
+    let at_middle = model.nominal_tool(&middle);
+    // From its place in the middle it goes half of its way at most.
+    let reach = Vector::repeat(0.5 * nominal.first);
+    let carried = Carried {
+        low: at_middle - reach,
+        high: at_middle + reach,
+        first: nominal.first,
+        second: nominal.second,
+        error,
+    };
+
+    let mut error = linear_error(model, stretch, &carried);
+
+    // The table, from the linear axes on, seen from the frame that the axes so far make: what each of them adds is seen
+    // again from that of the linear axes. `nominal` is the ideal tip there, seen from the centre of the axis at hand.
+    let speed = Vector::from(stretch.speed_mm).norm();
+    let acceleration = Vector::from(stretch.acceleration_mm).norm();
+    let mut tip = middle.linear_mm + at_middle;
+    let mut nominal =
+        Length { first: speed + carried.first, second: acceleration + carried.second, ..Length::default() };
+    let (mut total, mut turned) = (error, 0.0);
+    for axis in chain.table().iter().rev() {
+        let data = rotary(*axis);
+        let wobble = Wobble::of(data, *axis, turn);
+        // As far as in the middle of the stretch, and half of its way.
+        let arm = tip - data.centre_mm;
+        nominal.value = arm.norm() + 0.5 * nominal.first;
+        let beyond = nominal.plus(error).plus(wobble.shift);
+        let own = wobble.turn.times(beyond).plus(wobble.shift);
+        total = total.plus(own.turned(turned));
+        error = error.plus(own).turned(wobble.speed);
+        nominal = nominal.turned(wobble.speed);
+        tip = data.centre_mm + ideally_turned(data, *axis, -middle.rotary_rad[axis.direction()]) * arm;
+        turned += wobble.speed;
+    }
+    total.leaves_chord_mm()
+}
