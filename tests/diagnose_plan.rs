@@ -58,7 +58,7 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
             predicted_mm: Vector::zeros(),
             u_um: [None; 3],
             instrument: None,
-        station: None,
+            station: None,
             artefact: None,
             reading: Reading::Displacement([Some(0.0); 3]),
             line: 0,

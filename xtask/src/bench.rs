@@ -175,11 +175,13 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: correction::Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
+            orientation_rad: profile.correction.orientation_urad * 1e-6,
         },
         decimals_mm: [3; 3],
         force: false,
         provenance: "BENCHMARK",
         guards: rewrite::Guards::None,
+        rotary_steps: [(3, 1); 3],
     };
     let budget = budget::measure(&program, &job, options.repeat.max(5))?;
     let rows = |parts: &[(&str, f64)]| -> Vec<Vec<String>> {

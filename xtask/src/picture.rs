@@ -143,11 +143,13 @@ fn corrected(
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
+            orientation_rad: profile.correction.orientation_urad * 1e-6,
         },
         decimals_mm: [3; 3],
         force: false,
         provenance: "",
         guards: rewrite::Guards::None,
+        rotary_steps: [(3, 1); 3],
     };
     let result = rewrite::correct(text, &job, |_| Ok::<(), Vec<Diagnostic>>(()));
     Ok(result.map_err(refused)?.text)

@@ -145,7 +145,8 @@ pub fn by_function(old: &Description, new: &Description) -> Vec<FunctionChange> 
                     None => (above, play),
                 }
             };
-            let differences: Vec<(f64, f64)> = nodes.iter().map(|q| (of(b, *q).0 - of(a, *q).0, of(b, *q).1 - of(a, *q).1)).collect();
+            let differences: Vec<(f64, f64)> =
+                nodes.iter().map(|q| (of(b, *q).0 - of(a, *q).0, of(b, *q).1 - of(a, *q).1)).collect();
             let half = nodes.len() / 2;
             let sideways = function < 3 && function != axis;
             let slope = if sideways {
@@ -160,7 +161,13 @@ pub fn by_function(old: &Description, new: &Description) -> Vec<FunctionChange> 
             let size = |i: &usize| (level(*i) - zero).abs();
             let Some(worst) = (0..nodes.len()).max_by(|i, j| size(i).total_cmp(&size(j))) else { continue };
             let reversal = differences.iter().map(|d| d.1).sum::<f64>() / differences.len() as f64;
-            found.push(FunctionChange { axis, function, at_mm: nodes[worst], by: level(worst) - zero, reversal });
+            found.push(FunctionChange {
+                axis,
+                function,
+                at_mm: nodes[worst],
+                by: level(worst) - zero,
+                reversal,
+            });
         }
     }
     found

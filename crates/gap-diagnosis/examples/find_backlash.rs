@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 predicted_mm: Vector::zeros(),
                 u_um: [None; 3],
                 instrument: None,
-        station: None,
+                station: None,
                 artefact: None,
                 reading: Reading::Displacement([Some(read.x), Some(read.y), Some(read.z)]),
                 line: rows.len() as u64 + 2,

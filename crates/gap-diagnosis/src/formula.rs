@@ -126,12 +126,15 @@ fn of_component(data: &Measurements, columns: &[Column], class: usize, scalars: 
         return Vec::new();
     }
     let basis = |set: &[usize]| -> Vec<Vec<f64>> {
-        products(columns, set).iter().map(|orders| {
-            let value = |s: &&Scalar| -> f64 {
-                set.iter().zip(orders).map(|(c, k)| legendre(*k, columns[*c].values[s.row])).product()
-            };
-            centred(scalars.iter().map(value).collect())
-        }).collect()
+        products(columns, set)
+            .iter()
+            .map(|orders| {
+                let value = |s: &&Scalar| -> f64 {
+                    set.iter().zip(orders).map(|(c, k)| legendre(*k, columns[*c].values[s.row])).product()
+                };
+                centred(scalars.iter().map(value).collect())
+            })
+            .collect()
     };
     let share = |set: &[usize]| 1.0 - judge.unseen(&basis(set)) / nothing;
     let alone: Vec<f64> = (0..columns.len()).map(|c| share(&[c])).collect();

@@ -136,7 +136,8 @@ impl Seen {
 /// Median difference of the ways since an axis turned, of rows in a row that are nearer to the turn than thirty steps.
 fn step_after_turning(rows: &[Row], axis: usize) -> f64 {
     let pairs = rows.windows(2).filter(|w| w[0].run == w[1].run);
-    let ways = pairs.filter_map(|w| Some((w[0].conditions.since_turn_mm[axis]?, w[1].conditions.since_turn_mm[axis]?)));
+    let ways = pairs
+        .filter_map(|w| Some((w[0].conditions.since_turn_mm[axis]?, w[1].conditions.since_turn_mm[axis]?)));
     let mut steps: Vec<f64> =
         ways.filter(|(a, b)| b > a && *a < 30.0 * (b - a)).map(|(a, b)| b - a).collect();
     if steps.len() < 12 { f64::INFINITY } else { median(&mut steps).unwrap_or(f64::INFINITY) }

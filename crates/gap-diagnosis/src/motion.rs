@@ -101,7 +101,14 @@ mod tests {
         let tangents: Vec<Option<Vector>> =
             (0..360).map(|k| Some(Vector::new(-angle(k).sin(), angle(k).cos(), 0.0))).collect();
         let steps: Vec<Vector> = (0..359)
-            .map(|k| 100.0 * Vector::new(angle(k + 1).cos() - angle(k).cos(), angle(k + 1).sin() - angle(k).sin(), 0.0))
+            .map(|k| {
+                100.0
+                    * Vector::new(
+                        angle(k + 1).cos() - angle(k).cos(),
+                        angle(k + 1).sin() - angle(k).sin(),
+                        0.0,
+                    )
+            })
             .collect();
         let open = ways(0, &tangents, &steps, false);
         assert_eq!(open[100], None, "nobody knows where X turned before the run");

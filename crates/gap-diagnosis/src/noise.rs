@@ -208,8 +208,16 @@ fn from_forms(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<
         degrees += count - kept.len() as f64;
     }
     let source = NoiseSource::Forms;
-    (degrees >= 5.0 * ENOUGH_REPEATS).then(|| Noise { variance: square / degrees, degrees, source, slow: 1.0 })
+    (degrees >= 5.0 * ENOUGH_REPEATS).then(|| Noise {
+        variance: square / degrees,
+        degrees,
+        source,
+        slow: 1.0,
+    })
 }
+
+/// A place in steps, a class of readings, and which way the axes came.
+type Returning = ([i64; 6], usize, [i8; 3]);
 
 /// Second differences along a run, robustly: a smooth residual cancels, noise does not.
 fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
@@ -264,7 +272,7 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
         (row.run, scalar.class, [step(q.x), step(q.y), step(q.z), step(t.x), step(t.y), step(t.z)])
     };
     // Sum and count at one place reached one way, whatever the run.
-    let mut returns: BTreeMap<([i64; 6], usize, [i8; 3]), (f64, f64)> = BTreeMap::new();
+    let mut returns = BTreeMap::<Returning, (f64, f64)>::new();
     let return_of = |scalar: &Scalar| {
         let (_, class, place) = place_of(scalar);
         (place, class, rows[scalar.row].command.direction)

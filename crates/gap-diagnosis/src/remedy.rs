@@ -58,7 +58,9 @@ pub const fn remedy(kind: EffectKind) -> &'static str {
             "Ask what happened at that time (collision, clamping, restart) and measure again."
         }
         EffectKind::Local(_) => "Inspect the guideway or scale at that place for damage or dirt.",
-        EffectKind::Joint(_) => "Realign the rails where they join, or enter a table with a node on each side of the joint.",
+        EffectKind::Joint(_) => {
+            "Realign the rails where they join, or enter a table with a node on each side of the joint."
+        }
         EffectKind::Spike(_) => {
             "Set the control's friction (quadrant) compensation for this axis; check lubrication and gibs."
         }

@@ -68,7 +68,7 @@ fn measured(plan: Plan, field_um: impl Fn(&Row) -> Vector) -> Measurements {
                     predicted_mm: Vector::zeros(),
                     u_um: [None; 3],
                     instrument: None,
-        station: None,
+                    station: None,
                     artefact: None,
                     reading: Reading::Magnitude(0.0),
                     line: rows.len() as u64 + 2,

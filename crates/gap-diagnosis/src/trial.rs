@@ -90,7 +90,8 @@ impl State<'_, '_> {
         if gain < MOST * before {
             return false;
         }
-        let values = self.space.gram.select(&model_columns(&self.library, with)).coefficients(self.space.rho(level));
+        let values =
+            self.space.gram.select(&model_columns(&self.library, with)).coefficients(self.space.rho(level));
         let own = values.get(positions(&self.library, with, with.len() - 1)).unwrap_or_default();
         let columns = with.last().map_or_else(Vec::new, |part| self.space.columns(&self.library, &[*part]));
         let products = self.space.products(level);

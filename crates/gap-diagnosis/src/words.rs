@@ -113,7 +113,11 @@ impl Assembly<'_> {
                 format!("something moved by {:.1} µm along {} at {:.0} s", first.abs(), axis(a), shape.time_s)
             }
             EffectKind::Joint(a) => {
-                format!("the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm", axis(a), shape.centre_mm)
+                format!(
+                    "the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm",
+                    axis(a),
+                    shape.centre_mm
+                )
             }
             EffectKind::Spike(a) => format!(
                 "{} sticks where it turns: {:.1} µm, gone after {:.1} mm of way",

@@ -96,7 +96,8 @@ impl Settings {
     /// # Errors
     /// A control that cannot be asked.
     pub(crate) fn put_guards(&mut self) -> Result<(), Failure> {
-        if self.dialect.flow.macros == Macros::None {
+        // Whether a lathe keeps X as a diameter its parameters say.
+        if self.dialect.flow.macros == Macros::None || self.dialect.turning.is_some() {
             return Err(Failure::option(
                 format!("no way is known to ask dialect {} for its work offsets", self.dialect.name),
                 "correct without `--guard`, and compare the offsets by hand",

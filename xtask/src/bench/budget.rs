@@ -144,7 +144,10 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         frame: toolpath::Frame::default(),
         unit_mm: 1.0,
         decimals: job.decimals_mm,
-        incremental: false,
+        incremental: [false; 3],
+        diameters: false,
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         arc_centres_absolute: false,
         letters,
         whole: [false; 3],
@@ -247,6 +250,7 @@ fn stretch(feed: &toolpath::Feed) -> Move {
         speed_mm: [0, 1, 2].map(|i| (b[i] - a[i]).abs()),
         acceleration_mm: [0.0; 3],
         passes: 1,
+        turn: None,
         state: command(b),
     }
 }

@@ -205,7 +205,10 @@ impl EffectKind {
     /// What a linear axis, its drive or the spindle does, and what turns with the table for the workpiece; a table's
     /// own errors and the drift of an instrument are seen from the workpiece as they are.
     const fn arises_along_linear_axes(&self) -> bool {
-        !matches!(self, Self::Rotary { .. } | Self::Eccentricity(_) | Self::InstrumentDrift | Self::Tracker(_))
+        !matches!(
+            self,
+            Self::Rotary { .. } | Self::Eccentricity(_) | Self::InstrumentDrift | Self::Tracker(_)
+        )
     }
 
     /// The displacement where it arises: along the linear axes, or as the workpiece sees it.

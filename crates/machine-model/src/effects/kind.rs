@@ -270,7 +270,10 @@ mod tests {
         for kind in &all {
             assert_eq!(kind.to_string().parse::<EffectKind>().as_ref(), Ok(kind));
         }
-        assert_eq!(all.len(), 3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3 + 3 + 3 + 2 + 6);
+        assert_eq!(
+            all.len(),
+            3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3 + 3 + 3 + 2 + 6
+        );
         for id in [
             "lost-motion.EYX",
             "straightness.EZY",

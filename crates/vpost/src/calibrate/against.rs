@@ -73,9 +73,9 @@ fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume)
     let arm_mm = volume.0.iter().map(|range| range.high - range.low).fold(0.0, f64::max);
     let mut text = String::new();
     for change in by_function(&old.description, &new.description) {
-        let name = format!("E{}{}", ["X", "Y", "Z", "A", "B", "C"][change.function], ["X", "Y", "Z"][change.axis]);
-        let (factor, unit, arm) =
-            if change.function < 3 { (1e3, "um", 1.0) } else { (1e6, "urad", arm_mm) };
+        let name =
+            format!("E{}{}", ["X", "Y", "Z", "A", "B", "C"][change.function], ["X", "Y", "Z"][change.axis]);
+        let (factor, unit, arm) = if change.function < 3 { (1e3, "um", 1.0) } else { (1e6, "urad", arm_mm) };
         if change.by.abs() * arm > 1.5 * uncertainty_mm {
             text.push_str(&format!(
                 "  {name} by {:+.2} {unit} at {} mm\n",
@@ -84,7 +84,10 @@ fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume)
             ));
         }
         if change.reversal.abs() * arm > 1.5 * uncertainty_mm {
-            text.push_str(&format!("  reversal value of {name} by {:+.2} {unit}\n", change.reversal * factor));
+            text.push_str(&format!(
+                "  reversal value of {name} by {:+.2} {unit}\n",
+                change.reversal * factor
+            ));
         }
     }
     text

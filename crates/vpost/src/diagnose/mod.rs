@@ -238,7 +238,11 @@ fn of_one_machine(path: &std::path::Path, measured: &Measured, held: &Measured) 
     };
     let (fitted, unseen) = (letters(&measured.data), letters(&held.data));
     if !unseen.is_empty() && unseen.iter().all(|letter| !fitted.contains(letter)) {
-        return Err(refuse(format!("it moves {}, and the measurements {}", unseen.join(", "), fitted.join(", "))));
+        return Err(refuse(format!(
+            "it moves {}, and the measurements {}",
+            unseen.join(", "),
+            fitted.join(", ")
+        )));
     }
     Ok(())
 }

@@ -69,8 +69,17 @@ pub(super) fn agree(table: &Table<'_>) -> Result<(), Failure> {
 /// A feed may be left out: a row that was read at rest has none.
 pub(super) fn everywhere(table: &Table<'_>) -> Result<(), Failure> {
     let uncertainties = ["u_x_um", "u_y_um", "u_z_um"];
-    let conditions =
-        ["load_kg", "temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "instrument", "artefact", "station"];
+    let conditions = [
+        "load_kg",
+        "temp_c",
+        "temp_x_c",
+        "temp_y_c",
+        "temp_z_c",
+        "time_s",
+        "instrument",
+        "artefact",
+        "station",
+    ];
     if let (Some(column), Some(missing)) =
         (uncertainties.into_iter().find(|c| table.has(c)), uncertainties.into_iter().find(|c| !table.has(c)))
     {
@@ -121,7 +130,11 @@ pub(super) fn placed(table: &Table<'_>, stations: &[String]) -> Result<(), Failu
     Err(table.refuse(
         COLUMNS,
         Some((record, column)),
-        format!("{} stations ({}), and no place of this one: `{name}` is missing", stations.len(), stations.join(", ")),
+        format!(
+            "{} stations ({}), and no place of this one: `{name}` is missing",
+            stations.len(),
+            stations.join(", ")
+        ),
         "this station",
         "give bx_mm, by_mm and bz_mm, where the tracker stood in machine coordinates, to a few centimetres",
     ))

@@ -140,7 +140,8 @@ fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3
 
 /// Where the station of a tracker stands; nothing where the file does not say.
 fn station(table: &Table<'_>, record: &csv::ByteRecord) -> Result<Option<[f64; 3]>, Failure> {
-    let place = [table.number(record, "bx_mm")?, table.number(record, "by_mm")?, table.number(record, "bz_mm")?];
+    let place =
+        [table.number(record, "bx_mm")?, table.number(record, "by_mm")?, table.number(record, "bz_mm")?];
     Ok(match place {
         [Some(x), Some(y), Some(z)] => Some([x, y, z]),
         _ => None,

@@ -108,7 +108,7 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                 predicted_mm: Vector::zeros(),
                 u_um: [None; 3],
                 instrument: None,
-        station: None,
+                station: None,
                 artefact: None,
                 reading: Reading::Displacement([Some(0.0); 3]),
                 line: 0,
