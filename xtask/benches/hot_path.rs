@@ -73,12 +73,20 @@ fn hot_path(c: &mut Criterion) {
             }
         });
     });
-    let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0 };
+    let options = Options {
+        tolerance_mm: 1e-3,
+        outside: Outside::Refuse,
+        minimum_segment_mm: 0.0,
+        orientation_rad: 5e-5,
+    };
     let info = Info {
         frame: Frame::default(),
         unit_mm: 1.0,
         decimals: [3; 3],
-        incremental: false,
+        incremental: [false; 3],
+        diameters: false,
+        rotary_decimals: [3; 3],
+        rotary_step: [1; 3],
         whole: [false; 3],
         named: [true; 3],
         reframed: [false; 3],
