@@ -3,7 +3,7 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 57] = [
+pub const ACTION_NAMES: [&str; 59] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -58,6 +58,8 @@ pub const ACTION_NAMES: [&str; 57] = [
     "dwell-p",
     "diameter-on",
     "diameter-off",
+    "diameter-of-absolute",
+    "speed-limit",
     "limit-or-preset",
     "pass",
     "pass-with-words",
@@ -121,6 +123,8 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "dwell-p" => Action::DwellP,
         "diameter-on" => Action::DiameterOn,
         "diameter-off" => Action::DiameterOff,
+        "diameter-of-absolute" => Action::DiameterOfAbsolute,
+        "speed-limit" => Action::SpeedLimit,
         "limit-or-preset" => Action::LimitOrPreset,
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },

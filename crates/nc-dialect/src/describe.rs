@@ -111,6 +111,7 @@ pub fn rows(dialect: &Dialect) -> Rows {
     });
     let commands = dialect.commands.iter().map(|entry| {
         let (treatment, note) = match &entry.refuse {
+            None if entry.action.is_some() => (Treatment::Followed, String::new()),
             None => (Treatment::Passed, String::new()),
             Some((reason, help)) => {
                 let most = entry.passes_with.map(|most| format!("with more than {most} argument(s): "));

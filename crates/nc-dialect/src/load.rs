@@ -113,7 +113,12 @@ fn turning(
         let increments = system.increments;
         systems.push(System { name: name.clone(), codes: rows, without, increments, initial });
     }
-    Turning { increments: rules.increments, offset_in_t: rules.offset_in_t, systems }
+    Turning {
+        increments: rules.increments,
+        offset_in_t: rules.offset_in_t,
+        offset_in_d: rules.offset_in_d,
+        systems,
+    }
 }
 
 /// Rows that were read.
@@ -350,8 +355,15 @@ fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnosti
         return Err(Diagnostic::error(Code(802), format!("`{name}` is not a command's name"))
             .at(wide(key.span()), "expected capital letters, at least two"));
     }
-    let refuse = refusal(key, false, row.refuse.as_deref(), row.help.as_deref())?;
-    Ok(Command { name: name.clone(), refuse, passes_with: row.passes_with })
+    let refuse = refusal(key, row.does.is_some(), row.refuse.as_deref(), row.help.as_deref())?;
+    let action = match &row.does {
+        None => None,
+        Some(does) => Some(action_named(does.get_ref(), GCode(0)).ok_or_else(|| {
+            Diagnostic::error(Code(804), format!("`{}` is not something a command does", does.get_ref()))
+                .at(wide(does.span()), format!("{name} cannot do this"))
+        })?),
+    };
+    Ok(Command { name: name.clone(), action, refuse, passes_with: row.passes_with })
 }
 
 /// A sign of a lathe; `None`, and what is wrong noted, where it cannot be read.

@@ -7,7 +7,7 @@ use nc_syntax::Dialect;
 use crate::load;
 
 /// Names and texts, in alphabetical order.
-pub(crate) const TEXTS: [(&str, &str); 8] = [
+pub(crate) const TEXTS: [(&str, &str); 9] = [
     ("balt-system", include_str!("../../../grammars/balt-system.toml")),
     ("centroid", include_str!("../../../grammars/centroid.toml")),
     ("fanuc", include_str!("../../../grammars/fanuc.toml")),
@@ -16,6 +16,7 @@ pub(crate) const TEXTS: [(&str, &str); 8] = [
     ("linuxcnc-lathe", include_str!("../../../grammars/linuxcnc-lathe.toml")),
     ("perspektiva", include_str!("../../../grammars/perspektiva.toml")),
     ("sinumerik", include_str!("../../../grammars/sinumerik.toml")),
+    ("sinumerik-turn", include_str!("../../../grammars/sinumerik-turn.toml")),
 ];
 
 static DIALECTS: LazyLock<Vec<Dialect>> = LazyLock::new(|| {

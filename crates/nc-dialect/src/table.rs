@@ -105,6 +105,7 @@ pub(crate) struct Start {
 pub(crate) struct TurningRules {
     pub(crate) increments: bool,
     pub(crate) offset_in_t: bool,
+    pub(crate) offset_in_d: bool,
     /// Name of the G-code system of `[codes]`, where there are several.
     pub(crate) system: Option<String>,
     pub(crate) systems: BTreeMap<String, SystemRules>,
@@ -336,6 +337,7 @@ pub(crate) struct MRow {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CommandRow {
+    pub(crate) does: Option<Spanned<String>>,
     pub(crate) passes_with: Option<u32>,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,

@@ -103,7 +103,7 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
     })
     .or_else(|| {
         pair(&with.x_words, &without.x_words, |v| match v {
-            XWords::Diameter => "X as a diameter".to_owned(),
+            XWords::Diameter | XWords::DiameterOfAbsolute => format!("X as {v:?}"),
             XWords::Radius => "X as a radius".to_owned(),
             XWords::Unstated => "X as nobody said".to_owned(),
         })

@@ -401,6 +401,7 @@ fn lathe_dialect(mill: &str) -> &'static str {
     match mill {
         "fanuc" => "the dialect fanuc-lathe",
         "linuxcnc" => "the dialect linuxcnc-lathe",
+        "sinumerik" => "the dialect sinumerik-turn",
         _ => "a dialect of lathes (`vpost grammar list`)",
     }
 }

@@ -363,7 +363,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         frame: state.frame.clone().unwrap_or_default(),
         unit_mm: state.units.mm(),
         feed_mode: state.feed_mode,
-        diameters: state.x_words == XWords::Diameter,
+        diameters: state.x_words.are_diameters(state.distance),
         incremental: moved.by_increment.map(|by_letter| by_letter || state.distance == Distance::Incremental),
         by_increment: moved.by_increment,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,

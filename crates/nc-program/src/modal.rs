@@ -80,8 +80,18 @@ pub enum XWords {
     Radius,
     /// G7, DIAMON.
     Diameter,
+    /// DIAM90: a diameter where it says a place, a radius where it is an increment.
+    DiameterOfAbsolute,
     /// A lathe's, and nobody said.
     Unstated,
+}
+
+impl XWords {
+    /// True where the X words of a block are diameters.
+    #[must_use]
+    pub fn are_diameters(self, distance: Distance) -> bool {
+        self == Self::Diameter || (self == Self::DiameterOfAbsolute && distance == Distance::Absolute)
+    }
 }
 
 /// What F means.

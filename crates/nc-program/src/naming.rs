@@ -135,8 +135,10 @@ fn length(
     use Action::{LengthOff, LengthOn, LengthOnNegative};
     let says =
         words.codes.iter().any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff));
-    let by_tool = words.has(Letters::of(b"T"))
-        && env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_t);
+    let by_tool = env.dialect.turning.as_ref().is_some_and(|turning| {
+        (turning.offset_in_t && words.has(Letters::of(b"T")))
+            || (turning.offset_in_d && words.has(Letters::of(b"DT")))
+    });
     let says = says || by_tool;
     if !says && !words.has(Letters::of(b"H")) {
         return;

@@ -93,7 +93,7 @@ pub(crate) fn apply<'d>(
     before: &Modal,
     state: &mut Modal,
 ) -> Outcome<Demand<'d>> {
-    const ONE_LETTER_SETTINGS: Letters = Letters::of(b"HT");
+    const ONE_LETTER_SETTINGS: Letters = Letters::of(b"DHT");
     let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None, frame: None };
     if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(ONE_LETTER_SETTINGS) {
         return Ok(demand);
@@ -382,7 +382,7 @@ fn set<'d>(
         // Written out before; where it is not, refused below.
         Action::PolarOn => {}
         // Read before, since X words of the same block are of the new kind.
-        Action::DiameterOn | Action::DiameterOff => {}
+        Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute | Action::SpeedLimit => {}
         Action::LimitOrPreset | Action::Pass { takes_words: true } => return Owner::Arguments,
         Action::Dwell => return Owner::Dwell,
         Action::DwellBySetting => return Owner::DwellBySetting,

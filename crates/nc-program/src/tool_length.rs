@@ -25,6 +25,9 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     if words.has(T) && env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_t) {
         return turret(env, words, state);
     }
+    if env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_d) {
+        return edge(env, words, state);
+    }
     if words.has(T) {
         if env.dialect.t_may_change_tool {
             let message = format!("{} may change the tool at once", words.text(words.span(T)));
@@ -69,7 +72,51 @@ fn turret(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -
     }
     state.tool_selected = Some(number / 100);
     state.tool_loaded = state.tool_selected;
-    let offset = number % 100;
+    take(env, words, span, number % 100, state)
+}
+
+/// T and D of Sinumerik: T brings in its tool with the first edge, D1 is that edge, D0 none.
+fn edge(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    const T: Letters = Letters::of(b"T");
+    const D: Letters = Letters::of(b"D");
+    if !words.has(T.or(D)) {
+        return Ok(());
+    }
+    if let Some(tool) = words.whole(b'T')? {
+        state.tool_selected = Some(tool);
+        state.tool_loaded = Some(tool);
+    }
+    let span = words.span(T.or(D));
+    match (words.whole(b'D')?, state.tool_loaded) {
+        (Some(0), _) | (None, Some(0)) => take(env, words, span, 0, state),
+        (None | Some(1), Some(tool)) => take(env, words, span, tool, state),
+        (_, None) => Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                "an offset of a tool that the program has not called",
+                span,
+                "of which tool?",
+            )
+            .help("write T before it")),
+        (Some(edge), Some(_)) => Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                format!("D{edge} is a further edge of the tool"),
+                span,
+                "the profile has one offset for each tool",
+            )
+            .help("write D1, or give the edge a tool of its own")),
+    }
+}
+
+/// Brings in the offset of a number; 0 is none.
+fn take(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    offset: u32,
+    state: &mut Modal,
+) -> Outcome<()> {
     if offset == 0 {
         state.tool_length = ToolLength::Off;
         return Ok(());

@@ -4,7 +4,7 @@ use nc_syntax::dialect::{Action, GCode};
 use toolpath::{Motion, Plane, Shape};
 
 use crate::codes;
-use crate::modal::{Modal, MotionMode, XWords};
+use crate::modal::{Distance, Modal, MotionMode, XWords};
 use crate::settings::{Demand, Owner};
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
 
@@ -16,15 +16,21 @@ const ON_THE_AXIS_MM: f64 = 1e-9;
 /// G7 and G8, which hold for the words of their own block, and how X words are to be read then; and whether a limit holds the
 /// spindle where the speed rises towards the axis.
 pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
-    for code in &words.codes {
-        match code.entry.action {
+    let mut distance = state.distance;
+    let actions = words.codes.iter().map(|code| &code.entry.action);
+    for action in actions.chain(words.commands.iter().map(|(action, _)| *action)) {
+        match action {
             Action::DiameterOn => state.x_words = XWords::Diameter,
             Action::DiameterOff => state.x_words = XWords::Radius,
+            Action::DiameterOfAbsolute => state.x_words = XWords::DiameterOfAbsolute,
+            Action::SpeedLimit => state.speed_limited = true,
+            Action::Absolute => distance = Distance::Absolute,
+            Action::Incremental => distance = Distance::Incremental,
             Action::LimitOrPreset => state.speed_limited |= words.has(Letters::of(b"S")),
             _ => {}
         }
     }
-    words.diameters = state.x_words == XWords::Diameter;
+    words.diameters = state.x_words.are_diameters(distance);
     if let Some(code) = words.codes.iter().find(|code| code.entry.code == CONSTANT_SPEED) {
         state.speed_limited |= words.has(Letters::of(b"D"));
         if !state.speed_limited {
@@ -35,7 +41,7 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
                     code.span,
                     "towards the axis the speed rises without end",
                 )
-                .help("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC)"));
+                .help("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)"));
         }
     }
     Ok(())

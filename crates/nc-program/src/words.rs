@@ -93,6 +93,8 @@ pub(crate) struct Words<'b, 'a, 'd> {
     pub(crate) block: &'b Block<'a>,
     pub(crate) codes: SmallVec<[Preparatory<'d>; 8]>,
     pub(crate) m_codes: SmallVec<[(u16, Span); 4]>,
+    /// Commands by name that do something.
+    pub(crate) commands: SmallVec<[(&'d Action, Span); 2]>,
     pub(crate) letters: Letters,
     /// `%`
     pub(crate) percent: bool,
@@ -113,6 +115,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             block,
             codes: SmallVec::new(),
             m_codes: SmallVec::new(),
+            commands: SmallVec::new(),
             letters: Letters::NONE,
             percent: false,
             by_increment: [false; 3],
@@ -214,6 +217,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     pub(crate) fn is_idle(&self) -> bool {
         self.codes.is_empty()
             && self.m_codes.is_empty()
+            && self.commands.is_empty()
             && self.letters.without(Letters::of(b"NO")).is_empty()
     }
 
@@ -365,10 +369,13 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     }
 
     /// A command by name passes where the dialect's table says that it moves nothing.
-    fn command(&self, span: Span) -> Outcome<()> {
+    fn command(&mut self, span: Span) -> Outcome<()> {
         let (message, help) = match self.dialect.command(self.block.text(span)) {
             Some(row) => match row.refusal(self.block.text(span)) {
-                None => return Ok(()),
+                None => {
+                    self.commands.extend(row.action.as_ref().map(|action| (action, span)));
+                    return Ok(());
+                }
                 Some((reason, help)) => (format!("{} is refused: {reason}", row.name), help.as_str()),
             },
             None => (

@@ -268,6 +268,10 @@ pub enum Action {
     DiameterOn,
     /// G8, DIAMOF: X words are radii.
     DiameterOff,
+    /// DIAM90: absolute X words are diameters, increments radii.
+    DiameterOfAbsolute,
+    /// LIMS: limits the spindle of a lathe.
+    SpeedLimit,
     /// G50, G92 of lathes: with S a limit of the spindle, with X and Z where the axes stand.
     LimitOrPreset,
     /// Known, and refused.
@@ -531,6 +535,8 @@ pub struct LatheSign {
 pub struct Command {
     /// Upper case.
     pub name: String,
+    /// What it does, where that is more than nothing.
+    pub action: Option<Action>,
     /// `None`: moves no axis and no frame, passes. Else why it is refused, and the way out.
     pub refuse: Option<(String, String)>,
     /// It passes with so many arguments in its brackets, and is refused with more.
@@ -660,6 +666,8 @@ pub struct Turning {
     pub increments: bool,
     /// The last two digits of T choose the tool's offset (`T0101`).
     pub offset_in_t: bool,
+    /// T brings in the offset of its number; D1 is that offset, D0 none (Sinumerik).
+    pub offset_in_d: bool,
     /// G-code systems by name, of which the machine has one; empty where there is only one.
     pub systems: Vec<System>,
 }

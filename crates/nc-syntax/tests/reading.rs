@@ -224,8 +224,12 @@ fn bracket_commands_are_kept_as_commands() {
 fn words_with_an_equals_sign() {
     let mut sinumerik = dialect();
     sinumerik.equals_words = true;
-    let command =
-        |name: &str, refuse| nc_syntax::dialect::Command { name: name.to_owned(), refuse, passes_with: None };
+    let command = |name: &str, refuse| nc_syntax::dialect::Command {
+        name: name.to_owned(),
+        action: None,
+        refuse,
+        passes_with: None,
+    };
     let refused = Some(("moves the frame".to_owned(), "do without".to_owned()));
     sinumerik.commands = vec![command("MSG", None), command("SOFT", None), command("TRANS", refused)];
     assert_eq!(

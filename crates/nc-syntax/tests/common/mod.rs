@@ -29,6 +29,7 @@ pub(crate) fn dialect() -> Dialect {
         initial: Vec::new(),
         unit_is_kept: false,
         lathe: Vec::new(),
+        turning: None,
         cycle_repeats: Vec::new(),
         zero_repeats_define: false,
         length_under_g40: LengthAfter::Stays,
