@@ -165,7 +165,7 @@ fn settled(
     // Names that noise made take its smoothness with them: as they go, what is left hangs together more.
     for _ in 0..PASSES {
         let now = hanging(&result);
-        if now < setting.caution + MORE {
+        if now < setting.caution + MORE || result.parts.is_empty() {
             break;
         }
         setting.caution = now;

@@ -79,14 +79,16 @@ struct Seen {
     /// Different loads.
     loads: usize,
     rotary: [bool; 3],
+    /// Readings are lengths of a bar.
+    lengths: bool,
     /// Tools of different lengths.
     tools: bool,
     /// Every row has its station's place.
     station: bool,
     /// Typical step between rows that are read while an axis moves on after it turned, mm; infinite where none is.
     turns_mm: [f64; 3],
-    /// Levers, by the axis that carries and the direction turned about, that are one number all over the file: such an angle
-    /// is a straightness, a squareness or a scale to these rows.
+    /// Levers, by the axis that carries and the direction turned about, that are one number all over a file of lengths: on
+    /// such a circle an angle is a straightness, a squareness or a scale, as ISO 230-4 has it.
     one_lever: [[bool; 3]; 3],
 }
 
@@ -125,6 +127,7 @@ impl Seen {
             loads: distinct(rows, &|r| r.conditions.load_kg),
             rotary: [0, 1, 2]
                 .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
+            lengths: data.has_lengths(),
             tools: varies(&|r| Some(r.command.tool_mm.z)),
             station: rows.iter().all(|r| r.conditions.station_mm.is_some()),
             turns_mm: [0, 1, 2].map(|a| step_after_turning(rows, a)),
@@ -163,7 +166,11 @@ fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
             range[c] = (range[c].0.min(moved[c]), range[c].1.max(moved[c]));
         }
     }
-    range.iter().all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
+    // Vectors show what a length in one plane never does.
+    data.has_lengths()
+        && range
+            .iter()
+            .all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
 }
 
 /// The axis along which an effect is a curve.
@@ -342,7 +349,11 @@ impl Library {
                         let lists: &[&[usize]] =
                             if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
                         let mut forms = self.selections(kind, shape, lists);
-                        forms.iter_mut().for_each(|f| f.enriched = share != 0.0);
+                        forms.iter_mut().for_each(|f| {
+                            f.enriched = share != 0.0;
+                            // On a circle a droop is a straightness.
+                            f.only_rival = seen.lengths;
+                        });
                         forms
                     })
                     .collect()

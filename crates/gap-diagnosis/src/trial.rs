@@ -4,6 +4,8 @@
 //! asked, keeps noise from being named; the least share keeps what no one would repair out of the answer; lines that were
 //! left out show whether the effect is one of the machine or of a single run.
 
+use machine_model::effects::EffectKind;
+
 use crate::assembly::positions;
 use crate::columns::Column;
 use crate::crossval::{Folding, Folds};
@@ -16,6 +18,9 @@ use crate::observation::Scalar;
 use crate::search::without;
 use crate::space::{Fit, Part};
 use crate::term::Term;
+
+/// Least share of a joint of rails: where curves are bent otherwise than in textbooks a step fits a little.
+const LEAST_STEP: f64 = 0.15;
 
 /// Why an effect is refused that may be there and is not proven.
 pub(crate) const UNPROVEN: &str = "the F test";
@@ -70,6 +75,9 @@ impl State<'_, '_> {
             return refuse(UNPROVEN);
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
+        if matches!(kind, EffectKind::Joint(_)) && gain / reducible < LEAST_STEP {
+            return refuse("so small a step is what a curve's own shape leaves");
+        }
         if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
             return refuse("its share is below 2 % of what can be explained");
         }
