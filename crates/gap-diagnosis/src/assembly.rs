@@ -252,6 +252,12 @@ impl<'a> Assembly<'a> {
             _ => Vec::new(),
         };
         notes.extend(formulas.iter().map(|f| format!("{} ({}).", f.words, f.text)));
+        let sigma_um = self.noise_variance().sqrt();
+        let next_measurement =
+            crate::next::next_measurement(self.data, model, self.worst_pair(), sigma_um).or_else(|| {
+                let nameless = matches!(verdict, Verdict::Unknown | Verdict::Partial);
+                nameless.then(|| crate::next::once_more(self.data)).flatten()
+            });
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
         let sentence = if unsure {
             notes.extend(causes.iter().map(seen_but_unsure));
@@ -272,12 +278,7 @@ impl<'a> Assembly<'a> {
             sentence,
             gap,
             places: places(self.data, &model.scalars, &before, self.noise_variance(), options.seed),
-            next_measurement: crate::next::next_measurement(
-                self.data,
-                model,
-                self.worst_pair(),
-                self.noise_variance().sqrt(),
-            ),
+            next_measurement,
             causes,
             setup: self.setup(),
             leftover,

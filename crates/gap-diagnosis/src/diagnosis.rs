@@ -208,8 +208,10 @@ pub struct NextMeasurement {
     pub text: String,
     /// The pair it separates.
     pub separates: [String; 2],
-    /// How far apart they would lie, standard deviations.
+    /// How far apart they would lie, standard deviations; 0 where nothing is to be separated yet.
     pub expected_sigma: f64,
+    /// Its rows, readings to be filled in.
+    pub rows: Vec<crate::observation::Row>,
 }
 
 /// Smallest amplitude that would have been named.

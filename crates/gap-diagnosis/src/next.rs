@@ -45,7 +45,7 @@ pub(crate) fn next_measurement(
     debug_assert!(nuisances <= explained_by, "the set-up comes first");
     let (known, _) = model.space.gram.select(&columns).whitened(model.solution.rho);
     let now = separation(&known, explained_by, &values, noise_um);
-    let mut best: Option<(f64, String)> = None;
+    let mut best: Option<(f64, Line)> = None;
     for line in lines(data) {
         let mut runs = data.runs.clone();
         runs.push("next".to_owned());
@@ -55,10 +55,10 @@ pub(crate) fn next_measurement(
         let (fresh, _) = Gram::new(terms.clone(), &source(&extra, &scalars)).whitened(model.solution.rho);
         let sigma = separation(&(&known + fresh), explained_by, &values, noise_um);
         if best.as_ref().is_none_or(|(s, _)| sigma > s * 1.05) {
-            best = Some((sigma, line.text));
+            best = Some((sigma, line));
         }
     }
-    let (expected_sigma, text) = best?;
+    let (expected_sigma, line) = best?;
     let name = |part: Part| model.library.candidates[part.candidate].kind.to_string();
     let separates = [name(model.parts[place]), name(rival)];
     let text = if expected_sigma < now + 1.0 {
@@ -67,9 +67,21 @@ pub(crate) fn next_measurement(
             separates[0], separates[1]
         )
     } else {
-        format!("Measure {text}: it tells {} from {}.", separates[0], separates[1])
+        format!("Measure {}: it tells {} from {}.", line.text, separates[0], separates[1])
     };
-    Some(NextMeasurement { text, separates, expected_sigma })
+    Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
+}
+
+/// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
+#[must_use]
+pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
+    let line = lines(data).into_iter().find(|line| line.text.starts_with("the body diagonal"))?;
+    let text = format!(
+        "Measure {}, and once more from its other end: what no effect explains must come back there.",
+        line.text
+    );
+    let separates = ["what has no name".to_owned(), "chance".to_owned()];
+    Some(NextMeasurement { text, separates, expected_sigma: 0.0, rows: line.rows })
 }
 
 fn own_coefficients(model: &Explained, place: usize) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! The diagnosis as JSON, `vpost.diagnosis/1`.
 
-use gap_diagnosis::{Cause, Diagnosis};
+use gap_diagnosis::{Cause, Diagnosis, Row};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -61,7 +61,8 @@ pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
                     .collect::<Vec<_>>() })
         }),
         next_measurement: d.next_measurement.as_ref().map_or(Value::Null, |n| {
-            json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma) })
+            json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma),
+                "rows": n.rows.iter().map(row).collect::<Vec<_>>() })
         }),
         outlier_lines: &d.outlier_lines,
         detectable: d
@@ -79,6 +80,29 @@ pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let mut text = serde_json::to_string_pretty(&document).expect("plain values always serialise");
     text.push('\n');
     text
+}
+
+/// A row to be measured, in the columns of a measurement file; the reading is not there yet.
+fn row(row: &Row) -> Value {
+    let (q, t, d) = (row.command.linear_mm, row.command.tool_mm, row.command.direction);
+    let c = &row.conditions;
+    let mut all = Map::new();
+    all.insert("run".to_owned(), json!("next"));
+    let mut number = |name: &str, value: f64| {
+        all.insert(name.to_owned(), json!(round(value)));
+    };
+    for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+        number(&format!("{letter}_mm"), (1e3 * q[axis]).round() / 1e3);
+        number(&format!("dir_{letter}"), f64::from(d[axis]));
+        number(&format!("tool_{letter}_mm"), t[axis]);
+    }
+    let conditions = [("feed_mm_min", c.feed_mm_min), ("load_kg", c.load_kg), ("temp_c", c.temp_c[0])];
+    for (name, value) in conditions {
+        if let Some(value) = value {
+            number(name, value);
+        }
+    }
+    Value::Object(all)
 }
 
 fn cause(c: &Cause, changes: &[Change]) -> Value {

@@ -179,10 +179,10 @@ pub(super) fn next(d: &Diagnosis) -> Markup {
     html! {
         @if let Some(next) = &d.next_measurement {
             p { (shown(&next.text)) }
-            p.muted {
+            @if next.expected_sigma > 0.0 { p.muted {
                 (shown(&next.separates[0])) " and " (shown(&next.separates[1])) " would then lie " (number(next.expected_sigma))
                 " standard deviations apart."
-            }
+            } }
         } @else if d.verdict == Verdict::Underpowered {
             ul { @for note in &d.notes { li { (shown(note)) } } }
             p { "A plan that makes the causes of this machine separable: vpost diagnose --plan FILE -m PROFILE." }
