@@ -226,7 +226,7 @@ impl<'a> Assembly<'a> {
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
             carries: corner_um <= gap_rms,
-            slow: self.noise.is_some_and(|n| n.is_slow()) || model.phi > SLOW_PHI,
+            slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution > SLOW_PHI,
             trifling: gap_rms - after < crate::verdict::WORTH_NAMING * gap_rms,
             unseen: None,
         };

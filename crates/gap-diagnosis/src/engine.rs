@@ -171,6 +171,7 @@ fn settled(
         setting.caution = now;
         result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
     }
+    setting.caution = setting.caution.max(hanging(&result));
     result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Imitate);
     result.outliers.clone_from(&dropped);
     if !dropped.is_empty() {

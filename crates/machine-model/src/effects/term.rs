@@ -297,6 +297,7 @@ mod tests {
             time_s: Some(600.0),
             load_kg: Some(10.0),
             feed_mm_min: Some(6000.0),
+            ..Conditions::default()
         };
         type Case<'a> = (&'a str, &'a [(&'a str, f64)], Command, [f64; 3]);
         let cases: [Case<'_>; 10] = [
