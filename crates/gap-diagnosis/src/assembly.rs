@@ -253,8 +253,8 @@ impl<'a> Assembly<'a> {
         };
         notes.extend(formulas.iter().map(|f| format!("{} ({}).", f.words, f.text)));
         let sigma_um = self.noise_variance().sqrt();
-        let next_measurement =
-            crate::next::next_measurement(self.data, model, self.worst_pair(), sigma_um).or_else(|| {
+        let next_measurement = crate::next::next_measurement(self.data, model, self.worst_pair(), sigma_um)
+            .or_else(|| {
                 let nameless = matches!(verdict, Verdict::Unknown | Verdict::Partial);
                 nameless.then(|| crate::next::once_more(self.data)).flatten()
             });

@@ -358,7 +358,7 @@ fn axis_speed(speed_mm_ms: f64, axis: usize, command: &Command, conditions: &Con
 }
 
 /// What a tracker reads wrong of a tip at `v` mm from its station, mm per unit; azimuth about Z from +X, elevation from the
-/// horizontal. Equation (60).
+/// horizontal. Equation (76).
 fn tracker(fault: usize, index: usize, v: Vector) -> Vector {
     let (range, level) = (v.norm(), (v.x * v.x + v.y * v.y).sqrt());
     if range <= 0.0 || level <= 0.0 {

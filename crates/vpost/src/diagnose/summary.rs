@@ -100,7 +100,11 @@ fn write(out: &mut String, d: &Diagnosis, changes: &[Vec<Change>]) -> std::fmt::
     if let Some(next) = &d.next_measurement {
         writeln!(out, "next    {}", next.text)?;
         if next.expected_sigma > 0.0 {
-            writeln!(out, "        (they would then lie {:.0} standard deviations apart)", next.expected_sigma)?;
+            writeln!(
+                out,
+                "        (they would then lie {:.0} standard deviations apart)",
+                next.expected_sigma
+            )?;
         }
     }
     if !d.outlier_lines.is_empty() {
