@@ -380,7 +380,9 @@ mod tests {
     }
 
     fn bent(clamping: Clamping, steady_rests_mm: &[f64], z_mm: f64) -> f64 {
-        Bending::new(&bar(clamping, steady_rests_mm), Force::Radial { newton: 400.0 }).unwrap().at_mm(z_mm)
+        Bending::new(&bar(clamping, steady_rests_mm), Force::Radial { newton: 400.0 })
+            .expect("a bar")
+            .at_mm(z_mm)
     }
 
     const EI: f64 = 210_000.0 * std::f64::consts::PI * 40.0 * 40.0 * 40.0 * 40.0 / 64.0;

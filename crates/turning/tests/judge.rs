@@ -1,5 +1,7 @@
 //! The exact oracles of another hand: `tests/judges/turning/oracles.json`.
 
+#![allow(clippy::disallowed_methods, reason = "the formulas are the standard library's on purpose")]
+
 use machine_model::{
     Chain, Command, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
 };

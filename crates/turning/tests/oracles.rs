@@ -1,5 +1,7 @@
 //! Exact formulas, to 1e-6 µm.
 
+#![allow(clippy::disallowed_methods, reason = "the formulas are the standard library's on purpose")]
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use machine_model::{
@@ -20,12 +22,12 @@ fn carriage(squareness: Squareness, straight_x: Option<Table>) -> RigidBody {
     linear[1].travel_mm = Range { low: -1.0, high: 1.0 };
     linear[2].errors = AxisTables::new(&[straight_x, None, None, None, None, None]);
     RigidBody::new(Description {
-        chain: Chain::parse("[w b Z X Y t]").unwrap(),
+        chain: Chain::parse("[w b Z X Y t]").expect("a machine"),
         linear,
         rotary: [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros())),
         squareness,
     })
-    .unwrap()
+    .expect("a machine")
 }
 
 fn lathe(spindle: Spindle, bending: Bending, tip: Tip) -> Lathe {
@@ -247,7 +249,7 @@ fn crooked() -> Lathe {
     Lathe::new(
         Box::new(carriage(Squareness { eb0z_rad: -8e-5, ..Squareness::default() }, table.ok())),
         spindle,
-        Bending::new(&bar, Force::Radial { newton: 400.0 }).unwrap(),
+        Bending::new(&bar, Force::Radial { newton: 400.0 }).expect("a bar"),
         Tip { height_mm: 0.05, ..Tip::default() },
         &[],
     )
