@@ -129,7 +129,9 @@ def coarse_arcs(case):
 def rotary_feed(case):
     """A feed of a rotary axis alone: refused, or corrected; its check must not pass what goes elsewhere."""
     bad = []
-    rotary = '[rotary.A]\ncentre_mm = [150, 150, 100]\ntravel_deg = [-120, 120]\nEY0A_um = 30\nEZ0A_um = -20\n'
+    # What stands still as the axis turns, as its location does, asks nothing of the linear axes: an error that grows does.
+    rotary = '[rotary.A]\ncentre_mm = [150, 150, 100]\nerrors = "A.csv"\n'
+    case.file("A.csv", ["position_deg,EYA_um", "-120,-60", "0,0", "120,60"])
     profile = write_profile(case.folder, "fanuc", chain="[w A X Y b Z t]")
     with open(profile, encoding="ascii") as file:
         text = file.read()
