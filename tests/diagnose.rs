@@ -497,10 +497,13 @@ fn readings_on_the_table(profile: &str, folder: &Path) -> String {
     assert!(predicted.status.success(), "{}", messages(&predicted));
     let mut noise = ChaCha8Rng::seed_from_u64(18);
     let mut rows = String::from("run,x_mm,y_mm,z_mm,a_deg,c_deg,dx_um,dy_um,dz_um\n");
-    for line in String::from_utf8(predicted.stdout).expect("text").lines().skip(1) {
+    let predicted = String::from_utf8(predicted.stdout).expect("text");
+    let (header, lines) = predicted.split_once('\n').expect("a header");
+    let first = header.split(',').position(|column| column == "dx_um").expect("an error");
+    for line in lines.lines() {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
         let place: Vec<String> = cells[..5].iter().map(f64::to_string).collect();
-        let read = cells[cells.len() - 4..cells.len() - 1].iter();
+        let read = cells[first..first + 3].iter();
         let read: Vec<String> =
             read.map(|d| (d + rand::RngExt::random_range(&mut noise, -0.9..0.9)).to_string()).collect();
         rows.push_str(&format!("A{},{},{}\n", place[3], place.join(","), read.join(",")));

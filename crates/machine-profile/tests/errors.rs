@@ -98,7 +98,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, tool, work_offsets_mm, correction, program, m_codes, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, effect, setup
     "####);
 }
 
@@ -301,7 +301,7 @@ fn location_error_of_another_axis() {
     assert_snapshot!(told(&format!("{}\n[rotary.C]\nEX0A_um = 1\n", base())), @r####"
     error[VP0302]: unknown key `EX0A_um`
       line 13: `EX0A_um` not a key of this table
-    help: did you mean `EX0C_um`? Known here: centre_mm, travel_deg, errors, EX0C_um, EY0C_um, EA0C_urad, EB0C_urad
+    help: did you mean `EX0C_um`? Known here: centre_mm, travel_deg, direction, tilt, resolution_deg, errors, EX0C_um, EY0C_um, EA0C_urad, EB0C_urad
     "####);
 }
 
