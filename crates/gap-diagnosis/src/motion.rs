@@ -98,14 +98,15 @@ mod tests {
     #[test]
     fn an_axis_turns_four_times_in_a_circle_both_axes_counted() {
         let angle = |k: usize| 0.005 + f64::to_radians(k as f64);
-        let tangents: Vec<Option<Vector>> =
-            (0..360).map(|k| Some(Vector::new(-angle(k).sin(), angle(k).cos(), 0.0))).collect();
+        let tangents: Vec<Option<Vector>> = (0..360)
+            .map(|k| Some(Vector::new(-units::math::sin(angle(k)), units::math::cos(angle(k)), 0.0)))
+            .collect();
         let steps: Vec<Vector> = (0..359)
             .map(|k| {
                 100.0
                     * Vector::new(
-                        angle(k + 1).cos() - angle(k).cos(),
-                        angle(k + 1).sin() - angle(k).sin(),
+                        units::math::cos(angle(k + 1)) - units::math::cos(angle(k)),
+                        units::math::sin(angle(k + 1)) - units::math::sin(angle(k)),
                         0.0,
                     )
             })

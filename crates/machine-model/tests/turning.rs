@@ -28,9 +28,9 @@ fn crooked(seed: u64, chain: &str, monotone: bool) -> RigidBody {
         rotary.centre_mm = random.vector(100.0);
         rotary.shift_mm = random.vector(0.05);
         rotary.tilt_rad = random.vector(5e-4);
-        rotary.tilt = if seed % 2 == 0 { Tilt::Body } else { Tilt::Axis };
+        rotary.tilt = if seed.is_multiple_of(2) { Tilt::Body } else { Tilt::Axis };
         // Any direction, mostly near none of the machine's.
-        rotary.direction = (seed % 3 == 0).then(|| random.vector(1.0).normalize());
+        rotary.direction = (seed.is_multiple_of(3)).then(|| random.vector(1.0).normalize());
         rotary.errors = AxisTables::new(&std::array::from_fn(|i| {
             let size = if i < 3 { 0.01 } else { 1e-4 };
             let values = nodes.iter().map(|_| random.number(size)).collect();

@@ -577,8 +577,17 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let mut rise = hole.start;
         rise.linear_mm[normal] = above_mm;
         let mut at = hole.start;
+        // All moves of a cycle are made with the correction of its hole.
+        let hole_error_mm = [hole.at_r, on_hole(bottom_mm)].map(|place| {
+            let rotary_rad = Vector::from(place.rotary_deg.map(f64::to_radians));
+            self.error_mm(&common.command(Vector::from(place.linear_mm), rotary_rad)).norm()
+        });
+        let hole_error_mm = hole_error_mm[0].max(hole_error_mm[1]);
         let rapid = |items: &mut Self, at: &mut Position, to: Position| {
             items.positioning(common, (*at).into(), to.into(), Kind::OfCycle);
+            if let Some(Item::Position(made)) = items.ready.back_mut() {
+                made.error_mm = made.error_mm.max(hole_error_mm);
+            }
             *at = to;
         };
         for place in [rise, on_hole(above_mm), hole.at_r] {

@@ -49,21 +49,24 @@ def all_tests():
 
 
 def item_1():
-    def t(name, dialect, blocks, expect="refuse", blames=None, **more):
+    # The axis stands elsewhere and leans, as a body: whatever turns with it is displaced alike at every angle, so that the
+    # linear axes, standing, ask for no other command. A feed of it alone is right as it is; one whose error changes on
+    # the way is the five-axis judge's.
+    def t(name, dialect, blocks, expect="pass", blames=None, **more):
         head = HEAD.get(dialect, ["G21 G90 G17 G54"])
         lines = head + ["G0 A0." if dialect != "sinumerik" else "G0 A=0", "G0 X10. Y10. Z50."] + blocks + ["M30"]
         return Test("1-" + name, dialect, lines, expect, rotary=True, blames=blames, **more)
 
     return [
-        t("rotary-feed-alone", "fanuc", ["G1 A60. F500."], blames="G1 A60. F500."),
-        t("rotary-feed-modal", "fanuc", ["G1 X20. F500.", "A60."], blames="A60."),
-        t("rotary-feed-g93", "fanuc", ["G93 G1 A60. F2."], blames="G93 G1 A60. F2."),
-        t("rotary-feed-incremental", "fanuc", ["G91 G1 A30. F500.", "G90"], blames="G91 G1 A30. F500."),
-        t("rotary-feed-linuxcnc", "linuxcnc", ["G1 A60. F500."], blames="G1 A60. F500."),
-        t("rotary-feed-sinumerik", "sinumerik", ["G1 A=60 F500"], blames="G1 A=60 F500"),
-        t("rotary-feed-g93-linuxcnc", "linuxcnc", ["G93 G1 A60. F2."], blames="G93 G1 A60. F2."),
-        t("rotary-feed-centroid", "centroid", ["G1 A-45. F300."], blames="G1 A-45. F300."),
-        t("rotary-feed-perspektiva", "perspektiva", ["G1 A-45. F300."], blames="G1 A-45. F300."),
+        t("rotary-feed-alone", "fanuc", ["G1 A60. F500."]),
+        t("rotary-feed-modal", "fanuc", ["G1 X20. F500.", "A60."]),
+        t("rotary-feed-g93", "fanuc", ["G93 G1 A60. F2."]),
+        t("rotary-feed-incremental", "fanuc", ["G91 G1 A30. F500.", "G90"]),
+        t("rotary-feed-linuxcnc", "linuxcnc", ["G1 A60. F500."]),
+        t("rotary-feed-sinumerik", "sinumerik", ["G1 A=60 F500"]),
+        t("rotary-feed-g93-linuxcnc", "linuxcnc", ["G93 G1 A60. F2."]),
+        t("rotary-feed-centroid", "centroid", ["G1 A-45. F300."]),
+        t("rotary-feed-perspektiva", "perspektiva", ["G1 A-45. F300."]),
         t("rotary-indexed-by-g0", "fanuc", ["G0 A60.", "G0 X10. Y10. Z50.", "G1 X20. F500."], "pass"),
         t("check-sees-a-rotary-feed", "fanuc", ["G0 A60.", "G0 X20. Y10. Z50.", "G1 Z20. F500."], check=("G0 A60.", "G1 A60. F500.")),
         t("check-sees-a-rotary-feed-linuxcnc", "linuxcnc", ["G0 A60.", "G0 X20. Y10. Z50.", "G1 Z20. F500."], check=("G0 A60.", "G1 A60. F500.")),
