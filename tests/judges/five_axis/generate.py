@@ -333,9 +333,12 @@ def write_profile(spec, folder, has, orientation=None):
 
 
 def kinematics(spec):
-    """The section on what the control computes. Its names are not in the documents yet: this is the one place to set them."""
+    """The section on what the control computes."""
     centres = spec.get("control_centres") or {k: one["centre"] for k, one in spec["rotary"].items()}
-    return ["[kinematics]"] + [f"centre_{k}_mm = {v}" for k, v in centres.items()]
+    own = ['on = ["M428"]', 'off = ["M429"]'] if spec["control"] == "linuxcnc" else []
+    own += ["at_start = true"] if spec.get("tcp_at_start") else []
+    text = ", ".join(f"{k} = {v}" for k, v in centres.items())
+    return ["[kinematics]", 'straight = "tip"', f"centres_mm = {{ {text} }}"] + own
 
 
 def pair(seed, number, has, chains=tuple(CHAINS), kinds=tuple(KINDS)):

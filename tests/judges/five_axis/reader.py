@@ -122,7 +122,7 @@ def read(text, spec, start=None):
     offset = np.array(spec["offset"], float)
     here = np.array(start, float) if start is not None else np.zeros(3)
     known = [start is not None] * 3
-    rot, mode, plane, absolute, scale, length, tcp, vectors = np.zeros(len(rotary)), None, 17, True, 1.0, None, False, False
+    rot, mode, plane, absolute, scale, length, tcp, vectors = np.zeros(len(rotary)), None, 17, True, 1.0, None, bool(spec.get("tcp_at_start")), False
     f, feed_mode, state = None, 94, {}
     motions, events = [], []
 

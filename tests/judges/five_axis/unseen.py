@@ -85,6 +85,8 @@ def main():
             text = file.read()
         for number in range(arguments.machines):
             spec = crooked(number, chain, control, has)
+            # LinuxCNC's demos run on machines whose kinematics are those of the tip from the start.
+            spec["tcp_at_start"] = control == "linuxcnc"
             folder = os.path.join(keep, f"{n}-{number}")
             os.makedirs(folder, exist_ok=True)
             result = judge.correct(vpost, spec, re.sub(r"[^\x00-\x7f]", "?", text), folder, has, None)

@@ -5,13 +5,13 @@ import os
 import random
 
 KINDS = ("shaft", "face", "groove", "canned", "multiple", "bore", "nose-od", "nose-bore", "thread", "corners", "increments", "sinumerik",
-         "linuxcnc-g7", "linuxcnc-g8", "linuxcnc-cycle", "linuxcnc-nose")
+         "linuxcnc-g7", "linuxcnc-g8", "linuxcnc-cycle", "linuxcnc-nose", "face-multiple", "pattern", "hole", "linuxcnc-thread")
 CODES = {"A": {"min": "G98", "rev": "G99", "limit": "G50", "turn": "G90", "threads": "G92", "face": "G94", "thread": "G32", "mm": "G21", "start": "",
-               "70": "G70", "71": "G71", "72": "G72", "75": "G75", "76": "G76"},
+               "70": "G70", "71": "G71", "72": "G72", "73": "G73", "74": "G74", "75": "G75", "76": "G76"},
          "B": {"min": "G94", "rev": "G95", "limit": "G92", "turn": "G77", "threads": "G78", "face": "G79", "thread": "G33", "mm": "G21", "start": "G90",
-               "70": "G70", "71": "G71", "72": "G72", "75": "G75", "76": "G76"},
+               "70": "G70", "71": "G71", "72": "G72", "73": "G73", "74": "G74", "75": "G75", "76": "G76"},
          "C": {"min": "G94", "rev": "G95", "limit": "G92", "turn": "G20", "threads": "G21", "face": "G24", "thread": "G33", "mm": "G71", "start": "G90",
-               "70": "G72", "71": "G73", "72": "G74", "75": "G77", "76": "G78"}}
+               "70": "G72", "71": "G73", "72": "G74", "73": "G75", "74": "G76", "75": "G77", "76": "G78"}}
 
 
 def lathe(rng, kind, number):
@@ -37,6 +37,8 @@ def lathe(rng, kind, number):
     }
     if control == "fanuc-lathe":
         spec["g_code_system"] = rng.choice("ABC")
+        if kind in ("thread", "multiple", "face-multiple", "pattern", "groove", "hole"):
+            spec["parameters"] = {"thread_chamfer_leads": rng.choice((0.0, 0.0, 1.0)), "thread_chamfer_deg": 45.0, "roughing_escape_mm": rng.choice((0.2, 0.5)), "groove_return_mm": 0.2}
         if kind == "increments":
             spec["g_code_system"] = "A"
     if perfect:
@@ -98,6 +100,7 @@ def write(spec, folder):
     lines += ["[correction]", f"tolerance_um = {spec['tolerance_um']}", "[program]", f'x = "{spec["x"]}"', f'decimal = "{spec["decimal"]}"']
     if "g_code_system" in spec:
         lines.append(f'g_code_system = "{spec["g_code_system"]}"')
+    lines += [f"{k} = {v}" for k, v in spec.get("parameters", {}).items()]
     path = os.path.join(folder, "lathe.toml")
     with open(path, "w", encoding="utf-8") as out:
         out.write("\n".join(lines) + "\n")
@@ -286,14 +289,73 @@ def program(rng, spec, kind):
     elif kind == "multiple":
         w.to("G0", 31, 2)
         pieces = contour(rng, length)
-        w.say(f"{c['71']} U2. R0.5")
-        w.say(f"{c['71']} P100 Q200 U0.4 W0.1 F0.3")
+        if rng.random() < 0.3:
+            # series 10 and 11: one block
+            w.say(f"{c['71']} P100 Q200 U0.4 W0.1 D2000 F0.3")
+        else:
+            w.say(f"{c['71']} U2. R0.5")
+            w.say(f"{c['71']} P100 Q200 U0.4 W0.1 F0.3")
         w.to("N100 G0", pieces[0][1])
         follow(w, pieces, " F0.12")
         w.lines[-1] = "N200 " + w.lines[-1]
         w.say(f"{c['70']} P100 Q200")
         w.x, w.z = 31, 2
         w.to("G0", 40, 5)
+    elif kind == "face-multiple":
+        # a contour of faces, from the outside in
+        w.to("G0", 31, 2)
+        r, z, faces = 29.0, -rng.uniform(6, 12), []
+        first = z
+        for _ in range(rng.randint(2, 4)):
+            r = max(r - rng.uniform(1, 5), 4.0)
+            faces.append((round(r, 3), round(z, 3)))
+            z = min(z + rng.uniform(0.5, 2), 0.0)
+            if rng.random() < 0.5:
+                r = max(r - rng.uniform(0.5, 2), 3.0)
+            faces.append((round(r, 3), round(z, 3)))
+        w.say(f"{c['72']} W1.5 R0.4")
+        w.say(f"{c['72']} P100 Q200 U0.4 W0.1 F0.3")
+        w.to("N100 G0", None, first)
+        for k, (r, z) in enumerate(faces):
+            w.to("G1", r, z, " F0.1" if k == 0 else "")
+        w.lines[-1] = "N200 " + w.lines[-1]
+        w.say(f"{c['70']} P100 Q200")
+        w.x, w.z = 31, 2
+        w.to("G0", 40, 5)
+    elif kind == "pattern":
+        w.to("G0", 33, 2)
+        pieces = contour(rng, length)
+        w.say(f"{c['73']} U{rng.choice((2, 3))}. W{rng.choice((0, 1))}. R{rng.choice((2, 3, 4))}")
+        w.say(f"{c['73']} P100 Q200 U0.4 W0.1 F0.3")
+        w.to("N100 G0", pieces[0][1], 2)
+        follow(w, pieces, " F0.12")
+        w.lines[-1] = "N200 " + w.lines[-1]
+        w.say(f"{c['70']} P100 Q200")
+        w.x, w.z = 33, 2
+        w.to("G0", 40, 5)
+    elif kind == "hole":
+        w.to("G0", 0, 3)
+        if rng.random() < 0.7:
+            w.say(f"{c['74']} R0.3")
+        w.to(c["74"], None, -rng.uniform(8, 30), f" Q{rng.choice((2500, 4000, 6000))} F0.1")
+        w.x, w.z = 0, 3
+        w.to("G0", None, 5)
+        w.to("G0", 40, 5)
+    elif kind == "linuxcnc-thread":
+        w.to("G0", 32, 6)
+        if rng.random() < 0.5:
+            # outside, or inside a bore; spring passes, degression and angle
+            inside = rng.random() < 0.3
+            w.to("G0", 20 if inside else 32, 6)
+            w.say(f"G76 P1.5 Z{num(-rng.uniform(15, 40))} I{'' if inside else '-'}{rng.choice((2, 3))}. J{rng.choice((0.4, 0.6))} K1.84 R{rng.choice((1, 1.5, 2))} Q{rng.choice((0, 29, 29.5))} H{rng.choice((0, 2))}")
+            w.x = w.z = None
+        for x in () if w.x is None else (29.6, 29.3, 29.1):
+            w.to("G0", x)
+            w.to("G33", x + rng.choice((0, 0, 0.5)), -rng.uniform(15, 40), " K1.5")
+            w.to("G0", 32)
+            w.to("G0", None, 6)
+        w.to("G0", None, 6)
+        w.to("G0", 40, 6)
     elif kind == "bore":
         pieces = contour(rng, length, True)
         w.to("G0", 12, 5)
@@ -326,7 +388,7 @@ def program(rng, spec, kind):
             for x in (29.3, 29.1):
                 w.say("X" + num(w.factor * x))
         else:
-            w.say(f"{c['76']} P020060 Q100 R0.05")
+            w.say(f"{c['76']} P{rng.choice(('0200', '0110', '0305'))}{'00' if spec.get('perfect') else rng.choice(('00', '00', '00', '60'))} Q100 R0.05")
             w.to(c["76"], 29.08, end, " P920 Q300 F1.5")
         w.x, w.z = 32, 6
         w.to("G0", 40)

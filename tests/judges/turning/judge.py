@@ -104,6 +104,22 @@ def floor_of(spec, lathe):
     return 10 * (side + max([abs(n.get("height_um", 0)) * 1e-3 for n in spec["tool"].get("noses", {}).values()] or [0]))
 
 
+def from_start(got, wanted, limit):
+    """`got` without its way from where a rapid ended, by no more than a rapid may be off and on the feed's own line, to the start
+    of `wanted`."""
+    head = wanted[1] - wanted[0]
+    head = head / max(float(np.linalg.norm(head)), 1e-12)
+    k, beside = 0, None
+    while k < len(got) - 1:
+        along = float((got[k] - wanted[0]) @ head)
+        across = got[k] - wanted[0] - along * head
+        back = float((got[k + 1] - got[k]) @ head) < 0
+        if abs(along) > RAPID_FACTOR * limit or np.linalg.norm(across) > limit or not (along < 0 or back):
+            break
+        k, beside = k + 1, across
+    return got if beside is None else np.vstack([wanted[0] + beside, got[k:]])
+
+
 def compare(spec, motions_in, motions_out):
     """Worst distances of paths and rapids, in limits; raises ValueError where the runs do not answer each other."""
     lathe = workpiece.Lathe(spec)
@@ -125,6 +141,7 @@ def compare(spec, motions_in, motions_out):
             continue
         wanted = folded(ideal(spec, samples(ms), tool), floor)
         got = folded(real(lathe, spec, samples(ns), tool), floor)
+        got = from_start(got, wanted, limit)
         _, _, nose = offsets(spec, tool)
         h = abs(nose.get("height_um", 0)) * 1e-3 + abs(lathe.origin[1]) + 0.02
         lowest = max(min(wanted[:, 0].min(), got[:, 0].min()), floor)

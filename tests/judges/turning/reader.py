@@ -399,7 +399,10 @@ class Fanuc(Player):
             self.add("rapid", (x0, z0))
             return
         self.add("rapid", (x + taper, z0))
-        self.add("thread" if self.mode == "threads" else "feed", (x, z), cycle=self.mode)
+        if self.mode == "threads":
+            self.chamfered((x, z), x0, self.spec.get("parameters", {}).get("thread_chamfer_leads", 0.0), self.mode)
+        else:
+            self.add("feed", (x, z), cycle=self.mode)
         self.add("rapid" if self.mode == "threads" else "feed", (x0, z), cycle=self.mode)
         self.add("rapid", (x0, z0))
 
@@ -425,6 +428,7 @@ class Fanuc(Player):
             for m in self.contour(first, last):
                 self.motions.append(m)
                 self.x, self.z = m.b
+                self.feed = m.state[0]
             self.add("rapid", start)
             return None
         if name in ("g71", "g72", "g73"):
@@ -446,13 +450,17 @@ class Fanuc(Player):
                 depth = micro("D") if "D" in raw else setting.get("U" if name == "g71" else "W")
                 if not depth:
                     raise Unreadable("no depth of cut")
-                self.rough(name, path, start, depth, u, w, setting.get("R", 0.5))
+                parameter = self.spec.get("parameters", {}).get("roughing_escape_mm")
+                back = setting.get("R", parameter) if "D" not in raw else parameter
+                if back is None:
+                    raise Unreadable("no escape")
+                self.rough(name, path, start, depth, u, w, back)
             return last + 1
         if name in ("g74", "g75"):
             if not any(k in given for k in "XZUW"):
                 self.memory[name] = {k: given[k] for k in given}
                 return None
-            back = self.memory.get(name, {}).get("R", 0.0)
+            back = self.memory.get(name, {}).get("R", self.spec.get("parameters", {}).get("groove_return_mm", 0.0))
             x, z = self.ends([w for w in words if w[0] in "XZUW"])
             along, across = (micro("Q"), micro("P")) if name == "g74" else (micro("P"), micro("Q"))
             deep = abs(z - start[1]) if name == "g74" else abs(x - start[0])
@@ -501,7 +509,7 @@ class Fanuc(Player):
             lag = (d * math.tan(math.radians(s["a"] / 2))) * (1 if z < start[1] else -1)
             self.add("rapid", (self.x, start[1] - lag))
             self.add("rapid", (x + taper + dx, start[1] - lag))
-            self.add("thread", (x + dx, z), cycle="g76")
+            self.chamfered((x + dx, z), start[0], s["r"], "g76")
             self.add("rapid", (start[0], z))
             self.add("rapid", start)
         return None
@@ -520,32 +528,80 @@ class Fanuc(Player):
             self.x, self.z = b
 
     def rough(self, name, path, start, depth, u, w, back):
-        """G71, G72 of type I: passes at depths from the start to the shifted contour, then along it."""
-        points = np.vstack([m.points(0.5) for m in path[1:]]) if len(path) > 1 else np.array([path[0].b])
-        points = points + np.array([u, w])
+        """G71, G72 of type I: from C, which lies off the start by the allowances, down in depths of cut to the contour that lies
+        off by them, out at 45 degrees, back in a rapid; then along that contour, and back to the start."""
         main, other = (0, 1) if name == "g71" else (1, 0)
-        deepest = points[np.argmax(np.abs(points[:, main] - start[main])), main]
-        sign = math.copysign(1.0, deepest - start[main])
-        level = start[main] + sign * depth
-        toward = math.copysign(1.0, points[-1, other] - start[other]) or -1.0
-        while (deepest - level) * sign > 1e-9:
-            stop = None
-            for p, q in zip(points, points[1:]):
-                a, b = (p[main] - level) * sign, (q[main] - level) * sign
-                if (a > 0) != (b > 0):
-                    t = a / (a - b)
-                    hit = p[other] + t * (q[other] - p[other])
-                    if stop is None or (hit - stop) * toward < 0:
-                        stop = hit
-            if stop is not None:
-                make = lambda m, o: (m, o) if main == 0 else (o, m)  # noqa: E731
-                self.add("rapid", make(level, start[other]))
-                self.add("feed", make(level, stop), cycle=name)
-                self.add("feed", make(level - sign * back, stop - toward * back), cycle=name)
-                self.add("rapid", make(level - sign * back, start[other]))
-            level += sign * depth
-        self.shifted(path, u, w, name)
+        off = (u, w)
+        corner = (start[0] + u, start[1] + w)
+        make = lambda m, o: (m, o) if main == 0 else (o, m)  # noqa: E731
+        entry, pieces = path[0], path[1:]
+        deepest = entry.b[main] + off[main]
+        sign = math.copysign(1.0, deepest - corner[main])
+        toward = math.copysign(1.0, pieces[-1].b[other] - entry.b[other])
+        self.add("rapid", corner)
+        k = 1
+        while (deepest - corner[main]) * sign - k * depth > 1e-7:
+            level = corner[main] + sign * k * depth
+            stop = pieces[-1].b[other] + off[other]
+            for m in pieces:
+                hit = met(m, main, level - off[main])
+                if hit is not None:
+                    stop = hit[other] + off[other]
+                    break
+            k += 1
+            if (stop - corner[other]) * toward <= 0:
+                continue
+            short = min(back, abs(stop - corner[other]))
+            self.add(entry.kind, make(level, corner[other]))
+            self.add("feed", make(level, stop), cycle=name)
+            self.add("rapid", make(level - sign * back, stop - toward * short))
+            self.add("rapid", make(level - sign * back, corner[other]))
+        # the move of block P leads to its end from wherever the tool stands
+        self.add(entry.kind, (entry.b[0] + u, entry.b[1] + w))
+        self.shifted(pieces, u, w, name)
         self.add("rapid", start)
+
+    def chamfered(self, end, clear, leads, cycle):
+        """A thread to `end`, its last `leads` leads going outwards under the angle of the parameter."""
+        size = leads * (self.feed or 0.0) * self.scale
+        if size <= 0:
+            self.add("thread", end, cycle=cycle)
+            return
+        (x0, z0), (x1, z1) = (self.x, self.z), end
+        t = 1 - size / abs(z1 - z0)
+        begin = (x0 + t * (x1 - x0), z0 + t * (z1 - z0))
+        rise = size * math.tan(math.radians(self.spec.get("parameters", {}).get("thread_chamfer_deg", 45.0)))
+        self.add("thread", begin, cycle=cycle)
+        self.add("thread", (begin[0] + math.copysign(rise, clear - begin[0]), z1), cycle=cycle)
+
+
+def met(m, axis, level):
+    """The first place of a motion where one axis is at `level`, by halving between samples; None where it is not."""
+    p = m.points(0.05)
+    d = p[:, axis] - level
+    for a, b, da, db in zip(p, p[1:], d, d[1:]):
+        if da == 0:
+            return a
+        if da * db > 0:
+            continue
+        if not m.arc:
+            return a + (b - a) * (da / (da - db))
+        cx, cz, _ = m.arc
+        low, high = math.atan2(a[0] - cx, a[1] - cz), math.atan2(b[0] - cx, b[1] - cz)
+        if high - low > math.pi:
+            high -= 2 * math.pi
+        if low - high > math.pi:
+            high += 2 * math.pi
+        r = math.hypot(a[0] - cx, a[1] - cz)
+        place = lambda angle: (cx + r * math.sin(angle), cz + r * math.cos(angle))  # noqa: E731
+        for _ in range(60):
+            middle = (low + high) / 2
+            if (place(middle)[axis] - level) * da > 0:
+                low = middle
+            else:
+                high = middle
+        return place((low + high) / 2)
+    return p[-1] if d[-1] == 0 else None
 
 
 class Sinumerik(Player):
