@@ -207,6 +207,11 @@ fn named(row: &Row) -> Option<&'static str> {
     if row.treatment == Treatment::Passed && row.note.starts_with("executed after the motion") {
         return Some("`stops_stay_behind_the_motion` in tests/dialects.rs");
     }
+    if row.treatment == Treatment::Followed
+        && ["G43.4", "G234", "TRAORI", "TRAFOOF"].contains(&row.code.as_str())
+    {
+        return Some("`the_tip_goes_where_the_program_says` in tests/five_axis.rs");
+    }
     (row.code == GIVEN && row.treatment == Treatment::Followed)
         .then_some("`an_offset_given_on_the_command_line_is_followed` in tests/dialects.rs")
 }

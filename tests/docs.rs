@@ -389,13 +389,20 @@ fn the_reference_has_every_command_and_option_and_no_other() {
             next.push(name);
             commands.push(next);
         }
-        let title =
-            if words.is_empty() { "vpost IN.nc".to_owned() } else { format!("vpost {}", words.join(" ")) };
+        if words.is_empty() {
+            // The first screen lists commands; the main job's options are those of its name.
+            at += 1;
+            continue;
+        }
+        let title = match words.join(" ").as_str() {
+            "correct" => "vpost IN.nc".to_owned(),
+            words => format!("vpost {words}"),
+        };
         let described = documented.remove(&title);
-        let described = described.unwrap_or_else(|| panic!("docs/reference.md has no section `{title}`"));
-        let mut all = shared.clone();
-        all.extend(described);
-        assert_eq!(options(&text), all, "options of `{title}`: left is --help, right is docs/reference.md");
+        let all = described.unwrap_or_else(|| panic!("docs/reference.md has no section `{title}`"));
+        // Of the shared ones each lists what it reads.
+        let own: BTreeSet<String> = options(&text).difference(&shared).cloned().collect();
+        assert_eq!(own, all, "options of `{title}`: left is --help, right is docs/reference.md");
         at += 1;
     }
     let left: Vec<&String> = documented.keys().filter(|title| title.starts_with("vpost ")).collect();

@@ -82,10 +82,10 @@ fn point_files_are_checked() {
     for (input, says) in [
         ("x_mm,y_mm\n1,2\n", "column `z_mm` is missing"),
         ("x_mm,y_mm,z_mm,w\n1,2,3,4\n", "column `w` is unknown"),
-        ("x_mm,y_mm,z_mm\n1,2\n", "2 fields, the header has 3"),
+        ("x_mm,y_mm,z_mm\n1,2\n", "the row has 2 cells, the header 3"),
         ("x_mm,y_mm,z_mm\n1,2,inf\n", "`inf` is not a number"),
         ("x_mm,y_mm,z_mm,a_deg\n1,2,3,0\n1,2,3,90\n", "the machine has no axis A"),
-        ("", "the point file is empty"),
+        ("", "the file is empty"),
     ] {
         let mut child = vpost()
             .args(["predict", "-"])

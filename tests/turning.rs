@@ -133,10 +133,11 @@ fn what_a_lathe_does_not_do_is_refused_by_name() {
         ("G17 G2 X42. Z-5. R5.", "VP0251"),
         ("X-20.\nZ-30.", "VP0252"),
         ("X10. U2.", "VP0210"),
-        ("G71 U2. R0.5", "VP0208"),
-        ("G90 X30. Z-20. F0.2", "VP0208"),
-        ("G92 X30. Z-20. F1.5", "VP0208"),
-        ("G76 P021060 Q100 R0.05", "VP0208"),
+        ("G71 U2. R0.5\nG71 P10 Q20 U0.4 W0.1", "VP0144"),
+        ("G90 X30.", "VP0143"),
+        ("G92 X30. Z-20. F1.5", "VP0145"),
+        ("G0 X60.\nG76 P021060 Q100 R0.05\nG76 X38. Z-20. P900 Q300 F1.5", "VP0143"),
+        ("G32 Z-20. K1.5", "VP0225"),
         ("G42 X38.", "VP0208"),
         ("T0202", "VP0215"),
     ] {
@@ -186,4 +187,62 @@ fn linuxcnc_says_diameters_itself() {
         assert_ne!(bench.corrected(&program, &profile), program);
     }
     assert!(bench.refused(&program("", ["60", "40"]), &profile).contains("VP0250"));
+}
+
+/// One part in Fanuc's cycles: passes with a taper, a face, a contour roughed and finished, a groove, threads.
+const CYCLES: &str = "G21 G18 G40 G99 G54\nG50 S2500\nT0101\nG97 S800 M3\nG0 X60. Z2.\nG90 X50. Z-60. F0.2\nX46.\nU-16. R-1.\n\
+G0 X62.\nG94 X40. Z-1. F0.1\nZ-2.\nG0 X60. Z2.\nG71 U2. R0.5\nN5 G71 P10 Q20 U0.4 W0.1 F0.3 M8\nN10 G0 X20.\nG1 Z0. F0.1\n\
+X30. Z-5.\nZ-20.\nG2 X40. Z-25. R5.\nN20 G1 X60.\nN30 G70 P10 Q20\nG0 X50. Z-30.\nG75 R0.2\nG75 X34. Z-36. P1500 Q3000 F0.08\n\
+G0 X60. Z5.\nG0 X36.\nG92 X29.2 Z-18. F1.5\nX28.6\nG0 X36. Z5.\nG76 P020000 Q100 R0.05\nG76 X28.16 Z-18. P920 Q300 F1.5\nG0 X80. Z20.\nM30\n";
+
+#[test]
+fn cycles_are_corrected_as_the_moves_they_are() {
+    let bench = Bench::new();
+    let profile = bench.profile(&[("decimal       =", "thread_chamfer_leads = 1.0\ndecimal       =")]);
+    let corrected = bench.corrected(CYCLES, &profile);
+    // A thread is one block, and one more for its chamfer: two passes of G92, nine of G76.
+    let threads = corrected.lines().filter(|line| line.starts_with("G32 ")).count();
+    assert_eq!(threads, 2 * 2 + 9, "{corrected}");
+    assert!(!corrected.lines().any(|line| line.starts_with("G90") || line.starts_with("G71")), "{corrected}");
+    // What check finds: a thread that became a feed, and another lead.
+    let input = bench.file("in.nc", CYCLES);
+    for (from, to) in [("\nG32 Z", "\nG1 Z"), ("\nF1.5 ", "\nF1.25 ")] {
+        assert!(corrected.contains(from), "{corrected}");
+        let damaged = bench.file("damaged.nc", &corrected.replacen(from, to, 1));
+        let checked = run(&["check", &input, &damaged, "-m", &profile]);
+        assert!(!checked.status.success(), "{from} {to}: {}", messages(&checked));
+    }
+    // On a lathe without errors the cycles stay what they are.
+    let text = "format = 1\nname = \"P\"\ncontrol = \"fanuc-lathe\"\nchain = \"[w S b Z X t]\"\n[program]\ng_code_system = \"A\"\nx = \"diameter\"\n\
+        thread_chamfer_leads = 0.0\n[axis.X]\ntravel_mm = [-20, 160]\n[axis.Z]\ntravel_mm = [-20, 520]\n[tool]\nlengths_mm = { H1 = [12.5, 0, 41.25] }\n\
+        [work_offsets_mm]\nG54 = [0, 0, 360.0]\n";
+    let perfect = bench.file("perfect.toml", text);
+    assert_eq!(bench.corrected(CYCLES, &perfect), CYCLES);
+}
+
+#[test]
+fn a_thread_is_never_split() {
+    let bench = Bench::new();
+    let program =
+        |code: &str| format!("G21 G99\nT0101\nG0 X60. Z5.\nX39.\n{code} Z-280. F1.5\nG0 X60.\nM30\n");
+    // The shaft bends: along 280 mm one line is no cylinder. A feed is split, a thread is refused with the figure.
+    let split = bench.corrected(&program("G1"), PROFILE);
+    assert!(split.lines().count() > program("G1").lines().count() + 1, "{split}");
+    let said = bench.refused(&program("G32"), PROFILE);
+    assert!(said.contains("VP0503") && said.contains("thread") && said.contains("um"), "{said}");
+    let rough = bench.profile(&[("tolerance_um = 1.0", "tolerance_um = 30.0")]);
+    let whole = bench.corrected(&program("G32"), &rough);
+    assert_eq!(whole.matches("G32").count(), 1, "{whole}");
+}
+
+#[test]
+fn a_thread_of_linuxcnc_keeps_its_lead() {
+    let bench = Bench::new();
+    let profile = bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\"")]);
+    let program = |thread: &str| {
+        format!("G21 G18 G90 G7\nT1 M6\nG43 H1\nG97 S500 M3 G95 F0.2\nG0 X36 Z5\nX29\n{thread}\nG0 X36\nM2\n")
+    };
+    let corrected = bench.corrected(&program("G33 Z-20 K1.5"), &profile);
+    assert!(corrected.contains("G33") && corrected.contains("K1.5"), "{corrected}");
+    assert!(bench.refused(&program("G33 Z-20"), &profile).contains("K"));
 }

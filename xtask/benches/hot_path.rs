@@ -81,6 +81,7 @@ fn hot_path(c: &mut Criterion) {
     };
     let info = Info {
         frame: Frame::default(),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         decimals: [3; 3],
         incremental: [false; 3],

@@ -170,7 +170,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
     let job = rewrite::Job {
         dialect: nc_dialect::builtin("fanuc").context("a shipped dialect")?,
         setup: &setup,
-        model,
+        models: machine_model::Models { axes: model, tip: None },
         options: correction::Options {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: correction::Outside::Refuse,

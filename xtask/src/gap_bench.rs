@@ -5,6 +5,7 @@
 //! [`page`], which writes the document.
 
 mod answer;
+mod circles;
 mod outcome;
 mod page;
 mod scores;
@@ -45,6 +46,9 @@ pub(crate) struct Options {
     /// Cases whose noise is not what a fit takes for granted, in the place of the usual ones.
     #[arg(long)]
     doubtful: bool,
+    /// Ball-bar circles with one to four faults, in the place of the usual cases; nothing is written to docs/ then.
+    #[arg(long)]
+    circles: bool,
     /// Keep the files of every case, the answers and a table of outcomes in this folder.
     #[arg(long)]
     keep: Option<PathBuf>,
@@ -68,6 +72,14 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
     let temporary = std::env::temp_dir().join(format!("gap-bench-{}", std::process::id()));
     let root = options.keep.clone().unwrap_or_else(|| temporary.clone());
     std::fs::create_dir_all(&root)?;
+    if options.circles {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;
+        let text = pool.install(|| circles::run(&vpost, &root, options.cases, options.seed))?;
+        if options.keep.is_none() {
+            std::fs::remove_dir_all(&temporary)?;
+        }
+        return Ok(text);
+    }
     let draw = if options.doubtful { doubtful } else { catalogue };
     let specs: Vec<CaseSpec> = draw(options.cases, options.seed);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build()?;

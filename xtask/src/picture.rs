@@ -138,7 +138,7 @@ fn corrected(
     let job = rewrite::Job {
         dialect,
         setup,
-        model,
+        models: machine_model::Models { axes: model, tip: None },
         options: CorrectionOptions {
             tolerance_mm: profile.correction.tolerance_um * 1e-3,
             outside: Outside::Refuse,

@@ -11,6 +11,7 @@ mod error;
 mod field;
 pub mod functions;
 pub mod iso230_2;
+mod known_places;
 pub mod linear_ballbar;
 mod machine_change;
 pub mod measured_line;

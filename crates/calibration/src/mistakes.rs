@@ -8,9 +8,9 @@ use units::math::exp;
 
 use crate::adjustment::Outlier;
 use crate::error::{CalibrationError, LETTERS};
+use crate::known_places::known_places;
 use crate::machine_change::{Base, Found, Plan, Point, PointReading, find, ideal_places, seen_mm};
 use crate::rigid_motion::{RigidMotion, mirrored_rms_mm};
-use crate::volumetric::known_places;
 
 /// A good measurement loses a reading to this test once in so many.
 const FALSE_ALARM: f64 = 1e-5;

@@ -7,11 +7,12 @@ use machine_model::{Description, Squareness, Vector};
 use nalgebra::Matrix3;
 
 use crate::error::{CalibrationError, LETTERS};
+use crate::known_places::known_places;
 use crate::machine_change::{Base, ChangedAxis, Plan, Point, SetUp, find};
 use crate::mistakes;
 use crate::student::quantile_95;
 use crate::traverse::{MeanTraverse, Noise};
-use crate::volumetric::{field_commands, known_places, plays};
+use crate::volumetric::{field_commands, plays};
 
 /// Instrument and machine frame may differ by this much before the difference is a question, rad.
 const LARGEST_FRAME_TURN_RAD: f64 = 0.01;

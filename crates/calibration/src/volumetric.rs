@@ -1,10 +1,11 @@
 //! All rigid-body terms from points anywhere in the volume: equations (51) to (51c).
 
-use machine_model::{Command, Description, Engine, PathModel, Range, Vector};
+use machine_model::{Command, Description, PathModel, Range, Vector};
 
 use crate::adjustment::Estimate;
 use crate::error::{CalibrationError, LETTERS};
 use crate::field;
+use crate::known_places::known_places;
 use crate::machine_change::{Base, ChangedAxis, Found, Group, Plan, Point, SetUp, find};
 use crate::mistakes;
 
@@ -158,38 +159,6 @@ fn is_held_out(row: usize, every: usize) -> bool {
 
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-/// Indices of the points that lie where the base knows the machine: the others have nothing to be compared with.
-///
-/// # Errors
-/// [`CalibrationError::Axes`] where more than a third lie outside: a base of another machine.
-pub(crate) fn known_places(points: &[Point], base: &Base) -> Result<Vec<usize>, CalibrationError> {
-    /// Rounding of commands in a file.
-    const ROUNDING_MM: f64 = 1e-3;
-    let machine = base.machine()?;
-    let beyond = |p: &Point| {
-        (0..3).find(|&axis| {
-            let (q, range) = (p.command.linear_mm[axis], machine.volume().0[axis]);
-            q < range.low - ROUNDING_MM || q > range.high + ROUNDING_MM
-        })
-    };
-    if let Some(error) = points.iter().find_map(|p| machine.rotary_inside(&p.command).err()) {
-        return Err(CalibrationError::Axes(error.to_string()));
-    }
-    let kept: Vec<usize> = (0..points.len()).filter(|&k| beyond(&points[k]).is_none()).collect();
-    let outside = points.len() - kept.len();
-    match points.iter().find_map(|p| beyond(p).map(|axis| (p, axis))) {
-        Some((first, axis)) if 3 * outside > points.len() => Err(CalibrationError::Axes(format!(
-            "{outside} of {} places lie outside the base's volume, as {} at {} mm, which it knows from {} to {} mm: is it the profile of another machine?",
-            points.len(),
-            LETTERS[axis],
-            first.command.linear_mm[axis],
-            machine.volume().0[axis].low,
-            machine.volume().0[axis].high
-        ))),
-        _ => Ok(kept),
-    }
 }
 
 /// Equal steps over what the points cover, or the planes of a lattice.

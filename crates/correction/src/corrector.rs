@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use machine_model::{Command, Everywhere, LANES, PathModel, Play, SolveError, Vector};
+use machine_model::{Command, Everywhere, LANES, Models, PathModel, Play, SolveError, Vector};
 use smallvec::SmallVec;
-use toolpath::{Division, Feed, Motion, Partial, Shape};
+use toolpath::{Division, Feed, Kinematics, Motion, Partial, Shape};
 
 use crate::approach::Whole;
 use crate::curve::Curve;
@@ -162,6 +162,9 @@ pub struct Correction {
 #[derive(Clone)]
 pub struct Corrector<'m> {
     pub(crate) model: &'m dyn PathModel,
+    models: Models<'m>,
+    /// Of which of them [`Self::model`] is one.
+    kinematics: Kinematics,
     pub(crate) options: Options,
     /// Where the axes really are commanded to be in the output, mm.
     pub(crate) standing: [Option<f64>; 3],
@@ -225,6 +228,8 @@ impl<'m> Corrector<'m> {
     pub fn new(model: &'m dyn PathModel, options: Options) -> Self {
         Self {
             model,
+            models: Models { axes: model, tip: None },
+            kinematics: Kinematics::Axes,
             options,
             standing: [None; 3],
             direction: [0; 3],
@@ -237,6 +242,13 @@ impl<'m> Corrector<'m> {
             everywhere: None,
             told_mm: [0.0; 2],
         }
+    }
+
+    /// The same with a model for tip commands.
+    #[must_use]
+    pub fn with_tip_control(mut self, tip: Option<&'m dyn PathModel>) -> Self {
+        self.models.tip = tip;
+        self
     }
 
     /// The same with the axes standing at a known place before the first motion, axis commands in mm.
@@ -260,6 +272,9 @@ impl<'m> Corrector<'m> {
     /// # Errors
     /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
     pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
+        if block.kinematics != self.kinematics {
+            self.switch(block.kinematics)?;
+        }
         if !matches!(motion, Motion::Hole(_)) {
             self.expanding = false;
             self.remembered = None;
@@ -274,6 +289,14 @@ impl<'m> Corrector<'m> {
         let corrected = self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))?;
         self.tell(&corrected.correction);
         Ok(corrected)
+    }
+
+    /// From here on X, Y and Z are something else. Where they still say the same, the motions tell.
+    fn switch(&mut self, kinematics: Kinematics) -> Result<(), CorrectionError> {
+        self.model = self.models.of(kinematics).ok_or(CorrectionError::NoBoundsForTurns)?;
+        self.kinematics = kinematics;
+        (self.last, self.known, self.everywhere) = (None, None, None);
+        Ok(())
     }
 
     /// What is not to be had in a turned frame on a machine with lost motion is so for that.
@@ -552,7 +575,9 @@ impl<'m> Corrector<'m> {
             last,
             expanding,
             remembered,
+            kinematics,
             model: _,
+            models: _,
             options: _,
             approached: _,
             known: _,
@@ -560,6 +585,7 @@ impl<'m> Corrector<'m> {
             told_mm: _,
         } = self;
         *standing == other.standing
+            && *kinematics == other.kinematics
             && *direction == other.direction
             && *play == other.play
             && *last == other.last

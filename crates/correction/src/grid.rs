@@ -1,7 +1,7 @@
 //! Whole output steps: the one place where numbers are rounded.
 
 use machine_model::Vector;
-use toolpath::Frame;
+use toolpath::{Frame, Kinematics};
 use units::decimal::round;
 
 /// Which letters a block holds, one bit each.
@@ -46,6 +46,8 @@ pub enum AxisWord {
 pub struct Block {
     /// Program millimetres to axis commands.
     pub frame: Frame,
+    /// What X, Y and Z are.
+    pub kinematics: Kinematics,
     /// Millimetres in one program unit: 1 or 25.4.
     pub unit_mm: f64,
     /// X words are diameters: their step moves the axis by half of itself. Centre and radius words are not.

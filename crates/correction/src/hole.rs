@@ -442,26 +442,8 @@ impl<'m> Corrector<'m> {
                 corrector.standing_or(&place(from)),
                 (from != to).then_some(normal),
             );
-            let mut follow = Follow {
-                machine,
-                block,
-                alone: false,
-                may_split: true,
-                whole: Whole {
-                    rotary_rad: None,
-                    start: place(from),
-                    length_mm: (bottom_mm - r_mm).abs(),
-                    in_step: false,
-                    division: Division::Any,
-                },
-                nominal_step: Vector::zeros(),
-                solved: None,
-                enclosed: None,
-                foreseen: true,
-                turning: None,
-                commanded_mm: 0.0,
-                corrected,
-            };
+            let whole = along(place(from), (bottom_mm - r_mm).abs());
+            let mut follow = Follow { foreseen: true, ..follow(machine, block, whole, corrected) };
             corrector.follow_line(&mut follow, &part)
         };
         let start = Vector::from(hole.start.linear_mm);
@@ -513,31 +495,39 @@ impl<'m> Corrector<'m> {
             self.turn_towards(&out.at(0.0), &out.at(1.0));
             let mut machine =
                 Machine { state: Command { direction: self.direction, ..machine.state }, ..machine.clone() };
-            let whole = Whole {
-                rotary_rad: None,
-                start: out.at(0.0),
-                length_mm: out.length_mm(),
-                in_step: false,
-                division: Division::Any,
-            };
+            let whole = along(out.at(0.0), out.length_mm());
             self.approach(&mut machine, &out, block, &whole, corrected)?;
-            let mut follow = Follow {
-                machine,
-                block,
-                alone: false,
-                may_split: true,
-                whole,
-                nominal_step: Vector::zeros(),
-                solved: None,
-                enclosed: None,
-                foreseen: false,
-                turning: None,
-                commanded_mm: 0.0,
-                corrected,
-            };
-            self.follow_line(&mut follow, &out)?;
+            self.follow_line(&mut follow(machine, block, whole, corrected), &out)?;
         }
         rapid(self, &leaves, place(after(hole)), may, corrected)?;
         Ok(())
+    }
+}
+
+/// A motion of the drilling axis, of which the cycle may have other parts.
+fn along(start: Vector, length_mm: f64) -> Whole {
+    Whole { start, rotary_rad: None, length_mm, in_step: false, division: Division::Any }
+}
+
+/// A feed of a cycle, written with words of its own.
+fn follow<'a, 'm>(
+    machine: Machine<'m>,
+    block: &'a Block,
+    whole: Whole,
+    corrected: &'a mut Corrected,
+) -> Follow<'a, 'm> {
+    Follow {
+        machine,
+        block,
+        alone: false,
+        may_split: true,
+        whole,
+        nominal_step: Vector::zeros(),
+        solved: None,
+        enclosed: None,
+        foreseen: false,
+        turning: None,
+        commanded_mm: 0.0,
+        corrected,
     }
 }

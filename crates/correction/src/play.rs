@@ -7,7 +7,7 @@
 //! ([`crate::approach`]), and the way is computed for the new side. What then still creeps, or has some of its play to
 //! take up, is added to the bound. Only models whose error depends on the direction need any of this.
 
-use machine_model::{Command, PathModel, Vector};
+use machine_model::{Command, Vector, turned_by_mm};
 use smallvec::SmallVec;
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
@@ -125,7 +125,7 @@ impl<'m> Corrector<'m> {
             };
             against.turned[i] = against.sides[i] != state.direction[i];
             if against.turned[i] {
-                against.distance_mm += differs(self.model, &at, i).norm();
+                against.distance_mm += turned_by_mm(self.model, &at, i).norm();
             }
         }
         against.turned.contains(&true).then_some(against)
@@ -186,7 +186,7 @@ impl<'m> Corrector<'m> {
         let unsure_mm = self.play.unsure_mm(self.model, &at);
         let side = self.play.side();
         let off = |axis: usize| {
-            let turns_by = differs(self.model, &at, axis);
+            let turns_by = turned_by_mm(self.model, &at, axis);
             match side[axis] {
                 0 => 0.5 * turns_by.norm(),
                 _ if unsure_mm[axis] > 0.0 => {
@@ -316,7 +316,7 @@ impl<'m> Corrector<'m> {
         let Some(turn) = pair.turn(0.0, 1.0) else { return 0.0 };
         let at = |axis: usize, end: usize| {
             let (linear_mm, rotary_rad) = (pair.commanded.at(end as f64), turn.commanded_rad[end]);
-            differs(self.model, &Command { linear_mm, rotary_rad, ..machine.state }, axis)
+            turned_by_mm(self.model, &Command { linear_mm, rotary_rad, ..machine.state }, axis)
         };
         (0..3).map(|axis| (at(axis, 1) - at(axis, 0)).norm()).sum()
     }
@@ -356,7 +356,7 @@ impl<'m> Corrector<'m> {
                 continue;
             }
             if turns_back && back_mm[axis] + lag_mm[axis] >= width_mm {
-                return Err(Turns { by_mm: differs(self.model, &at, axis).norm() });
+                return Err(Turns { by_mm: turned_by_mm(self.model, &at, axis).norm() });
             }
             let most_mm = lag_mm[axis] + back_mm[axis];
             // On its side, what lies across may have begun to change with what it creeps.
@@ -369,16 +369,6 @@ impl<'m> Corrector<'m> {
         }
         Ok(all)
     }
-}
-
-/// What changes in the tool's place when an axis turns, mm.
-fn differs(model: &dyn PathModel, at: &Command, axis: usize) -> Vector {
-    let [up, down] = [1, -1].map(|side| {
-        let mut state = *at;
-        state.direction[axis] = side;
-        model.error_mm(&state)
-    });
-    up - down
 }
 
 /// The directions with that of one axis the other way round.

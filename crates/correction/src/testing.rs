@@ -35,6 +35,7 @@ pub(crate) fn machine(monotone: bool) -> RigidBody {
 pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
     Block {
         frame: Default::default(),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],

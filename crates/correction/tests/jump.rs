@@ -40,6 +40,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
     b"XYZ".iter().for_each(|letter| letters.insert(*letter));
     let block = Block {
         frame: Frame::shift([0.0; 3]),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],

@@ -66,6 +66,7 @@ fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> Ri
 fn block() -> Block {
     Block {
         frame: Frame::shift([60.0, 60.0, 60.0]),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],

@@ -1,34 +1,21 @@
 //! The whole diagnosis of one file.
 
-use machine_model::Volume;
-use machine_model::effects::EffectKind;
-
-use crate::assembly::Assembly;
-use crate::diagnosis::{Diagnosis, Gap, Leftover, Setup, Verdict};
-use crate::observation::{Measurements, Scalar};
-
-/// What can be asked for.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
-    /// Effects taken out of the library.
-    pub without: Vec<EffectKind>,
-    /// Seed of every random relabelling.
-    pub seed: u64,
-    /// Where the causes are to be used; default: the box that was measured.
-    pub volume: Option<Volume>,
-    /// Finest step of the axes, µm: a gap below it is none that anyone could correct. 0: not known.
-    pub resolution_um: f64,
-}
+use crate::equations::observation::{Measurements, Scalar};
+use crate::judgement::answer::{Diagnosis, Gap, Leftover, Setup, Verdict};
+use crate::judgement::assembly::Assembly;
+use crate::judgement::unseen::kept_back;
+use crate::options::Options;
+use crate::search::lengths::{explained, first_equations};
 
 /// Diagnoses the gap between `data` and the model that predicted its rows; `holdout` is never fitted.
 #[must_use]
 pub fn diagnose(data: &Measurements, holdout: Option<&Measurements>, options: &Options) -> Diagnosis {
-    if let Some(answer) = too_little(data, &crate::magnitude::first_equations(data)) {
+    if let Some(answer) = too_little(data, &first_equations(data)) {
         return answer;
     }
-    let (model, magnitude_notes) = crate::magnitude::explained(data, &options.without);
-    let kept_back = || crate::unseen::kept_back(data, &options.without);
-    let mut answer = Assembly::new(data, &model).diagnosis(holdout, options, kept_back);
+    let (model, magnitude_notes) = explained(data, &options.without);
+    let mut answer =
+        Assembly::new(data, &model).diagnosis(holdout, options, || kept_back(data, &options.without));
     answer.notes.extend(magnitude_notes);
     answer
 }
@@ -46,7 +33,7 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
     if runs < 2 {
         missing.push(format!("{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each"));
     }
-    if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !data.geometry.moves_rotary(data) {
+    if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !moves_rotary(data) {
         missing.push("no axis moves in this file".to_owned());
     }
     let first = scalars.first().map(|s| s.gap_um);
@@ -77,13 +64,7 @@ pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
     }
 }
 
-trait MovesRotary {
-    fn moves_rotary(&self, data: &Measurements) -> bool;
-}
-
-impl MovesRotary for machine_model::effects::EffectGeometry {
-    fn moves_rotary(&self, data: &Measurements) -> bool {
-        let first = data.rows.first().map(|r| r.command.rotary_rad);
-        data.rows.iter().any(|r| Some(r.command.rotary_rad) != first)
-    }
+fn moves_rotary(data: &Measurements) -> bool {
+    let first = data.rows.first().map(|r| r.command.rotary_rad);
+    data.rows.iter().any(|r| Some(r.command.rotary_rad) != first)
 }

@@ -3,56 +3,29 @@
 //! Measurements against the prediction of a machine model: is there a gap above the noise, where does it
 //! lie, which unmodelled effect causes it and which others could, how far it shrinks with that effect in the
 //! model, and what to measure next. The method and its thresholds are in `docs/diagnosis.md`.
+//!
+//! One folder a step, each using only those before it: `equations` (what was read, and the columns that could explain
+//! it), `library` (the effects a file could show), `search` (which of them explain the gap), `judgement` (what that is
+//! worth), `words`; [`diagnose()`] takes them in turn.
 
-mod align;
-mod assembly;
-mod bounds;
-mod columns;
-mod confounding;
-mod crossval;
 mod diagnose;
-mod diagnosis;
-mod doubt;
-mod engine;
-mod fit;
-mod forecast;
-mod formula;
-mod gram;
+mod equations;
+mod judgement;
 mod library;
-mod linear;
-mod locate;
-mod magnitude;
-mod motion;
-mod next;
-mod noise;
-mod observation;
-mod parameters;
-mod pool;
-mod propose;
-mod refine;
-mod remedy;
-mod rivals;
+mod options;
 mod search;
-mod sentence;
-mod shrinkage;
-mod space;
-mod structure;
-mod term;
 #[cfg(test)]
 mod tests;
-mod tile;
-mod trial;
-mod unseen;
-mod verdict;
 mod words;
 
-pub use align::gap_rms_um;
-pub use confounding::{Confounding, confounding};
-pub use diagnose::{Options, diagnose, underpowered};
-pub use diagnosis::{
+pub use diagnose::{diagnose, underpowered};
+pub use equations::align::gap_rms_um;
+pub use equations::observation::{Believed, Measurements, Reading, Row};
+pub use judgement::answer::{
     Cause, Cell, Detectable, Diagnosis, Gap, Holdout, Leftover, Lookalike, NextMeasurement, Parameter,
     Residual, Setup, Shrinkage, Step, Verdict,
 };
-pub use formula::Formula;
-pub use observation::{Believed, Measurements, Reading, Row};
-pub use remedy::remedy;
+pub use judgement::confounding::{Confounding, confounding};
+pub use options::Options;
+pub use search::formula::Formula;
+pub use words::remedy::remedy;

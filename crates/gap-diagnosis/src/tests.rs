@@ -6,14 +6,18 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::engine::{LEVEL, explain, f_tail, source};
-use crate::gram::{Gram, Source};
-use crate::library::Library;
-use crate::linear::Products;
-use crate::noise::{NoiseSource, estimate, outliers};
-use crate::observation::{Measurements, Reading, Row, Scalar};
-use crate::space::{RHO_GRID, Space};
-use crate::term::Term;
+use crate::equations::columns::Source;
+use crate::equations::f_test::f_tail;
+use crate::equations::gram::Gram;
+use crate::equations::linear::Products;
+use crate::equations::noise::{NoiseSource, estimate, outliers};
+use crate::equations::observation::{Measurements, Reading, Row, Scalar};
+use crate::equations::set_up::Clamping;
+use crate::equations::term::Term;
+use crate::library::candidates::Library;
+use crate::search::explain::explain;
+use crate::search::space::{RHO_GRID, Space};
+use crate::search::trial::LEVEL;
 use crate::{Options, Verdict, diagnose};
 
 mod doubts;
@@ -138,7 +142,7 @@ fn whitening_is_the_inverse_of_the_covariance() {
     // Two runs suffice, and a matrix of 60 is soon inverted.
     let scalars: Vec<Scalar> =
         data.scalars(None).into_iter().filter(|s| data.rows[s.row].run < 2 && s.row % 7 == 0).collect();
-    let data_source = Source { runs: 2, ..source(&data, &scalars) };
+    let data_source = Source { runs: 2, ..Source::new(&data, &scalars) };
     let terms = vec![
         Term::SetupShift(0),
         Term::SetupRotation(2),
@@ -174,14 +178,13 @@ fn whitening_is_the_inverse_of_the_covariance() {
 fn columns_added_later_give_the_same_space_as_columns_there_from_the_start() {
     let data = measured(GOOD, backlash_um);
     let scalars = data.scalars(None);
-    let source = source(&data, &scalars);
-    let library = Library::new(&data, &[], false);
+    let source = Source::new(&data, &scalars);
+    let library = Library::new(&data, &[], Clamping::Shifted);
     let (early, late) = library.terms.split_at(library.terms.len() - 40);
-    let mut kept = crate::columns::Kept::default();
     let mut gram = Gram::new(Vec::new(), &source);
-    gram.extend(early.to_vec(), &source, &mut kept);
+    gram.extend(early.to_vec(), &source);
     let mut space = Space::new(gram.clone(), library.nuisances);
-    gram.extend(late.to_vec(), &source, &mut kept);
+    gram.extend(late.to_vec(), &source);
     space.grow(gram);
     let whole = Space::new(Gram::new(library.terms.clone(), &source), library.nuisances);
     for level in 0..RHO_GRID.len() {
@@ -221,11 +224,11 @@ fn a_period_is_found_and_not_named_where_places_are_too_far_apart() {
     let data = measured(GOOD, wave);
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    let source = source(&data, &scalars);
-    let (found, asked) = crate::propose::Pitches::new(&source, 0).best(&source, &values, 0);
+    let source = Source::new(&data, &scalars);
+    let (found, asked) = crate::search::proposals::Pitches::new(&source, 0).best(&source, &values, 0);
     // 400 mm of travel resolve 40.3² / 400 = 4 mm between neighbours of equal power; a tenth of that is enough here.
     assert!((found[0] - 40.3).abs() < 0.5 && asked > 17, "{found:?} of {asked}");
-    assert!(crate::propose::is_coarse(&data, 0, 40.3));
+    assert!(crate::library::seen::is_coarse(&data, 0, 40.3));
     let answer = diagnose(&data, None, &Options::default());
     assert!(!names(&answer).contains(&"pitch.X") && answer.verdict != Verdict::Named, "{}", answer.sentence);
     assert!(answer.causes.iter().any(|c| c.cannot_be_told_from.iter().any(|r| r == "pitch.X")));
@@ -251,7 +254,7 @@ fn one_feed_cannot_tell_lag_from_backlash_and_two_can() {
     let two = diagnose(&measured(GOOD, backlash_um), None, &Options::default());
     assert_eq!((two.verdict, names(&two)), (Verdict::Named, vec!["backlash.X"]), "{}", two.sentence);
     let far = two.causes[0].nearest.iter().find(|n| n.effect == "servo-lag.X").unwrap();
-    assert!(far.correlation < crate::rivals::ALIKE, "{far:?}");
+    assert!(far.correlation < crate::judgement::rivals::ALIKE, "{far:?}");
     let one = diagnose(&measured(Plan { feeds: &[1000.0], ..GOOD }, backlash_um), None, &Options::default());
     assert_eq!(one.verdict, Verdict::Ambiguous, "{}", one.sentence);
     let cause = &one.causes[0];
@@ -286,7 +289,7 @@ fn one_tool_cannot_tell_a_curve_from_an_angle() {
 #[test]
 fn every_question_costs_its_share_of_the_level() {
     let data = measured(GOOD, backlash_um);
-    let library = Library::new(&data, &[], false);
+    let library = Library::new(&data, &[], Clamping::Shifted);
     let spent: f64 = (0..library.candidates.len())
         .map(|c| library.candidates[c].asked() as f64 * LEVEL / library.questions(c))
         .sum();
@@ -372,4 +375,37 @@ fn the_forecast_holds_on_fresh_lines() {
     let answer = diagnose(&data, Some(&holdout), &Options::default());
     let (promised, kept) = (answer.causes[0].shrink_predicted, answer.holdout.unwrap().shrink);
     assert!((promised.mid - kept).abs() < 0.05, "{promised:?} {kept}");
+}
+
+/// The pool's products are those of all columns at once, bit by bit: with the columns of a model, and within an effect.
+#[test]
+fn products_that_a_search_asks_for_are_those_of_all_columns() {
+    let data = measured(Plan { feeds: &[1000.0], ..GOOD }, backlash_um);
+    let scalars = data.scalars(None);
+    let places = crate::equations::columns::Places::new(&data.rows);
+    let source = Source { places: Some(&places), ..Source::new(&data, &scalars) };
+    let library = Library::new(&data, &[], Clamping::Shifted);
+    let whole = Gram::new(library.terms.clone(), &source);
+    let (early, late) = library.terms.split_at(library.terms.len() - 40);
+    let mut pool = crate::equations::pool::Pool::new(&source);
+    let mut positions = pool.positions(early);
+    let model = [library.nuisances + 3, library.nuisances + 17];
+    assert!(pool.complete(&model));
+    positions.extend(pool.positions(late));
+    let last = positions.len() - 1;
+    assert!(pool.complete(&[last]) && !pool.complete(&[last, model[0]]));
+    let found = pool.select(&positions);
+    let kind = |i: usize| match whole.terms.get(i) {
+        Some(Term::Effect { kind, .. }) => Some(*kind),
+        _ => None,
+    };
+    let core = |i: usize| i < library.nuisances || model.contains(&i) || i == last || i == last + 1;
+    for i in 0..=last + 1 {
+        for j in 0..=last + 1 {
+            if core(i) || core(j) || kind(i) == kind(j) {
+                assert_eq!(found.products[(i, j)], whole.products[(i, j)], "{i} {j}");
+            }
+        }
+    }
+    assert_eq!(found.run_products, whole.run_products);
 }

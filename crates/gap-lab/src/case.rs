@@ -1,10 +1,11 @@
 //! One case: a machine, what it hides, how it was measured, and the files that come of it.
 
+use crate::alias::Alias;
 use crate::collinearity::View;
 use crate::design::{Layout, Plan};
 use crate::dice::Dice;
 use crate::effect::Effect;
-use crate::files;
+use crate::files::{self, Observation};
 use crate::fresh::Fresh;
 use crate::linear::{dot, rms};
 use crate::machine::{Contribution, Machine};
@@ -15,7 +16,7 @@ use crate::plans::{hold_out, lay_out};
 use crate::row::{Row, Sight};
 use crate::shape::{Bend, Withheld, form};
 use crate::textbook::{variants, visible};
-use crate::truth::{Alias, TrueEffect, Truth};
+use crate::truth::{TrueEffect, Truth};
 
 /// What a case is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,17 +57,6 @@ impl Kind {
             Self::Rotary => "rotary",
         }
     }
-}
-
-/// Which columns carry the reading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Observation {
-    /// `dx_um dy_um dz_um`.
-    Displacement,
-    /// `xm_mm ym_mm zm_mm`; the tool vector is zero then.
-    Position,
-    /// `d_um`.
-    Magnitude,
 }
 
 /// A case before it is made.

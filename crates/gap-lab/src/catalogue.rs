@@ -1,12 +1,13 @@
 //! The list of cases of a benchmark.
 
-use crate::case::{CaseSpec, Kind, Observation, aliased_spec};
+use crate::alias::Alias;
+use crate::case::{CaseSpec, Kind, aliased_spec};
 use crate::design::Plan;
 use crate::dice::Dice;
 use crate::effect::Effect;
+use crate::files::Observation;
 use crate::noise::NoiseKind;
 use crate::outside::Outside;
-use crate::truth::Alias;
 
 /// Cases of each kind among 1200.
 const MIX: [(Kind, usize); 9] = [

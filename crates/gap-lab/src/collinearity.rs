@@ -1,118 +1,14 @@
 //! Which names a design cannot tell apart: the lab's own answer, from its own columns.
 
 use crate::design::Layout;
-use crate::dice::Dice;
 use crate::effect::Effect;
 use crate::linear::{Basis, dot};
 use crate::machine::Machine;
-use crate::plans::{BlindPlan, blind};
 use crate::row::{Row, Sight};
 use crate::textbook::{variants, visible};
 
 /// Two names count as one on a design where the true effect correlates this much with the other's columns.
 pub(crate) const SAME: f64 = 0.98;
-
-/// Designs that make two names the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Alias {
-    /// One feed and no diagonals: servo lag and backlash of an axis.
-    LagOrBacklash,
-    /// One tool: squareness to Z and an angle of Z that grows evenly.
-    SquarenessOrAngle,
-    /// One temperature, not 20 °C: scale and thermal expansion.
-    ScaleOrThermal,
-    /// X lines at Y = 0 and one height: straightness EYX and roll EAX.
-    StraightnessOrRoll,
-    /// Load that comes on once: load and step.
-    LoadOrStep,
-    /// One component, short series: warm-up and drift of the instrument.
-    WarmupOrDrift,
-}
-
-impl Alias {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::LagOrBacklash,
-        Self::SquarenessOrAngle,
-        Self::ScaleOrThermal,
-        Self::StraightnessOrRoll,
-        Self::LoadOrStep,
-        Self::WarmupOrDrift,
-    ];
-
-    /// The true effect of the `turn`-th case of this alias.
-    pub(crate) fn truth(self, turn: usize) -> Effect {
-        let axis = turn / 2 % 3;
-        let first = turn.is_multiple_of(2);
-        match self {
-            Self::LagOrBacklash if first => Effect::ServoLag(axis),
-            Self::LagOrBacklash => Effect::Backlash(axis),
-            Self::SquarenessOrAngle => match turn % 4 {
-                0 => Effect::Squareness(0, 2),
-                1 => Effect::Angular(1, 2),
-                2 => Effect::Squareness(1, 2),
-                _ => Effect::Angular(0, 2),
-            },
-            Self::ScaleOrThermal if first => Effect::Scale(axis),
-            Self::ScaleOrThermal => Effect::Thermal(axis),
-            Self::StraightnessOrRoll => Effect::Straightness(1, 0),
-            Self::LoadOrStep => Effect::Load(turn % 3),
-            Self::WarmupOrDrift if first => Effect::Warmup(axis),
-            Self::WarmupOrDrift => Effect::InstrumentDrift,
-        }
-    }
-
-    /// The axis a blind plan must look along, where it looks along one only.
-    fn axis(self, turn: usize) -> usize {
-        turn / 2 % 3
-    }
-}
-
-/// Rows of a deliberately blind plan.
-pub(crate) fn aliased_layout(alias: Alias, turn: usize, machine: &Machine, dice: &mut Dice) -> Layout {
-    blind(&blind_plan(alias, turn, dice), machine, dice)
-}
-
-/// The plan of an alias for the `turn`-th case.
-pub(crate) fn blind_plan(alias: Alias, turn: usize, dice: &mut Dice) -> BlindPlan {
-    let everywhere = vec![
-        (0, [0.1, 0.2]),
-        (1, [0.9, 0.2]),
-        (2, [0.1, 0.9]),
-        (0, [0.9, 0.8]),
-        (1, [0.2, 0.9]),
-        (2, [0.8, 0.2]),
-    ];
-    let mut plan = BlindPlan {
-        feed: dice.pick(&[1000.0, 2000.0, 3000.0]),
-        tool: [0.0, 0.0, -(dice.between(10.0, 20.0).round() * 10.0)],
-        temperature: None,
-        late_load: 0.0,
-        lines: everywhere,
-        seen: [true; 3],
-        runs: 6,
-    };
-    match alias {
-        Alias::LagOrBacklash | Alias::SquarenessOrAngle => {}
-        Alias::ScaleOrThermal => plan.temperature = Some(dice.pick(&[16.5, 23.5, 25.0])),
-        Alias::StraightnessOrRoll => {
-            let height = dice.between(0.2, 0.8);
-            plan.lines = vec![(0, [0.0, height]); 3];
-            plan.runs = 3;
-        }
-        Alias::LoadOrStep => {
-            plan.late_load = 120.0;
-            plan.runs = 2;
-        }
-        Alias::WarmupOrDrift => {
-            let axis = alias.axis(turn);
-            plan.lines = vec![(axis, [0.5, 0.5]); 4];
-            plan.seen = [0, 1, 2].map(|i| i == axis);
-            plan.runs = 2;
-        }
-    }
-    plan
-}
 
 /// The numbers a layout measures, with set-up and run offsets taken out.
 pub(crate) struct View<'a> {
@@ -274,7 +170,9 @@ impl<'a> View<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::alias::Alias;
     use crate::design::Plan;
+    use crate::dice::Dice;
     use crate::plans::lay_out;
 
     fn unit(effect: Effect, machine: &Machine, layout: &Layout) -> Vec<f64> {
@@ -299,7 +197,7 @@ mod tests {
     fn one_feed_makes_lag_and_backlash_the_same_and_two_feeds_do_not() {
         let machine = Machine::random(&mut Dice::new(2, 0, 0), false);
         let mut dice = Dice::new(2, 0, 1);
-        let one = blind(&blind_plan(Alias::LagOrBacklash, 0, &mut dice), &machine, &mut dice);
+        let one = crate::blind::layout(Alias::LagOrBacklash, 0, &machine, &mut dice);
         let two = lay_out(Plan::Good, &machine, false, &mut dice);
         for (layout, same) in [(one, true), (two, false)] {
             let lag = unit(Effect::ServoLag(0), &machine, &layout);

@@ -1,5 +1,6 @@
 //! Measuring plans: which points are visited, in which order, under which conditions.
 
+use crate::alias::Alias;
 use crate::dice::Dice;
 use crate::machine::Machine;
 use crate::row::{Row, Sight};
@@ -21,8 +22,8 @@ pub enum Plan {
     Plane,
     /// Points strewn in the volume, direction of approach not noted.
     Points,
-    /// A design under which two names are the same, and which case of it: see [`crate::Alias`].
-    Aliased(crate::Alias, usize),
+    /// A design under which two names are the same, and which case of it: see [`Alias`].
+    Aliased(Alias, usize),
     /// Circles of a ball bar in three planes.
     BallBar,
     /// Points on the workpiece, seen at many angles of the rotary table.

@@ -3,11 +3,21 @@
 use std::fmt::Write;
 
 use crate::AXES;
-use crate::case::Observation;
 use crate::design::Layout;
 use crate::machine::Machine;
 use crate::row::Sight;
 use crate::truth::Truth;
+
+/// Which columns carry the reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observation {
+    /// `dx_um dy_um dz_um`.
+    Displacement,
+    /// `xm_mm ym_mm zm_mm`; the tool vector is zero then.
+    Position,
+    /// `d_um`.
+    Magnitude,
+}
 
 /// Text of the profile: what the machine is believed to be.
 pub(crate) fn profile(machine: &Machine, name: &str, tool: [f64; 3]) -> String {

@@ -12,9 +12,12 @@
 //!
 //! Units inside: mm, rad, kg, s, °C, mm/min. Files: as the column names say.
 
+mod alias;
+mod blind;
 pub mod calibration;
 mod case;
 mod catalogue;
+pub mod circles;
 mod collinearity;
 mod design;
 mod dice;
@@ -32,13 +35,15 @@ mod shape;
 mod textbook;
 mod truth;
 
-pub use case::{Case, CaseSpec, Kind, Observation};
+pub use alias::Alias;
+pub use case::{Case, CaseSpec, Kind};
 pub use catalogue::{catalogue, doubtful, sample_cases};
 pub use design::Plan;
 pub use effect::Effect;
+pub use files::Observation;
 pub use fresh::{Fresh, Shrink};
 pub use noise::NoiseKind;
-pub use truth::{Alias, TrueEffect, Truth};
+pub use truth::{TrueEffect, Truth};
 
 /// Names of the three linear axes, in the order in which positions are stored.
 pub const AXES: [char; 3] = ['X', 'Y', 'Z'];

@@ -45,7 +45,7 @@ pub(crate) fn lay_out(plan: Plan, machine: &Machine, long_runs: bool, dice: &mut
         }
         Plan::Plane => plane(machine, dice),
         Plan::Points => points(machine, dice),
-        Plan::Aliased(alias, turn) => crate::collinearity::aliased_layout(alias, turn, machine, dice),
+        Plan::Aliased(alias, turn) => crate::blind::layout(alias, turn, machine, dice),
         Plan::BallBar => ball_bar(machine, dice),
         Plan::Turntable => turntable(machine, dice),
     }
@@ -318,41 +318,6 @@ fn turntable(machine: &Machine, dice: &mut Dice) -> Layout {
     }
     let columns = Columns { approach: false, feed: false, tool: false, load: false, ..Columns::ALL };
     recorder.finish(columns)
-}
-
-/// Pieces that [`crate::collinearity`] builds its deliberately blind plans from.
-pub(crate) struct BlindPlan {
-    /// One feed for all.
-    pub(crate) feed: f64,
-    /// One tool for all.
-    pub(crate) tool: [f64; 3],
-    /// Temperature at every row, where it does not move.
-    pub(crate) temperature: Option<f64>,
-    /// Load that comes on after a third of the lines, kg.
-    pub(crate) late_load: f64,
-    /// The axes that get lines, and the fractions of the other two axes at which they run.
-    pub(crate) lines: Vec<(usize, [f64; 2])>,
-    /// Components that are measured.
-    pub(crate) seen: [bool; 3],
-    /// Number of runs.
-    pub(crate) runs: usize,
-}
-
-/// Records a blind plan: lines in both directions, three repeats, even steps.
-pub(crate) fn blind(plan: &BlindPlan, machine: &Machine, dice: &mut Dice) -> Layout {
-    let mut blocks = Vec::new();
-    for (k, (axis, offset)) in plan.lines.iter().enumerate() {
-        // Not where a run begins: its offset would take the change.
-        let load = if 3 * k >= plan.lines.len() { plan.late_load } else { 0.0 };
-        let targets = axis_line(dice, machine, *axis, *offset, 11, true);
-        blocks.push(Block { targets, tool: plan.tool, feed: plan.feed, load, repeats: 3, both_ways: true });
-    }
-    let recorder = Recorder::new(dice, Sight::Components(plan.seen));
-    let mut layout = record(recorder, &blocks, plan.runs, Columns::ALL, dice);
-    if let Some(temperature) = plan.temperature {
-        layout.rows.iter_mut().for_each(|row| row.temperature = temperature);
-    }
-    layout
 }
 
 #[cfg(test)]

@@ -1,7 +1,5 @@
 //! What the files of a case do not say.
 
-pub use crate::collinearity::Alias;
-
 /// One withheld effect.
 #[derive(Clone, Debug)]
 pub struct TrueEffect {

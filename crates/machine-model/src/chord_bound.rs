@@ -196,20 +196,24 @@ fn add_higher_orders<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, 
 ///
 /// Real arithmetic: rounding may add some 1e-13 mm. Infinite where the stretch leaves the volume.
 pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
-    let volume = crate::Engine::volume(model);
-    let leaves = |axis: usize| {
-        let (range, known) = (stretch.range_mm[axis], volume.0[axis]);
-        !(known.low - ROUNDING_MM <= range.low && range.high <= known.high + ROUNDING_MM)
-    };
-    if (0..3).any(leaves) {
+    if !lies_inside(model, stretch) {
         return f64::INFINITY;
     }
     let own = |link: &Link, range: Range, bounds: &mut SixBounds| own_tables(stretch, link, range, bounds);
     if let Some(turn) = &stretch.turn {
-        return turning_bound::chord_bound_mm(model, stretch, turn);
+        return turning_bound::error_in_turn(model, stretch, turn).0.leaves_chord_mm();
     }
     let bounded = together(Along { model, stretch, course: Course::Own, bounds: own, carried: None });
     bounded.leaves_chord_mm + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
+}
+
+/// The volume holds every place of the stretch.
+pub(crate) fn lies_inside(model: &RigidBody, stretch: &Move) -> bool {
+    stretch
+        .range_mm
+        .iter()
+        .zip(&model.volume.0)
+        .all(|(range, known)| known.low - ROUNDING_MM <= range.low && range.high <= known.high + ROUNDING_MM)
 }
 
 /// Bounds of the tables of an axis for the direction in which it moves; false where it has none.

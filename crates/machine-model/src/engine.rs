@@ -1,6 +1,7 @@
 //! What a correction engine must answer.
 
 use nalgebra::Vector3;
+use toolpath::Kinematics;
 
 use crate::{Everywhere, LANES};
 
@@ -324,6 +325,38 @@ pub trait Engine: Send + Sync {
     /// The engine as a model of whole paths; `None` for variants that exist to reproduce a publication.
     fn path_model(&self) -> Option<&dyn PathModel> {
         None
+    }
+}
+
+/// A machine's models by what the control makes of X, Y and Z.
+///
+/// ```
+/// use machine_model::Models;
+/// use toolpath::Kinematics;
+/// # use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector};
+/// # let linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+/// # let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// # let chain = Chain::parse("[w X Y b Z t]").unwrap();
+/// # let machine = RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap();
+/// let models = Models { axes: &machine, tip: None };
+/// assert!(models.of(Kinematics::Axes).is_some() && models.of(Kinematics::Tip).is_none());
+/// ```
+#[derive(Clone, Copy)]
+pub struct Models<'m> {
+    /// Of axis commands.
+    pub axes: &'m dyn PathModel,
+    /// Of tip commands, where the machine has such a control and bounds for it.
+    pub tip: Option<&'m dyn PathModel>,
+}
+
+impl<'m> Models<'m> {
+    /// The model for it.
+    #[must_use]
+    pub fn of(&self, kinematics: Kinematics) -> Option<&'m dyn PathModel> {
+        match kinematics {
+            Kinematics::Axes => Some(self.axes),
+            Kinematics::Tip => self.tip,
+        }
     }
 }
 

@@ -20,6 +20,7 @@ mod rigid_body;
 pub mod rotation;
 mod solve;
 mod table;
+mod tip_control;
 mod traverse;
 mod turning_bound;
 mod with_effects;
@@ -28,14 +29,15 @@ pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{
-    Command, Engine, EngineId, Move, PathModel, Range, Solution, SolveError, Turn, Vector, Volume,
+    Command, Engine, EngineId, Models, Move, PathModel, Range, Solution, SolveError, Turn, Vector, Volume,
 };
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
 pub use lanes::LANES;
-pub use play::{Play, SAME_PLACE_MM};
+pub use play::{Play, SAME_PLACE_MM, turned_by_mm};
 pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};
 pub use table::{Bounds, Interpolation, Table, TableError};
+pub use tip_control::TipControl;
 pub use traverse::Traverse;
 pub use with_effects::{UnknownCondition, WithEffects};

@@ -214,6 +214,20 @@ fn half_play_mm(model: &dyn PathModel, axis: usize, at: &Command) -> f64 {
     0.5 * model.reversal_mm(axis, at).max(0.0)
 }
 
+/// What changes in the tool's place when an axis turns from down to up, mm, machine directions: along the axis the
+/// negative of its reversal value, and what lies across it.
+///
+/// * `at` – where it turns, with the directions of the other axes
+#[must_use]
+pub fn turned_by_mm(model: &dyn PathModel, at: &Command, axis: usize) -> Vector {
+    let [up, down] = [1, -1].map(|side| {
+        let mut state = *at;
+        state.direction[axis] = side;
+        model.error_mm(&state)
+    });
+    up - down
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

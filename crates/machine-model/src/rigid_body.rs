@@ -345,9 +345,16 @@ impl RigidBody {
     }
 
     /// Tip of an ideal machine, mm, workpiece frame.
-    fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
+    pub(crate) fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
         let (turn, shift) = self.table_transform(state, false);
         turn * (linear_mm + self.nominal_tool(state)) + shift
+    }
+
+    /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm: the inverse of
+    /// [`Self::nominal_position`].
+    pub(crate) fn reach(&self, tip_mm: &Vector, state: &Command) -> Vector {
+        let (turn, shift) = self.table_transform(state, false);
+        turn.tr_mul(&(tip_mm - shift)) - self.nominal_tool(state)
     }
 
     /// The tool's direction as the workpiece sees it, unit vectors: of an ideal machine, and of this one. It is that of the
@@ -533,9 +540,7 @@ impl PathModel for RigidBody {
 
     fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
         let programmed = Command { rotary_rad: *programmed_rad, ..*state };
-        let (turn, shift) = self.table_transform(state, false);
-        let tip = self.nominal_position(linear_mm, &programmed);
-        turn.tr_mul(&(tip - shift)) - self.nominal_tool(state)
+        self.reach(&self.nominal_position(linear_mm, &programmed), state)
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {

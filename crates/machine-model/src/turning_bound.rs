@@ -16,7 +16,7 @@ impl Length {
     }
 
     /// Seen from what turns by `speed` rad a stretch, evenly.
-    fn turned(self, speed: f64) -> Self {
+    pub(crate) fn turned(self, speed: f64) -> Self {
         let Self { value, first, second, jumps } = self;
         Self {
             value,
@@ -26,7 +26,7 @@ impl Length {
         }
     }
 
-    fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,
             first: self.first + other.first,
@@ -46,7 +46,7 @@ impl Length {
     }
 
     /// Upper bound of the distance from the chord: equation (12).
-    fn leaves_chord_mm(self) -> f64 {
+    pub(crate) fn leaves_chord_mm(self) -> f64 {
         0.25 * self.jumps + 0.125 * self.second
     }
 }
@@ -103,21 +103,12 @@ fn of_three(bounds: &SixBounds, from: usize, speed: f64) -> Length {
     }
 }
 
-/// Upper bound, mm, of the distance between the error and its chord over the stretch: equation (60).
-pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move, turn: &Turn) -> f64 {
-    let chain = &model.description.chain;
-    let rotary = |axis: Axis| &model.description.rotary[axis.direction()];
-    let middle = Command {
-        linear_mm: Vector::from_fn(|i, _| 0.5 * (stretch.range_mm[i].low + stretch.range_mm[i].high)),
-        rotary_rad: 0.5 * (turn.programmed_rad[0] + turn.programmed_rad[1]),
-        ..stretch.state
-    };
-
-    // The head, from the tool on: `nominal` is the ideal tool vector, seen from the centre of the axis at hand.
-    let (mut nominal, mut error) = (Length::constant(stretch.state.tool_mm.norm()), Length::default());
+/// The ideal tool vector, from the centre of the head's outermost axis, and its error, as the head turns them.
+fn tool_in_turn(model: &RigidBody, tool_mm: &Vector, turn: &Turn) -> (Length, Length) {
+    let (mut nominal, mut error) = (Length::constant(tool_mm.norm()), Length::default());
     let mut centre = Vector::zeros();
-    for axis in chain.head().iter().rev() {
-        let data = rotary(*axis);
+    for axis in model.description.chain.head().iter().rev() {
+        let data = &model.description.rotary[axis.direction()];
         let wobble = Wobble::of(data, *axis, turn);
         nominal.value += (data.centre_mm - centre).norm();
         centre = data.centre_mm;
@@ -125,6 +116,18 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move, turn: &Turn) -> 
         error = wobble.shift.plus(wobble.turn.times(real)).plus(error.turned(wobble.speed));
         nominal = nominal.turned(wobble.speed);
     }
+    (nominal, error)
+}
+
+/// The error over the stretch as the linear axes see it, and how far the table turns against them, rad: equation (60).
+pub(crate) fn error_in_turn(model: &RigidBody, stretch: &Move, turn: &Turn) -> (Length, f64) {
+    let chain = &model.description.chain;
+    let middle = Command {
+        linear_mm: Vector::from_fn(|i, _| 0.5 * (stretch.range_mm[i].low + stretch.range_mm[i].high)),
+        rotary_rad: 0.5 * (turn.programmed_rad[0] + turn.programmed_rad[1]),
+        ..stretch.state
+    };
+    let (nominal, error) = tool_in_turn(model, &stretch.state.tool_mm, turn);
     let at_middle = model.nominal_tool(&middle);
     // From its place in the middle it goes half of its way at most.
     let reach = Vector::repeat(0.5 * nominal.first);
@@ -147,7 +150,7 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move, turn: &Turn) -> 
         Length { first: speed + carried.first, second: acceleration + carried.second, ..Length::default() };
     let (mut total, mut turned) = (error, 0.0);
     for axis in chain.table().iter().rev() {
-        let data = rotary(*axis);
+        let data = &model.description.rotary[axis.direction()];
         let wobble = Wobble::of(data, *axis, turn);
         // As far as in the middle of the stretch, and half of its way.
         let arm = tip - data.centre_mm;
@@ -160,5 +163,5 @@ pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move, turn: &Turn) -> 
         tip = data.centre_mm + ideally_turned(data, *axis, -middle.rotary_rad[axis.direction()]) * arm;
         turned += wobble.speed;
     }
-    total.leaves_chord_mm()
+    (total, turned)
 }

@@ -18,6 +18,7 @@ const KNOWN: Conditions = Conditions {
     feed_mm_min: Some(1500.0),
     share: None,
     since_turn_mm: [Some(2.0), Some(40.0), None],
+    curvature_per_mm: Some([0.004, -0.003, 0.0]),
     station_mm: Some([900.0, -700.0, 100.0]),
 };
 
@@ -177,6 +178,7 @@ fn a_condition_that_nobody_gave_is_named() {
         (EffectKind::Load(2), "load"),
         (EffectKind::ServoLag(0), "feed"),
         (EffectKind::ServoMismatch(0, 1), "feed"),
+        (EffectKind::Contraction, "feed"),
     ];
     for kind in EffectKind::all().into_iter().filter(|kind| !kind.is_instrument()) {
         let term = term(kind, &mut random, CHAINS[0], false);

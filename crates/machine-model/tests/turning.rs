@@ -5,7 +5,8 @@
 mod machines;
 
 use machine_model::{
-    AxisTables, Command, Interpolation, Move, PathModel, Range, RigidBody, Table, Tilt, Turn, Vector,
+    AxisTables, Command, Description, Engine, Interpolation, Move, PathModel, Range, RigidBody, Table, Tilt,
+    TipControl, Turn, Vector,
 };
 use machines::{Random, command, machine, perfect};
 use proptest::prelude::*;
@@ -20,6 +21,19 @@ const CHAINS: [&str; 5] = [
 
 /// Errors of all kinds in every axis; centres far from each other.
 fn crooked(seed: u64, chain: &str, monotone: bool) -> RigidBody {
+    RigidBody::new(described(seed, chain, monotone)).unwrap()
+}
+
+/// The same from both sides: without lost motion.
+fn without_play(seed: u64, chain: &str, monotone: bool) -> RigidBody {
+    let mut machine = described(seed, chain, monotone);
+    for axis in &mut machine.linear {
+        (axis.errors_negative, axis.backlash_mm) = (None, 0.0);
+    }
+    RigidBody::new(machine).unwrap()
+}
+
+fn described(seed: u64, chain: &str, monotone: bool) -> Description {
     let mut machine = machine(seed, chain, monotone, 1.0);
     let mut random = Random::new(seed ^ 0x5eed);
     let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
@@ -37,12 +51,12 @@ fn crooked(seed: u64, chain: &str, monotone: bool) -> RigidBody {
             Some(Table::new(nodes.clone(), values, interpolation).unwrap())
         }));
     }
-    RigidBody::new(machine).unwrap()
+    machine
 }
 
 /// A stretch of it, and its error at s.
 struct Way<'m> {
-    model: &'m RigidBody,
+    model: &'m dyn PathModel,
     linear_mm: [Vector; 2],
     turn: Turn,
     state: Command,
@@ -60,6 +74,11 @@ impl Way<'_> {
         self.model.error_from_mm(&command, &self.at(&self.turn.programmed_rad, s))
     }
 
+    fn stands(&self) -> bool {
+        let Turn { programmed_rad, commanded_rad } = self.turn;
+        commanded_rad[0] == commanded_rad[1] && programmed_rad == commanded_rad
+    }
+
     fn bound_mm(&self) -> f64 {
         let [from, to] = self.linear_mm;
         self.model.chord_bound_mm(&Move {
@@ -67,8 +86,8 @@ impl Way<'_> {
             speed_mm: (to - from).abs().into(),
             acceleration_mm: [0.0; 3],
             passes: 1,
-            state: self.state,
-            turn: Some(self.turn),
+            state: Command { rotary_rad: self.turn.commanded_rad[0], ..self.state },
+            turn: (!self.stands()).then_some(self.turn),
         })
     }
 
@@ -103,7 +122,42 @@ fn way<'m>(
     }
 }
 
+/// Programmed and commanded alike.
+fn commanded(programmed_rad: [Vector; 2]) -> Turn {
+    Turn { programmed_rad, commanded_rad: programmed_rad }
+}
+
 proptest! {
+    /// Equation (61): tip and rotary axes run evenly, the control has other centres.
+    #[test]
+    fn under_tip_control_neither(
+        seed: u64, chain in 0usize..5, monotone: bool, length in 0.0f64..15.0, apart in 0.0f64..0.2,
+        turn in prop_oneof![Just(0.0), 0.0f64..0.02, 0.0f64..0.4],
+    ) {
+        let mut random = Random::new(seed);
+        let machine = without_play(seed, CHAINS[chain], monotone);
+        let centres = machine.description().rotary.each_ref().map(|axis| axis.centre_mm + random.vector(apart));
+        let model = TipControl::new(&machine, centres).unwrap();
+        let angles = random.vector(3.0);
+        let axes = Command {
+            rotary_rad: angles, ..command((Vector::new(200.0, 140.0, 100.0) + random.vector(30.0)).into(), random.vector(60.0).into())
+        };
+        let from = model.tip_command(&axes).linear_mm;
+        prop_assert!((model.axis_command(&model.tip_command(&axes)).linear_mm - axes.linear_mm).norm() < 1e-9);
+        let turn = commanded([angles, angles + random.vector(turn)]);
+        let way = Way {
+            model: &model, linear_mm: [from, from + random.vector(length)], turn,
+            state: Command { rotary_rad: angles, ..axes },
+        };
+        let (bound, found) = (way.bound_mm(), way.leaves_mm(200));
+        prop_assert!(found <= bound + 1e-11, "{found} > {bound}");
+        let target = Command { linear_mm: way.at(&way.linear_mm, 0.5), ..way.state };
+        if let Ok(solution) = model.solve(&target) {
+            let reached = solution.linear_mm + model.error_mm(&Command { linear_mm: solution.linear_mm, ..target });
+            prop_assert!((reached - target.linear_mm).norm() < 1e-9);
+        }
+    }
+
     #[test]
     fn the_error_never_leaves_its_chord_by_more_than_the_bound(
         seed: u64, chain in 0usize..5, monotone: bool, length in 0.0f64..15.0,
@@ -151,6 +205,30 @@ fn the_bound_is_not_far_from_the_truth() {
     ratios.sort_by(f64::total_cmp);
     println!("median {:.2}, 90 % {:.2}", ratios[150], ratios[270]);
     assert!(ratios[150] < 4.0, "{}", ratios[150]);
+}
+
+/// The same under tip control, where it is finite: a stretch of 4 mm on which the table turns by 3 degrees.
+#[test]
+fn the_bound_under_tip_control_is_not_far_either() {
+    let mut random = Random::new(3);
+    let mut ratios: Vec<f64> = (0..300)
+        .map(|seed| {
+            let machine = without_play(seed, CHAINS[seed as usize % 5], seed % 2 == 0);
+            let centres = machine.description().rotary.each_ref().map(|axis| axis.centre_mm);
+            let model = TipControl::new(&machine, centres).unwrap();
+            let angles = random.vector(3.0);
+            let turn = commanded([angles, angles + random.vector(0.05)]);
+            let axes =
+                Command { rotary_rad: angles, ..command([200.0, 140.0, 100.0], random.vector(60.0).into()) };
+            let from = model.tip_command(&axes).linear_mm;
+            let linear_mm = [from, from + random.vector(4.0)];
+            let way = Way { model: &model, linear_mm, turn, state: axes };
+            way.bound_mm() / way.leaves_mm(400)
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    println!("median {:.2}, 90 % {:.2}", ratios[150], ratios[270]);
+    assert!(ratios[150] < 15.0, "{}", ratios[150]);
 }
 
 /// A table leaning by 300 µrad about Y: the tool leans the other way, whatever the table's own angle about X is but for

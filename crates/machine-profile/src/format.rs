@@ -91,6 +91,9 @@ pub(crate) struct Document {
     /// M codes of this machine.
     #[serde(default)]
     pub(crate) m_codes: MCodes,
+    /// What the control computes with under tool centre point control.
+    #[schemars(with = "Option<Kinematics>")]
+    pub(crate) kinematics: Option<Spanned<Kinematics>>,
     /// Effects beyond the tables: `id` and numeric parameters.
     #[serde(default)]
     #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
@@ -424,6 +427,18 @@ pub(crate) struct Program {
     pub(crate) x: Option<XName>,
     /// G-code system of a lathe's control: "A", "B" or "C".
     pub(crate) g_code_system: Option<String>,
+    /// Chamfer at the end of a lathe's threads, in leads: parameter 5130 counts tenths.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) thread_chamfer_leads: Option<Spanned<Finite>>,
+    /// Angle of that chamfer to the axis, degrees (parameter 5131); 45 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) thread_chamfer_deg: Option<Spanned<Finite>>,
+    /// By how much roughing (G71, G72) leaves the contour behind a pass, of the radius (parameter 5133).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) roughing_escape_mm: Option<Spanned<Finite>>,
+    /// By how much pecks (G74, G75) go back (parameter 5139).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) groove_return_mm: Option<Spanned<Finite>>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
@@ -483,6 +498,36 @@ pub(crate) struct MCodes {
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub(crate) harmless: Vec<Spanned<String>>,
+}
+
+/// What runs straight from one end of a block to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum StraightName {
+    Tip,
+    Axes,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Kinematics {
+    /// What runs straight from end to end of a block: "tip", or "axes".
+    #[schemars(with = "StraightName")]
+    pub(crate) straight: Spanned<StraightName>,
+    /// Axis → a point of it as the control has it, machine frame with all axes at 0; in a head: from the gauge point.
+    #[schemars(with = "BTreeMap<String, Triple>")]
+    pub(crate) centres_mm: BTreeMap<String, Spanned<Triple>>,
+    /// It is on when a program begins.
+    #[serde(default)]
+    pub(crate) at_start: bool,
+    /// M codes of the machine that switch it on, like ["M428"].
+    #[serde(default)]
+    #[schemars(with = "Vec<String>")]
+    pub(crate) on: Vec<Spanned<String>>,
+    /// M codes that switch it off.
+    #[serde(default)]
+    #[schemars(with = "Vec<String>")]
+    pub(crate) off: Vec<Spanned<String>>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]

@@ -3,7 +3,6 @@
 //! The format is the contract's `format = 1`. Files are read by a function the caller gives; errors know
 //! the file and the bytes they speak of. What a column or key means is said where it is read: [`load`].
 
-mod columns;
 mod effects;
 mod error;
 mod format;
@@ -19,8 +18,8 @@ pub use effects::EngineError;
 pub use error::ProfileError;
 pub use load::{Read, load};
 pub use profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, LatheParts, MeasuringFrame, Nose,
-    Outside, Profile, ProgramRules,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, LatheParts,
+    MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
 pub use show::schema;
 pub use tables::ErrorRows;

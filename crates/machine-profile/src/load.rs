@@ -11,13 +11,13 @@ use machine_model::{
 use toml::Spanned;
 use units::{Angle, Length};
 
-use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, closest, span};
+use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::format::{
     self, ChangePlace, DecimalName, Document, Finite, InterpolationName, OutsideName, ToolChange, XName,
 };
 use crate::profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, MeasuringFrame, Outside, Profile,
-    ProgramRules,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, MeasuringFrame,
+    Outside, Profile, ProgramRules, TurningRules,
 };
 use crate::tables::{ErrorRows, error_rows, traverse};
 use crate::toml_error;
@@ -56,6 +56,12 @@ fn vector(values: Option<[Finite; 3]>) -> Vector {
 
 /// Arcs whose radii differ by more are none on any control, mm.
 const MOST_ARC_TOLERANCE_MM: f64 = 10.0;
+/// Parameter 5130 of Fanuc goes to 12.7 leads.
+const MOST_CHAMFER_LEADS: f64 = 12.7;
+/// Parameter 5131 of Fanuc.
+const MOST_CHAMFER_DEG: f64 = 89.0;
+/// Parameters 5133 and 5139 are clearances; more is a slip of the unit.
+const MOST_ESCAPE_MM: f64 = 50.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
 const COARSEST_MM: f64 = 0.1;
 /// The finest step that decimals are counted for, mm.
@@ -116,6 +122,8 @@ impl Loader<'_> {
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
+        let kinematics =
+            document.kinematics.as_ref().and_then(|written| self.kinematics(written, chain.as_ref()));
         let effects = self.effects(&document.effect);
         let setup = MeasuringFrame {
             shift_mm: triple(document.setup.shift_mm),
@@ -152,6 +160,7 @@ impl Loader<'_> {
             work_offsets,
             correction,
             program,
+            kinematics,
             effects,
             setup,
             lathe,
@@ -187,6 +196,68 @@ impl Loader<'_> {
         }
     }
 
+    /// Numbers of M codes; what is none is refused.
+    fn m_codes(&mut self, written: &[Spanned<String>]) -> Vec<u16> {
+        let mut numbers = Vec::with_capacity(written.len());
+        for code in written {
+            match code.get_ref().strip_prefix(['M', 'm']).and_then(|digits| digits.parse().ok()) {
+                Some(number) => numbers.push(number),
+                None => {
+                    let diagnostic = Diagnostic::error(VALUE, format!("`{}` is no M code", code.get_ref()))
+                        .help("write the letter and its number, like \"M777\"");
+                    self.refuse(code, diagnostic, "expected an M code");
+                }
+            }
+        }
+        numbers
+    }
+
+    fn kinematics(
+        &mut self,
+        written: &Spanned<format::Kinematics>,
+        chain: Option<&Chain>,
+    ) -> Option<Kinematics> {
+        let section = written.get_ref();
+        if *section.straight.get_ref() == format::StraightName::Axes {
+            let diagnostic = Diagnostic::error(VALUE, "a control that leads the axes straight, not the tip")
+                .help("what the tip does between the ends of a block is another path then: leave the section out and post without tool centre point control");
+            self.refuse(&section.straight, diagnostic, "expected \"tip\"");
+        }
+        let axes: Vec<Axis> = chain?.axes().filter(|axis| !axis.is_linear()).collect();
+        let mut centres_mm = [None; 3];
+        for (name, centre) in &section.centres_mm {
+            match axes.iter().find(|axis| name.len() == 1 && name.starts_with(axis.letter())) {
+                Some(axis) => centres_mm[axis.direction()] = Some(triple(Some(*centre.get_ref()))),
+                None => {
+                    let diagnostic =
+                        Diagnostic::error(VALUE, format!("`{name}` is no rotary axis of the chain"))
+                            .help("give a centre for each rotary axis, like C = [0, 0, 0]");
+                    self.refuse(centre, diagnostic, "this centre");
+                }
+            }
+        }
+        for axis in axes.iter().filter(|axis| centres_mm[axis.direction()].is_none()) {
+            let letter = axis.letter();
+            let diagnostic = Diagnostic::error(VALUE, format!("the control's centre of {letter} is missing"))
+                .help(format!("add {letter} = [X, Y, Z] to centres_mm: as the control has it in its parameters, which need not be where the axis is"));
+            self.refuse(written, diagnostic, "this section");
+        }
+        let [on, off] = [&section.on, &section.off].map(|codes| self.m_codes(codes));
+        if let Some(both) =
+            section.on.iter().zip(&on).find_map(|(code, number)| off.contains(number).then_some(code))
+        {
+            let diagnostic = Diagnostic::error(VALUE, format!("{} switches on and off", both.get_ref()))
+                .help("name each M code once");
+            self.refuse(both, diagnostic, "also under `off`");
+        }
+        Some(Kinematics {
+            centres_mm: centres_mm.map(Option::unwrap_or_default),
+            at_start: section.at_start,
+            on,
+            off,
+        })
+    }
+
     fn program_rules(&mut self, program: &format::Program, m_codes: &format::MCodes) -> ProgramRules {
         let bare_lengths = program.decimal.map(|name| match name {
             DecimalName::Increments => BareLengths::Increments,
@@ -196,17 +267,7 @@ impl Loader<'_> {
             .tool_change
             .as_ref()
             .map_or([AfterChange::Unknown; 3], |written| self.tool_change(written));
-        let mut harmless_m_codes = Vec::with_capacity(m_codes.harmless.len());
-        for code in &m_codes.harmless {
-            match code.get_ref().strip_prefix(['M', 'm']).and_then(|digits| digits.parse().ok()) {
-                Some(number) => harmless_m_codes.push(number),
-                None => {
-                    let diagnostic = Diagnostic::error(VALUE, format!("`{}` is no M code", code.get_ref()))
-                        .help("write the letter and its number, like \"M777\"");
-                    self.refuse(code, diagnostic, "expected an M code");
-                }
-            }
-        }
+        let harmless_m_codes = self.m_codes(&m_codes.harmless);
         let mut arc_tolerance_mm = None;
         if let Some(written) = &program.arc_tolerance_mm {
             let Finite(mm) = *written.get_ref();
@@ -230,6 +291,42 @@ impl Loader<'_> {
             harmless_m_codes,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
             g_code_system: program.g_code_system.clone(),
+            turning: self.turning_rules(program),
+        }
+    }
+
+    fn turning_rules(&mut self, program: &format::Program) -> TurningRules {
+        let mut number = |written: &Option<Spanned<Finite>>, name: &str, most: f64, unit: &str| {
+            let written = written.as_ref()?;
+            let Finite(value) = *written.get_ref();
+            if (0.0..=most).contains(&value) {
+                return Some(value);
+            }
+            let diagnostic = Diagnostic::error(VALUE, format!("{name} is {value}"))
+                .help("give what the parameter of the control is set to");
+            self.refuse(written, diagnostic, format!("expected 0 to {most} {unit}"));
+            None
+        };
+        TurningRules {
+            thread_chamfer_leads: number(
+                &program.thread_chamfer_leads,
+                "thread_chamfer_leads",
+                MOST_CHAMFER_LEADS,
+                "leads",
+            ),
+            thread_chamfer_deg: number(
+                &program.thread_chamfer_deg,
+                "thread_chamfer_deg",
+                MOST_CHAMFER_DEG,
+                "degrees",
+            ),
+            roughing_escape_mm: number(
+                &program.roughing_escape_mm,
+                "roughing_escape_mm",
+                MOST_ESCAPE_MM,
+                "mm",
+            ),
+            groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
         }
     }
 
@@ -534,7 +631,7 @@ impl Loader<'_> {
                         VALUE,
                         format!("`{}` is no engine that corrects programs", name.get_ref()),
                     );
-                    diagnostic = diagnostic.help(match closest(name.get_ref(), usable()) {
+                    diagnostic = diagnostic.help(match diagnostic::closest(name.get_ref(), usable()) {
                         Some(near) => format!("did you mean \"{near}\"? Engines: {}", names.join(", ")),
                         None => format!("engines: {}", names.join(", ")),
                     });

@@ -1,7 +1,9 @@
 //! A machine profile as values.
 
 use machine_model::engines::{EngineInputs, ParametricTable};
-use machine_model::{Chain, Description, EngineId, Interpolation, RigidBody, Traverse, Volume};
+use machine_model::{
+    Chain, Description, EngineId, Interpolation, RigidBody, TipControl, Traverse, Vector, Volume,
+};
 
 use crate::tables::ErrorRows;
 
@@ -81,6 +83,35 @@ pub struct ProgramRules {
     pub diameters: Option<bool>,
     /// G-code system of a lathe's control; `None`: not said.
     pub g_code_system: Option<String>,
+    /// What parameters of a lathe's control say of its cycles.
+    pub turning: TurningRules,
+}
+
+/// Parameters of a lathe's control that decide how its cycles move; `None`: not said.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TurningRules {
+    /// Chamfer at the end of a thread, in leads.
+    pub thread_chamfer_leads: Option<f64>,
+    /// Its angle to the axis, degrees.
+    pub thread_chamfer_deg: Option<f64>,
+    /// By how much roughing leaves the contour behind a pass, radius, mm.
+    pub roughing_escape_mm: Option<f64>,
+    /// By how much pecks go back, mm.
+    pub groove_return_mm: Option<f64>,
+}
+
+/// Tool centre point control: the tip runs straight from end to end of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kinematics {
+    /// Of A, B, C: a point of the axis as the control has it, machine frame with all axes at 0, mm; in a head: from the
+    /// gauge point.
+    pub centres_mm: [[f64; 3]; 3],
+    /// It is on when a program begins.
+    pub at_start: bool,
+    /// Numbers of the machine's M codes that switch it on.
+    pub on: Vec<u16>,
+    /// Those that switch it off.
+    pub off: Vec<u16>,
 }
 
 /// An effect beyond the tables, as the profile names it; [`machine_model::effects::EffectTerm::from_entry`] reads it.
@@ -159,6 +190,8 @@ pub struct Profile {
     pub correction: CorrectionOptions,
     /// How programs are read.
     pub program: ProgramRules,
+    /// Tool centre point control; `None`: what the control computes with is not said.
+    pub kinematics: Option<Kinematics>,
     /// Effects beyond the tables.
     pub effects: Vec<EffectEntry>,
     /// The measuring frame.
@@ -210,7 +243,15 @@ impl Profile {
             .axes()
             .filter(|axis| !axis.is_linear())
             .any(|axis| !self.description.rotary[axis.direction()].is_perfect());
-        imperfect || (linear_errors && !self.chain().head().is_empty())
+        imperfect || (linear_errors && !self.chain().head().is_empty()) || self.kinematics.is_some()
+    }
+
+    /// The machine under tool centre point control; `None` where nothing is said of that, or no path can be proven: lost
+    /// motion of a linear axis, effects.
+    #[must_use]
+    pub fn tip_control(&self) -> Option<TipControl> {
+        let centres_mm = self.kinematics.as_ref()?.centres_mm.map(Vector::from);
+        TipControl::new(&self.rigid_body, centres_mm).filter(|_| self.effects.is_empty())
     }
 
     /// What [`machine_model::engines::build`] takes, effects not included; [`Profile::engine`] includes them.

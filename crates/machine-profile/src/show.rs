@@ -182,9 +182,33 @@ impl Profile {
         if let Some(mm) = rules.arc_tolerance_mm {
             writeln!(out, "arcs         radii may differ by {mm} mm")?;
         }
+        let turning = &rules.turning;
+        let said = [
+            ("chamfer of threads", turning.thread_chamfer_leads, "leads"),
+            ("its angle", turning.thread_chamfer_deg, "degrees"),
+            ("escape of roughing", turning.roughing_escape_mm, "mm"),
+            ("return of pecks", turning.groove_return_mm, "mm"),
+        ];
+        let said: Vec<String> = said
+            .into_iter()
+            .filter_map(|(what, value, unit)| Some(format!("{what} {} {unit}", value?)))
+            .collect();
+        if !said.is_empty() {
+            writeln!(out, "cycles       {}", said.join(", "))?;
+        }
         if !rules.harmless_m_codes.is_empty() {
             let codes: Vec<String> = rules.harmless_m_codes.iter().map(|code| format!("M{code}")).collect();
             writeln!(out, "M codes      {} move neither an axis nor the frame", codes.join(", "))?;
+        }
+        if let Some(kinematics) = &self.kinematics {
+            let axes = self.chain().axes().filter(|axis| !axis.is_linear());
+            let centres: Vec<String> = axes
+                .map(|axis| {
+                    let [x, y, z] = kinematics.centres_mm[axis.direction()];
+                    format!("{} about {x} {y} {z} mm", axis.letter())
+                })
+                .collect();
+            writeln!(out, "tip control  {}", centres.join(", "))?;
         }
         Ok(())
     }

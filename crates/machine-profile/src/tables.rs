@@ -1,10 +1,10 @@
 //! Error tables of one axis and tracker traverses, from their CSV files.
 
 use machine_model::{Axis, AxisTables, Interpolation, Six, Table, Traverse, rotation};
-use units::{Angle, Length};
+use measurement_files::{Codes, Kind, Refusal, Row, Sheet};
+use units::Angle;
 
-use crate::columns::Columns;
-use crate::error::ProfileError;
+use crate::error::{CELL, COLUMN, FILE, ProfileError, ROWS};
 
 /// Translations beyond this are a mistake in the unit, mm.
 const LARGEST_TRANSLATION_MM: f64 = 20.0;
@@ -35,139 +35,141 @@ impl ErrorRows {
     }
 }
 
-/// mm or rad per unit of the column.
-fn units_of(rotation: bool) -> &'static [(&'static str, f64)] {
-    const LENGTHS: [(&str, f64); 2] = [("um", Length::from_um(1.0).mm()), ("mm", 1.0)];
-    // µm/mm is a milliradian.
-    const ANGLES: [(&str, f64); 3] = [
-        ("urad", Angle::from_urad(1.0).rad()),
-        ("um_per_mm", 1e-3),
-        ("arcsec", Angle::from_arcsec(1.0).rad()),
-    ];
-    if rotation { &ANGLES } else { &LENGTHS }
+const CODES: Codes = Codes { unreadable: FILE, column: COLUMN, cell: CELL, unit: ROWS };
+
+/// The refusal of a table, as an error of the profile that names it.
+fn of_profile(file: &str) -> impl Fn(Box<Refusal>) -> Box<ProfileError> + '_ {
+    move |refusal| ProfileError::table(file, refusal.diagnostic)
+}
+
+/// Checks that a column increases strictly over at least two rows.
+fn increasing(sheet: &Sheet, column: &str) -> Result<(), Box<Refusal>> {
+    let rows: Vec<Row<'_>> = sheet.rows().collect();
+    if let [only] = rows.as_slice() {
+        let message = "a table needs at least 2 rows, this one has 1".to_owned();
+        return Err(only.refuse_row(
+            ROWS,
+            message,
+            "the only row",
+            "measure the ends of the travel at least",
+        ));
+    }
+    for pair in rows.windows(2) {
+        let (before, at) = (pair[0].needed(column)?, pair[1].needed(column)?);
+        if at <= before {
+            let what = if at == before { "the same position twice" } else { "out of order" };
+            let message =
+                format!("{what}: {column} {at} follows {before}, positions must increase from row to row");
+            let help = "sort the rows; two runs, or two directions, are two tables";
+            return Err(pair[1].refuse_row(ROWS, message, "this row", help));
+        }
+    }
+    Ok(())
 }
 
 /// Reads `position_mm, EXX_um, …, ECX_urad` (for a rotary axis `position_deg, EXA_um, …`).
 pub(crate) fn error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Box<ProfileError>> {
-    let columns = Columns::read(file, bytes)?;
-    let position_name = if axis.is_linear() { "position_mm" } else { "position_deg" };
-    let position = columns.need(position_name)?;
-    let symbol = |i: usize| format!("E{}{axis}", ['X', 'Y', 'Z', 'A', 'B', 'C'][i]);
-    let mut known = vec![position_name.to_owned()];
-    for i in 0..6 {
-        known.extend(units_of(i >= 3).iter().map(|(unit, _)| format!("{}_{unit}", symbol(i))));
+    read_error_rows(file, bytes, axis).map_err(of_profile(file))
+}
+
+fn read_error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Box<Refusal>> {
+    let position = if axis.is_linear() { "position_mm" } else { "position_deg" };
+    let functions: [String; 6] = std::array::from_fn(|i| {
+        format!("E{}{axis}_{}", ['X', 'Y', 'Z', 'A', 'B', 'C'][i], if i < 3 { "mm" } else { "rad" })
+    });
+    let expected = format!(
+        "expected: {position} and error functions of {axis} with their units, EX{axis}_um … EC{axis}_urad"
+    );
+    let kind = Kind {
+        columns: &format!("{position} {}", functions.join(" ")),
+        expected: &expected,
+        passes_over: None,
+        may_be_empty: false,
+        codes: CODES,
+    };
+    let sheet = Sheet::read(file, bytes, &kind, None)?;
+    sheet.need(&[position], &expected)?;
+    let given = functions.each_ref().map(|key| sheet.has(key));
+    if given == [false; 6] {
+        return Err(sheet.refuse_header(
+            COLUMN,
+            format!("the table holds no error function of axis {axis}"),
+            &expected,
+        ));
     }
-    let mut sources: [Option<(usize, f64)>; 6] = [None; 6];
-    for (column, (name, _)) in columns.header.iter().enumerate() {
-        if column == position {
-            continue;
+    let scale = if axis.is_linear() { 1.0 } else { Angle::from_deg(1.0).rad() };
+    let (mut positions, mut rows) = (Vec::new(), Vec::new());
+    for row in sheet.rows() {
+        positions.push(row.needed(position)? * scale);
+        let mut six: Six = [0.0; 6];
+        for (value, key) in six.iter_mut().zip(&functions).filter(|(_, key)| sheet.has(key)) {
+            *value = row.number(key)?.ok_or_else(|| {
+                let help = "a function that was not measured is a column left out, not an empty cell";
+                row.refuse(CELL, key, format!("`{}` is empty", sheet.header(key)), help)
+            })?;
         }
-        let (head, unit) = name.split_once('_').unwrap_or((name, ""));
-        let Some(function) = (0..6).find(|&i| symbol(i) == head) else {
-            let message = format!("unknown column {name} in a table of axis {axis}");
-            return Err(columns.unknown_column(column, message, &known));
-        };
-        let units = units_of(function >= 3);
-        let Some((_, factor)) = units.iter().find(|(known, _)| *known == unit) else {
-            let wanted: Vec<&str> = units.iter().map(|(unit, _)| *unit).collect();
-            let kind = if function < 3 { "a translation" } else { "a rotation" };
-            let message = format!(
-                "column {name}: {head} is {kind}, its unit must be one of {}, not `{unit}`",
-                wanted.join(", ")
-            );
-            let names: Vec<String> = wanted.iter().map(|unit| format!("{head}_{unit}")).collect();
-            return Err(columns.bad_column(column, message, format!("name it {}", names.join(" or "))));
-        };
-        if sources[function].is_some() {
-            return Err(columns.bad_column(
-                column,
-                format!("{head} stands there twice, in different units"),
-                "leave one of the two columns out".to_owned(),
-            ));
-        }
-        sources[function] = Some((column, *factor));
-    }
-    if sources.iter().all(Option::is_none) {
-        let message = format!("the table holds no error function of axis {axis}");
-        return Err(columns.unknown_column(position, message, &known));
-    }
-    columns.increasing(position)?;
-    let mut rows = Vec::with_capacity(columns.rows.len());
-    for (k, cells) in columns.rows.iter().enumerate() {
-        let six: Six =
-            std::array::from_fn(|i| sources[i].map_or(0.0, |(column, factor)| cells[column] * factor));
-        let (translation, angle) = (Vec3(six[0], six[1], six[2]).norm(), Vec3(six[3], six[4], six[5]).norm());
+        let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let (translation, angle) = (norm(&six[..3]), norm(&six[3..]));
         if translation > LARGEST_TRANSLATION_MM || angle > rotation::LARGEST_SMALL_ANGLE_RAD {
             let message = format!(
                 "an error of {translation:.3} mm and {:.3} mrad is larger than geometric errors get: wrong unit?",
                 angle * 1e3
             );
-            return Err(columns.bad_row(k, message, "up to 20 mm and 100 mrad are read"));
+            return Err(row.refuse_row(
+                ROWS,
+                message,
+                "up to 20 mm and 100 mrad are read",
+                "name each column by its unit",
+            ));
         }
         rows.push(six);
     }
-    let scale = if axis.is_linear() { 1.0 } else { Angle::from_deg(1.0).rad() };
-    Ok(ErrorRows {
-        positions: columns.rows.iter().map(|cells| cells[position] * scale).collect(),
-        rows,
-        given: sources.map(|source| source.is_some()),
-    })
-}
-
-struct Vec3(f64, f64, f64);
-
-impl Vec3 {
-    fn norm(&self) -> f64 {
-        (self.0 * self.0 + self.1 * self.1 + self.2 * self.2).sqrt()
-    }
+    increasing(&sheet, position)?;
+    Ok(ErrorRows { positions, rows, given })
 }
 
 /// Reads `commanded_x_mm …, measured_x_mm …[, published_cos_x …]` of a traverse along `axis`.
 pub(crate) fn traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<ProfileError>> {
-    let columns = Columns::read(file, bytes)?;
-    let names =
-        |prefix: &str, suffix: &str| ['x', 'y', 'z'].map(|letter| format!("{prefix}_{letter}{suffix}"));
-    let (commanded, measured) = (names("commanded", "_mm"), names("measured", "_mm"));
-    let cosines = names("published_cos", "");
-    let known: Vec<String> = [&commanded, &measured, &cosines].into_iter().flatten().cloned().collect();
-    for (column, (name, _)) in columns.header.iter().enumerate() {
-        if !known.contains(name) {
-            return Err(columns.unknown_column(
-                column,
-                format!("unknown column {name} in a tracker traverse"),
-                &known,
-            ));
-        }
-    }
-    let triple = |names: &[String; 3]| -> Result<[usize; 3], Box<ProfileError>> {
-        Ok([columns.need(&names[0])?, columns.need(&names[1])?, columns.need(&names[2])?])
+    read_traverse(file, bytes, axis).map_err(of_profile(file))
+}
+
+fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<Refusal>> {
+    const COMMANDED: [&str; 3] = ["commanded_x_mm", "commanded_y_mm", "commanded_z_mm"];
+    const MEASURED: [&str; 3] = ["measured_x_mm", "measured_y_mm", "measured_z_mm"];
+    const COSINES: [&str; 3] = ["published_cos_x", "published_cos_y", "published_cos_z"];
+    let kind = Kind {
+        columns: &[COMMANDED, MEASURED, COSINES].concat().join(" "),
+        expected: "expected: commanded_x_mm … commanded_z_mm and measured_x_mm … measured_z_mm",
+        passes_over: None,
+        may_be_empty: false,
+        codes: CODES,
     };
-    let (commanded, measured) = (triple(&commanded)?, triple(&measured)?);
-    let cosines =
-        if cosines.iter().any(|name| columns.find(name).is_some()) { Some(triple(&cosines)?) } else { None };
+    let sheet = Sheet::read(file, bytes, &kind, None)?;
+    sheet.need(&[COMMANDED, MEASURED].concat(), kind.expected)?;
+    let has_cosines = COSINES.iter().any(|key| sheet.has(key));
+    if has_cosines {
+        sheet.need(&COSINES, "give all three cosines, or none")?;
+    }
     let moving = axis.direction();
-    columns.increasing(commanded[moving])?;
-    for (k, row) in columns.rows.iter().enumerate() {
-        if let Some(other) =
-            (0..3).find(|&i| i != moving && row[commanded[i]] != columns.rows[0][commanded[i]])
-        {
+    increasing(&sheet, COMMANDED[moving])?;
+    let all = |keys: [&str; 3]| sheet.rows().map(|row| row.three(keys)).collect::<Result<Vec<_>, _>>();
+    let (commanded, measured_mm) = (all(COMMANDED)?, all(MEASURED)?);
+    for (row, at) in sheet.rows().zip(&commanded) {
+        if let Some(other) = (0..3).find(|&i| i != moving && at[i] != commanded[0][i]) {
+            let name = Axis::ALL[other];
             let message = format!(
-                "axis {} moves in the traverse of {axis}: {} mm after {} mm",
-                Axis::ALL[other],
-                row[commanded[other]],
-                columns.rows[0][commanded[other]]
+                "axis {name} moves in the traverse of {axis}: {} mm after {} mm",
+                at[other], commanded[0][other]
             );
-            return Err(columns.bad_row(k, message, "a traverse moves one axis alone"));
+            let help = "give each axis a file of its own";
+            return Err(row.refuse_row(ROWS, message, "a traverse moves one axis alone", help));
         }
     }
-    let pick = |from: [usize; 3]| -> Vec<[f64; 3]> {
-        columns.rows.iter().map(|row| from.map(|column| row[column])).collect()
-    };
     Ok(Traverse {
         axis: moving,
-        nodes_mm: columns.rows.iter().map(|row| row[commanded[moving]]).collect(),
-        start_mm: commanded.map(|column| columns.rows[0][column]),
-        measured_mm: pick(measured),
-        published_cosines: cosines.map(pick),
+        nodes_mm: commanded.iter().map(|at| at[moving]).collect(),
+        start_mm: commanded[0],
+        measured_mm,
+        published_cosines: if has_cosines { Some(all(COSINES)?) } else { None },
     })
 }

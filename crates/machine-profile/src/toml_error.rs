@@ -2,7 +2,7 @@
 
 use diagnostic::Diagnostic;
 
-use crate::error::{KEY, SYNTAX, VALUE, closest, span};
+use crate::error::{KEY, SYNTAX, VALUE, span};
 
 /// The reader's error with its place, and the key that was probably meant.
 pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
@@ -25,7 +25,7 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
         if let Some(place) = &whole {
             diagnostic = diagnostic.at(span(place), "not a key of this table");
         }
-        return diagnostic.help(match closest(&typed, known.iter().copied()) {
+        return diagnostic.help(match diagnostic::closest(&typed, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? Known here: {}", known.join(", ")),
             None => format!("known here: {}", known.join(", ")),
         });

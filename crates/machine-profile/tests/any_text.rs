@@ -23,7 +23,8 @@ fn check(text: &str, read: &dyn Fn(&str) -> std::io::Result<Vec<u8>>) -> Result<
     prop_assert!(!errors.is_empty());
     for error in errors {
         let length = match &error.file {
-            Some(file) => read(file).unwrap().len(),
+            // Places count bytes of the text that a table holds.
+            Some(file) => measurement_files::decoded(&read(file).unwrap()).len(),
             None => text.len(),
         };
         if let Some(span) = error.diagnostic.span {

@@ -56,7 +56,10 @@ fn told(text: &str) -> String {
 
 fn one(text: &str, error: &ProfileError) -> String {
     let d = &error.diagnostic;
-    let bytes = error.file.as_deref().map_or_else(|| text.as_bytes().to_vec(), |name| read(name).unwrap());
+    let bytes = error.file.as_deref().map_or_else(
+        || text.as_bytes().to_vec(),
+        |name| measurement_files::decoded(&read(name).unwrap()).into_owned().into_bytes(),
+    );
     let mut out = error.to_string();
     if let Some(span) = &d.span {
         let place = &bytes[span.start as usize..span.end as usize];
@@ -98,7 +101,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
     "####);
 }
 
@@ -363,17 +366,17 @@ fn several_at_once() {
 #[test]
 fn table_with_nan() {
     assert_snapshot!(told(&with_table("nan.csv")), @r####"
-    nan.csv: error[VP0307]: `NaN` in column EXX_um is not a finite number
-      line 3: `NaN` expected a number like -12.5
-    help: a function that was not measured is a column left out, not an empty cell
+    nan.csv: error[VP0307]: `NaN` is not a number
+      line 3: `NaN` EXX_um
+    help: write a decimal number like -12.5
     "####);
 }
 
 #[test]
 fn table_with_an_empty_cell() {
     assert_snapshot!(told(&with_table("empty_cell.csv")), @r####"
-    empty_cell.csv: error[VP0307]: `` in column EXX_um is not a finite number
-      line 3: `` expected a number like -12.5
+    empty_cell.csv: error[VP0307]: `EXX_um` is empty
+      line 3: `` EXX_um
     help: a function that was not measured is a column left out, not an empty cell
     "####);
 }
@@ -383,6 +386,7 @@ fn table_out_of_order() {
     assert_snapshot!(told(&with_table("order.csv")), @r####"
     order.csv: error[VP0308]: out of order: position_mm 10 follows 20, positions must increase from row to row
       line 4: `10,1` this row
+    help: sort the rows; two runs, or two directions, are two tables
     "####);
 }
 
@@ -391,6 +395,7 @@ fn table_with_a_position_twice() {
     assert_snapshot!(told(&with_table("twice.csv")), @r####"
     twice.csv: error[VP0308]: the same position twice: position_mm 20 follows 20, positions must increase from row to row
       line 4: `20,1` this row
+    help: sort the rows; two runs, or two directions, are two tables
     "####);
 }
 
@@ -399,13 +404,15 @@ fn table_of_one_row() {
     assert_snapshot!(told(&with_table("short.csv")), @r####"
     short.csv: error[VP0308]: a table needs at least 2 rows, this one has 1
       line 2: `0,1` the only row
+    help: measure the ends of the travel at least
     "####);
 }
 
 #[test]
 fn table_that_is_empty() {
     assert_snapshot!(told(&with_table("empty.csv")), @r####"
-    empty.csv: error[VP0308]: the table is empty: expected a header line and rows
+    empty.csv: error[VP0305]: the file is empty
+    help: expected: position_mm and error functions of X with their units, EXX_um … ECX_urad
     "####);
 }
 
@@ -414,50 +421,52 @@ fn table_with_a_short_row() {
     assert_snapshot!(told(&with_table("ragged.csv")), @r####"
     ragged.csv: error[VP0307]: the row has 1 cells, the header 2
       line 3: `10` this row
+    help: give every row as many cells as the header, empty ones where nothing was measured
     "####);
 }
 
 #[test]
 fn column_of_another_axis() {
     assert_snapshot!(told(&with_table("other_axis.csv")), @r####"
-    other_axis.csv: error[VP0306]: unknown column EXY_um in a table of axis X
+    other_axis.csv: error[VP0306]: column `EXY_um` is an error function of Y, and the file is of another axis
       line 1: `EXY_um` this column
-    help: did you mean EXX_um?
+    help: give each axis a file of its own
     "####);
 }
 
 #[test]
 fn column_in_a_wrong_unit() {
     assert_snapshot!(told(&with_table("unit.csv")), @r####"
-    unit.csv: error[VP0306]: column EAX_um: EAX is a rotation, its unit must be one of urad, um_per_mm, arcsec, not `um`
+    unit.csv: error[VP0306]: column `EAX_um`: EAX is an angle, um is a length
       line 1: `EAX_um` this column
-    help: name it EAX_urad or EAX_um_per_mm or EAX_arcsec
+    help: write `EAX_urad`; units of an angle: deg, rad, um_per_mm, urad, arcsec
     "####);
 }
 
 #[test]
 fn column_without_unit() {
     assert_snapshot!(told(&with_table("no_unit.csv")), @r####"
-    no_unit.csv: error[VP0306]: column EXX: EXX is a translation, its unit must be one of um, mm, not ``
+    no_unit.csv: error[VP0306]: column `EXX` says no unit
       line 1: `EXX` this column
-    help: name it EXX_um or EXX_mm
+    help: write `EXX_um`
     "####);
 }
 
 #[test]
 fn table_without_positions() {
     assert_snapshot!(told(&with_table("no_position.csv")), @r####"
-    no_position.csv: error[VP0306]: the table lacks the column position_mm; it has x_mm, EXX_um
-      line 1: `x_mm` expected position_mm in this line
+    no_position.csv: error[VP0306]: column `x_mm` is unknown
+      line 1: `x_mm` this column
+    help: known here: position_mm, EXX_um, EYX_um, EZX_um, EAX_urad, EBX_urad, ECX_urad
     "####);
 }
 
 #[test]
 fn column_twice_in_two_units() {
     assert_snapshot!(told(&with_table("two_units.csv")), @r####"
-    two_units.csv: error[VP0306]: EXX stands there twice, in different units
+    two_units.csv: error[VP0306]: column `EXX_mm` stands twice: `EXX_um` is the same
       line 1: `EXX_mm` this column
-    help: leave one of the two columns out
+    help: remove one of them
     "####);
 }
 
@@ -466,15 +475,16 @@ fn errors_too_large_to_be_errors() {
     assert_snapshot!(told(&with_table("huge.csv")), @r####"
     huge.csv: error[VP0308]: an error of 25.000 mm and 0.000 mrad is larger than geometric errors get: wrong unit?
       line 3: `10,25` up to 20 mm and 100 mrad are read
+    help: name each column by its unit
     "####);
 }
 
 #[test]
 fn table_that_is_not_text() {
     assert_snapshot!(told(&with_table("binary.csv")), @r####"
-    binary.csv: error[VP0305]: the table is not UTF-8 text
-      line 2: `�` first such byte
-    help: save the table as CSV, UTF-8, comma separated
+    binary.csv: error[VP0307]: the row has 1 cells, the header 2
+      line 2: `яю` this row
+    help: give every row as many cells as the header, empty ones where nothing was measured
     "####);
 }
 
@@ -483,9 +493,10 @@ fn traverse_that_moves_two_axes() {
     assert_snapshot!(told(&format!("{}\n[tracker]\nx = \"tracker_two.csv\"\ny = \"tracker_y.csv\"\nz = \"tracker_columns.csv\"\n", base())), @r####"
     tracker_two.csv: error[VP0308]: axis Y moves in the traverse of X: 1 mm after 0 mm
       line 3: `1,1,0,1,1,0` a traverse moves one axis alone
-    tracker_columns.csv: error[VP0306]: unknown column comanded_y_mm in a tracker traverse
+    help: give each axis a file of its own
+    tracker_columns.csv: error[VP0306]: column `comanded_y_mm` is unknown
       line 1: `comanded_y_mm` this column
-    help: did you mean commanded_y_mm?
+    help: did you mean commanded_y_mm? known here: commanded_x_mm, commanded_y_mm, commanded_z_mm, measured_x_mm, measured_y_mm, measured_z_mm, published_cos_x, published_cos_y, published_cos_z
     "####);
 }
 

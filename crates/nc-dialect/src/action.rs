@@ -1,9 +1,9 @@
 //! What the words of a grammar's `does` mean.
 
-use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
+use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, TipSwitch, TurningCycle};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 59] = [
+pub const ACTION_NAMES: [&str; 73] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -23,6 +23,9 @@ pub const ACTION_NAMES: [&str; 59] = [
     "length-on",
     "length-on-negative",
     "length-off",
+    "tip-length-on",
+    "tip-on",
+    "tip-off",
     "work-offset",
     "drill",
     "bore",
@@ -61,6 +64,17 @@ pub const ACTION_NAMES: [&str; 59] = [
     "diameter-of-absolute",
     "speed-limit",
     "limit-or-preset",
+    "thread",
+    "turn-pass",
+    "thread-pass",
+    "face-pass",
+    "finish-contour",
+    "rough-turn",
+    "rough-face",
+    "rough-pattern",
+    "peck-face",
+    "peck-groove",
+    "thread-passes",
     "pass",
     "pass-with-words",
 ];
@@ -88,6 +102,9 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "length-on" => Action::LengthOn,
         "length-on-negative" => Action::LengthOnNegative,
         "length-off" => Action::LengthOff,
+        "tip-length-on" => Action::TipLengthOn,
+        "tip-on" => Action::Tip(TipSwitch::On),
+        "tip-off" => Action::Tip(TipSwitch::Off),
         "work-offset" => Action::WorkOffset(code.to_string()),
         "drill" => Action::Cycle(CycleCode::Drill),
         "bore" => Action::Cycle(CycleCode::Bore),
@@ -126,6 +143,17 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "diameter-of-absolute" => Action::DiameterOfAbsolute,
         "speed-limit" => Action::SpeedLimit,
         "limit-or-preset" => Action::LimitOrPreset,
+        "thread" => Action::Thread,
+        "turn-pass" => Action::Turning(TurningCycle::TurnPass),
+        "thread-pass" => Action::Turning(TurningCycle::ThreadPass),
+        "face-pass" => Action::Turning(TurningCycle::FacePass),
+        "finish-contour" => Action::Turning(TurningCycle::Finish),
+        "rough-turn" => Action::Turning(TurningCycle::RoughTurn),
+        "rough-face" => Action::Turning(TurningCycle::RoughFace),
+        "rough-pattern" => Action::Turning(TurningCycle::RoughPattern),
+        "peck-face" => Action::Turning(TurningCycle::PeckFace),
+        "peck-groove" => Action::Turning(TurningCycle::PeckGroove),
+        "thread-passes" => Action::Turning(TurningCycle::ThreadPasses),
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         _ => return None,

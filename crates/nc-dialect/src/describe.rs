@@ -72,11 +72,12 @@ pub const fn treatment(action: &Action) -> Treatment {
         | Action::Line
         | Action::ArcClockwise
         | Action::ArcCounterClockwise
+        | Action::Thread
         | Action::Cycle(_) => Treatment::Corrected,
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
         Action::Dwell | Action::DwellBySetting | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
-        Action::PolarOn | Action::PolarOff => Treatment::Executed,
+        Action::PolarOn | Action::PolarOff | Action::Turning(_) => Treatment::Executed,
         _ => Treatment::Followed,
     }
 }
@@ -158,6 +159,8 @@ fn note(action: &Action) -> String {
         Action::ArcClockwise | Action::ArcCounterClockwise => {
             "kept as arcs where one or a few hold the tolerance".to_owned()
         }
+        Action::Thread => "one block in step with the spindle; never split".to_owned(),
+        Action::Turning(_) => "written out as moves".to_owned(),
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
         Action::Dwell => "X, U and P are a time".to_owned(),

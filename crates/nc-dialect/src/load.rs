@@ -8,15 +8,16 @@ use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
     Macros, Numbers, OffsetL20, Output, Paren, PointFree, RotaryFeed, Semicolon, System, Turning,
+    TurningParameters,
 };
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks;
 use crate::table::{
-    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, Levels, MRow, MacroLanguage, RotaryFeedName,
-    RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49, WithoutH, WithoutPoint,
-    ZeroRepeats,
+    CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
+    RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49,
+    WithoutH, WithoutPoint, ZeroRepeats,
 };
 
 /// Reads a grammar.
@@ -117,6 +118,12 @@ fn turning(
         increments: rules.increments,
         offset_in_t: rules.offset_in_t,
         offset_in_d: rules.offset_in_d,
+        thread_lead: match rules.thread_lead {
+            LeadName::F => b'F',
+            LeadName::K => b'K',
+        },
+        diameters: None,
+        cycles: TurningParameters::default(),
         systems,
     }
 }
@@ -342,6 +349,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
         ends_program: row.ends_program,
         changes_tool: row.changes_tool,
         switches: row.switches.clone(),
+        tip: None,
         refuse,
     })
 }

@@ -106,9 +106,18 @@ pub(crate) struct TurningRules {
     pub(crate) increments: bool,
     pub(crate) offset_in_t: bool,
     pub(crate) offset_in_d: bool,
+    pub(crate) thread_lead: LeadName,
     /// Name of the G-code system of `[codes]`, where there are several.
     pub(crate) system: Option<String>,
     pub(crate) systems: BTreeMap<String, SystemRules>,
+}
+
+/// The letter of a thread's lead.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+pub(crate) enum LeadName {
+    #[default]
+    F,
+    K,
 }
 
 /// Another G-code system: what it has in place of `[codes]`.

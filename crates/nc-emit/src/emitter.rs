@@ -124,10 +124,7 @@ impl<'d> Emitter<'d> {
         };
         if pieces.iter().flat_map(|piece| &piece.words).any(|(_, edit)| written(edit) >= MOST_STEPS) {
             return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a corrected word of more than 15 digits")
-                .at(
-                    block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64,
-                    "exact in no control",
-                )
+                .at(block.file_range(), "exact in no control")
                 .help("no machine goes there: check the unit and the decimal points of this block"));
         }
         let separator = self.habits.learn(block);
@@ -317,7 +314,7 @@ impl<'d> Emitter<'d> {
             format!("the corrected block has {} characters, the control takes {limit}", text.len()),
         )
         .at(
-            block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64,
+            block.file_range(),
             format!("becomes `{}`", String::from_utf8_lossy(text)),
         )
         .help("move the comment to a line of its own, or raise `max_block_bytes` in the grammar if the control takes more"))
@@ -441,7 +438,7 @@ pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, V
 /// A word that should be there is not.
 pub(crate) fn missing(block: &Block<'_>, letter: u8) -> Diagnostic {
     Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has no {} word to keep", char::from(letter)))
-        .at(block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64, "this block")
+        .at(block.file_range(), "this block")
         .help("this is a fault of vpost; please report it with the program")
 }
 

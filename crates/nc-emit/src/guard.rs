@@ -2,6 +2,7 @@
 
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{GCode, Macros};
+use units::decimal::Spelling;
 
 /// Behind this stands what is guarded, in the alarm and in the program.
 const MARKER: &str = "VPOST GUARD";
@@ -19,6 +20,17 @@ pub enum Asked {
     WorkOffset(GCode, Option<u32>),
     /// The tool length in force, by its H number.
     ToolLength(u32),
+}
+
+/// `G54`, `G54.1 P3`, `H7`: as they are written, and as the profile names them.
+impl std::fmt::Display for Asked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::WorkOffset(code, None) => write!(f, "{code}"),
+            Self::WorkOffset(code, Some(p)) => write!(f, "{code} P{p}"),
+            Self::ToolLength(number) => write!(f, "H{number}"),
+        }
+    }
 }
 
 /// What a program was corrected for: X, Y, Z, mm.
@@ -48,45 +60,44 @@ pub fn guard(
     serial: &mut u32,
 ) -> Vec<String> {
     let mut lines = Vec::new();
-    let decimals = if unit_mm == 1.0 { 4 } else { 5 };
-    let text = |mm: f64| number_text(mm / unit_mm, decimals);
+    let (decimals, per_unit) = if unit_mm == 1.0 { (4, 1e4) } else { (5, 1e5) };
+    let text = |mm: f64| {
+        let mut text = Vec::new();
+        let spelling =
+            Spelling { leading_zero: true, trailing_zeros: false, trailing_point: true, plus: false };
+        units::decimal::write(&mut text, units::decimal::round(mm / unit_mm * per_unit), decimals, spelling);
+        String::from_utf8_lossy(&text).into_owned()
+    };
     let limit = text(LIMIT_MM);
     match (dialect.flow.macros, asked) {
         (Macros::Fanuc, Asked::WorkOffset(code, number)) => {
             let Some(first) = fanuc_offset(code, number) else { return lines };
             for (axis, letter) in b"XYZ".iter().enumerate() {
                 lines.push(format!(
-                    "IF[ABS[#{}+#{}-[{}]]GT{limit}]#3000={}({MARKER} {} {})",
+                    "IF[ABS[#{}+#{}-[{}]]GT{limit}]#3000={}({MARKER} {asked} {})",
                     first + axis as u32,
                     5201 + axis,
                     text(stated.zero_mm[axis]),
                     axis + 1,
-                    name(code, number),
                     *letter as char,
                 ));
             }
         }
         (Macros::LinuxCnc, asked) => {
-            let mut put = |condition: String, what: String| {
+            let mut put = |condition: String, what: char| {
                 *serial += 1;
                 lines.push(format!("{O_WORD}{serial}> if [{condition}]"));
-                lines.push(format!("(abort, {MARKER} {what})"));
+                lines.push(format!("(abort, {MARKER} {asked} {what})"));
                 lines.push(format!("{O_WORD}{serial}> endif"));
             };
-            let (what, turn) = match asked {
-                Asked::WorkOffset(code, number) => {
-                    let Some(first) = linuxcnc_offset(code) else { return lines };
-                    (name(code, number), Some(first + 9))
-                }
-                Asked::ToolLength(number) => (format!("H{number}"), None),
-            };
-            if let Some(turn) = turn {
-                put(format!("ABS[#{turn}] GT {LIMIT_DEG}"), format!("{what} R"));
+            if let Asked::WorkOffset(code, _) = asked {
+                let Some(first) = linuxcnc_offset(code) else { return lines };
+                put(format!("ABS[#{}] GT {LIMIT_DEG}", first + 9), 'R');
             }
             for (axis, letter) in b"xyz".iter().enumerate() {
                 let (letter, added) = (*letter as char, text(stated.added_mm[axis]));
                 let condition = format!("ABS[#<_abs_{letter}>-#<_{letter}>-[{added}]] GT {limit}");
-                put(condition, format!("{what} {}", letter.to_ascii_uppercase()));
+                put(condition, letter.to_ascii_uppercase());
             }
         }
         _ => {}
@@ -114,11 +125,6 @@ pub fn without_guards(text: &[u8]) -> Option<Vec<u8>> {
     found
 }
 
-/// `G54`, `G54.1 P3`.
-fn name(code: GCode, number: Option<u32>) -> String {
-    number.map_or_else(|| code.to_string(), |p| format!("{code} P{p}"))
-}
-
 /// The variable of a work offset's X: six of 20 each, then those with P.
 fn fanuc_offset(code: GCode, number: Option<u32>) -> Option<u32> {
     match (code.0, number) {
@@ -135,13 +141,6 @@ fn linuxcnc_offset(code: GCode) -> Option<u32> {
         591..=593 => Some(5321 + 20 * (u32::from(code.0) - 590)),
         _ => None,
     }
-}
-
-/// A decimal number with its point: `-440.`, `12.7005`.
-fn number_text(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = text.trim_end_matches('0');
-    if text == "-0." || text == "0." { "0.".to_owned() } else { text.to_owned() }
 }
 
 #[cfg(test)]

@@ -18,5 +18,5 @@ pub use emitter::Emitter;
 pub use guard::{Asked, Stated, guard, without_guards};
 pub use numbers::BlockNumbers;
 pub use provenance::{
-    find_provenance, insert_provenance, line_ending, provenance_comment, provenance_line, provenance_position,
+    find_provenance, insert_provenance, provenance_comment, provenance_line, provenance_position,
 };

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::ops::Range;
 
 use nc_syntax::dialect::{Paren, Semicolon};
-use nc_syntax::{Block, Dialect, ItemKind};
+use nc_syntax::{Block, Dialect, ItemKind, line_ending};
 
 /// What the comment begins with, and what is looked for, in any case.
 const MARKER: &[u8] = b"CORRECTED BY VPOST";
@@ -104,18 +104,6 @@ pub fn provenance_position<'t>(blocks: impl IntoIterator<Item = impl Borrow<Bloc
         }
     }
     position
-}
-
-/// The line ending a text uses, by its first: `\n`, `\r\n`, `\r`, `\r\r\n`; `\n` where it has none.
-#[must_use]
-pub fn line_ending(text: &[u8]) -> &'static [u8] {
-    let Some(first) = memchr::memchr2(b'\n', b'\r', text) else { return b"\n" };
-    match text[first..] {
-        [b'\r', b'\r', b'\n', ..] => b"\r\r\n",
-        [b'\r', b'\n', ..] => b"\r\n",
-        [b'\r', ..] => b"\r",
-        _ => b"\n",
-    }
 }
 
 /// Puts the comment on a line of its own at `position` (of [`provenance_position`]), with the text's line

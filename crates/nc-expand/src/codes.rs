@@ -52,3 +52,11 @@ pub const LOST_OUTPUT: Code = Code(140);
 pub const NOTHING_EXECUTED: Code = Code(141);
 /// A corner (`,R`, `,C`) or a polar word (G16) whose shape no manual makes certain. Remedy: points, arcs and lines.
 pub const SHORTHAND: Code = Code(142);
+/// A cycle of a lathe that cannot be written out with certainty. Remedy: the words it lacks, or its moves.
+pub const TURNING_CYCLE: Code = Code(143);
+/// The contour of a lathe's cycle, the blocks from P to Q, is missing, or is none that the cycle takes.
+/// Remedy: N numbers of P and Q, and a contour that does not turn back.
+pub const CONTOUR: Code = Code(144);
+/// A parameter of the control decides how a cycle moves, and neither program nor profile says it.
+/// Remedy: the key under `[program]` that the message names.
+pub const CYCLE_PARAMETER: Code = Code(145);

@@ -17,6 +17,7 @@
 //!
 //! * Corners (`,R5.`, `,C2.`) and polar words (G16): the line as a comment, then the points, arcs and lines they
 //!   stand for.
+//! * Cycles of lathes (G90, G71 and their like): the line as a comment, then the moves.
 //!
 //! # What is refused
 //!
@@ -41,6 +42,7 @@ mod program;
 mod run;
 mod shorthand;
 mod statement;
+mod turning;
 mod value;
 mod variables;
 mod words;
@@ -100,7 +102,7 @@ pub struct Expanded<'a> {
     files: Vec<(String, Vec<u8>)>,
     /// From the source to the program without flow; `None` where it has none.
     flow: Option<Vec<Segment>>,
-    /// From there to the program without corners and polar words.
+    /// From there to the program without corners, polar words and cycles of lathes.
     shorthand: Option<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
 }
@@ -207,7 +209,8 @@ pub fn expand<'a>(
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let (text, segments) = shorthand::write_out(&expanded.text, dialect).map_err(|fault| {
+        let write_out = if dialect.turning.is_some() { turning::write_out } else { shorthand::write_out };
+        let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
             let settled = expanded.settle(vec![*fault]);
             let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
             let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
@@ -221,8 +224,12 @@ pub fn expand<'a>(
 /// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]
 pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
-    (dialect.flow.macros != Macros::None && statement::needs_work(block, dialect))
-        || shorthand::needed(block, dialect)
+    (dialect.flow.macros != Macros::None && statement::needs_work(block, dialect)) || short(block, dialect)
+}
+
+/// True where a block has shorthand: of drawings, or a cycle of a lathe.
+fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
+    shorthand::needed(block, dialect) || turning::needed(block, dialect)
 }
 
 /// What a program asks for.
@@ -238,7 +245,7 @@ impl Work {
     fn of(text: &[u8], dialect: &Dialect) -> Self {
         let mut work = Self::default();
         let may_flow = dialect.flow.macros != Macros::None;
-        let may_be_short = dialect.flow.corner_words || dialect.flow.polar_words;
+        let may_be_short = dialect.flow.corner_words || dialect.flow.polar_words || dialect.turning.is_some();
         if !may_flow && !may_be_short {
             return work;
         }
@@ -253,7 +260,7 @@ impl Work {
             }
             runs |= block.acts();
             work.flow |= may_flow && statement::needs_work(&block, dialect);
-            work.shorthand |= may_be_short && shorthand::needed(&block, dialect);
+            work.shorthand |= may_be_short && short(&block, dialect);
             if (work.flow || !may_flow) && (work.shorthand || !may_be_short) {
                 break;
             }

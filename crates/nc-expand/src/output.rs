@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use nc_syntax::Dialect;
 use nc_syntax::dialect::{Paren, Semicolon};
+use nc_syntax::{Dialect, line_ending, line_ends};
 use units::decimal::{self, Spelling};
 
 use crate::Origin;
@@ -114,7 +114,7 @@ impl Output {
     }
 
     fn push(&mut self, bytes: &[u8]) {
-        self.lines = self.lines.saturating_add(line_ends(bytes));
+        self.lines = self.lines.saturating_add(u32::try_from(line_ends(bytes)).unwrap_or(u32::MAX));
         self.text.extend_from_slice(bytes);
     }
 
@@ -175,26 +175,6 @@ pub(crate) fn source_line(segments: &[Segment], line: u64) -> (usize, u64) {
         }
         Some(segment) => (usize::from(segment.file), u64::from(segment.line)),
         None => (0, line),
-    }
-}
-
-/// Line ends in whole blocks: LF, CR, CRLF, CR CR LF.
-fn line_ends(bytes: &[u8]) -> u32 {
-    let mut count = 0;
-    for (at, byte) in bytes.iter().enumerate() {
-        let alone = !matches!(bytes.get(at + 1), Some(b'\n' | b'\r'));
-        count += u32::from(*byte == b'\n' || (*byte == b'\r' && alone));
-    }
-    count
-}
-
-/// The line ending a text uses, by its first; `\n` where it has none.
-fn line_ending(text: &[u8]) -> &'static [u8] {
-    match text.iter().position(|byte| matches!(byte, b'\n' | b'\r')).map_or(&[][..], |at| &text[at..]) {
-        [b'\r', b'\r', b'\n', ..] => b"\r\r\n",
-        [b'\r', b'\n', ..] => b"\r\n",
-        [b'\r', ..] => b"\r",
-        _ => b"\n",
     }
 }
 

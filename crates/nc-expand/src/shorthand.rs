@@ -11,7 +11,7 @@
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{Action, GCode, PlaneCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
 use units::math;
@@ -83,13 +83,14 @@ struct Corner<'a> {
 }
 
 /// Words and codes of a block.
-struct Words<'b, 'a> {
-    block: &'b Block<'a>,
-    dialect: &'b Dialect,
+#[derive(Clone, Copy)]
+pub(crate) struct Words<'b, 'a> {
+    pub(crate) block: &'b Block<'a>,
+    pub(crate) dialect: &'b Dialect,
 }
 
 impl Words<'_, '_> {
-    fn number(&self, letter: u8) -> Option<(Number, Span)> {
+    pub(crate) fn number(&self, letter: u8) -> Option<(Number, Span)> {
         self.block.items.iter().find_map(|item| match item.kind {
             ItemKind::Word { letter: found, value: Value::Number(number) } if found == letter => {
                 Some((number, item.span))
@@ -100,7 +101,7 @@ impl Words<'_, '_> {
     fn length(&self, letter: u8, inch: bool) -> Option<f64> {
         self.number(letter).map(|(number, _)| self.dialect.numbers.length(number, inch).to_f64())
     }
-    fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
+    pub(crate) fn actions(&self) -> impl Iterator<Item = (&Action, Span)> {
         self.block.items.iter().filter_map(|item| match item.kind {
             ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
                 Some((action(number, self.dialect)?, item.span))
@@ -111,16 +112,22 @@ impl Words<'_, '_> {
     fn comma(&self) -> Option<&Item> {
         self.block.items.iter().find(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
     }
-    fn skipped(&self) -> bool {
+    pub(crate) fn skipped(&self) -> bool {
         self.block.items.iter().any(|item| item.kind == ItemKind::Skip)
     }
     /// Nothing but names and comments.
-    fn idle(&self) -> bool {
+    pub(crate) fn idle(&self) -> bool {
         self.block.items.iter().all(|item| matches!(item.kind, ItemKind::Comment | ItemKind::Name))
     }
     fn refuse(&self, span: Span, message: &str, label: &str, help: &str) -> Fault {
+        self.fault(codes::SHORTHAND, span, message, label, help)
+    }
+    pub(crate) fn whole(&self) -> Span {
+        whole(self.block)
+    }
+    pub(crate) fn fault(&self, code: Code, span: Span, message: &str, label: &str, help: &str) -> Fault {
         Box::new(
-            Diagnostic::error(codes::SHORTHAND, message.to_owned())
+            Diagnostic::error(code, message.to_owned())
                 .at(self.block.file_span(span), label.to_owned())
                 .help(help.to_owned()),
         )
@@ -590,7 +597,7 @@ fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
     let _ = word(line, letter, value, Style::Decimals(6));
 }
 
-fn from(block: &Block<'_>) -> From {
+pub(crate) fn from(block: &Block<'_>) -> From {
     From {
         file: 0,
         offset: block.offset,
@@ -600,7 +607,7 @@ fn from(block: &Block<'_>) -> From {
 }
 
 /// The block without its end.
-fn shown<'a>(block: &Block<'a>) -> &'a [u8] {
+pub(crate) fn shown<'a>(block: &Block<'a>) -> &'a [u8] {
     let text = block.bytes.trim_ascii_end();
     text.strip_suffix(b";").unwrap_or(text)
 }

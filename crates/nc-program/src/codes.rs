@@ -72,6 +72,9 @@ pub const FRAME: Code = Code(227);
 pub const AFTER_END: Code = Code(228);
 /// The program was made for a lathe. Remedy: none yet, vpost corrects mills.
 pub const LATHE: Code = Code(240);
+/// Tool centre point control whose centres nobody said, or what does not go together with it. Remedy: `[kinematics]` in the
+/// profile, or in the message.
+pub const TIP_CONTROL: Code = Code(230);
 /// Lengths with and without a decimal point, where a parameter of the control decides what the latter are. Remedy:
 /// `--decimal`.
 pub const MIXED_LENGTHS: Code = Code(241);

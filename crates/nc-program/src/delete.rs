@@ -7,6 +7,8 @@
 //! where forgetting is enough (a later block that needs it is refused, one that names all axes makes both states
 //! equal again), and refused where it is not.
 
+use toolpath::Kinematics;
+
 use crate::codes;
 use crate::modal::{
     Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress, ReturnLevel,
@@ -136,6 +138,15 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
             ToolLength::Off => "no tool length".to_owned(),
             ToolLength::On { number, .. } => format!("tool length H{number}"),
             ToolLength::Written { .. } => "the tool length of this block".to_owned(),
+        })
+    })
+    .or_else(|| {
+        pair(&with.kinematics, &without.kinematics, |v| {
+            match v {
+                Kinematics::Axes => "no tool centre point control",
+                Kinematics::Tip => "tool centre point control",
+            }
+            .to_owned()
         })
     })
     .or_else(|| pair(&with.transform, &without.transform, |v| v.name().to_owned()))

@@ -217,9 +217,7 @@ impl Evidence {
     fn lathe(&mut self, block: &Block<'_>, seen: &Seen, letters: Letters, dialect: &Dialect) {
         for (index, sign) in dialect.lathe.iter().enumerate() {
             if matches(sign, block, seen, letters) {
-                self.sign(index, || {
-                    place(block, block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64)
-                });
+                self.sign(index, || place(block, block.file_range()));
             }
         }
     }
@@ -426,8 +424,10 @@ impl Seen {
         self.unit |= matches!(row.action, Action::Inch | Action::Millimetre);
         self.scales |= row.action == Action::ScalingOn;
         self.moves |= is_motion(&row.action);
-        self.arguments |=
-            matches!(row.action, Action::Dwell | Action::Pass { takes_words: true } | Action::Refuse { .. });
+        self.arguments |= matches!(
+            row.action,
+            Action::Dwell | Action::Pass { takes_words: true } | Action::Turning(_) | Action::Refuse { .. }
+        );
     }
 }
 

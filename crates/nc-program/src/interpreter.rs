@@ -4,7 +4,7 @@ use diagnostic::Diagnostic;
 use nc_syntax::dialect::{Action, GCode, MCode};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Frame, Motion, Plane};
+use toolpath::{Frame, Kinematics, Motion, Plane};
 
 use crate::codes;
 use crate::delete;
@@ -17,6 +17,7 @@ use crate::naming;
 use crate::plain::Plain;
 use crate::settings::{self, Environment};
 use crate::setup::{AfterChange, Setup};
+use crate::tip;
 use crate::turning;
 use crate::words::{Letters, Outcome, Words};
 
@@ -58,6 +59,10 @@ pub struct Context {
     pub tool_mm: [f64; 3],
     /// Motion code in force, after modal resolution: G1, G83; `None` after G80 or before the first.
     pub motion_code: Option<GCode>,
+    /// The motion code in force cuts a thread: lines in step with the spindle.
+    pub thread: bool,
+    /// What X, Y and Z are.
+    pub kinematics: Kinematics,
     /// The block is an arc with R.
     pub arc_by_radius: bool,
     /// Cutter compensation is in force before or after the block.
@@ -119,6 +124,7 @@ impl<'d> Interpreter<'d> {
             compensation: Compensation::Off,
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
+            kinematics: if setup.tip_at_start { Kinematics::Tip } else { Kinematics::Axes },
             work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
             shifts: Shifts::default(),
             transform: Transform::None,
@@ -250,9 +256,16 @@ fn run<'d>(
     }
     state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
         || (state.feed_is_inverse_time && !words.has(Letters::of(b"F")));
+    tip::check(words, &demand, before, state)?;
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
+    let nowhere = |axis: &Axis| matches!(axis, Axis::Unknown(Lost { why: Why::Kinematics, .. }));
+    let switched = before.kinematics != state.kinematics && state.axes.linear.iter().all(nowhere);
+    if switched && moved.motions.is_empty() {
+        // The axes stand, in coordinates that nobody knows.
+        moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+    }
     if env.dialect.turning.is_some() {
         turning::check_motions(words, state, &moved.motions)?;
     }
@@ -287,7 +300,9 @@ fn after_end(block: &Block<'_>) -> Outcome<()> {
 /// the same.
 fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> SmallVec<[Motion; 1]> {
     let why = Why::Miscellaneous { code: row.number, changes_tool: row.changes_tool };
-    let known = |i: usize| if row.changes_tool { env.setup.tool_change[i] } else { AfterChange::Unknown };
+    // What the setup says are axis commands.
+    let says = row.changes_tool && state.kinematics == Kinematics::Axes;
+    let known = |i: usize| if says { env.setup.tool_change[i] } else { AfterChange::Unknown };
     let moved =
         [0, 1, 2].map(|i| row.loses_position[i] && known(i) != AfterChange::Stays && env.moves_axis(i));
     if moved == [false; 3] {
@@ -369,7 +384,9 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
         plane: state.plane,
         tool_mm,
+        kinematics: state.kinematics,
         motion_code: state.motion_code(),
+        thread: matches!(state.motion, MotionMode::Thread(_)),
         arc_by_radius: moved.arc_by_radius,
         compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),

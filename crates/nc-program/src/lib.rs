@@ -51,6 +51,7 @@ mod position;
 pub mod process;
 mod settings;
 mod setup;
+mod tip;
 mod tool_length;
 mod transform;
 mod turning;
@@ -58,6 +59,6 @@ mod words;
 
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
-pub use modal::{Compensation, Modal, ToolLength};
+pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
 pub use plain::{PlainEnd, PlainFeeds};
-pub use setup::{AfterChange, Setup};
+pub use setup::{AfterChange, Setup, TipControl};

@@ -1,7 +1,7 @@
 //! The state of a program between two blocks: one enum per modal group.
 
 use nc_syntax::dialect::{CycleCode, GCode};
-use toolpath::{Frame, Partial, Plane};
+use toolpath::{Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 
 pub use crate::transform::Transform;
@@ -31,6 +31,8 @@ pub enum MotionMode {
     Line(GCode),
     /// G2, G3
     Arc(Turn, GCode),
+    /// G32, G33 of lathes
+    Thread(GCode),
 }
 
 impl MotionMode {
@@ -39,7 +41,7 @@ impl MotionMode {
     pub const fn code(self) -> Option<GCode> {
         match self {
             Self::None | Self::Undecided { .. } => None,
-            Self::Rapid(code) | Self::Line(code) | Self::Arc(_, code) => Some(code),
+            Self::Rapid(code) | Self::Line(code) | Self::Arc(_, code) | Self::Thread(code) => Some(code),
         }
     }
 }
@@ -239,6 +241,8 @@ pub enum Why {
     Frame,
     /// G20, G21.
     Units,
+    /// G43.4, TRAORI and their like, rotary axes not at 0.
+    Kinematics,
 }
 
 /// Whether the program has itself named an axis in the frame in force (`crate::naming`).
@@ -403,6 +407,8 @@ pub struct Modal {
     pub return_level: ReturnLevel,
     /// G43 G44 G49.
     pub tool_length: ToolLength,
+    /// G43.4, TRAORI.
+    pub kinematics: Kinematics,
     /// G54–G59, G54.1.
     pub work_offset: WorkOffset,
     /// G52, G92.

@@ -12,7 +12,9 @@ use crate::frames::{self, settle};
 use crate::modal::{Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Units, Why};
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
+use crate::tip;
 use crate::tool_length;
+use crate::turning;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY, ROTARY_LETTERS,
     SECONDARY_LETTERS, Words,
@@ -67,6 +69,7 @@ pub(crate) fn execute(
             no_cycle(words, state, demand)?;
             untransformed(words, state, demand, true)?;
             lose(env, words, state, Why::Reference);
+            tip::lose(words, state, Why::Reference);
             moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
         }
         Owner::Probe => {
@@ -74,6 +77,7 @@ pub(crate) fn execute(
             no_cycle(words, state, demand)?;
             untransformed(words, state, demand, false)?;
             lose(env, words, state, Why::Probe);
+            tip::lose(words, state, Why::Probe);
             moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
         }
         Owner::MachineCoordinates => {
@@ -81,6 +85,7 @@ pub(crate) fn execute(
             untransformed(words, state, demand, false)?;
             if words.has(AXIS_LETTERS) {
                 machine_coordinates(env, words, state, demand)?;
+                tip::lose(words, state, Why::MachineWords);
                 moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
             }
         }
@@ -164,6 +169,21 @@ fn by_mode(
             if words.has(AXIS_LETTERS) {
                 let rapid = matches!(state.motion, MotionMode::Rapid(_));
                 straight(env, words, before, state, rapid, &mut moved.motions)?;
+            }
+        }
+        MotionMode::Thread(_) => {
+            if words.has(ARC_LETTERS.without(turning::thread_lead(env))) {
+                return Err(stray(words, "this block is no arc"));
+            }
+            turning::require_lead(env, words)?;
+            if words.has(AXIS_LETTERS) {
+                straight(env, words, before, state, false, &mut moved.motions)?;
+                for motion in &mut moved.motions {
+                    if let Motion::Feed(feed) = motion {
+                        // The control finds the angle of the spindle anew in each block.
+                        (feed.rate, feed.division) = (FeedRate::PerRevolution, Division::One);
+                    }
+                }
             }
         }
         MotionMode::Arc(turn, _) => {

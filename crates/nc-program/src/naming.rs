@@ -49,13 +49,17 @@ pub(crate) fn disturb(
     before: &Modal,
     state: &mut Modal,
 ) {
-    if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(Letters::of(b"DHT")) {
+    let said = !words.codes.is_empty() || !words.m_codes.is_empty() || !words.commands.is_empty();
+    if !said && !words.has(Letters::of(b"DHT")) {
         return;
     }
     for code in &words.codes {
         if let Some((axes, why)) = disturbed_by(code.entry, words, before, state) {
             forget(words, state, axes, why);
         }
+    }
+    if before.kinematics != state.kinematics {
+        forget(words, state, ALL, Why::Kinematics);
     }
     transformed(words, before, state);
     length(env, words, demand, before, state);
@@ -132,9 +136,11 @@ fn length(
     before: &Modal,
     state: &mut Modal,
 ) {
-    use Action::{LengthOff, LengthOn, LengthOnNegative};
-    let says =
-        words.codes.iter().any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff));
+    use Action::{LengthOff, LengthOn, LengthOnNegative, TipLengthOn};
+    let says = words
+        .codes
+        .iter()
+        .any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff | TipLengthOn));
     let by_tool = env.dialect.turning.as_ref().is_some_and(|turning| {
         (turning.offset_in_t && words.has(Letters::of(b"T")))
             || (turning.offset_in_d && words.has(Letters::of(b"DT")))

@@ -260,6 +260,7 @@ impl Lost {
             Why::ToolOffset => format!("D chose a tool offset in line {line}"),
             Why::MachineWords => format!("G53 in line {line}"),
             Why::Frame => format!("the frame changed in line {line}"),
+            Why::Kinematics => format!("tool centre point control was switched in line {line}"),
             Why::Units => format!("the unit changed in line {line}"),
         }
     }

@@ -134,7 +134,7 @@ pub struct Process {
     words: [Option<Argument>; LETTERS.len()],
     /// The last code of each modal group, by group.
     modes: SmallVec<[Mode; 12]>,
-    /// A cycle bound to the spindle, while it drills.
+    /// What is bound to the spindle, while it moves: a cycle that drills, a thread.
     cycle: Option<Mode>,
 }
 
@@ -182,6 +182,15 @@ impl Process {
             Mode { group: MOTION_GROUP, code: cycle.code, arguments: arguments.collect() }
         });
         Self { cycle, ..self.clone() }
+    }
+
+    /// The same while a thread is cut by `block`: its code and its own words are part of the process.
+    #[must_use]
+    pub fn in_thread(&self, code: GCode, block: &Block<'_>) -> Self {
+        const OWN: [u8; 3] = *b"EKQ";
+        let word = |letter: u8| Some(Argument::new(letter, block.word(letter)?.number()?.decimal));
+        let arguments = OWN.into_iter().filter_map(word).collect();
+        Self { cycle: Some(Mode { group: MOTION_GROUP, code, arguments }), ..self.clone() }
     }
 
     /// What is in force here and what there, where that differs, in words: `S1000` and `S2000`.

@@ -12,7 +12,7 @@ use crate::modal::{
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Letters, Outcome, Words};
-use crate::{frames, transform::Transform};
+use crate::{frames, tip, transform::Transform};
 
 /// What a program is read against.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +95,8 @@ pub(crate) fn apply<'d>(
 ) -> Outcome<Demand<'d>> {
     const ONE_LETTER_SETTINGS: Letters = Letters::of(b"DHT");
     let mut demand = Demand { owner: Owner::Motion, owner_span: None, written_motion: None, frame: None };
-    if words.codes.is_empty() && words.m_codes.is_empty() && !words.has(ONE_LETTER_SETTINGS) {
+    let said = !words.codes.is_empty() || !words.m_codes.is_empty() || !words.commands.is_empty();
+    if !said && !words.has(ONE_LETTER_SETTINGS) {
         return Ok(demand);
     }
     let mut wanted = Wanted::default();
@@ -146,6 +147,12 @@ pub(crate) fn apply<'d>(
                 .refuse(codes::REFUSED_CODE, message, code.span, "its words are radius and angle")
                 .help("write the points in X and Y, G15 in force"));
         }
+        if let Action::Turning(_) = code.entry.action {
+            let message = format!("{} was not written out", words.text(code.span));
+            return Err(words
+                .refuse(codes::REFUSED_CODE, message, code.span, "a cycle of the control")
+                .help("let the CAM write the moves"));
+        }
         if let Action::Refuse { reason, help } = &code.entry.action {
             let message = format!("{} is refused: {reason}", words.text(code.span));
             return Err(words
@@ -159,6 +166,7 @@ pub(crate) fn apply<'d>(
         work_offset(env, words, state, offset, other)?;
     }
     tool_length::length(env, words, state, wanted.length)?;
+    tip::switch(env, words, before, state)?;
     if let Some(span) = wanted.compensation_off {
         tool_length::under_compensation_off(env, words, span, wanted.length.is_some(), state)?;
     }
@@ -328,6 +336,7 @@ fn set<'d>(
         Action::Line => wanted.motion = Some(MotionMode::Line(code)),
         Action::ArcClockwise => wanted.motion = Some(MotionMode::Arc(Turn::Clockwise, code)),
         Action::ArcCounterClockwise => wanted.motion = Some(MotionMode::Arc(Turn::CounterClockwise, code)),
+        Action::Thread => wanted.motion = Some(MotionMode::Thread(code)),
         Action::Plane(PlaneCode::Xy) => state.plane = Plane::Xy,
         Action::Plane(PlaneCode::Zx) => state.plane = Plane::Zx,
         Action::Plane(PlaneCode::Yz) => state.plane = Plane::Yz,
@@ -338,7 +347,9 @@ fn set<'d>(
             wanted.compensation_off = Some(span);
         }
         Action::CompensationOn => state.compensation = Compensation::On,
-        Action::LengthOn => wanted.length = Some((Length::On { negative: false }, span)),
+        Action::LengthOn | Action::TipLengthOn => {
+            wanted.length = Some((Length::On { negative: false }, span))
+        }
         Action::LengthOnNegative => wanted.length = Some((Length::On { negative: true }, span)),
         Action::LengthOff => wanted.length = Some((Length::Off, span)),
         Action::WorkOffset(name) => wanted.offset = Some((code, Some(name), span)),
@@ -379,8 +390,10 @@ fn set<'d>(
         Action::FeedPerMinute => state.feed_mode = FeedMode::PerMinute,
         Action::FeedPerRevolution => state.feed_mode = FeedMode::PerRevolution,
         Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
-        // Written out before; where it is not, refused below.
-        Action::PolarOn => {}
+        // Switched behind the tool length.
+        Action::Tip(_) => {}
+        // Written out before; where they are not, refused below.
+        Action::PolarOn | Action::Turning(_) => {}
         // Read before, since X words of the same block are of the new kind.
         Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute | Action::SpeedLimit => {}
         Action::LimitOrPreset | Action::Pass { takes_words: true } => return Owner::Arguments,

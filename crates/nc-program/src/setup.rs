@@ -12,6 +12,18 @@ pub enum AfterChange {
     At(f64),
 }
 
+/// What is known of tool centre point control; without it the codes that switch it are refused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TipControl {
+    /// With which centres the control computes is not said.
+    #[default]
+    Undeclared,
+    /// It is said, and no path can be proven: lost motion, effects, an engine without rotary axes.
+    Unproven,
+    /// It is said.
+    Declared,
+}
+
 /// What the program cannot say of itself: the profile's and the command line's part, plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
@@ -31,6 +43,10 @@ pub struct Setup {
     pub start_mm: Option<[f64; 3]>,
     /// X, Y, Z behind a tool change.
     pub tool_change: [AfterChange; 3],
+    /// What is known of tool centre point control.
+    pub tip_control: TipControl,
+    /// Tool centre point control is on when the program begins.
+    pub tip_at_start: bool,
     /// X words of a lathe's program are diameters, or radii; `None`: not said.
     pub diameters: Option<bool>,
     /// What a length without a point is was said by profile or command line: the dialect's numbers are not open.

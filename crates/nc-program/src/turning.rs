@@ -5,7 +5,7 @@ use toolpath::{Motion, Plane, Shape};
 
 use crate::codes;
 use crate::modal::{Distance, Modal, MotionMode, XWords};
-use crate::settings::{Demand, Owner};
+use crate::settings::{Demand, Environment, Owner};
 use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
 
 /// The code that keeps the cutting speed constant, on every control.
@@ -45,6 +45,28 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
         }
     }
     Ok(())
+}
+
+/// The letter of a thread's lead.
+pub(crate) fn thread_lead(env: &Environment<'_>) -> Letters {
+    env.dialect.turning.as_ref().map_or(Letters::NONE, |turning| Letters::of(&[turning.thread_lead]))
+}
+
+/// A thread's lead that is no F must stand in its block.
+pub(crate) fn require_lead(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
+    let lead = thread_lead(env);
+    if lead == Letters::of(b"F") || words.has(lead) || !words.has(AXIS_LETTERS) {
+        return Ok(());
+    }
+    let name = lead.first() as char;
+    Err(words
+        .refuse(
+            codes::NO_TURNING,
+            format!("a thread without {name}"),
+            words.span(AXIS_LETTERS),
+            format!("{name} is its lead"),
+        )
+        .help(format!("write {name} in this block")))
 }
 
 /// A face that was corrected leaves its plane by less than this share of its way.

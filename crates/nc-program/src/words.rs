@@ -354,7 +354,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                 return Err(self
                     .refuse(codes::REFUSED_CODE, message, span, "what follows would run in another frame")
                     .help(format!(
-                        "where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile"
+                        "where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile; where it switches tool centre point control, name it there under `[kinematics]`"
                     )));
             }
             if let Some((reason, help)) = row.and_then(|row| row.refuse.as_ref()) {
@@ -409,7 +409,10 @@ fn conflict(a: &CodeEntry, b: &CodeEntry) -> bool {
 
 /// G0 to G3.
 pub(crate) const fn is_motion(action: &Action) -> bool {
-    matches!(action, Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise)
+    matches!(
+        action,
+        Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise | Action::Thread
+    )
 }
 
 /// The value where it is a whole number that is not negative.

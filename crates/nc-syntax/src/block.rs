@@ -334,6 +334,12 @@ impl<'a> Block<'a> {
         &self.bytes[span.start as usize..span.end as usize]
     }
 
+    /// The block's bytes but for its end and blanks before that, counted from the start of the file.
+    #[must_use]
+    pub fn file_range(&self) -> std::ops::Range<u64> {
+        self.offset..self.offset + self.bytes.trim_ascii_end().len() as u64
+    }
+
     /// The item's bytes counted from the start of the file.
     #[must_use]
     pub fn file_span(&self, span: Span) -> std::ops::Range<u64> {

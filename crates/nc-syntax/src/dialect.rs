@@ -201,6 +201,10 @@ pub enum Action {
     LengthOnNegative,
     /// G49
     LengthOff,
+    /// G43.4: a tool length, and from here on the control moves the tool's tip.
+    TipLengthOn,
+    /// TRAORI, M428 and TRAFOOF, M429: the control moves the tip, or the axes again.
+    Tip(TipSwitch),
     /// G54–G59: the name in the profile.
     WorkOffset(String),
     /// G54.1, G154: the work offset that P numbers, `G54.1P1` in the profile.
@@ -274,6 +278,10 @@ pub enum Action {
     SpeedLimit,
     /// G50, G92 of lathes: with S a limit of the spindle, with X and Z where the axes stand.
     LimitOrPreset,
+    /// G32, G33: a line in step with the spindle.
+    Thread,
+    /// G90, G71 and their like on lathes. Written out before anything else, or refused.
+    Turning(TurningCycle),
     /// Known, and refused.
     Refuse {
         /// Why.
@@ -281,6 +289,23 @@ pub enum Action {
         /// The way out.
         help: String,
     },
+}
+
+/// Tool centre point control.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, TipSwitch};
+///
+/// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
+/// let row = sinumerik.commands.iter().find(|row| row.name == "TRAFOOF").unwrap();
+/// assert_eq!(row.action, Some(Action::Tip(TipSwitch::Off)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TipSwitch {
+    /// X, Y and Z say where the tip is.
+    On,
+    /// They say where the axes are.
+    Off,
 }
 
 /// G17, G18, G19; not `toolpath::Plane`, so that reading text needs no geometry.
@@ -321,6 +346,41 @@ pub enum CycleCode {
     PeckChip,
     /// G74, G76, G84, G86, G87, G88
     Synchronised,
+}
+
+/// Which cycle of a lathe.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode, TurningCycle};
+///
+/// // System A calls the pass along Z G90, system B G77.
+/// let lathe = nc_dialect::builtin("fanuc-lathe").unwrap();
+/// let pass = |system, code| lathe.in_system(system).unwrap().code(GCode(code)).unwrap().action.clone();
+/// assert_eq!(pass("A", 900), Action::Turning(TurningCycle::TurnPass));
+/// assert_eq!(pass("B", 770), pass("A", 900));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TurningCycle {
+    /// G90 (A), G77 (B), G20 (C): one pass along Z, there and back.
+    TurnPass,
+    /// G92 (A), G78 (B), G21 (C): the same in step with the spindle.
+    ThreadPass,
+    /// G94 (A), G79 (B), G24 (C): one pass along X, there and back.
+    FacePass,
+    /// G70 (A, B), G72 (C): once along the contour.
+    Finish,
+    /// G71 (A, B), G73 (C): passes along Z down to a contour.
+    RoughTurn,
+    /// G72 (A, B), G74 (C): passes along X down to a contour.
+    RoughFace,
+    /// G73 (A, B), G75 (C): the contour several times, nearer each time.
+    RoughPattern,
+    /// G74 (A, B), G76 (C): pecks along Z.
+    PeckFace,
+    /// G75 (A, B), G77 (C): pecks along X.
+    PeckGroove,
+    /// G76 (A, B), G78 (C): a thread in several passes.
+    ThreadPasses,
 }
 
 /// What R and Z of a cycle mean for the blocks that repeat it without writing them again.
@@ -488,6 +548,8 @@ pub struct MCode {
     /// What it switches on some machines (kinematics, a mirror, the workpiece's place): refused unless the machine
     /// is said to have it do nothing of the kind.
     pub switches: Option<String>,
+    /// Switches tool centre point control: what a profile says of the machine's own codes.
+    pub tip: Option<TipSwitch>,
     /// Refused, with the way out (M98, M99).
     pub refuse: Option<(String, String)>,
 }
@@ -660,7 +722,7 @@ pub struct Flow {
 /// let fanuc = turning("fanuc-lathe").unwrap();
 /// assert!(fanuc.increments && fanuc.offset_in_t);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Turning {
     /// U and W are increments of X and Z.
     pub increments: bool,
@@ -668,8 +730,33 @@ pub struct Turning {
     pub offset_in_t: bool,
     /// T brings in the offset of its number; D1 is that offset, D0 none (Sinumerik).
     pub offset_in_d: bool,
+    /// The letter whose number is the lead of a thread: F, or K (LinuxCNC).
+    pub thread_lead: u8,
+    /// X words are diameters at the start of a program, as the machine's profile says; `None`: not said.
+    pub diameters: Option<bool>,
+    /// What parameters of the control say of its cycles, as the machine's profile has them.
+    pub cycles: TurningParameters,
     /// G-code systems by name, of which the machine has one; empty where there is only one.
     pub systems: Vec<System>,
+}
+
+/// Parameters of a lathe's control that decide how its cycles move; what is not said is not guessed.
+///
+/// ```
+/// // A dialect knows none of them: they are the machine's.
+/// let lathe = nc_dialect::builtin("fanuc-lathe").unwrap().turning.clone().unwrap();
+/// assert_eq!(lathe.cycles.roughing_escape_mm, None);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TurningParameters {
+    /// Length of the chamfer at the end of a thread, in leads (Fanuc's parameter 5130 counts tenths).
+    pub thread_chamfer_leads: Option<f64>,
+    /// Angle of that chamfer to the axis, degrees (parameter 5131; 45 where not said).
+    pub thread_chamfer_deg: Option<f64>,
+    /// By how much G71 and G72 leave the contour behind a pass, radius, mm (parameter 5133).
+    pub roughing_escape_mm: Option<f64>,
+    /// By how much G74 and G75 go back behind a peck, mm (parameter 5139).
+    pub groove_return_mm: Option<f64>,
 }
 
 /// A G-code system of a lathe's control: what its table has in place of the dialect's own rows.

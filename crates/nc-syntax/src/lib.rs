@@ -24,4 +24,4 @@ pub use content::looks_like_program;
 pub use dialect::Dialect;
 pub use envelope::{Envelope, EnvelopeFinder};
 pub use plain::{PlainLine, PlainWord};
-pub use reader::{Place, Reader, line_ends};
+pub use reader::{Place, Reader, line_ending, line_ends};

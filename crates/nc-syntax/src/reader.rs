@@ -239,6 +239,18 @@ fn line_end(text: &[u8], at: usize) -> (usize, usize) {
     (end, end + marks)
 }
 
+/// The line ending a text uses, by its first: `\n`, `\r\n`, `\r`, `\r\r\n`; `\n` where it has none.
+#[must_use]
+pub fn line_ending(text: &[u8]) -> &'static [u8] {
+    let Some(first) = memchr2(b'\n', b'\r', text) else { return b"\n" };
+    match text[first..] {
+        [b'\r', b'\r', b'\n', ..] => b"\r\r\n",
+        [b'\r', b'\n', ..] => b"\r\n",
+        [b'\r', ..] => b"\r",
+        _ => b"\n",
+    }
+}
+
 /// How many line ends stand in whole lines: LF, CR LF, CR CR LF, CR.
 #[must_use]
 pub fn line_ends(text: &[u8]) -> u64 {

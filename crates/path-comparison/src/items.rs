@@ -4,9 +4,9 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use machine_model::{Command, PathModel, Play, Vector};
+use machine_model::{Command, Models, PathModel, Play, Vector, turned_by_mm};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, FeedRate, Hole, Motion, Partial, Position};
+use toolpath::{CycleKind, FeedRate, Hole, Kinematics, Motion, Partial, Position};
 
 use crate::stretch::{LEVER_MM, Place, Span, Stretch};
 use crate::way::Way;
@@ -235,6 +235,9 @@ pub(crate) struct Items<'m, I> {
     role: Role,
     pecks: Pecks,
     model: &'m dyn PathModel,
+    models: Models<'m>,
+    /// Of which of them `model` is one.
+    kinematics: Kinematics,
     /// Where the axes stand in their play; `None` where the model knows none.
     play: Option<Play>,
     /// Where the last motion has brought the axes.
@@ -267,19 +270,16 @@ impl Common {
 }
 
 impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
-    pub(crate) fn new(
-        model: &'m dyn PathModel,
-        steps: I,
-        role: Role,
-        pecks: Pecks,
-        counted: Counted,
-    ) -> Self {
+    pub(crate) fn new(models: Models<'m>, steps: I, role: Role, pecks: Pecks, counted: Counted) -> Self {
+        let model = models.axes;
         let play = model.depends_on_direction().then(Play::unknown);
         Self {
             steps,
             role,
             pecks,
             model,
+            models,
+            kinematics: Kinematics::Axes,
             play,
             at: Partial::default(),
             place: None,
@@ -340,14 +340,19 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
 
     fn take(&mut self, step: &Step) {
         let Step { act, line, process: number, limit_mm, compensated } = *step;
-        let (motion, tool_mm, feed, dwell) = match act {
+        let (motion, tool_mm, kinematics, feed, dwell) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
                 self.ready.push_back(Item::Deed(Deed { number: deed, line, process }));
                 return;
             }
-            Act::Motion { motion, tool_mm, feed, dwell } => (motion, tool_mm, feed, dwell),
+            Act::Motion { motion, tool_mm, kinematics, feed, dwell } => {
+                (motion, tool_mm, kinematics, feed, dwell)
+            }
         };
+        if kinematics != self.kinematics {
+            self.switch(kinematics);
+        }
         self.compensated = if compensated { self.compensated + 1 } else { 0 };
         let block = Some(self.compensated).filter(|_| compensated && matches!(motion, Motion::Feed(_)));
         let process = Process { number, feed, compensated: block };
@@ -359,6 +364,15 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             Motion::Uncorrected { end } => self.positioning(&common, self.at, end, Kind::Uncorrected),
             Motion::Hole(hole) => self.hole(&common, &hole),
         }
+    }
+
+    /// From here on X, Y and Z are something else: nothing of where they were is comparable.
+    fn switch(&mut self, kinematics: Kinematics) {
+        self.kinematics = kinematics;
+        self.model = self.models.of(kinematics).unwrap_or(self.models.axes);
+        self.play = self.model.depends_on_direction().then(Play::unknown);
+        self.at.linear_mm = [None; 3];
+        self.place = None;
     }
 
     fn positioning(&mut self, common: &Common, start: Partial, end: Partial, kind: Kind) {
@@ -384,11 +398,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         });
         let play_mm =
             |at: &Vector, axis| self.model.reversal_mm(axis, &common.command(*at, rotary_rad)).max(0.0);
-        let known = self.play.as_ref().and(error.as_ref());
+        // Only of what is made it is asked how far it may be aside.
+        let known = self.play.as_ref().and(error.as_ref()).filter(|_| self.role == Role::Commanded);
         let aside_mm = known.map_or(0.0, |(at, _)| (0..3).map(|axis| play_mm(at, axis)).sum());
         let turns_mm = known.map_or(0.0, |(at, _)| {
             let here = common.command(*at, rotary_rad);
-            (0..3).map(|axis| turned_by_mm(self.model, &here, axis)).sum()
+            (0..3).map(|axis| turned_by_mm(self.model, &here, axis).norm()).sum()
         });
         let tip_mm = error.map(|(at, error)| at + error);
         let linear = if self.role == Role::Wanted { error.map(|(at, _)| at) } else { tip_mm };
@@ -578,11 +593,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         rise.linear_mm[normal] = above_mm;
         let mut at = hole.start;
         // All moves of a cycle are made with the correction of its hole.
-        let hole_error_mm = [hole.at_r, on_hole(bottom_mm)].map(|place| {
+        let ends = [hole.at_r, on_hole(bottom_mm)].into_iter().filter(|_| self.role == Role::Commanded);
+        let errors_mm = ends.map(|place| {
             let rotary_rad = Vector::from(place.rotary_deg.map(f64::to_radians));
             self.error_mm(&common.command(Vector::from(place.linear_mm), rotary_rad)).norm()
         });
-        let hole_error_mm = hole_error_mm[0].max(hole_error_mm[1]);
+        let hole_error_mm = errors_mm.fold(0.0, f64::max);
         let rapid = |items: &mut Self, at: &mut Position, to: Position| {
             items.positioning(common, (*at).into(), to.into(), Kind::OfCycle);
             if let Some(Item::Position(made)) = items.ready.back_mut() {
@@ -634,16 +650,6 @@ enum Kind {
     Rapid,
     OfCycle,
     Uncorrected,
-}
-
-/// How far the tool goes when an axis turns, mm.
-fn turned_by_mm(model: &dyn PathModel, at: &Command, axis: usize) -> f64 {
-    let [up, down] = [1, -1].map(|side| {
-        let mut state = *at;
-        state.direction[axis] = side;
-        model.error_mm(&state)
-    });
-    (up - down).norm()
 }
 
 /// Where between two places an axis, going one way, has gone so far.

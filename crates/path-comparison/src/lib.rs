@@ -24,8 +24,8 @@ mod matcher;
 mod stretch;
 mod way;
 
-use machine_model::PathModel;
-use toolpath::Motion;
+use machine_model::Models;
+use toolpath::{Kinematics, Motion};
 
 pub use stretch::LEVER_MM;
 pub use way::Way;
@@ -51,10 +51,12 @@ pub struct Step {
 pub enum Act {
     /// The axes move.
     Motion {
-        /// The motion, axis commands.
+        /// The motion: axis commands or tip commands.
         motion: Motion,
         /// From gauge point to tip, mm.
         tool_mm: [f64; 3],
+        /// What X, Y and Z are.
+        kinematics: Kinematics,
         /// The number of F in force.
         feed: Option<f64>,
         /// The deed of a cycle at the bottom of its hole.
@@ -180,11 +182,11 @@ pub enum Traces {
 /// Compares what the machine really does by `commanded` with what is programmed by `wanted`.
 #[must_use]
 pub fn compare(
-    model: &dyn PathModel,
+    models: Models<'_>,
     wanted: impl Iterator<Item = Step>,
     commanded: impl Iterator<Item = Step>,
     pecks: Pecks,
     traces: Traces,
 ) -> Comparison {
-    matcher::Matcher::new(model, wanted, commanded, pecks, traces).compare()
+    matcher::Matcher::new(models, wanted, commanded, pecks, traces).compare()
 }

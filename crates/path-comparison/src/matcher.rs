@@ -1,6 +1,6 @@
 //! Item by item through both programs; where they part, on from where they meet again.
 
-use machine_model::PathModel;
+use machine_model::Models;
 
 use crate::alignment::{Alignment, Begins, Processes, Reached};
 use crate::difference::{self, Found};
@@ -48,18 +48,12 @@ impl Time {
 }
 
 impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
-    pub(crate) fn new(
-        model: &'m dyn PathModel,
-        wanted: W,
-        commanded: C,
-        pecks: Pecks,
-        traces: Traces,
-    ) -> Self {
+    pub(crate) fn new(models: Models<'m>, wanted: W, commanded: C, pecks: Pecks, traces: Traces) -> Self {
         let counted = Counted::default();
-        let wanted = Items::new(model, wanted, Role::Wanted, pecks, counted.clone());
+        let wanted = Items::new(models, wanted, Role::Wanted, pecks, counted.clone());
         Self {
             alignment: Alignment::new(wanted),
-            commanded: Items::new(model, commanded, Role::Commanded, pecks, counted),
+            commanded: Items::new(models, commanded, Role::Commanded, pecks, counted),
             traces,
             begins: Begins::AtStart,
             time: Time::default(),
@@ -235,7 +229,9 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         let Some((from, to)) = self.wanted_time() else { return };
         let Some(feed) = self.alignment.wanted.feed(ahead) else { return };
         let (wanted_line, whole, short) = (feed.line, feed.minutes.unwrap_or(0.0), short || feed.is_short());
-        let minutes_per_mm = whole / feed.length_mm().max(feed.limit_mm);
+        // Where rotary axes turn, the linear axes may have farther to go than the tool.
+        let linear_mm = feed.way.as_ref().map_or(0.0, Way::length_mm);
+        let minutes_per_mm = whole / feed.length_mm().max(linear_mm).max(feed.limit_mm);
         if self.time.made.is_nan() {
             self.time = Time { made: to, compared: to };
         }

@@ -1,9 +1,11 @@
 //! Random paths on a straight machine: cut anywhere they are the same path, damaged anywhere they are not.
 
-use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector};
+use machine_model::{
+    Chain, Description, LinearAxis, Models, Range, RigidBody, RotaryAxis, Squareness, Vector,
+};
 use path_comparison::{Act, Comparison, Pecks, Step, Traces, compare};
 use proptest::prelude::*;
-use toolpath::{Arc, Division, Feed, FeedRate, Motion, Plane, Position, Shape};
+use toolpath::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Plane, Position, Shape};
 
 const LIMIT_MM: f64 = 0.002;
 
@@ -26,7 +28,13 @@ fn feed(start: [f64; 3], end: [f64; 3], shape: Shape) -> Feed {
 }
 
 fn step(feed: Feed, line: usize) -> Step {
-    let act = Act::Motion { motion: Motion::Feed(feed), tool_mm: [0.0; 3], feed: Some(100.0), dwell: None };
+    let act = Act::Motion {
+        motion: Motion::Feed(feed),
+        tool_mm: [0.0; 3],
+        kinematics: Kinematics::Axes,
+        feed: Some(100.0),
+        dwell: None,
+    };
     Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM, compensated: false }
 }
 
@@ -34,7 +42,13 @@ fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {
     let steps =
         |feeds: &[Feed]| -> Vec<Step> { feeds.iter().enumerate().map(|(k, f)| step(*f, k + 1)).collect() };
     let pecks = Pecks { clearance_mm: 0.25, retreat_mm: 0.5 };
-    compare(&straight(), steps(wanted).into_iter(), steps(made).into_iter(), pecks, Traces::Kept)
+    compare(
+        Models { axes: &straight(), tip: None },
+        steps(wanted).into_iter(),
+        steps(made).into_iter(),
+        pecks,
+        Traces::Kept,
+    )
 }
 
 /// Lines through places; every third of them an arc of a quarter turn in XY.

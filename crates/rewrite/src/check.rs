@@ -44,7 +44,7 @@ pub fn check(job: &Job<'_>, programs: [&Expanded<'_>; 2], traces: Traces) -> Res
         let numbers = RefCell::new(Numbers::default());
         let mut steps = programs.map(|text| Program::new(text, job, optional, &numbers));
         let [w, c] = &mut steps;
-        let comparison = compare(job.model, &mut *w, &mut *c, pecks, traces);
+        let comparison = compare(job.models, &mut *w, &mut *c, pecks, traces);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.
         for (program, steps) in steps.iter_mut().enumerate() {
             steps.by_ref().for_each(drop);

@@ -33,7 +33,7 @@ pub(crate) fn require_same(
     if readings.iter().all(|counts| is_same(*counts, turned, context.unit_mm)) {
         return Ok(());
     }
-    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    let whole = block.file_range();
     let message = format!(
         "while a rotary axis turns the linear axes have to go {:.4} mm instead of {:.4} mm, and F would be another speed",
         turned.commanded_mm, turned.programmed_mm

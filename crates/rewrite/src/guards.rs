@@ -2,7 +2,7 @@
 
 use diagnostic::Diagnostic;
 use nc_emit::{Asked, Stated};
-use nc_program::{Compensation, ToolLength};
+use nc_program::{Compensation, ToolLength, WorkOffset};
 use nc_syntax::Block;
 use smallvec::SmallVec;
 
@@ -16,7 +16,24 @@ pub(crate) struct Guarded {
     serial: u32,
 }
 
+/// What is in force before a block, as a guard in front of it states it.
+pub(crate) struct Before {
+    work_offset: WorkOffset,
+    stated: Option<Stated>,
+    unit_mm: f64,
+}
+
 impl Pass<'_> {
+    /// What is in force now; `None` where no guards are put.
+    pub(crate) fn before_guards(&self) -> Option<Before> {
+        let modal = self.state.interpreter.modal();
+        (self.job.guards == Guards::Put).then(|| Before {
+            work_offset: modal.work_offset,
+            stated: self.stated(),
+            unit_mm: modal.units.mm(),
+        })
+    }
+
     /// What is in force and not guarded yet: the work offset, the tool's length. What the program itself writes needs none.
     fn unguarded(&self) -> [Option<Asked>; 2] {
         if self.job.guards == Guards::None {
@@ -24,15 +41,12 @@ impl Pass<'_> {
         }
         let modal = self.state.interpreter.modal();
         let offset = &modal.work_offset;
-        let name = |code| match offset.number {
-            Some(p) => format!("{code} P{p}"),
-            None => format!("{code}"),
-        };
-        let offset = offset.code.zip(offset.zero_mm).filter(|(code, _)| {
-            let name = name(*code);
-            !offset.rewritten && !modal.written.iter().any(|(written, _)| *written == name)
+        let asked = offset.code.map(|code| Asked::WorkOffset(code, offset.number));
+        let offset = asked.filter(|asked| {
+            let name = asked.to_string();
+            let written = offset.rewritten || modal.written.iter().any(|(written, _)| *written == name);
+            offset.zero_mm.is_some() && !written
         });
-        let offset = offset.map(|(code, _)| Asked::WorkOffset(code, modal.work_offset.number));
         let length = match modal.tool_length {
             ToolLength::On { number, .. } if number != 0 => Some(Asked::ToolLength(number)),
             _ => None,
@@ -53,23 +67,20 @@ impl Pass<'_> {
     }
 
     /// Puts in front of a block that moves the guard of a work offset that holds without having been chosen.
-    ///
-    /// * `stated`, `unit_mm` – in force before the block
-    pub(crate) fn guard_before(
-        &mut self,
-        block: &Block<'_>,
-        stated: Option<Stated>,
-        unit_mm: f64,
-    ) -> Result<(), Vec<Diagnostic>> {
+    pub(crate) fn guard_before(&mut self, block: &Block<'_>, before: &Before) -> Result<(), Vec<Diagnostic>> {
+        if self.state.interpreter.modal().work_offset != before.work_offset {
+            return Ok(());
+        }
         let [offset, _] = self.unguarded();
-        self.guard([offset, None], block, stated, unit_mm)
+        self.guard([offset, None], block, before.stated, before.unit_mm)
     }
 
     /// Puts behind a block the guards of what it chose.
-    pub(crate) fn guard_behind(&mut self, block: &Block<'_>, chosen: bool) -> Result<(), Vec<Diagnostic>> {
-        let (stated, unit_mm) = (self.stated(), self.state.interpreter.modal().units.mm());
+    pub(crate) fn guard_behind(&mut self, block: &Block<'_>, before: &Before) -> Result<(), Vec<Diagnostic>> {
+        let modal = self.state.interpreter.modal();
+        let (chosen, unit_mm) = (modal.work_offset != before.work_offset, modal.units.mm());
         let [offset, length] = self.unguarded();
-        self.guard([offset.filter(|_| chosen), length], block, stated, unit_mm)
+        self.guard([offset.filter(|_| chosen), length], block, self.stated(), unit_mm)
     }
 
     fn guard(
@@ -81,15 +92,8 @@ impl Pass<'_> {
     ) -> Result<(), Vec<Diagnostic>> {
         for asked in unguarded.into_iter().flatten() {
             let refused = |why: &str, help: &str| {
-                let what = match asked {
-                    Asked::WorkOffset(code, _) => format!("no guard of {code} can be put in here"),
-                    Asked::ToolLength(number) => format!("no guard of H{number} can be put in here"),
-                };
-                Err(vec![
-                    Diagnostic::error(UNGUARDED, what)
-                        .at(block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64, why)
-                        .help(help),
-                ])
+                let what = format!("no guard of {asked} can be put in here");
+                Err(vec![Diagnostic::error(UNGUARDED, what).at(block.file_range(), why).help(help)])
             };
             if self.state.interpreter.modal().compensation != Compensation::Off {
                 return refused(
@@ -121,9 +125,7 @@ impl Pass<'_> {
             if !self.out.is_empty() && !self.out.ends_with(b"\n") && !self.out.ends_with(b"\r") {
                 self.out.extend_from_slice(b"\n");
             }
-            let end = &block.bytes[block.bytes.trim_ascii_end().len()..];
-            let end =
-                end.iter().position(|byte| matches!(byte, b'\n' | b'\r')).map_or(&b"\n"[..], |at| &end[at..]);
+            let end = nc_syntax::line_ending(block.bytes);
             for line in lines {
                 self.out.extend_from_slice(line.as_bytes());
                 self.out.extend_from_slice(end);

@@ -2,7 +2,7 @@
 
 use correction::Options;
 use diagnostic::{Code, Diagnostic};
-use machine_model::PathModel;
+use machine_model::Models;
 use nc_program::{Evidence, Setup};
 use nc_syntax::Dialect;
 
@@ -58,7 +58,7 @@ pub struct Job<'a> {
     /// Work offsets and tools.
     pub setup: &'a Setup,
     /// Where the machine really goes.
-    pub model: &'a dyn PathModel,
+    pub models: Models<'a>,
     /// Tolerance and policy.
     pub options: Options,
     /// Decimals of X, Y, Z in mm.

@@ -7,6 +7,7 @@
 //!
 //! ```
 //! use correction::{Options, Outside};
+//! use machine_model::Models;
 //! use rewrite::{Guards, Job, correct};
 //!
 //! let profile = include_str!("../../../machine-profiles/stan_s500.toml");
@@ -19,7 +20,7 @@
 //!         work_offsets: vec![("G54".to_owned(), [140.0, 110.0, 20.0])],
 //!         ..Default::default()
 //!     },
-//!     model: engine.path_model().expect("it corrects programs"),
+//!     models: Models { axes: engine.path_model().expect("it corrects programs"), tip: None },
 //!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 },
 //!     decimals_mm: [3; 3],
 //!     rotary_steps: [(3, 1); 3],

@@ -120,7 +120,7 @@ impl Notices {
 
 /// A corrected hole under block delete: what it says would hold for the next holes only where it is executed.
 pub(crate) fn hole_skipped(block: &Block<'_>) -> Diagnostic {
-    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    let whole = block.file_range();
     Diagnostic::error(nc_program::codes::BLOCK_DELETE, "a hole that may be skipped has levels of its own after correction")
         .at(whole, "its Z and R differ from those of the holes before, and the next holes would inherit them only where it is executed")
         .help("delete the `/`, or post a program without this hole")
@@ -148,7 +148,7 @@ pub(crate) fn refusal(
     block: &Block<'_>,
     context: &Context,
 ) -> Vec<Diagnostic> {
-    let whole = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+    let whole = block.file_range();
     let word = |letter: u8| block.word(letter).map(|word| block.file_span(word.span));
     let diagnostic = match error {
         CorrectionError::Solve(SolveError::OutsideVolume { axis, value_mm, low_mm, high_mm }) => {
@@ -169,6 +169,11 @@ pub(crate) fn refusal(
         CorrectionError::Solve(error) => Diagnostic::error(NOT_CONVERGED, error.to_string())
             .at(whole, "here")
             .help("choose another engine with `--engine`"),
+        CorrectionError::MustNotSplit { .. } if context.thread => {
+            Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
+                .at(whole, "a thread must stay one block: it is cut in step with the spindle")
+                .help("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own")
+        }
         CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
             .at(whole, "this block must stay one, with none before it: cutter compensation is active")
             .help("post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on"),

@@ -10,7 +10,7 @@ use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
 use crate::feed;
 use crate::guards::Guarded;
-use crate::job::{Figures, Guards, Job};
+use crate::job::{Figures, Job};
 use crate::notices::{Notices, hole_skipped, refusal};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -28,7 +28,7 @@ pub(crate) struct State<'a> {
 impl<'a> State<'a> {
     /// At the start of a program.
     pub(crate) fn new(job: &Job<'a>, numbers: &'a BlockNumbers) -> Self {
-        let mut corrector = Corrector::new(job.model, job.options);
+        let mut corrector = Corrector::new(job.models.axes, job.options).with_tip_control(job.models.tip);
         if job.dialect.turning.is_some() {
             // A lathe's Y stands on the axis, whatever moves.
             corrector = corrector.with_axis_at(1, 0.0);
@@ -162,26 +162,22 @@ impl Pass<'_> {
     /// Corrects a block, whatever it is.
     pub(crate) fn block(&mut self, block: &Block<'_>) -> Result<(), Vec<Diagnostic>> {
         self.tally.figures.blocks_in += 1;
-        let before = self.state.interpreter.modal();
-        let (offset, unit_mm) = (before.work_offset, before.units.mm());
-        let guards = self.job.guards == Guards::Put;
-        let stated = if guards { self.stated() } else { None };
+        let before = self.before_guards();
         let executed = self.state.interpreter.step(block);
         // Looked at where it lies: hundreds of bytes.
         let Ok(step) = &executed else { return executed.map(|_| ()) };
         self.tally.evidence.see(block, &self.questions);
         self.state.emitter.meet(block);
         let context = &step.context;
-        let chosen = self.state.interpreter.modal().work_offset != offset;
-        if guards && !chosen && !step.motions.is_empty() {
-            self.guard_before(block, stated, unit_mm)?;
+        if let Some(before) = before.as_ref().filter(|_| !step.motions.is_empty()) {
+            self.guard_before(block, before)?;
         }
         if step.states_position {
             self.state_position(block, context)?;
         } else {
             self.moved(block, context, letters(block, context), &step.motions)?;
         }
-        if guards { self.guard_behind(block, chosen) } else { Ok(()) }
+        before.map_or(Ok(()), |before| self.guard_behind(block, &before))
     }
 
     /// Corrects the motions of a block and writes it.
@@ -411,7 +407,7 @@ impl Pass<'_> {
         figures.blocks_out += if written { blocks_out as u64 } else { 0 };
         figures.splits += u64::from(blocks_out > 1);
         let line = block.line;
-        let span = block.offset..block.offset + block.bytes.trim_ascii_end().len() as u64;
+        let span = block.file_range();
         for (motion, correction) in motions.iter().zip(corrections) {
             raise(&mut figures.largest, (correction.largest_mm, line));
             raise(&mut figures.before, (correction.before_mm, line));
@@ -460,6 +456,7 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
     let output = &job.dialect.output;
     correction::Block {
         frame: context.frame.clone(),
+        kinematics: context.kinematics,
         unit_mm: context.unit_mm,
         diameters: context.diameters,
         decimals: decimals(job, context),

@@ -437,7 +437,7 @@ mod tests {
             let job = Job {
                 dialect: nc_dialect::builtin("fanuc").unwrap(),
                 setup: &setup,
-                model: engine.path_model().unwrap(),
+                models: machine_model::Models { axes: engine.path_model().unwrap(), tip: None },
                 options: Options { tolerance_mm: 1e-3, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5 },
                 decimals_mm: [3; 3],
                 rotary_steps: [(3, 1); 3],

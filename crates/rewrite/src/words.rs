@@ -119,7 +119,11 @@ impl Editing<'_> {
                     Original::Cycle => b"IJKRQPL",
                 };
                 own.iter().for_each(|letter| push(*letter, AxisWord::Omit, 0));
-                Some(if piece.kind == PieceKind::Rapid { self.codes.rapid } else { self.codes.line })
+                match piece.kind {
+                    PieceKind::Rapid => Some(self.codes.rapid),
+                    _ if self.context.thread => self.context.motion_code,
+                    _ => Some(self.codes.line),
+                }
             }
             PieceKind::Arc { clockwise, centre } => {
                 match centre {

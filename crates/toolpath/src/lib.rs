@@ -9,7 +9,9 @@ mod motion;
 mod plane;
 
 pub use frame::{Frame, Similarity};
-pub use motion::{Arc, Cycle, CycleKind, Division, Feed, FeedRate, Hole, Motion, Partial, Position, Shape};
+pub use motion::{
+    Arc, Cycle, CycleKind, Division, Feed, FeedRate, Hole, Kinematics, Motion, Partial, Position, Shape,
+};
 pub use plane::Plane;
 
 /// Names of the linear and rotary axes, in the order of every array here.

@@ -20,6 +20,23 @@ pub struct Position {
     pub rotary_deg: [f64; 3],
 }
 
+/// What X, Y and Z are while rotary axes stand somewhere.
+///
+/// ```
+/// use toolpath::Kinematics;
+///
+/// assert_eq!(Kinematics::default(), Kinematics::Axes);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kinematics {
+    /// Commands of the axes.
+    #[default]
+    Axes,
+    /// Tip commands, of which the control makes those of the axes (G43.4, TRAORI): where the axes would stand with all rotary
+    /// axes at 0 so that the tip is there in the frame of the workpiece.
+    Tip,
+}
+
 /// A position of which some axes may not be known yet (start of program, after G28 or a tool change).
 ///
 /// ```

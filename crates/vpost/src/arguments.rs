@@ -2,110 +2,119 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use serde::{Deserialize, Serialize};
-
-use crate::message::Failure;
-
-/// Rewrites NC programs so that a measured machine goes where the program says.
-#[derive(Debug, Parser)]
-#[command(name = "vpost", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-#[command(
-    after_help = "Exit status: 0 done; 1 refused or a check failed (nothing is written); 2 usage, profile or grammar error; 130/143 interrupted.\nExample: vpost in.nc -m machine-profiles/stan_s500.toml > out.nc"
-)]
-pub struct Arguments {
-    /// The work.
-    #[command(subcommand)]
-    pub command: Option<Command>,
-    /// The main job.
-    #[command(flatten)]
-    pub correct: Correct,
-    /// What all jobs share.
-    #[command(flatten)]
-    pub shared: Shared,
-}
-
-/// What is asked for besides the main job.
-#[derive(Debug, Subcommand)]
-pub enum Command {
-    /// Correct many programs, on all cores or on many machines.
-    Batch(crate::batch::Batch),
-    /// Run two programs through the machine model and compare the tool paths.
-    Check(Check),
-    /// Where the machine really goes for commanded points.
-    Predict(Predict),
-    /// What to command so that the tool reaches points.
-    Solve(Solve),
-    /// Make a machine profile from an instrument's files.
-    Calibrate(crate::calibrate::Calibrate),
-    /// Which unmodelled effect explains the gap between the model and measurements.
-    Diagnose(crate::diagnose::Diagnose),
-    /// The volumetric error over the volume, and where to put the zero point and the workpiece.
-    Map(crate::map::Map),
-    /// What each deviation of the machine costs, what they may come to together, and what each may be.
-    Budget(crate::budget::Budget),
-    /// Check, show or describe machine profiles.
-    Profile(Profile),
-    /// List or check dialect tables.
-    Grammar(Grammar),
-    /// Completions for a shell.
-    Completions(Completions),
-    /// The manual page (roff).
-    Man,
-}
 
 /// Options of every job.
 #[derive(Debug, Clone, Args)]
 pub struct Shared {
     /// Machine profile (TOML).
-    #[arg(short = 'm', long = "machine", value_name = "PROFILE", global = true)]
+    #[arg(short = 'm', long = "machine", value_name = "PROFILE", global = true, help_heading = "Machine")]
     pub machine: Option<PathBuf>,
     /// Correction engine; default: the profile's.
-    #[arg(short, long, value_name = "ENGINE", global = true)]
+    #[arg(short, long, value_name = "ENGINE", global = true, help_heading = "Machine")]
     pub engine: Option<String>,
-    /// Dialect: a name of `vpost grammar list`, or a grammar file; default: the profile's control.
-    #[arg(short, long, value_name = "DIALECT", global = true)]
+    /// Dialect of the control; default: the profile's.
+    ///
+    /// A name of `vpost grammar list`, or a grammar file.
+    #[arg(short, long, value_name = "DIALECT", global = true, help_heading = "Program")]
     pub dialect: Option<String>,
-    /// Largest path deviation, µm, rounding of the output apart.
-    #[arg(long, value_name = "UM", global = true, value_parser = finite)]
+    /// Largest path deviation, um.
+    ///
+    /// Rounding of the output apart.
+    #[arg(long, value_name = "UM", global = true, help_heading = "Program", value_parser = finite)]
     pub tolerance: Option<f64>,
-    /// Machine coordinates of a work offset's zero, mm: G54=X,Y,Z (repeatable).
-    #[arg(long = "work-offset", value_name = "G54=X,Y,Z", global = true, allow_hyphen_values = true)]
+    /// Machine coordinates of a zero, mm (repeatable).
+    #[arg(
+        long = "work-offset",
+        value_name = "G54=X,Y,Z",
+        global = true,
+        help_heading = "Program",
+        allow_hyphen_values = true
+    )]
     pub work_offset: Vec<String>,
-    /// Tool length or length vector of an H number, mm: H1=120 or H1=0,0,120 (repeatable).
-    #[arg(long, value_name = "H1=LENGTH|X,Y,Z", global = true, allow_hyphen_values = true)]
+    /// Length of an H number, mm (repeatable).
+    ///
+    /// H1=120, or the vector H1=0,0,120.
+    #[arg(
+        long,
+        value_name = "H1=LENGTH",
+        global = true,
+        help_heading = "Program",
+        allow_hyphen_values = true
+    )]
     pub tool: Vec<String>,
-    /// Where the axes stand at the start of the program, machine coordinates, mm.
-    #[arg(long = "start-at", value_name = "X,Y,Z", global = true, allow_hyphen_values = true)]
+    /// Where the axes stand at the start, mm.
+    ///
+    /// Machine coordinates.
+    #[arg(
+        long = "start-at",
+        value_name = "X,Y,Z",
+        global = true,
+        help_heading = "Program",
+        allow_hyphen_values = true
+    )]
     pub start_at: Option<String>,
-    /// Value of a variable that the program does not set itself: `#500=12.5`, `#<depth>=2`, `#1=#0` for empty (repeatable).
-    /// Quote it for the shell.
-    #[arg(long, value_name = "#N=VALUE", global = true, allow_hyphen_values = true)]
+    /// Variable that the program does not set.
+    ///
+    /// Repeatable: `#500=12.5`, `#<depth>=2`, `#1=#0` for empty. Quote it for the shell.
+    #[arg(
+        long,
+        value_name = "#N=VALUE",
+        global = true,
+        help_heading = "Program",
+        allow_hyphen_values = true
+    )]
     pub set: Vec<String>,
-    /// Folder of subprograms that the program calls by number or name (repeatable).
-    #[arg(long, value_name = "DIR", global = true)]
+    /// Folder of subprograms (repeatable).
+    ///
+    /// Those that the program calls by number or name.
+    #[arg(long, value_name = "DIR", global = true, help_heading = "Program")]
     pub include: Vec<PathBuf>,
-    /// What a length without a decimal point is, where the dialect reads increments: `increments` (Z10 is ten steps) or
-    /// `millimetres` (Z10 is Z10.; inches under G20); default: the profile's.
-    #[arg(long, value_enum, value_name = "MEANING", global = true)]
+    /// What Z10 is: increments or millimetres.
+    ///
+    /// Where the dialect reads increments: `increments` (ten steps) or `millimetres` (Z10.; inches under G20); default: the
+    /// profile's.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "MEANING",
+        global = true,
+        hide_possible_values = true,
+        help_heading = "Program"
+    )]
     pub decimal: Option<Decimal>,
-    /// Refuse programs that are warned of as doubtful: cut off, unknown M codes, no unit, lengths without a point.
-    #[arg(long, global = true)]
+    /// Refuse doubtful programs.
+    ///
+    /// Those that are warned of: cut off, unknown M codes, no unit, lengths without a point.
+    #[arg(long, global = true, help_heading = "Program")]
     pub strict: bool,
-    /// Conditions that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min (repeatable).
-    #[arg(long = "at", value_name = "NAME=VALUE,…", global = true, allow_hyphen_values = true)]
+    /// Conditions: temp_c=24, time_s=600 … (repeatable).
+    ///
+    /// Those that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min.
+    #[arg(
+        long = "at",
+        value_name = "NAME=VALUE,…",
+        global = true,
+        help_heading = "Machine",
+        allow_hyphen_values = true
+    )]
     pub at: Vec<String>,
+    /// Beyond the volume: refuse, or clamp to its edge.
+    ///
     /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
-    #[arg(long, value_enum, global = true)]
+    #[arg(long, value_enum, global = true, hide_possible_values = true, help_heading = "Machine")]
     pub outside: Option<Outside>,
     /// No warnings.
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, help_heading = "Messages")]
     pub quiet: bool,
-    /// More about what is done, on standard error (repeatable).
-    #[arg(short, long, action = clap::ArgAction::Count, global = true)]
+    /// More about what is done.
+    ///
+    /// On standard error; repeatable.
+    #[arg(short, long, action = clap::ArgAction::Count, global = true, help_heading = "Messages")]
     pub verbose: u8,
-    /// Colours in messages.
-    #[arg(long, value_enum, default_value_t = Color::Auto, global = true)]
+    /// Colours: auto, always, never.
+    #[arg(long, value_enum, default_value_t = Color::Auto, global = true, hide_possible_values = true, help_heading = "Messages")]
     pub color: Color,
 }
 
@@ -145,21 +154,26 @@ pub struct Correct {
     /// NC program; - for standard input.
     #[arg(value_name = "IN.nc", required = true)]
     pub input: Option<PathBuf>,
-    /// Write to this file, all or nothing, instead of standard output.
+    /// Write to this file, all or nothing.
+    ///
+    /// Instead of standard output.
     #[arg(short, long, value_name = "OUT.nc")]
     pub output: Option<PathBuf>,
-    /// Write a summary for pipelines (JSON).
+    /// Write a summary (JSON).
     #[arg(long, value_name = "FILE")]
     pub summary: Option<PathBuf>,
     /// Correct a program that says it was corrected before.
     #[arg(long)]
     pub force: bool,
-    /// Put in blocks that stop the program where the control's work offsets (LinuxCNC: and tool lengths) are others
-    /// than it was corrected for.
+    /// Put in blocks that stop where offsets differ.
+    ///
+    /// Where the control's work offsets (LinuxCNC: and tool lengths) are others than it was corrected for.
     #[arg(long)]
     pub guard: bool,
-    /// Report progress in this style on standard error.
-    #[arg(long, value_enum)]
+    /// Report progress: linuxcnc.
+    ///
+    /// In this style, on standard error.
+    #[arg(long, value_enum, hide_possible_values = true)]
     pub progress: Option<Progress>,
 }
 
@@ -272,22 +286,6 @@ pub struct Completions {
     /// The shell.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
-}
-
-/// Prints completions.
-pub(crate) fn completions(arguments: &Completions) -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), "vpost", &mut text);
-    crate::file::print(&text)
-}
-
-/// Prints the manual page.
-pub(crate) fn man() -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_mangen::Man::new(Arguments::command())
-        .render(&mut text)
-        .map_err(|error| Failure::file("standard output", "write", &error))?;
-    crate::file::print(&text)
 }
 
 /// A number of an option: neither `inf` nor `NaN`, which would pass every check of a range from one side.

@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let model = settings.path_model()?;
-    let read = |path: &Path| Ok((file::name(path), file::read_program(path)?));
+    let read = |path: &Path| -> Result<_, Failure> { Ok((file::name(path), file::read_program(path)?)) };
     let (wanted_name, wanted) = read(&arguments.input)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
     let traces = if arguments.html.is_some() { Traces::Kept } else { Traces::Forgotten };
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
             let facts = page::Facts {
                 input: &wanted_name,
                 output: &commanded_name,
-                text: &file::decoded(&wanted),
+                text: &measurement_files::utf8_or_1251(&wanted),
                 machine: &settings.profile.name,
                 profile: &settings.profile_name,
                 profile_hash: &settings.profile_hash.to_string(),
@@ -136,7 +136,7 @@ fn closed(
     // What the output asks the control for moves nothing, and holds on the machine of the profile.
     let unguarded = nc_emit::without_guards(corrected.1);
     let corrected = (corrected.0, unguarded.as_deref().unwrap_or(corrected.1));
-    let programs = [posted, corrected].map(|(name, text)| {
+    let programs = [posted, corrected].map(|(name, text)| -> Result<_, Failure> {
         nc_syntax::looks_like_program(text)
             .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
         Ok((name, text, expand::expanded(text, name, settings)?))

@@ -279,10 +279,10 @@ impl From<Vec<Diagnostic>> for PipelineEnd {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
 
     use super::*;
-    use crate::arguments::{Arguments, Color};
+    use crate::arguments::Color;
+    use crate::command_line::Arguments;
     use crate::message::Messages;
 
     #[test]
@@ -292,7 +292,7 @@ mod tests {
         let (mut short, mut long, mut warned) = (0, 0, 0);
         for dialect in ["linuxcnc", "fanuc"] {
             let line = ["vpost", "-m", profile.to_str().unwrap(), "-d", dialect, "-"];
-            let shared = Arguments::try_parse_from(line).unwrap().shared;
+            let shared = Arguments::read(line.map(std::ffi::OsString::from)).unwrap().shared;
             let settings = Settings::load(&shared, &Messages::new(Color::Never, true)).unwrap();
             let samples = root.join("samples").read_dir().unwrap().map(|entry| entry.unwrap().path());
             let mut programs: Vec<(String, Vec<u8>)> = samples

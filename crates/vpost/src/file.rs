@@ -1,6 +1,5 @@
 //! Files: read whole, written whole or not at all.
 
-use std::borrow::Cow;
 use std::io::{IsTerminal, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -23,15 +22,6 @@ pub(crate) fn name(path: &Path) -> String {
     }
     // In a message a name is one line.
     terminal::shown(&path.to_string_lossy()).replace(['\n', '\r'], "?")
-}
-
-/// Text of a file that may be older than UTF-8: then it is Windows-1251, as controls and instruments of the region write.
-/// No two files become the same text, so ids stay apart.
-pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Cow::Borrowed(text),
-        Err(_) => encoding_rs::WINDOWS_1251.decode_without_bom_handling(bytes).0,
-    }
 }
 
 /// Reads a file, or standard input for `-`.

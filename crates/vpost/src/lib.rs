@@ -7,10 +7,12 @@ pub mod batch;
 pub mod budget;
 pub mod calibrate;
 mod check;
+pub mod command_line;
 mod conditions;
 mod correct;
 pub mod diagnose;
 mod expand;
+pub mod explain;
 pub mod export;
 mod figures;
 mod file;
@@ -37,9 +39,7 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use arguments::{Arguments, Command};
+use command_line::{Arguments, Command};
 use interrupt::Interrupt;
 use message::{Failure, Messages};
 
@@ -52,7 +52,7 @@ const TRY_AGAIN: u8 = 75;
 
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match Arguments::read(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             let status = if error.use_stderr() { USAGE } else { DONE };
@@ -71,6 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let interrupt = Interrupt::listen();
     let messages = Messages::new(arguments.shared.color, arguments.shared.quiet);
     let result = match &arguments.command {
+        Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
         Some(Command::Check(a)) => check::run(a, &arguments.shared, &messages),
         Some(Command::Predict(a)) => predict::run(a, &arguments.shared, &messages),
@@ -81,8 +82,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Budget(a)) => budget::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
-        Some(Command::Completions(a)) => arguments::completions(a),
-        Some(Command::Man) => arguments::man(),
+        Some(Command::Explain(a)) => explain::run(a),
+        Some(Command::Completions(a)) => command_line::completions(a),
+        Some(Command::Man) => command_line::man(),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
     };
     match result {

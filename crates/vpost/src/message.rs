@@ -98,6 +98,16 @@ impl Failure {
     }
 }
 
+impl From<Box<measurement_files::Refusal>> for Failure {
+    /// A file of measurements that is not read, or a question about it that only the user can answer.
+    fn from(refusal: Box<measurement_files::Refusal>) -> Self {
+        match refusal.source {
+            Some((name, text)) => Self::refused(&name, text.as_bytes(), vec![refusal.diagnostic]),
+            None => Self::usage(refusal.diagnostic),
+        }
+    }
+}
+
 /// What to say of an input or output error.
 pub(crate) fn file_diagnostic(name: &str, verb: &str, error: &std::io::Error) -> Diagnostic {
     use std::io::ErrorKind;

@@ -7,7 +7,7 @@ use crate::arguments::{Outside, Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages, Report};
-use crate::points::{DIRECTION_COLUMNS, Points, direction_fields};
+use crate::points::{self, DIRECTION_COLUMNS, direction_fields};
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{file, profile};
 
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let profile = profile::load_mill(machine(shared)?)?.profile;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
-    let points = Points::read(&name, &bytes, setup_tool(&profile), &profile)?;
+    let points = points::read(&name, &bytes, setup_tool(&profile), &profile)?;
     let conditions = conditions(shared)?;
     let machine = if arguments.include_setup {
         profile.measured_machine(&conditions)

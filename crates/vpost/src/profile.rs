@@ -68,7 +68,8 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
                         None => source(&name, &bytes),
                         Some(table) => {
                             let path = folder.join(&table);
-                            source(&path.display().to_string(), &std::fs::read(&path).unwrap_or_default())
+                            let bytes = std::fs::read(&path).unwrap_or_default();
+                            source(&path.display().to_string(), measurement_files::decoded(&bytes).as_bytes())
                         }
                     };
                     Report { source, diagnostics: vec![diagnostic] }

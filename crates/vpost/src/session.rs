@@ -2,11 +2,11 @@
 //!
 //! For whoever runs thousands of programs through what a user gets: the fuzz targets (`tests/fuzz`).
 
-use clap::Parser;
 use nc_expand::Limits;
 use rewrite::Corrected;
 
-use crate::arguments::{Arguments, Color};
+use crate::arguments::Color;
+use crate::command_line::Arguments;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
 use crate::{check, diagnose, expand};
@@ -28,8 +28,8 @@ impl Session {
     /// # Errors
     /// The messages of the command.
     pub fn new(options: &[&str], limits: Limits) -> Result<Self, Refusal> {
-        let line = ["vpost"].iter().chain(options).chain(&["-"]);
-        let arguments = Arguments::try_parse_from(line).map_err(|error| Refusal(error.to_string()))?;
+        let line = ["vpost"].iter().chain(options).chain(&["-"]).map(std::ffi::OsString::from);
+        let arguments = Arguments::read(line).map_err(|error| Refusal(error.to_string()))?;
         let messages = Messages::new(Color::Never, true);
         match Settings::load(&arguments.shared, &messages) {
             Ok(mut settings) => {

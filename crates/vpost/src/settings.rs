@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use correction::{Options, Outside};
-use machine_model::{Engine, EngineId};
-use machine_profile::{BareLengths, Profile};
+use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
+use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{MCode, Macros, PointFree};
+use nc_syntax::dialect::{MCode, Macros, PointFree, TipSwitch, TurningParameters};
 use rewrite::{Guards, Job};
 
 use crate::arguments::{self, Shared};
@@ -25,6 +25,8 @@ pub(crate) struct Settings {
     pub dialect: Dialect,
     pub setup: Setup,
     pub engine: Box<dyn Engine>,
+    /// The machine under tool centre point control.
+    tip: Option<TipControl>,
     pub options: Options,
     pub flow: Flow,
     /// Doubtful programs are refused.
@@ -51,6 +53,14 @@ impl Settings {
         let mut setup = setup(shared, &profile)?;
         setup.lengths_settled = settle_lengths(shared, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
+        declare_switches(&profile, &mut dialect);
+        declare_cycles(&profile, &mut dialect);
+        let tip = profile.tip_control().filter(|_| engine_id == EngineId::RigidBody);
+        setup.tip_control = match (&profile.kinematics, &tip) {
+            (None, _) => nc_program::TipControl::Undeclared,
+            (Some(_), None) => nc_program::TipControl::Unproven,
+            (Some(_), Some(_)) => nc_program::TipControl::Declared,
+        };
         if let Some(mm) = profile.program.arc_tolerance_mm {
             dialect.output.arc_radius_tolerance_mm = mm;
         }
@@ -84,6 +94,7 @@ impl Settings {
             dialect,
             setup,
             engine,
+            tip,
             options,
             flow,
             strict: shared.strict,
@@ -128,20 +139,8 @@ impl Settings {
 
     /// Decimals that write the profile's resolution exactly, or finer.
     pub(crate) fn decimals_mm(&self) -> [u8; 3] {
-        self.profile.resolution_mm.map(|step| {
-            let mut decimals = 0;
-            let mut scaled = step;
-            while decimals < 6 && (scaled - scaled.round()).abs() > 1e-9 * scaled.abs().max(1.0)
-                || scaled < 0.5
-            {
-                scaled *= 10.0;
-                decimals += 1;
-                if decimals >= 6 {
-                    break;
-                }
-            }
-            decimals
-        })
+        const MOST: u8 = 6;
+        self.profile.resolution_mm.map(|step| decimal_steps(step).0.min(MOST))
     }
 
     /// What the comment in the output says after its marker.
@@ -154,7 +153,10 @@ impl Settings {
         Ok(Job {
             dialect: &self.dialect,
             setup: &self.setup,
-            model: self.path_model()?,
+            models: Models {
+                axes: self.path_model()?,
+                tip: self.tip.as_ref().map(|tip| -> &dyn PathModel { tip }),
+            },
             options: self.options,
             decimals_mm: self.decimals_mm(),
             rotary_steps: self.profile.resolution_deg.map(decimal_steps),
@@ -199,6 +201,16 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
             format!("one of: {}", systems.join(", ")),
         )
     })
+}
+
+/// Puts into a lathe's dialect what the profile says of its words and cycles.
+fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
+    let Some(turning) = &mut dialect.turning else { return };
+    let TurningRules { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm } =
+        profile.program.turning;
+    turning.diameters = profile.program.diameters;
+    turning.cycles =
+        TurningParameters { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm };
 }
 
 /// Their names.
@@ -255,6 +267,7 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
             ends_program: false,
             changes_tool: false,
             switches: None,
+            tip: None,
             refuse: None,
         };
         match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
@@ -278,6 +291,32 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
         }
     }
     Ok(())
+}
+
+/// Puts the M codes by which the machine switches tool centre point control into the dialect.
+fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
+    let Some(kinematics) = &profile.kinematics else { return };
+    let codes = |numbers: &[u16], switch: TipSwitch| {
+        numbers.iter().map(|number| (*number, switch)).collect::<Vec<_>>()
+    };
+    for (number, switch) in
+        [codes(&kinematics.on, TipSwitch::On), codes(&kinematics.off, TipSwitch::Off)].concat()
+    {
+        let row = MCode {
+            number,
+            after_motion: false,
+            loses_position: [false; 3],
+            ends_program: false,
+            changes_tool: false,
+            switches: None,
+            tip: Some(switch),
+            refuse: None,
+        };
+        match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
+            Err(at) => dialect.m_codes.insert(at, row),
+            Ok(at) => dialect.m_codes[at] = row,
+        }
+    }
 }
 
 /// The profile's path, which every job needs.
@@ -356,6 +395,8 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
             machine_profile::AfterChange::Stays => AfterChange::Stays,
             machine_profile::AfterChange::At(place_mm) => AfterChange::At(place_mm),
         }),
+        tip_control: nc_program::TipControl::default(),
+        tip_at_start: profile.kinematics.as_ref().is_some_and(|kinematics| kinematics.at_start),
         diameters: profile.program.diameters,
         lengths_settled: false,
     };
@@ -369,6 +410,12 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         }
     }
     if let Some(start) = &shared.start_at {
+        if setup.tip_at_start {
+            return Err(Failure::option(
+                "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
+                "leave it out: the first rapid that names X, Y and Z says where the tip is",
+            ));
+        }
         setup.start_mm = Some(triple("--start-at", start, start, "400,280,200")?);
     }
     Ok(setup)

@@ -6,7 +6,7 @@ use machine_model::{Command, EngineId};
 use crate::arguments::{Shared, Solve};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages};
-use crate::points::{DIRECTION_COLUMNS, Points, direction_fields};
+use crate::points::{self, DIRECTION_COLUMNS, direction_fields};
 use crate::settings::{engine_named, machine, setup_tool};
 use crate::{conditions, file, profile};
 use rewrite::OUTSIDE;
@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
     let engine = conditions::engine(&profile, id, shared)?;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
-    let points = Points::read(&name, &bytes, setup_tool(&profile), &profile)?;
+    let points = points::read(&name, &bytes, setup_tool(&profile), &profile)?;
     let mut out = points.columns.join(",");
     out.push_str(",qx_mm,qy_mm,qz_mm");
     for (axis, has) in ["qa_deg", "qb_deg", "qc_deg"].iter().zip(points.rotary) {

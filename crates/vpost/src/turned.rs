@@ -16,9 +16,9 @@ use turning::{Cylinder, Lathe, Section, Wave, roughness};
 use crate::arguments::{Predict, Shared};
 use crate::conditions::{conditions, failure};
 use crate::figures::{fixed, round};
-use crate::file;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
+use crate::{expand, file};
 
 /// Nothing is turned, or too much is asked.
 const NOTHING_TURNED: Code = Code(908);
@@ -95,7 +95,9 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let name = file::name(&arguments.points);
     let text = file::read_program(&arguments.points)?;
     let refused = |diagnostics: Vec<Diagnostic>| Failure::refused(&name, &text, diagnostics);
-    let cuts = cuts(&text, &settings).map_err(refused)?;
+    let expanded = expand::expanded(&text, &name, &settings)?;
+    let cuts = cuts(expanded.text(), &settings)
+        .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, &name, &text, diagnostics)))?;
     let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
         let diagnostic = Diagnostic::error(
             NOTHING_TURNED,
@@ -186,7 +188,10 @@ fn cuts(text: &[u8], settings: &Settings) -> Result<Vec<Cut>, Vec<Diagnostic>> {
             feed = Some(number.decimal.to_f64());
         }
         for motion in &step.motions {
-            if let Motion::Feed(Feed { start, end, shape, .. }) = motion {
+            // The flanks of a thread are no surface whose radius is looked at.
+            if let Motion::Feed(Feed { start, end, shape, .. }) = motion
+                && !step.context.thread
+            {
                 let curve = Curve::new(start.linear_mm.into(), end.linear_mm.into(), shape);
                 let feed_mm = feed.and_then(|feed| a_turn(feed, &step.context));
                 cuts.push(Cut { curve, tool_mm: step.context.tool_mm.into(), feed_mm });

@@ -137,11 +137,12 @@ fn positions(text: &[u8], job: &Job<'_>) -> Vec<toolpath::Feed> {
 }
 
 fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
-    let mut corrector = Corrector::new(job.model, Options { ..job.options });
+    let mut corrector = Corrector::new(job.models.axes, Options { ..job.options });
     let mut letters = correction::Letters::default();
     b"XYZ".iter().for_each(|letter| letters.insert(*letter));
     let block = correction::Block {
         frame: toolpath::Frame::default(),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         decimals: job.decimals_mm,
         incremental: [false; 3],
@@ -194,7 +195,7 @@ fn points(feeds: &[toolpath::Feed], job: &Job<'_>, repetitions: usize) -> Vec<(&
     let commands: Vec<Command> = feeds.iter().take(1 << 16).map(|feed| command(feed.end.linear_mm)).collect();
     let moves: Vec<Move> = feeds.iter().take(1 << 16).map(stretch).collect();
     let per = |count: usize, seconds: f64| seconds * 1e9 / count.max(1) as f64;
-    let model: &dyn PathModel = job.model;
+    let model: &dyn PathModel = job.models.axes;
     let forward =
         best(repetitions, || commands.iter().for_each(|c| _ = black_box(model.error_mm(black_box(c)))));
     let inverse =

@@ -18,6 +18,7 @@ pub(crate) fn letters(text: &str) -> Letters {
 pub(crate) fn block(text: &str, incremental: bool) -> Block {
     Block {
         frame: Frame::shift([10.0, -20.0, 5.5]),
+        kinematics: toolpath::Kinematics::Axes,
         unit_mm: 1.0,
         diameters: false,
         decimals: [3; 3],

@@ -256,7 +256,7 @@ fn a_coarse_display_is_noise() {
     });
     let rounded = changed(rounded, |row| Vector::repeat(f64::from(u8::from(row.run % 2 == 0))));
     let scalars = rounded.scalars(None);
-    assert!((crate::noise::quantum_um(&scalars) - 1.0).abs() < 1e-9);
+    assert!((crate::equations::noise::quantum_um(&scalars) - 1.0).abs() < 1e-9);
     let answer = diagnose(&rounded, None, &Options::default());
     assert!(answer.causes.is_empty(), "{:?}", names(&answer));
 }

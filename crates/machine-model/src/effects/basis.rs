@@ -37,6 +37,8 @@ pub struct Conditions {
     pub share: Option<[f64; 3]>,
     /// Way along the path since each axis last turned, mm; not known before it first turns.
     pub since_turn_mm: [Option<f64>; 3],
+    /// Curvature of the path towards its centre, 1/mm; `None`: not known, and taken to be straight.
+    pub curvature_per_mm: Option<[f64; 3]>,
     /// Where the instrument stands, machine coordinates, mm.
     pub station_mm: Option<[f64; 3]>,
 }
@@ -155,6 +157,7 @@ impl EffectKind {
             Self::Step(_) => &["shift_um"],
             Self::Local(_) | Self::Joint(_) => &["x_um", "y_um", "z_um"],
             Self::Spike(_) => &["spike_um"],
+            Self::Contraction => &["path_um_per_m_s2", "x_um_per_m_s2", "y_um_per_m_s2", "z_um_per_m_s2"],
             Self::SpindleTilt(_) => &["tilt_urad"],
             Self::Tracker(0) => &["scale_um_per_m"],
             Self::Tracker(1) => &["offset_um"],
@@ -336,6 +339,13 @@ impl EffectKind {
                 let faded =
                     conditions.since_turn_mm[a].map_or(0.0, |way| math::exp(-way / shape.width_mm.max(1e-9)));
                 along(a, -1e-3 * dir(a) * faded)
+            }
+            Self::Contraction => {
+                // µm per m/s² are 1e-6 s².
+                let speed_mm_s = 1e3 * feed_mm_ms()?;
+                let curvature = Vector::from(conditions.curvature_per_mm.unwrap_or_default());
+                let seen = if index == 0 { curvature } else { along(index - 1, curvature[index - 1]) };
+                seen * (1e-6 * speed_mm_s * speed_mm_s)
             }
             Self::SpindleTilt(a) => along(a, -1e-6 * command.tool_mm.z),
             Self::Tracker(fault) => {

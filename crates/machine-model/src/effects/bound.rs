@@ -85,8 +85,8 @@ impl EffectTerm {
             | EffectKind::InstrumentDrift
             | EffectKind::SpindleTilt(_)
             | EffectKind::Step(_) => 0.0,
-            // Turning points and a tracker's place are none of a program's: it is never corrected.
-            EffectKind::Spike(_) => 0.0,
+            // Turning points, curvature and a tracker's place are none of a program's: it is never corrected.
+            EffectKind::Spike(_) | EffectKind::Contraction => 0.0,
             EffectKind::Tracker(_) => return None,
             EffectKind::Backlash(axis) | EffectKind::LostMotion { axis, .. } => {
                 let reversed = f64::from(stretch.state.direction[axis].abs());

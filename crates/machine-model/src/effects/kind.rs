@@ -89,6 +89,8 @@ pub enum EffectKind {
     Joint(AxisIndex),
     /// `spike.X`: the axis sticks where it turns.
     Spike(AxisIndex),
+    /// `contraction`: circles shrink as they are driven faster.
+    Contraction,
     /// `spindle-tilt.X`: the tip goes aside with the tool's length.
     SpindleTilt(AxisIndex),
     /// `tracker.range-scale` and so on: a fault of a laser tracker, index into [`TRACKER`].
@@ -138,6 +140,7 @@ impl EffectKind {
         kinds.extend(axes.map(Self::Local));
         kinds.extend(axes.map(Self::Joint));
         kinds.extend(axes.map(Self::Spike));
+        kinds.push(Self::Contraction);
         kinds.extend([0, 1].map(Self::SpindleTilt));
         kinds.extend((0..TRACKER.len()).map(Self::Tracker));
         kinds
@@ -169,6 +172,7 @@ impl EffectKind {
             Self::Local(_) => "local",
             Self::Joint(_) => "joint",
             Self::Spike(_) => "spike",
+            Self::Contraction => "contraction",
             Self::SpindleTilt(_) => "spindle-tilt",
             Self::Tracker(_) => "tracker",
         }
@@ -232,7 +236,7 @@ impl fmt::Display for EffectKind {
             }
             Self::Eccentricity(a) => write!(f, "{family}.{}", ROTARY[a]),
             Self::Tracker(fault) => write!(f, "{family}.{}", TRACKER[fault]),
-            Self::ProbeLobing | Self::InstrumentDrift => f.write_str(family),
+            Self::ProbeLobing | Self::InstrumentDrift | Self::Contraction => f.write_str(family),
         }
     }
 }
@@ -272,7 +276,7 @@ mod tests {
         }
         assert_eq!(
             all.len(),
-            3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3 + 3 + 3 + 2 + 6
+            3 + 3 + 3 + 3 + 3 + 3 + 6 + 9 + 3 + 6 + 2 + 3 + 3 + 3 + 12 + 3 + 2 + 3 + 3 + 3 + 3 + 1 + 2 + 6
         );
         for id in [
             "lost-motion.EYX",

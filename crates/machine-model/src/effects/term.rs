@@ -247,6 +247,7 @@ impl EffectTerm {
             | EffectKind::ProbeLobing
             | EffectKind::SpindleTilt(_)
             | EffectKind::Spike(_)
+            | EffectKind::Contraction
             | EffectKind::Step(_) => true,
             EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
                 self.coefficients.iter().skip(2).all(|c| *c == 0.0)

@@ -6,7 +6,7 @@ use diagnostic::Diagnostic;
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
-use nc_syntax::dialect::Action;
+use nc_syntax::dialect::{Action, GCode};
 use nc_syntax::{Block, Reader};
 use path_comparison::{Act, LEVER_MM, Step};
 use smallvec::SmallVec;
@@ -151,6 +151,11 @@ impl<'a, 'n> Program<'a, 'n> {
                     let mut numbers = self.numbers.borrow_mut();
                     (numbers.of_process(&process), dwell.map(|dwell| numbers.of_deed(&dwell)))
                 }
+                Motion::Feed(_) if context.thread => {
+                    let code = context.motion_code.unwrap_or(GCode(0));
+                    let process = self.process.in_thread(code, block);
+                    (self.numbers.borrow_mut().of_process(&process), None)
+                }
                 _ => (self.number(), None),
             };
             let feed = if matches!(motion, Motion::Feed(Feed { rate: FeedRate::InverseTime(_), .. })) {
@@ -158,7 +163,8 @@ impl<'a, 'n> Program<'a, 'n> {
             } else {
                 self.feed
             };
-            let act = Act::Motion { motion: *motion, tool_mm: context.tool_mm, feed, dwell };
+            let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
+            let act = Act::Motion { motion: *motion, tool_mm, kinematics, feed, dwell };
             let turned_mm = self.turn_rounding_mm(motion);
             let limit_mm = (limit_mm * limit_mm + turned_mm * turned_mm).sqrt();
             self.ready.push(Step { act, line, process, limit_mm, compensated: context.compensation });

@@ -17,7 +17,9 @@ pub struct Batch {
     /// How the work is done.
     #[command(flatten)]
     pub work: Work,
-    /// Correct every program again, whatever an earlier run left, and write over files that vpost did not write.
+    /// Correct all again, and write over any file.
+    ///
+    /// Whatever an earlier run left; also over files that vpost did not write.
     #[arg(long)]
     pub force: bool,
 }
@@ -28,13 +30,19 @@ pub struct Programs {
     /// NC programs, or folders with all programs in them.
     #[arg(value_name = "DIR|FILES", required = true)]
     pub inputs: Vec<PathBuf>,
-    /// Folder of the corrected programs; folders below DIR are repeated in it.
+    /// Folder of the corrected programs.
+    ///
+    /// Folders below DIR are repeated in it.
     #[arg(short = 'O', long = "output-dir", value_name = "OUTDIR", required = true)]
     pub output: Option<PathBuf>,
-    /// In folders, take files of this pattern, instead of the usual endings of programs (repeatable).
+    /// In folders, take such files (repeatable).
+    ///
+    /// Instead of those with the usual endings of programs.
     #[arg(long, value_name = "PATTERN")]
     pub pattern: Vec<String>,
-    /// In folders, leave out files or folders of this pattern (repeatable).
+    /// In folders, leave out such (repeatable).
+    ///
+    /// Files or folders of this pattern.
     #[arg(long, value_name = "PATTERN")]
     pub exclude: Vec<String>,
 }
@@ -42,10 +50,12 @@ pub struct Programs {
 /// How the work is done.
 #[derive(Debug, Clone, Args)]
 pub struct Work {
-    /// Programs at the same time; default: one for each core.
+    /// Programs at once; default: one a core.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,
-    /// Write what became of each program (JSON Lines, in the order of the outputs' names); `-` for standard output.
+    /// What became of each program (JSON Lines).
+    ///
+    /// In the order of the outputs' names; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     pub results: Option<PathBuf>,
 }

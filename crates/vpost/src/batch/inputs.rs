@@ -208,7 +208,7 @@ impl Item {
             return Ok(());
         }
         // Shown as it is, one such name looks like another.
-        let read = file::decoded(self.input.as_os_str().as_encoded_bytes());
+        let read = measurement_files::utf8_or_1251(self.input.as_os_str().as_encoded_bytes());
         Err(Failure::usage(
             Diagnostic::error(NAME, format!("a name is not UTF-8; as Windows-1251 it reads {read}")).help(
                 "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",

@@ -12,7 +12,7 @@ use crate::figures::{printable, triple};
 use crate::file;
 use crate::map::options::{grid, rotary, tool};
 use crate::message::{Failure, Messages, OPTION, Report};
-use crate::points::{POINTS, Points};
+use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
 
 /// Most control points: with forty deviations they fill a quarter of a gigabyte.
@@ -96,7 +96,7 @@ fn from_file(
     machine: &Machine,
     messages: &Messages,
 ) -> Result<ControlPoints, Failure> {
-    let points = Points::read(name, bytes, tool_mm.into(), profile)?;
+    let points = points::read(name, bytes, tool_mm.into(), profile)?;
     let refuse = |diagnostic: Diagnostic| Failure::refused(name, bytes, vec![diagnostic]);
     if points.rows.is_empty() {
         let help = "give a row for each point at which the machine is to be judged";

@@ -12,15 +12,16 @@ use machine_model::{
     WithEffects,
 };
 use machine_profile::EngineError;
+use measurement_files::series::Series;
 
 use crate::arguments::Shared;
 use crate::conditions;
 use crate::message::Failure;
 
 use super::codes::{AXES, failure, question};
-use super::formats::Series;
 use super::interferometer::{Interferometer, triple};
 use super::output::{Output, short};
+use super::sources;
 use super::squareness::Asked;
 
 /// The base as it was read, and where.
@@ -184,8 +185,8 @@ impl Session {
         let mut machines: Vec<(Option<f64>, WithEffects)> = Vec::new();
         for series in all.iter().filter(|series| series.axis == axis) {
             let mut rest: Vec<FunctionReading> = Vec::with_capacity(series.readings.len());
-            for (i, reading) in series.readings.iter().enumerate() {
-                let temperature = series.temperature_c(i).or(temperature_c);
+            for (reading, own) in sources::readings(series).into_iter().zip(&series.readings) {
+                let temperature = own.temperature_c.or(temperature_c);
                 let at = match machines.iter().position(|(known, _)| *known == temperature) {
                     Some(at) => at,
                     None => {
@@ -194,10 +195,7 @@ impl Session {
                     }
                 };
                 let motion = self.lines[k].motion(&machines[at].1, reading.position_mm, reading.direction);
-                rest.push(FunctionReading {
-                    value: reading.value - motion[series.function],
-                    ..reading.clone()
-                });
+                rest.push(FunctionReading { value: reading.value - motion[series.function], ..reading });
             }
             let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
             let runs = functions::runs(&rest).map_err(|error| fail(&error))?;

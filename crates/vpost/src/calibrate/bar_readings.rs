@@ -7,32 +7,15 @@ use calibration::linear_ballbar::CircleReading;
 use calibration::rotary_ballbar::{Test, Turning};
 use diagnostic::{Code, Diagnostic};
 use machine_model::{Axis, Command, Vector};
+use measurement_files::{Row, Sheet};
 
 use crate::message::Failure;
 
 use super::codes::{AXES, UNITS};
-use super::sheet::{Row, Sheet};
+use super::sources;
 
-const COLUMNS: [&str; 18] = [
-    "run",
-    "repeat",
-    "x_mm",
-    "y_mm",
-    "z_mm",
-    "bx_mm",
-    "by_mm",
-    "bz_mm",
-    "length_mm",
-    "a_deg",
-    "b_deg",
-    "c_deg",
-    "spindle_deg",
-    "dir_x",
-    "dir_y",
-    "dir_z",
-    "temp_c",
-    "note",
-];
+const COLUMNS: &str = "run repeat x_mm y_mm z_mm bx_mm by_mm bz_mm length_mm a_deg b_deg c_deg spindle_deg dir_x dir_y \
+                       dir_z temp_c note plane radius_mm angle_deg deviation_um dir";
 
 /// Columns of angles: A, B, C, spindle.
 const ANGLES: [&str; 4] = ["a_deg", "b_deg", "c_deg", "spindle_deg"];
@@ -87,15 +70,14 @@ impl Readings {
         let mut sheets = Vec::new();
         let mut runs: Vec<(Run, Moves)> = Vec::new();
         for (file, path) in files.iter().enumerate() {
-            let sheet = Sheet::read(path, &COLUMNS, ignore)?;
-            sheet.need(
-                &["run", "x_mm", "y_mm", "z_mm", "bx_mm", "by_mm", "bz_mm", "length_mm"],
-                "a reading of a ball bar is a length between two balls",
-            )?;
+            let expected = "a reading of a ball bar is a length between two balls";
+            let sheet = sources::sheet(path, COLUMNS, expected, ignore)?;
+            sheet.need(&["run"], expected)?;
+            sheet.need_bars()?;
             let mut own: Vec<Run> = Vec::new();
             let mut known = BTreeMap::new();
             for (number, row) in sheet.rows().enumerate() {
-                let name = row.text("run");
+                let name = row.text("run").into_owned();
                 let at = *known.entry(name).or_insert_with_key(|name| {
                     own.push(Run { name: name.clone(), lines: Vec::new(), temperatures_c: Vec::new() });
                     own.len() - 1
@@ -105,7 +87,7 @@ impl Readings {
                 own[at].lines.push(line);
             }
             for run in own {
-                let moves = run.moves(&sheet.name)?;
+                let moves = run.moves(sheet.name())?;
                 runs.push((run, moves));
             }
             sheets.push(sheet);
@@ -181,8 +163,8 @@ impl Readings {
     /// A refusal that points at the length of one reading.
     pub(super) fn refuse(&self, code: Code, place: (usize, usize), message: String, help: &str) -> Failure {
         let (file, number) = place;
-        match self.sheets[file].rows().nth(number) {
-            Some(row) => row.refuse(code, "length_mm", message, help),
+        match self.sheets[file].row(number) {
+            Some(row) => row.refuse(code, row.bar_key(), message, help).into(),
             None => Failure::usage(Diagnostic::error(code, message).help(help)),
         }
     }
@@ -200,22 +182,20 @@ impl<T> Measured<T> {
 }
 
 fn line(row: &Row<'_>, place: (usize, usize)) -> Result<Line, Failure> {
-    let balls =
-        [row.three(["x_mm", "y_mm", "z_mm"])?, row.three(["bx_mm", "by_mm", "bz_mm"])?].map(Vector::from);
+    let bar = row.bar()?;
     let mut angles_deg = [0.0; 4];
     for (angle, column) in angles_deg.iter_mut().zip(ANGLES) {
         *angle = row.number(column)?.unwrap_or(0.0);
     }
-    let length_mm = row.needed("length_mm")?;
-    let apart_mm = (balls[1] - balls[0]).norm();
+    let (length_mm, apart_mm) = (bar.length_mm, (bar.centre_mm - bar.ball_mm).norm());
     // Lengths must be near what the balls' places say.
     if (length_mm - apart_mm).abs() > FAR * apart_mm {
         let message = format!("a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart");
         let help = "give the whole length in mm, not its change; and both balls' places at angle 0";
-        return Err(row.refuse(UNITS, "length_mm", message, help));
+        return Err(row.refuse(UNITS, row.bar_key(), message, help).into());
     }
-    let direction = [row.sign("dir_x")?, row.sign("dir_y")?, row.sign("dir_z")?];
-    Ok(Line { place, balls, angles_deg, length_mm, direction })
+    let balls = [bar.ball_mm, bar.centre_mm];
+    Ok(Line { place, balls, angles_deg, length_mm, direction: bar.direction })
 }
 
 /// No bar is so much longer or shorter than its balls stand apart.

@@ -5,24 +5,12 @@ use diagnostic::{Code, Diagnostic};
 
 use crate::message::Failure;
 
-/// A measurement file that cannot be read.
-pub(super) const UNREADABLE: Code = Code(910);
-/// A column is missing, unknown or twice.
-pub(super) const COLUMNS: Code = Code(911);
-/// A field is not what its column says.
-pub(super) const FIELD: Code = Code(912);
-/// Axes, signs or frames that do not fit.
-pub(super) const AXES: Code = Code(1101);
+pub(super) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
+
 /// Numbers in another unit than they claim.
 pub(super) const UNITS: Code = Code(1102);
 /// Measurements that cannot carry a correction.
 pub(super) const UNFIT: Code = Code(1103);
-/// Runs or targets that are missing or unequal.
-pub(super) const RUNS: Code = Code(1104);
-/// Too few data, or unknowns that they leave open.
-pub(super) const OPEN: Code = Code(1105);
-/// Something only the user can say.
-pub(super) const QUESTION: Code = Code(1106);
 /// A reading that does not belong to the others.
 pub(super) const OUTLIER: Code = Code(1107);
 /// Warning: runs or targets are missing.

@@ -5,10 +5,12 @@ use std::fmt::Write;
 use calibration::functions::{self, Function, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use diagnostic::Diagnostic;
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
+use measurement_files::series::{Origin, Series, Values};
 
 use crate::arguments::Shared;
 use crate::file;
@@ -17,10 +19,9 @@ use crate::settings;
 
 use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
-use super::formats::{self, Origin, Reference, Series, Values};
 use super::output::{Output, Target, short, warn};
 use super::squareness::Asked;
-use super::{iso_report, plausibility, squareness};
+use super::{iso_report, plausibility, sources, squareness};
 
 /// `vpost calibrate interferometer FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -31,7 +32,7 @@ pub struct Interferometer {
     #[command(flatten)]
     pub target: Target,
     /// What the numbers of a control's table are.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = values())]
     pub values: Option<Values>,
     /// Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5; what is left out stays as it is.
     #[arg(long, value_name = "XY=…,ZX=…,YZ=…", allow_hyphen_values = true)]
@@ -81,6 +82,32 @@ pub enum Slopes {
     Remove,
     /// The squareness was measured against the curves as they are: keep them.
     Keep,
+}
+
+/// Where the tables of an axis that carries the workpiece were defined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Reference {
+    /// Along the measured line, as an interferometer reads.
+    Line,
+    /// At the carriage: a rotation acts on the axis' own travel.
+    Carriage,
+}
+
+/// `--values`
+fn values() -> impl TypedValueParser<Value = Values> {
+    const ALL: [(&str, Values, &str); 3] = [
+        ("positions", Values::Positions, "Where the axis really was (LinuxCNC COMP_FILE_TYPE = 0)"),
+        ("errors", Values::Errors, "Actual minus nominal"),
+        (
+            "corrections",
+            Values::Corrections,
+            "What the control adds: nominal minus actual (LinuxCNC COMP_FILE_TYPE = 1)",
+        ),
+    ];
+    let names = ALL.map(|(name, _, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(|given| {
+        ALL.into_iter().find(|(name, ..)| *name == given).map(|(_, values, _)| values).ok_or("unknown")
+    })
 }
 
 /// What becomes of two directions.
@@ -134,9 +161,10 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     for series in &all {
         plausibility::units(series, messages)?;
         let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
-        let function = functions::function(&series.readings).map_err(|e| fail(&e))?;
+        let readings = sources::readings(series);
+        let function = functions::function(&readings).map_err(|e| fail(&e))?;
         if function.count > 1 {
-            let runs = functions::runs(&series.readings).map_err(|e| fail(&e))?;
+            let runs = functions::runs(&readings).map_err(|e| fail(&e))?;
             plausibility::copies(series, &runs, &function, messages)?;
             if function.scatter.is_some() && series.function == series.axis.direction() {
                 let found = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
@@ -183,7 +211,7 @@ fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), F
     let mut all: Vec<Series> = Vec::new();
     let mut angles_read: Option<[f64; 3]> = None;
     for spec in &arguments.files {
-        let content = formats::read(spec, arguments.values, &arguments.target.ignore_column)?;
+        let content = sources::series(spec, arguments.values, &arguments.target.ignore_column)?;
         angles_read = angles_read.or(content.angles_rad);
         for series in content.series {
             // Further runs of the same function may come in a file of their own.
@@ -199,7 +227,7 @@ fn read(arguments: &Interferometer) -> Result<(Vec<Series>, Option<[f64; 3]>), F
 
 /// Mean of what the files say, °C.
 fn mean_temperature(all: &[Series]) -> Option<f64> {
-    let said: Vec<f64> = all.iter().flat_map(|s| s.temperatures_c.iter().flatten()).copied().collect();
+    let said: Vec<f64> = all.iter().flat_map(|s| s.readings.iter().filter_map(|r| r.temperature_c)).collect();
     (!said.is_empty()).then(|| said.iter().sum::<f64>() / said.len() as f64)
 }
 

@@ -1,6 +1,6 @@
 //! `vpost calibrate`: from an instrument's files to a machine profile.
 //!
-//! Files and formats are read here, the mathematics is in the crate `calibration`.
+//! Files are read by the crate `measurement-files`, the mathematics is in the crate `calibration`.
 
 mod against;
 mod axis_change;
@@ -8,12 +8,11 @@ mod ballbar;
 mod bar_readings;
 mod bar_report;
 mod codes;
-mod formats;
 mod interferometer;
 mod iso_report;
 mod output;
 mod plausibility;
-mod sheet;
+mod sources;
 mod squareness;
 mod tracker;
 mod volumetric;
@@ -54,7 +53,7 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
     let (target, files): (_, Vec<PathBuf>) = match &arguments.command {
         CalibrateCommand::Tracker(a) => (&a.target, a.traverses.clone()),
         CalibrateCommand::Interferometer(a) => {
-            (&a.target, a.files.iter().map(|name| PathBuf::from(formats::path_of(name))).collect())
+            (&a.target, a.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect())
         }
         CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone()),
         CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),

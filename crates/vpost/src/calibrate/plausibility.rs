@@ -6,8 +6,9 @@ use diagnostic::Diagnostic;
 
 use crate::message::{Failure, Messages};
 
+use measurement_files::series::{Origin, Series};
+
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use super::formats::{Origin, Series};
 use super::output::{short, warn};
 
 /// Deviations that are much too small or too large for their unit.

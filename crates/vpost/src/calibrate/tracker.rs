@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use diagnostic::Diagnostic;
 use machine_model::{Axis, Command, Vector};
 use machine_profile::Calibrated;
+use measurement_files::{Row, Sheet};
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
@@ -17,7 +18,7 @@ use crate::message::{Failure, Messages, Report};
 
 use super::codes::{DOUBTFUL, MISSING, OUTLIER, UNFIT, failure, question};
 use super::output::{Output, Target, short, warn};
-use super::sheet::Sheet;
+use super::sources;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
 #[derive(Debug, Args)]
@@ -53,26 +54,10 @@ pub enum FrameName {
     Fit,
 }
 
-const COLUMNS: [&str; 18] = [
-    "run",
-    "repeat",
-    "commanded_x_mm",
-    "commanded_y_mm",
-    "commanded_z_mm",
-    "measured_x_mm",
-    "measured_y_mm",
-    "measured_z_mm",
-    "x_mm",
-    "y_mm",
-    "z_mm",
-    "xm_mm",
-    "ym_mm",
-    "zm_mm",
-    "dir_x",
-    "dir_y",
-    "dir_z",
-    "temp_c",
-];
+const COLUMNS: &str = "run repeat commanded_x_mm commanded_y_mm commanded_z_mm measured_x_mm measured_y_mm measured_z_mm \
+                       x_mm y_mm z_mm xm_mm ym_mm zm_mm dir_x dir_y dir_z temp_c";
+
+const EXPECTED: &str = "a traverse has the commanded and the measured position of all three axes";
 
 /// Readings of one file, the temperature beside each.
 fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, Failure> {
@@ -85,12 +70,9 @@ fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, F
     } else {
         (["x_mm", "y_mm", "z_mm"], ["xm_mm", "ym_mm", "zm_mm"])
     };
-    sheet.need(
-        &[commanded, measured].concat(),
-        "a traverse has the commanded and the measured position of all three axes",
-    )?;
+    sheet.need(&[commanded, measured].concat(), EXPECTED)?;
     let direction = ["dir_x", "dir_y", "dir_z"][axis];
-    let reading = |row: super::sheet::Row<'_>| {
+    let reading = |row: Row<'_>| {
         let reading = Reading {
             commanded_mm: Vector::from(row.three(commanded)?),
             measured_mm: Vector::from(row.three(measured)?),
@@ -123,12 +105,12 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     let (mut traverses, mut points, mut sheets, mut temperatures) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (axis, path) in arguments.traverses.iter().enumerate() {
-        let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
+        let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
         let rows = readings(&sheet, axis)?;
         let readings: Vec<Reading> = rows.iter().map(|(reading, _)| *reading).collect();
         let mean = MeanTraverse::new(axis, &readings, given_mm)
-            .map_err(|error| failure(&sheet.name, &file::read(path).unwrap_or_default(), &error))?;
-        warn_of_gaps(&sheet.name, &mean, messages);
+            .map_err(|error| failure(sheet.name(), sheet.text().as_bytes(), &error))?;
+        warn_of_gaps(sheet.name(), &mean, messages);
         // A line read once shows its scatter by its roughness only.
         let rough_mm = (mean.noise == Noise::Roughness).then(|| mean.scatter_mm.norm() / 3f64.sqrt());
         traverses.push(match arguments.chord_mm {
@@ -206,7 +188,9 @@ fn refused(sheets: &[Sheet], error: &CalibrationError) -> Failure {
         _ => None,
     };
     match row {
-        Some(row) => row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out"),
+        Some(row) => {
+            row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out").into()
+        }
         None => failure("", &[], error),
     }
 }

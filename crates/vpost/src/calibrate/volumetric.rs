@@ -8,18 +8,18 @@ use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
 use calibration::{CalibrationError, Point, PointReading, SetUp};
 use clap::Args;
 use diagnostic::Diagnostic;
-use machine_model::{Axis, Command, Vector};
+use machine_model::{Axis, Vector};
 use machine_profile::Calibrated;
-use units::Angle;
+use measurement_files::{Row, Sheet};
 
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
 
-use super::codes::{DOUBTFUL, FIELD, OUTLIER, UNFIT, failure, question};
+use super::codes::{CELL, DOUBTFUL, OUTLIER, UNFIT, failure, question};
 use super::output::{Output, Target, warn};
-use super::sheet::{Row, Sheet};
+use super::sources;
 
 /// `vpost calibrate volumetric FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -37,38 +37,10 @@ pub struct Volumetric {
     pub holdout_every: usize,
 }
 
-const COLUMNS: [&str; 30] = [
-    "run",
-    "x_mm",
-    "y_mm",
-    "z_mm",
-    "a_deg",
-    "b_deg",
-    "c_deg",
-    "dx_um",
-    "dy_um",
-    "dz_um",
-    "xm_mm",
-    "ym_mm",
-    "zm_mm",
-    "length_mm",
-    "bx_mm",
-    "by_mm",
-    "bz_mm",
-    "tool_x_mm",
-    "tool_y_mm",
-    "tool_z_mm",
-    "dir_x",
-    "dir_y",
-    "dir_z",
-    "u_um",
-    "repeat",
-    "temp_c",
-    "time_s",
-    "load_kg",
-    "feed_mm_min",
-    "note",
-];
+const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um xm_mm ym_mm zm_mm length_mm bx_mm by_mm bz_mm \
+                       tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z u_um repeat temp_c time_s load_kg feed_mm_min note";
+
+const EXPECTED: &str = "expected: run,x_mm,y_mm,z_mm and dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm,bx_mm,by_mm,bz_mm";
 
 /// The points of all files and where each of them stands.
 struct Read {
@@ -92,11 +64,11 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
     let said = conditions(shared)?;
     let mut known = BTreeMap::new();
     for path in &arguments.files {
-        let sheet = Sheet::read(path, &COLUMNS, &arguments.target.ignore_column)?;
+        let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
         sheet.need(&["x_mm", "y_mm", "z_mm"], "the commanded position of all three axes is needed")?;
         if !["dx_um", "dy_um", "dz_um", "xm_mm", "length_mm"].iter().any(|c| sheet.has(c)) {
             return Err(question(
-                format!("{} has no reading", sheet.name),
+                format!("{} has no reading", sheet.name()),
                 "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
             ));
         }
@@ -107,9 +79,9 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
             )?;
         }
         for (line, row) in sheet.rows().enumerate() {
-            let mut name = row.text("run");
+            let mut name = row.text("run").into_owned();
             if arguments.files.len() > 1 || name.is_empty() {
-                name = format!("{} {name}", sheet.name).trim_end().to_owned();
+                name = format!("{} {name}", sheet.name()).trim_end().to_owned();
             }
             let run = *known.entry(name).or_insert_with_key(|name| {
                 all.runs.push(name.clone());
@@ -140,19 +112,8 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
 }
 
 fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
-    let commanded = row.three(["x_mm", "y_mm", "z_mm"])?;
-    let mut tool = output.base.as_ref().map_or([0.0; 3], |base| base.default_tool_mm);
-    for (own, column) in tool.iter_mut().zip(["tool_x_mm", "tool_y_mm", "tool_z_mm"]) {
-        *own = row.number(column)?.unwrap_or(*own);
-    }
-    let three = |columns: [&str; 3], unit: f64| -> Result<[Option<f64>; 3], Failure> {
-        let mut all = [None; 3];
-        for (own, column) in all.iter_mut().zip(columns) {
-            *own = row.number(column)?.map(|v| v * unit);
-        }
-        Ok(all)
-    };
-    let positions = three(["xm_mm", "ym_mm", "zm_mm"], 1.0)?;
+    let command = row.command(output.base.as_ref().map_or([0.0; 3], |base| base.default_tool_mm))?;
+    let positions = row.any_of(["xm_mm", "ym_mm", "zm_mm"])?;
     let reading = if let Some(length_mm) = row.number("length_mm")? {
         PointReading::Distance {
             length_mm,
@@ -161,23 +122,13 @@ fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
     } else if positions.iter().any(Option::is_some) {
         PointReading::Position(positions)
     } else {
-        PointReading::Deviation(three(["dx_um", "dy_um", "dz_um"], 1e-3)?)
-    };
-    let angles = three(["a_deg", "b_deg", "c_deg"], 1.0)?;
-    let command = Command {
-        linear_mm: Vector::from(commanded),
-        rotary_rad: Vector::from(angles.map(|deg| deg.map_or(0.0, |deg| Angle::from_deg(deg).rad()))),
-        tool_mm: Vector::from(tool),
-        direction: [row.sign("dir_x")?, row.sign("dir_y")?, row.sign("dir_z")?],
+        let deviations_um = row.any_of(["dx_um", "dy_um", "dz_um"])?;
+        PointReading::Deviation(deviations_um.map(|um| um.map(|um| um * 1e-3)))
     };
     let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
     if uncertainty_mm.is_some_and(|u| u <= 0.0) {
-        return Err(row.refuse(
-            FIELD,
-            "u_um",
-            "an uncertainty is above zero".to_owned(),
-            "give the standard uncertainty in um",
-        ));
+        let message = "an uncertainty is above zero".to_owned();
+        return Err(row.refuse(CELL, "u_um", message, "give the standard uncertainty in um").into());
     }
     Ok(Point { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm })
 }
@@ -212,12 +163,14 @@ fn refused(read: &Read, error: &CalibrationError) -> Failure {
     let row = match error {
         CalibrationError::Outlier { point, .. } => {
             let (sheet, line) = read.places[*point];
-            read.sheets[sheet].rows().nth(line)
+            read.sheets[sheet].row(line)
         }
         _ => None,
     };
     match row {
-        Some(row) => row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out"),
+        Some(row) => {
+            row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out").into()
+        }
         None => failure("", &[], error),
     }
 }

@@ -59,7 +59,9 @@ pub(super) fn slip<E>(
             best = Some(Slip { words, column, before_um, after_um });
         }
     }
-    best.or_else(|| offset_left_in(data, travel_mm, before_um, &predict))
+    // Where a rotary axis turns, one that is beside its place looks like an offset.
+    let turns = data.rows.windows(2).any(|pair| pair[0].command.rotary_rad != pair[1].command.rotary_rad);
+    best.or_else(|| if turns { None } else { offset_left_in(data, travel_mm, before_um, &predict) })
 }
 
 /// A work offset that the profile does not know: the rows, moved by one vector, fit the model's curves.

@@ -116,7 +116,7 @@ fn entered(profile: &Profile, effect: &str, coefficient: &str) -> Option<f64> {
 }
 
 /// Units as the names of coefficients end, and as people write them.
-const UNITS: [(&str, &str); 12] = [
+const UNITS: [(&str, &str); 13] = [
     ("_um_per_m_k", "µm/(m·K)"),
     ("_um_per_m_k2", "µm/(m·K²)"),
     ("_um_per_kg2", "µm/kg²"),
@@ -124,6 +124,7 @@ const UNITS: [(&str, &str); 12] = [
     ("_um_per_h2", "µm/h²"),
     ("_um_per_h", "µm/h"),
     ("_um_per_k", "µm/K"),
+    ("_um_per_m_s2", "µm/(m/s²)"),
     ("_um_per_m", "µm/m"),
     ("_ms_per_m_min", "ms/(m/min)"),
     ("_ms", "ms"),

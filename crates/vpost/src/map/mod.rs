@@ -25,8 +25,9 @@ use crate::{conditions, file, profile};
 /// `vpost map`
 #[derive(Debug, Args)]
 pub struct Map {
-    /// Nodes of X, Y and Z: how many over the calibrated volume (22x22x21), or from:to:step in mm for each
-    /// (40:880:40,30:450:20,5:505:25).
+    /// Nodes: how many (22x22x21), or from:to:step of each axis, mm.
+    ///
+    /// Of X, Y and Z, over the calibrated volume, or like 40:880:40,30:450:20,5:505:25.
     #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
     pub grid: String,
     /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
@@ -47,10 +48,14 @@ pub struct Map {
     /// The same for a workpiece, where its axis commands lie, mm.
     #[arg(long, value_name = "X0..X1,Y0..Y1,Z0..Z1", allow_hyphen_values = true)]
     pub part_box: Option<String>,
-    /// Find the place for a workpiece of this size, mm, where shifting and turning it leave least.
+    /// Find the place for a workpiece of this size, mm.
+    ///
+    /// Where shifting and turning it leave least.
     #[arg(long, value_name = "LX,LY,LZ")]
     pub clamp: Option<String>,
-    /// At which angles products of errors begin to matter, and what the order of rotations changes.
+    /// At which angles products of errors begin to matter.
+    ///
+    /// And what the order of rotations changes.
     #[arg(long)]
     pub second_order: bool,
     /// Write the errors of all nodes (CSV).

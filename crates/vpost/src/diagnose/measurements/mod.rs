@@ -2,30 +2,44 @@
 
 mod columns;
 mod plausible;
-mod table;
 
 use std::collections::BTreeMap;
 
-use gap_diagnosis::{Measurements, Reading, Row};
+use diagnostic::Code;
+use gap_diagnosis::{Measurements, Reading};
 use machine_model::effects::{Conditions, EffectGeometry};
 use machine_model::{Command, Vector};
+use measurement_files::codes::CELL;
+use measurement_files::{Bar, Codes, Kind, Refusal, Row, Sheet};
 
-use crate::file;
+use super::books::Slip;
 use crate::message::Failure;
 pub(super) use plausible::{commands_and_frames, readings_against_model};
-pub(super) use table::Table;
-use table::{FIELD, table};
+
+/// Columns hold something else than their names say.
+const SLIP: Code = Code(919);
+
+const KIND: Kind<'_> = Kind {
+    columns: "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um xm_mm ym_mm zm_mm d_um length_mm bx_mm by_mm bz_mm \
+              dir_x dir_y dir_z feed_mm_min tool_x_mm tool_y_mm tool_z_mm load_kg time_s temp_c temp_x_c temp_y_c \
+              temp_z_c repeat u_um u_x_um u_y_um u_z_um instrument artefact station note \
+              plane radius_mm angle_deg deviation_um dir",
+    expected: "expected: run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,… and one row per measured point",
+    passes_over: None,
+    may_be_empty: false,
+    codes: Codes::MEASUREMENTS,
+};
 
 /// Reads a measurement file; `tool_mm` is the tool vector of rows that give none.
-pub(super) fn read<'a>(
-    name: &'a str,
-    bytes: &'a [u8],
+pub(super) fn read(
+    name: &str,
+    bytes: &[u8],
     tool_mm: [f64; 3],
     ignore: &[String],
     geometry: &EffectGeometry,
-) -> Result<(Measurements, Table<'a>), Failure> {
-    let table = table(name, bytes, ignore)?;
-    columns::agree(&table)?;
+) -> Result<(Measurements, Sheet), Box<Refusal>> {
+    let sheet = Sheet::read(name, bytes, &KIND, Some(ignore))?;
+    columns::agree(&sheet)?;
     let mut data = Measurements {
         runs: Vec::new(),
         instruments: Vec::new(),
@@ -34,35 +48,41 @@ pub(super) fn read<'a>(
     };
     let (mut artefacts, mut stations): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let mut places = BTreeMap::new();
-    for record in &table.records {
-        let run_place = table.place["run"];
-        let run = file::decoded(record.get(run_place).unwrap_or_default()).into_owned();
+    for row in sheet.rows() {
+        let run = row.text("run").into_owned();
         if run.is_empty() {
-            return Err(table.refuse(
-                FIELD,
-                Some((record, run_place)),
-                "`run` is empty".to_owned(),
-                "this field",
-                "give every row the id of its measurement line",
-            ));
+            let help = "give every row the id of its measurement line";
+            return Err(row.refuse(CELL, "run", "`run` is empty".to_owned(), help));
         }
         let index = *places.entry(run).or_insert_with_key(|run| {
             data.runs.push(run.clone());
             data.runs.len() - 1
         });
-        table.number(record, "repeat")?;
-        let mut row = row(&table, record, index, tool_mm)?;
-        row.instrument = table.text(record, "instrument").map(|name| numbered(&mut data.instruments, name));
-        row.artefact = table.text(record, "artefact").map(|name| numbered(&mut artefacts, name));
-        row.station = table.text(record, "station").map(|name| numbered(&mut stations, name));
-        data.rows.push(row);
+        row.number("repeat")?;
+        let text = |key: &str| Some(row.text(key).into_owned()).filter(|text| !text.is_empty());
+        data.rows.push(gap_diagnosis::Row {
+            instrument: text("instrument").map(|name| numbered(&mut data.instruments, name)),
+            artefact: text("artefact").map(|name| numbered(&mut artefacts, name)),
+            station: text("station").map(|name| numbered(&mut stations, name)),
+            ..measured(&sheet, row, index, tool_mm)?
+        });
     }
-    columns::alive(&table)?;
-    columns::everywhere(&table)?;
-    columns::placed(&table, &stations)?;
-    columns::no_copies(&table)?;
+    columns::alive(&sheet)?;
+    columns::everywhere(&sheet)?;
+    columns::placed(&sheet, &stations)?;
+    columns::no_copies(&sheet)?;
     data.follow();
-    Ok((data, table))
+    Ok((data, sheet))
+}
+
+/// The refusal of a file whose columns do not hold what their names say.
+pub(super) fn slipped(sheet: &Sheet, slip: &Slip) -> Failure {
+    let message = format!(
+        "it seems that {}: the gap would be {:.1} um RMS in the place of {:.1} um, with no other cause",
+        slip.words, slip.after_um, slip.before_um
+    );
+    let help = "correct the column and diagnose again; with --as-written it is taken as it stands";
+    sheet.refuse_column(SLIP, slip.column, message, help).into()
 }
 
 /// The number of a name, in order of appearance.
@@ -73,59 +93,60 @@ fn numbered(names: &mut Vec<String>, name: String) -> usize {
     })
 }
 
-fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3]) -> Result<Row, Failure> {
-    let three = |names: [&str; 3]| -> Result<[Option<f64>; 3], Failure> {
-        let [x, y, z] = names;
-        Ok([table.number(record, x)?, table.number(record, y)?, table.number(record, z)?])
+/// What a row says, names apart.
+fn measured(
+    sheet: &Sheet,
+    row: Row<'_>,
+    run: usize,
+    tool_mm: [f64; 3],
+) -> Result<gap_diagnosis::Row, Box<Refusal>> {
+    let has_lengths = sheet.has("length_mm") || sheet.is_polar();
+    let bar = if has_lengths { Some(row.bar()?) } else { None };
+    let command = match bar {
+        // The tool ball is the tip; of a circle only its place is said.
+        Some(Bar { ball_mm, direction, .. }) if sheet.is_polar() => {
+            let tool_mm = Vector::from(tool_mm);
+            Command { linear_mm: ball_mm - tool_mm, rotary_rad: Vector::zeros(), tool_mm, direction }
+        }
+        _ => row.command(tool_mm)?,
     };
-    let linear_mm = Vector::new(
-        table.needed(record, "x_mm")?,
-        table.needed(record, "y_mm")?,
-        table.needed(record, "z_mm")?,
-    );
-    let rotary = three(["a_deg", "b_deg", "c_deg"])?.map(|v| v.unwrap_or(0.0).to_radians());
-    let tool = three(["tool_x_mm", "tool_y_mm", "tool_z_mm"])?;
-    let tool: [f64; 3] = std::array::from_fn(|i| tool[i].unwrap_or(tool_mm[i]));
-    let direction = [
-        direction(table, record, "dir_x")?,
-        direction(table, record, "dir_y")?,
-        direction(table, record, "dir_z")?,
-    ];
-    let common = table.number(record, "temp_c")?;
-    let temp_c = three(["temp_x_c", "temp_y_c", "temp_z_c"])?.map(|own| own.or(common));
-    let u_um = uncertainty(table, record)?;
-    let measured = three(["xm_mm", "ym_mm", "zm_mm"])?;
-    let displacement = three(["dx_um", "dy_um", "dz_um"])?;
-    let reading = if table.has("length_mm") {
-        let length_mm = table.needed(record, "length_mm")?;
-        let ball_mm = Vector::new(
-            table.needed(record, "bx_mm")?,
-            table.needed(record, "by_mm")?,
-            table.needed(record, "bz_mm")?,
-        );
-        Reading::Length { length_mm, ball_mm }
-    } else if table.has("d_um") {
-        Reading::Magnitude(table.needed(record, "d_um")?)
-    } else if ["xm_mm", "ym_mm", "zm_mm"].iter().any(|c| table.has(c)) {
+    for key in ["dir_x", "dir_y", "dir_z"] {
+        if let Some(v) = row.number(key)?.filter(|v| ![-1.0, 0.0, 1.0].contains(v)) {
+            let message = format!("a direction of {v} is not possible");
+            return Err(row.refuse(CELL, key, message, "write 1, -1, or 0 for an axis that did not move"));
+        }
+    }
+    let common = row.number("temp_c")?;
+    let temp_c = row.any_of(["temp_x_c", "temp_y_c", "temp_z_c"])?.map(|own| own.or(common));
+    let u_um = uncertainty(row)?;
+    let measured_mm = row.any_of(["xm_mm", "ym_mm", "zm_mm"])?;
+    let displacement_um = row.any_of(["dx_um", "dy_um", "dz_um"])?;
+    let reading = if let Some(Bar { length_mm, centre_mm, .. }) = bar {
+        Reading::Length { length_mm, ball_mm: centre_mm }
+    } else if sheet.has("d_um") {
+        Reading::Magnitude(row.needed("d_um")?)
+    } else if ["xm_mm", "ym_mm", "zm_mm"].iter().any(|c| sheet.has(c)) {
         // A measured position is the tip's, or the gauge point's where the set-up shift holds the tool.
-        Reading::Displacement(std::array::from_fn(|i| measured[i].map(|m| 1e3 * (m - linear_mm[i]))))
+        Reading::Displacement(std::array::from_fn(|i| {
+            measured_mm[i].map(|m| 1e3 * (m - command.linear_mm[i]))
+        }))
     } else {
-        Reading::Displacement(displacement)
+        Reading::Displacement(displacement_um)
     };
-    Ok(Row {
+    // Where the station of a tracker stands; nothing where the file does not say.
+    let station_mm = match row.any_of(["bx_mm", "by_mm", "bz_mm"])? {
+        [Some(x), Some(y), Some(z)] if !has_lengths => Some([x, y, z]),
+        _ => None,
+    };
+    Ok(gap_diagnosis::Row {
         run,
-        command: Command {
-            linear_mm,
-            rotary_rad: Vector::from(rotary),
-            tool_mm: Vector::from(tool),
-            direction,
-        },
+        command,
         conditions: Conditions {
             temp_c,
-            time_s: table.number(record, "time_s")?,
-            load_kg: table.number(record, "load_kg")?,
-            feed_mm_min: table.number(record, "feed_mm_min")?,
-            station_mm: if table.has("length_mm") { None } else { station(table, record)? },
+            time_s: row.number("time_s")?,
+            load_kg: row.number("load_kg")?,
+            feed_mm_min: row.number("feed_mm_min")?,
+            station_mm,
             ..Conditions::default()
         },
         predicted_mm: Vector::zeros(),
@@ -134,50 +155,19 @@ fn row(table: &Table<'_>, record: &csv::ByteRecord, run: usize, tool_mm: [f64; 3
         station: None,
         artefact: None,
         reading,
-        line: record.position().map_or(0, csv::Position::line),
-    })
-}
-
-/// Where the station of a tracker stands; nothing where the file does not say.
-fn station(table: &Table<'_>, record: &csv::ByteRecord) -> Result<Option<[f64; 3]>, Failure> {
-    let place =
-        [table.number(record, "bx_mm")?, table.number(record, "by_mm")?, table.number(record, "bz_mm")?];
-    Ok(match place {
-        [Some(x), Some(y), Some(z)] => Some([x, y, z]),
-        _ => None,
+        line: row.line(),
     })
 }
 
 /// Stated standard uncertainty by component, µm: one number for all, or one each.
-fn uncertainty(table: &Table<'_>, record: &csv::ByteRecord) -> Result<[Option<f64>; 3], Failure> {
-    let mut found = [table.number(record, "u_um")?; 3];
-    for (component, column) in ["u_x_um", "u_y_um", "u_z_um"].into_iter().enumerate() {
-        found[component] = table.number(record, column)?.or(found[component]);
-    }
+fn uncertainty(row: Row<'_>) -> Result<[Option<f64>; 3], Box<Refusal>> {
+    let common = row.number("u_um")?;
+    let found = row.any_of(["u_x_um", "u_y_um", "u_z_um"])?.map(|own| own.or(common));
     for column in ["u_um", "u_x_um", "u_y_um", "u_z_um"] {
-        let Some(u) = table.number(record, column)?.filter(|u| *u <= 0.0) else { continue };
-        return Err(table.refuse(
-            FIELD,
-            Some((record, table.place[column])),
-            format!("an uncertainty of {u} um is not possible"),
-            column,
-            "give the standard uncertainty, above zero, or leave it empty",
-        ));
+        let Some(u) = row.number(column)?.filter(|u| *u <= 0.0) else { continue };
+        let message = format!("an uncertainty of {u} um is not possible");
+        let help = "give the standard uncertainty, above zero, or leave it empty";
+        return Err(row.refuse(CELL, column, message, help));
     }
     Ok(found)
-}
-
-/// A direction of approach; nothing where it is not known.
-fn direction(table: &Table<'_>, record: &csv::ByteRecord, column: &str) -> Result<i8, Failure> {
-    match table.number(record, column)? {
-        None => Ok(0),
-        Some(v) if [-1.0, 0.0, 1.0].contains(&v) => Ok(v as i8),
-        Some(v) => Err(table.refuse(
-            FIELD,
-            Some((record, table.place[column])),
-            format!("a direction of {v} is not possible"),
-            column,
-            "write 1, -1, or 0 for an axis that did not move",
-        )),
-    }
 }

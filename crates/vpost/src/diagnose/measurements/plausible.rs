@@ -6,12 +6,12 @@
 use diagnostic::Code;
 use gap_diagnosis::{Measurements, Reading};
 use machine_profile::Profile;
+use measurement_files::Sheet;
+use measurement_files::codes::UNIT;
 
-use super::table::Table;
+use super::columns::READINGS;
 use crate::message::Failure;
 
-/// The numbers cannot be in the unit of their column.
-const UNITS: Code = Code(913);
 /// Rows of different frames in one file.
 const FRAMES: Code = Code(916);
 
@@ -28,46 +28,35 @@ const LARGEST_SCATTER_UM: f64 = 100.0;
 const TOO_SMALL: f64 = 1.0 / 100.0;
 /// No machine is as good as that, µm.
 const PERFECT_UM: f64 = 0.05;
-/// Workshops are colder or warmer than that only by mistake (kelvin, Fahrenheit), °C.
-const TEMPERATURES_C: std::ops::RangeInclusive<f64> = -20.0..=60.0;
-
 /// The column that holds the first reading of a file.
-fn reading_column(table: &Table<'_>) -> &'static str {
-    let kinds = ["dx_um", "dy_um", "dz_um", "xm_mm", "ym_mm", "zm_mm", "d_um", "length_mm"];
-    kinds.into_iter().find(|c| table.has(c)).unwrap_or("run")
+fn reading_column(sheet: &Sheet) -> &'static str {
+    READINGS.into_iter().find(|c| sheet.has(c)).unwrap_or("run")
 }
 
-fn refuse(table: &Table<'_>, code: Code, row: usize, column: &str, message: String, help: &str) -> Failure {
-    let at = table.records.get(row).zip(table.place.get(column).copied());
-    table.refuse(code, at, message, column, help)
+fn refuse(sheet: &Sheet, code: Code, row: usize, column: &str, message: String, help: &str) -> Failure {
+    match sheet.row(row) {
+        Some(row) => row.refuse(code, column, message, help).into(),
+        None => sheet.refuse_column(code, column, message, help).into(),
+    }
 }
 
 /// Units and frames that the file alone shows; nothing has been predicted yet.
 pub(in crate::diagnose) fn commands_and_frames(
-    table: &Table<'_>,
+    sheet: &Sheet,
     data: &Measurements,
     profile: &Profile,
 ) -> Result<(), Failure> {
     let widest = (0..3).map(|a| data.range_mm(a).1 - data.range_mm(a).0).fold(0.0, f64::max);
     if widest > 0.0 && widest < SMALLEST_SPAN_MM && data.rows.len() > 3 {
         let message = format!("the commands span {widest} mm in all: are x_mm, y_mm, z_mm metres?");
-        return Err(refuse(table, UNITS, 0, "x_mm", message, "give the commanded positions in millimetres"));
+        return Err(refuse(sheet, UNIT, 0, "x_mm", message, "give the commanded positions in millimetres"));
     }
-    travel(table, data, profile)?;
-    for (row, measured) in data.rows.iter().enumerate() {
-        let odd = measured.conditions.temp_c.iter().flatten().find(|t| !TEMPERATURES_C.contains(t));
-        if let Some(t) = odd {
-            let columns = ["temp_c", "temp_x_c", "temp_y_c", "temp_z_c"];
-            let column = columns.into_iter().find(|c| table.has(c)).unwrap_or("run");
-            let message = format!("{t} degrees Celsius in a workshop: is it kelvin or Fahrenheit?");
-            return Err(refuse(table, UNITS, row, column, message, "give temperatures in degrees Celsius"));
-        }
-    }
-    sizes(table, data, widest)?;
-    frames(table, data, FAR_UM + TURNED_UM_PER_MM * widest)
+    travel(sheet, data, profile)?;
+    sizes(sheet, data, widest)?;
+    frames(sheet, data, FAR_UM + TURNED_UM_PER_MM * widest)
 }
 
-fn travel(table: &Table<'_>, data: &Measurements, profile: &Profile) -> Result<(), Failure> {
+fn travel(sheet: &Sheet, data: &Measurements, profile: &Profile) -> Result<(), Failure> {
     for axis in 0..3 {
         let travel = profile.description.linear[axis].travel_mm;
         let slack = 0.02 * (travel.high - travel.low) + 1.0;
@@ -82,21 +71,21 @@ fn travel(table: &Table<'_>, data: &Measurements, profile: &Profile) -> Result<(
                 data.rows[row].command.linear_mm[axis], travel.low, travel.high
             );
             let help = "give machine coordinates in millimetres, or the profile of this machine";
-            return Err(refuse(table, UNITS, row, ["x_mm", "y_mm", "z_mm"][axis], message, help));
+            return Err(refuse(sheet, UNIT, row, ["x_mm", "y_mm", "z_mm"][axis], message, help));
         }
     }
     Ok(())
 }
 
 /// Readings that are far too large.
-fn sizes(table: &Table<'_>, data: &Measurements, widest_mm: f64) -> Result<(), Failure> {
+fn sizes(sheet: &Sheet, data: &Measurements, widest_mm: f64) -> Result<(), Failure> {
     let help =
         "deviations are micrometres, positions are machine coordinates in millimetres: check units and frame";
     let sizes = sorted(readings(data).map(|(_, um)| um.abs()));
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
     if median > 3.0 * FAR_UM + TURNED_UM_PER_MM * widest_mm {
         let message = format!("half of the deviations exceed {:.1} mm", median * 1e-3);
-        return Err(refuse(table, UNITS, 0, reading_column(table), message, help));
+        return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     let scatter = scatter_um(data);
     if scatter > LARGEST_SCATTER_UM {
@@ -104,16 +93,13 @@ fn sizes(table: &Table<'_>, data: &Measurements, widest_mm: f64) -> Result<(), F
             "neighbouring deviations differ by {:.2} mm and more: are they nanometres?",
             scatter * 1e-3
         );
-        return Err(refuse(table, UNITS, 0, reading_column(table), message, help));
+        return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     Ok(())
 }
 
 /// Readings that are far too small, by what the model predicts for the same rows.
-pub(in crate::diagnose) fn readings_against_model(
-    table: &Table<'_>,
-    data: &Measurements,
-) -> Result<(), Failure> {
+pub(in crate::diagnose) fn readings_against_model(sheet: &Sheet, data: &Measurements) -> Result<(), Failure> {
     if data.rows.len() <= 3 {
         return Ok(());
     }
@@ -122,7 +108,7 @@ pub(in crate::diagnose) fn readings_against_model(
     let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
     if large < PERFECT_UM {
         let message = format!("nine deviations of ten are below {large:.4} um");
-        return Err(refuse(table, UNITS, 0, reading_column(table), message, help));
+        return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     let predicted = rms(data.rows.iter().map(|r| 1e3 * r.predicted_mm.norm()));
     let measured = rms(readings(data).map(|(_, um)| um));
@@ -131,17 +117,17 @@ pub(in crate::diagnose) fn readings_against_model(
         let message = format!(
             "the deviations are {measured:.3} um RMS where the profile predicts {predicted:.1} um: are they millimetres?"
         );
-        return Err(refuse(table, UNITS, 0, reading_column(table), message, help));
+        return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     Ok(())
 }
 
 /// Rows and runs that were measured in another frame than the rest.
-fn frames(table: &Table<'_>, data: &Measurements, far_um: f64) -> Result<(), Failure> {
+fn frames(sheet: &Sheet, data: &Measurements, far_um: f64) -> Result<(), Failure> {
     let help = "all rows must be in one frame, machine commands and readings alike; convert these rows or leave them out";
     let column = |class: usize| {
         let names = [["dx_um", "xm_mm"], ["dy_um", "ym_mm"], ["dz_um", "zm_mm"]];
-        names[class].into_iter().find(|c| table.has(c)).unwrap_or("run")
+        names[class].into_iter().find(|c| sheet.has(c)).unwrap_or("run")
     };
     for class in 0..3 {
         let own: Vec<(usize, f64)> =
@@ -169,7 +155,7 @@ fn frames(table: &Table<'_>, data: &Measurements, far_um: f64) -> Result<(), Fai
             far.len() - 1,
             mean * 1e-3
         );
-        return Err(refuse(table, FRAMES, row, column(class), message, help));
+        return Err(refuse(sheet, FRAMES, row, column(class), message, help));
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Command, Vector};
 
-use super::Model;
+use super::model::Model;
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};

@@ -5,8 +5,7 @@ use std::fmt::Write;
 use machine_model::Vector;
 use nc_syntax::dialect::{Paren, Semicolon};
 
-use super::Line;
-use super::lines::DWELL_S;
+use super::lines::{DWELL_S, Line};
 use crate::message::Failure;
 use crate::settings::Settings;
 

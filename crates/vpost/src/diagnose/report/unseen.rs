@@ -6,7 +6,7 @@ use report::chart::{Bar, Interval, cumulative, interval, waterfall};
 use report::page::{figure, table};
 use report::text::{number, percent, shown};
 
-use super::Facts;
+use super::facts::Facts;
 
 /// Most points in the table.
 const MOST: usize = 100;

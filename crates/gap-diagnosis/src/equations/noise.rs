@@ -1,0 +1,345 @@
+//! What of the residual is noise: repeats, neighbours, outliers.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::equations::observation::{Row, Scalar};
+
+/// Where the noise figure comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NoiseSource {
+    /// Same command, same approach, same conditions, measured again.
+    Repeats,
+    /// No repeats: differences of neighbouring rows of a run.
+    Neighbours,
+    /// No repeats: differences of the same command in other runs, where neighbours differ by far more.
+    Returns,
+    /// No repeats: what a form of second degree leaves of every run, where neighbouring rows differ by far more.
+    Forms,
+}
+
+/// Noise of a row of weight one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Noise {
+    /// Variance, µm².
+    pub variance: f64,
+    /// Degrees of freedom of that variance.
+    pub degrees: f64,
+    /// Where it comes from.
+    pub source: NoiseSource,
+    /// Scatter of repeats over that of neighbouring readings, at least 1.
+    pub slow: f64,
+}
+
+impl Noise {
+    /// True where one command read again differs by more than neighbouring readings scatter.
+    #[must_use]
+    pub(crate) fn is_slow(&self) -> bool {
+        self.slow > SLOW
+    }
+}
+
+/// Repeats differ in temperature by less than this: 0.5 m of steel grows by 6 µm in one kelvin.
+const SAME_K: f64 = 1.0;
+/// Repeats must give at least this many degrees of freedom to be believed.
+const ENOUGH_REPEATS: f64 = 12.0;
+
+/// Repeats that scatter by this factor more than neighbours (standard deviations) differ by more than noise: something
+/// changed between the passes.
+const SLOW: f64 = 2.0;
+
+/// Noise variance from residuals: from repeats where there are enough, else from neighbours.
+///
+/// `phi`: correlation of a reading with the next one of its run. Neighbours then differ by less than independent
+/// readings: `σ²` times `1 - 4φ/3 + φ²/3` in second differences.
+#[must_use]
+pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
+    let floor = quantum_um(scalars).powi(2) / 12.0;
+    let neighbours = from_neighbours(rows, scalars, residuals_um, phi);
+    let found = match from_repeats(rows, scalars, residuals_um) {
+        Some(noise) if noise.degrees >= ENOUGH_REPEATS => {
+            let slow = neighbours
+                .map_or(1.0, |n| (noise.variance / n.variance.max(floor).max(1e-12)).sqrt())
+                .max(1.0);
+            Some(Noise { slow, ..noise })
+        }
+        few => {
+            // What comes back in every run is no noise, however much neighbouring places differ by it.
+            let returns = from_returns(rows, scalars, residuals_um).filter(|r| r.degrees >= ENOUGH_REPEATS);
+            let smaller = |found: &Noise| {
+                neighbours.is_some_and(|n| found.variance.max(floor) * SLOW * SLOW < n.variance)
+            };
+            // Rows measured in no order of place have no neighbours: a smooth form of each run shows what is no noise.
+            returns
+                .filter(smaller)
+                .or_else(|| from_forms(rows, scalars, residuals_um).filter(smaller))
+                .or(neighbours)
+                .or(few)
+        }
+    };
+    found.map(|noise| Noise { variance: noise.variance.max(floor), ..noise })
+}
+
+/// Step of the readings, µm, 0 where they have none: a display that shows whole micrometres gives few different values.
+#[must_use]
+pub(crate) fn quantum_um(scalars: &[Scalar]) -> f64 {
+    /// Distinct values may be at most this share of the readings.
+    const FEW: f64 = 0.3;
+    let mut values: Vec<f64> = scalars.iter().map(|s| s.reading_um).collect();
+    values.sort_by(f64::total_cmp);
+    let mut steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).collect();
+    if (steps.len() as f64) < FEW * values.len() as f64 { median(&mut steps).unwrap_or(0.0) } else { 0.0 }
+}
+
+/// Everything that must agree for two rows to be repeats, in steps far below what matters.
+fn key(row: &Row, scalar: &Scalar) -> [i64; 22] {
+    let step = |v: f64, unit: f64| (v / unit).round() as i64;
+    let c = &row.command;
+    let optional = |v: Option<f64>, unit: f64| v.map_or(i64::MIN, |v| step(v, unit));
+    let id = |v: Option<usize>| v.map_or(-1, |v| v as i64);
+    let [tx, ty, tz] = row.conditions.temp_c.map(|t| optional(t, SAME_K));
+    [
+        row.run as i64,
+        step(c.linear_mm.x, 1e-5),
+        step(c.linear_mm.y, 1e-5),
+        step(c.linear_mm.z, 1e-5),
+        step(c.rotary_rad.x, 1e-8),
+        step(c.rotary_rad.y, 1e-8),
+        step(c.rotary_rad.z, 1e-8),
+        step(c.tool_mm.x, 1e-5),
+        step(c.tool_mm.y, 1e-5),
+        step(c.tool_mm.z, 1e-5),
+        i64::from(c.direction[0]) * 9 + i64::from(c.direction[1]) * 3 + i64::from(c.direction[2]),
+        optional(row.conditions.feed_mm_min, 1e-3),
+        optional(row.conditions.load_kg, 1e-3),
+        scalar.class as i64,
+        step(scalar.along.x, 1e-4),
+        step(scalar.along.y, 1e-4),
+        step(scalar.along.z, 1e-4),
+        id(row.instrument),
+        id(row.artefact),
+        tx,
+        ty,
+        tz,
+    ]
+}
+
+/// Scatter about the mean of repeats. The same command in another run, with another artefact or instrument or at another
+/// temperature is no repeat: what differs then is set-up, workpiece or machine.
+///
+/// Single blunders would make the noise large enough to hide themselves: readings of three repeats and more that lie
+/// further than [`BLUNDER`] robust standard deviations from their median are left out.
+fn from_repeats(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    /// Far beyond the tail of what is left when outliers have gone.
+    const BLUNDER: f64 = 8.0;
+    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        groups.entry(key(&rows[scalar.row], scalar)).or_default().push(r * scalar.weight.sqrt());
+    }
+    groups.retain(|_, group| group.len() > 1);
+    let differences = groups.values().flat_map(|g| g.windows(2).map(|w| (w[1] - w[0]).abs()));
+    let robust = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences.collect::<Vec<f64>>())?;
+    let (mut square, mut degrees) = (0.0, 0.0);
+    for group in groups.values_mut() {
+        if group.len() > 2 && robust > 0.0 {
+            let middle = median(&mut group.clone()).unwrap_or(0.0);
+            group.retain(|v| (v - middle).abs() <= BLUNDER * robust);
+        }
+        let mean = group.iter().sum::<f64>() / group.len() as f64;
+        square += group.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+        degrees += group.len() as f64 - 1.0;
+    }
+    let source = NoiseSource::Repeats;
+    (degrees > 0.0).then(|| Noise { variance: square / degrees, degrees, source, slow: 1.0 })
+}
+
+/// Differences of the same command in other runs, the runs' own offsets taken off, robustly. It holds the runs' differences
+/// too, so that no noise is larger; how much smaller, nobody knows.
+fn from_returns(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    let mut runs: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
+    for (scalar, value) in scalars.iter().zip(&weighted) {
+        runs.entry((rows[scalar.row].run, scalar.class)).or_default().push(*value);
+    }
+    let offsets: BTreeMap<(usize, usize), f64> =
+        runs.into_iter().map(|(run, mut values)| (run, median(&mut values).unwrap_or(0.0))).collect();
+    let mut groups: BTreeMap<[i64; 22], Vec<f64>> = BTreeMap::new();
+    for (scalar, value) in scalars.iter().zip(&weighted) {
+        let mut key = key(&rows[scalar.row], scalar);
+        key[0] = 0;
+        groups.entry(key).or_default().push(value - offsets[&(rows[scalar.row].run, scalar.class)]);
+    }
+    let mut differences: Vec<f64> =
+        groups.values().flat_map(|group| group.windows(2).map(|w| (w[1] - w[0]).abs())).collect();
+    let degrees = differences.len() as f64 / 3.0;
+    let sigma = 1.4826 / std::f64::consts::SQRT_2 * median(&mut differences)?;
+    Some(Noise { variance: sigma * sigma, degrees, source: NoiseSource::Returns, slow: 1.0 })
+}
+
+/// What a polynomial of second degree in the place leaves of every run that has readings enough for it.
+fn from_forms(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<Noise> {
+    /// Coefficients of the form, and readings that a run must have.
+    const FORM: usize = 10;
+    const READINGS: usize = 24;
+    let mut runs: BTreeMap<(usize, usize), Vec<(machine_model::Vector, f64)>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let row = &rows[scalar.row];
+        let place = row.command.linear_mm + row.command.tool_mm;
+        runs.entry((row.run, scalar.class)).or_default().push((place, r * scalar.weight.sqrt()));
+    }
+    let (mut square, mut degrees) = (0.0, 0.0);
+    for points in runs.values().filter(|points| points.len() >= READINGS) {
+        let count = points.len() as f64;
+        let middle = points.iter().map(|p| p.0).sum::<machine_model::Vector>() / count;
+        let reach = points.iter().map(|p| (p.0 - middle).amax()).fold(1e-9, f64::max);
+        let form = |place: machine_model::Vector| {
+            let u = (place - middle) / reach;
+            [1.0, u.x, u.y, u.z, u.x * u.x, u.y * u.y, u.z * u.z, u.x * u.y, u.x * u.z, u.y * u.z]
+        };
+        let columns = DMatrix::from_fn(points.len(), FORM, |i, j| form(points[i].0)[j]);
+        let values = DVector::from_iterator(points.len(), points.iter().map(|p| p.1));
+        let turned = columns.svd(true, false);
+        let largest = turned.singular_values.max();
+        let kept: Vec<usize> = (0..FORM).filter(|k| turned.singular_values[*k] > 1e-6 * largest).collect();
+        let Some(directions) = turned.u else { continue };
+        let taken: f64 = kept.iter().map(|k| directions.column(*k).dot(&values).powi(2)).sum();
+        square += (values.norm_squared() - taken).max(0.0);
+        degrees += count - kept.len() as f64;
+    }
+    let source = NoiseSource::Forms;
+    (degrees >= 5.0 * ENOUGH_REPEATS).then(|| Noise {
+        variance: square / degrees,
+        degrees,
+        source,
+        slow: 1.0,
+    })
+}
+
+/// A place in steps, a class of readings, and which way the axes came.
+type Returning = ([i64; 6], usize, [i8; 3]);
+
+/// Second differences along a run, robustly: a smooth residual cancels, noise does not.
+fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
+    let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
+    for (scalar, r) in scalars.iter().zip(residuals_um) {
+        let row = &rows[scalar.row];
+        let line = lines.entry((row.run, scalar.class, row.command.direction)).or_default();
+        line.push(r * scalar.weight.sqrt());
+    }
+    let mut differences: Vec<f64> = lines
+        .values()
+        .flat_map(|line| line.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs() / 1.5_f64.sqrt()))
+        .collect();
+    let degrees = differences.len() as f64 / 3.0;
+    let sigma = 1.4826 * median(&mut differences)?;
+    let variance = sigma * sigma / (1.0 - 4.0 / 3.0 * phi + phi * phi / 3.0).max(0.02);
+    let source = NoiseSource::Neighbours;
+    (degrees >= 4.0).then_some(Noise { variance, degrees, source, slow: 1.0 })
+}
+
+/// Median; sorts what it is given.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(values[middle]),
+        _ => Some(0.5 * (values[middle - 1] + values[middle])),
+    }
+}
+
+/// A residual is an outlier beyond this many robust standard deviations.
+const OUTLIER: f64 = 4.5;
+/// A neighbour that is as far out on the same side makes it structure, not an outlier.
+const ACCOMPLICE: f64 = 2.5;
+
+/// Rows that stand alone far from what the model and their neighbours say, ascending.
+#[must_use]
+pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<usize> {
+    let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
+    let mut sizes: Vec<f64> = weighted.iter().map(|v| v.abs()).collect();
+    let Some(mad) = median(&mut sizes) else { return Vec::new() };
+    // Where most readings show the same number, the display's step is the scatter.
+    let sigma = (1.4826 * mad).max(quantum_um(scalars)).max(1e-6);
+    let mut lines: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    // Sum and count at one place, whatever the direction and the repeat.
+    let mut places: BTreeMap<(usize, usize, [i64; 6]), (f64, f64)> = BTreeMap::new();
+    let place_of = |scalar: &Scalar| {
+        let row = &rows[scalar.row];
+        let (q, t) = (row.command.linear_mm, row.command.rotary_rad);
+        let step = |v: f64| (v * 1e4).round() as i64;
+        (row.run, scalar.class, [step(q.x), step(q.y), step(q.z), step(t.x), step(t.y), step(t.z)])
+    };
+    // Sum and count at one place reached one way, whatever the run.
+    let mut returns = BTreeMap::<Returning, (f64, f64)>::new();
+    let return_of = |scalar: &Scalar| {
+        let (_, class, place) = place_of(scalar);
+        (place, class, rows[scalar.row].command.direction)
+    };
+    for (index, scalar) in scalars.iter().enumerate() {
+        lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
+        let entry = places.entry(place_of(scalar)).or_default();
+        *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
+        let entry = returns.entry(return_of(scalar)).or_default();
+        *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
+    }
+    let mut found: Vec<usize> = Vec::new();
+    for line in lines.values() {
+        for (place, index) in line.iter().enumerate() {
+            let value = weighted[*index] / sigma;
+            if value.abs() <= OUTLIER {
+                continue;
+            }
+            let beside = [place.checked_sub(1), Some(place + 1)];
+            let alone = beside.iter().flatten().filter_map(|p| line.get(*p)).all(|other| {
+                let there = weighted[*other] / sigma;
+                there * value.signum() < ACCOMPLICE
+            });
+            // Repeats that say the same make it structure, too.
+            let says = |(sum, count): (f64, f64)| {
+                count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE
+            };
+            let scalar = &scalars[*index];
+            let confirmed = says(places[&place_of(scalar)]) || says(returns[&return_of(scalar)]);
+            if alone && !confirmed {
+                found.push(scalars[*index].row);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Ratio of the variance that further rows will have to the variance of the rows kept.
+///
+/// Rows beyond the outlier limit were left out. Where they are the far end of a heavy tail they will come
+/// again; where they are single blunders they will not. A tail shows itself inside the limit: between 3 and 4.5
+/// robust standard deviations normal noise has one reading in four hundred.
+#[must_use]
+pub(crate) fn tail_factor(scalars: &[Scalar], kept: &[f64], dropped: &[f64]) -> f64 {
+    const TAIL: f64 = 0.008;
+    let weighted: Vec<f64> = scalars.iter().zip(kept).map(|(s, r)| r * s.weight.sqrt()).collect();
+    let mut sizes: Vec<f64> = weighted.iter().map(|v| v.abs()).collect();
+    let Some(mad) = median(&mut sizes) else { return 1.0 };
+    let far = sizes.iter().filter(|v| **v > 3.0 * 1.4826 * mad).count() as f64;
+    let square: f64 = sizes.iter().map(|v| v * v).sum();
+    if far < TAIL * sizes.len() as f64 || square <= 0.0 {
+        return 1.0;
+    }
+    let all: f64 = square + dropped.iter().map(|v| v * v).sum::<f64>();
+    (all / (sizes.len() + dropped.len()) as f64) / (square / sizes.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(&mut []), None);
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+}

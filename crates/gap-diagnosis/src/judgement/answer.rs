@@ -1,0 +1,259 @@
+//! The answer: what `vpost diagnose` reports.
+
+use machine_model::Vector;
+use machine_model::effects::EffectTerm;
+
+/// The verdicts of the contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing above the noise.
+    NoGap,
+    /// The causes are known.
+    Named,
+    /// The cause is one of a set that these rows cannot tell apart.
+    Ambiguous,
+    /// Causes are known, and more than a tenth of the gap is still unexplained.
+    Partial,
+    /// There is a gap and no effect of the library explains it.
+    Unknown,
+    /// The noise is not what the file says, or the instrument itself moved.
+    NoiseModelSuspect,
+    /// Too little was measured to say anything.
+    Underpowered,
+}
+
+impl Verdict {
+    /// Its name in the contract.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NoGap => "NO GAP",
+            Self::Named => "NAMED",
+            Self::Ambiguous => "AMBIGUOUS",
+            Self::Partial => "PARTIAL",
+            Self::Unknown => "UNKNOWN",
+            Self::NoiseModelSuspect => "NOISE MODEL SUSPECT",
+            Self::Underpowered => "UNDERPOWERED",
+        }
+    }
+}
+
+/// Size of the gap after alignment, per row (length over the measured components), µm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Gap {
+    /// Rows used.
+    pub rows: usize,
+    /// Root mean square.
+    pub rms_um: f64,
+    /// 95th percentile.
+    pub p95_um: f64,
+    /// Largest.
+    pub max_um: f64,
+    /// Standard deviation of the noise of one reading.
+    pub noise_um: f64,
+}
+
+/// A place where the gap is larger than elsewhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// What the rows are sorted by: `component`, `X`, `direction`, `voxel`, `run`, `time`, …
+    pub by: String,
+    /// Which part of it.
+    pub cell: String,
+    /// Share of the gap's square that lies there.
+    pub share: f64,
+    /// How likely a gap spread evenly would show this much here, corrected for the number of cells.
+    pub p: f64,
+}
+
+/// A number of a cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name with unit.
+    pub name: String,
+    /// Best value.
+    pub value: f64,
+    /// Half width of the 95 % interval; `None` for numbers that shape the effect (pitch, time constant).
+    pub u95: Option<f64>,
+}
+
+/// Predicted shrinkage of the gap's RMS: 0 nothing, 1 all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shrinkage {
+    /// Low end of the interval.
+    pub low: f64,
+    /// Best value.
+    pub mid: f64,
+    /// High end.
+    pub high: f64,
+}
+
+/// An effect that could stand in for a cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lookalike {
+    /// Its id.
+    pub effect: String,
+    /// Correlation, on this design, of what the cause does with the nearest the other effect can do.
+    pub correlation: f64,
+    /// How far its extended BIC lies behind the cause's.
+    pub behind: f64,
+}
+
+/// One cause.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cause {
+    /// The effect with its numbers, ready for a profile.
+    pub term: EffectTerm,
+    /// Its id.
+    pub effect: String,
+    /// What it is, in words, with its size.
+    pub words: String,
+    /// Its numbers.
+    pub parameters: Vec<Parameter>,
+    /// Share of the reducible gap that nothing else explains.
+    pub share_unique: f64,
+    /// Share of the reducible gap that it explains alone.
+    pub share_alone: f64,
+    /// F test, corrected for the number of forms asked about.
+    pub p: f64,
+    /// Effects these rows cannot tell from it.
+    pub cannot_be_told_from: Vec<String>,
+    /// The nearest other effects, told apart or not.
+    pub nearest: Vec<Lookalike>,
+    /// RMS of the gap before this cause is in the model (and after those listed before it), µm.
+    pub rms_before_um: f64,
+    /// RMS after it, µm.
+    pub rms_after_um: f64,
+    /// Predicted shrinkage by this cause and those before it, on the hold-out commands or on the rows.
+    pub shrink_predicted: Shrinkage,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// Measuring frame against machine frame: reported, never blamed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setup {
+    /// Shift, µm.
+    pub shift_um: [f64; 3],
+    /// Rotation, µrad.
+    pub rotation_urad: [f64; 3],
+    /// Offsets of the runs, µm.
+    pub run_offsets_um: Vec<(String, [f64; 3])>,
+    /// Angles of the runs, where they are turned against each other, µrad.
+    pub run_rotations_urad: Vec<(String, [f64; 3])>,
+    /// Zeros of the instruments behind the first one against it, with the half width of the 95 % interval, µm.
+    pub instruments_um: Vec<(usize, [(f64, f64); 3])>,
+}
+
+/// What the causes leave.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Leftover {
+    /// RMS per row, µm.
+    pub rms_um: f64,
+    /// Share of the reducible gap that is left.
+    pub phi: f64,
+    /// How likely noise alone would leave this much.
+    pub lack_of_fit_p: f64,
+    /// Where it is largest.
+    pub correlates_with: Vec<String>,
+    /// The effect that would absorb most of it, and why it is not named.
+    pub absorber: Option<String>,
+}
+
+/// What one equation of a row shows before and after the causes are in the model, alignment taken out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// Index of the row.
+    pub row: usize,
+    /// 0, 1, 2 for a component, 3 for any other direction.
+    pub class: usize,
+    /// Unit vector along which it is seen.
+    pub along: Vector,
+    /// Without the causes, µm.
+    pub before_um: f64,
+    /// With them, µm.
+    pub after_um: f64,
+}
+
+/// RMS of the unseen points as the model grows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What was added: part of the measuring frame, or a cause.
+    pub added: String,
+    /// RMS with it and all before it, µm.
+    pub rms_um: f64,
+}
+
+/// Points the fit has not seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Holdout {
+    /// Rows.
+    pub rows: usize,
+    /// RMS without the causes, µm.
+    pub rms_before_um: f64,
+    /// RMS with them, µm.
+    pub rms_after_um: f64,
+    /// 1 - after / before.
+    pub shrink: f64,
+    /// The way from the one to the other.
+    pub steps: Vec<Step>,
+    /// Point by point.
+    pub residuals: Vec<Residual>,
+}
+
+/// What would settle it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NextMeasurement {
+    /// In words.
+    pub text: String,
+    /// The pair it separates.
+    pub separates: [String; 2],
+    /// How far apart they would lie, standard deviations; 0 where nothing is to be separated yet.
+    pub expected_sigma: f64,
+    /// Its rows, readings to be filled in.
+    pub rows: Vec<crate::equations::observation::Row>,
+}
+
+/// Smallest amplitude that would have been named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detectable {
+    /// The effect.
+    pub effect: String,
+    /// Name of its first coefficient.
+    pub parameter: String,
+    /// Smallest value seen with certainty; `None` where the design does not show the effect at all.
+    pub smallest: Option<f64>,
+}
+
+/// The whole answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// In one word.
+    pub verdict: Verdict,
+    /// In one sentence.
+    pub sentence: String,
+    /// Size.
+    pub gap: Gap,
+    /// Place.
+    pub places: Vec<Cell>,
+    /// Causes, largest share first.
+    pub causes: Vec<Cause>,
+    /// Set-up.
+    pub setup: Setup,
+    /// Rest.
+    pub leftover: Leftover,
+    /// Unseen points.
+    pub holdout: Option<Holdout>,
+    /// What to measure.
+    pub next_measurement: Option<NextMeasurement>,
+    /// Lines of the file that were left out.
+    pub outlier_lines: Vec<u64>,
+    /// What could have been seen.
+    pub detectable: Vec<Detectable>,
+    /// What the gap depends on where no effect explains it, the best first: a description, no cause.
+    pub formulas: Vec<crate::search::formula::Formula>,
+    /// What the reader should know about how this was found.
+    pub notes: Vec<String>,
+    /// Equation by equation, outliers left out.
+    pub residuals: Vec<Residual>,
+}

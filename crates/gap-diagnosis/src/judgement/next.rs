@@ -1,0 +1,222 @@
+//! What to measure next: the cheap line that best tells a cause from its rival.
+
+use machine_model::Vector;
+use nalgebra::DMatrix;
+
+use crate::equations::columns::Source;
+use crate::equations::gram::Gram;
+use crate::equations::linear::Factor;
+use crate::equations::observation::{Measurements, Reading, Row};
+use crate::equations::term::Term;
+use crate::judgement::answer::NextMeasurement;
+use crate::library::candidates::Part;
+use crate::search::explanation::Explanation;
+use crate::search::moves::without;
+
+/// Points of a proposed line, each way.
+const POINTS: usize = 21;
+
+/// A line that could be measured.
+pub(crate) struct Line {
+    /// In words.
+    pub text: String,
+    /// Its rows; the readings do not count.
+    pub rows: Vec<Row>,
+}
+
+/// The cheapest line that tells the part at `pair.0` from its rival, `noise_um` the noise of a reading.
+#[must_use]
+pub(crate) fn next_measurement(
+    data: &Measurements,
+    model: &Explanation,
+    pair: Option<(usize, Part)>,
+    noise_um: f64,
+) -> Option<NextMeasurement> {
+    let (place, rival) = pair?;
+    let nuisances = model.library.nuisances;
+    let mut explaining = without(&model.parts, place);
+    explaining.push(rival);
+    let mut columns = model.library.model_columns(&explaining);
+    let explained_by = columns.len();
+    let own = &model.library.form(model.parts[place]).columns;
+    columns.extend(own);
+    let values = &model.solution.coefficients[model.library.positions(&model.parts, place)];
+    let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
+    debug_assert!(nuisances <= explained_by, "the set-up comes first");
+    let (known, _) = model.space.gram.select(&columns).whitened(model.solution.rho);
+    let now = separation(&known, explained_by, values, noise_um);
+    let mut best: Option<(f64, Line)> = None;
+    for line in lines(data) {
+        let mut runs = data.runs.clone();
+        runs.push("next".to_owned());
+        let rows: Vec<Row> = line.rows.iter().map(|r| Row { run: data.runs.len(), ..*r }).collect();
+        let extra = Measurements { runs, rows, ..data.clone() };
+        let scalars = extra.scalars(None);
+        let (fresh, _) =
+            Gram::new(terms.clone(), &Source::new(&extra, &scalars)).whitened(model.solution.rho);
+        let sigma = separation(&(&known + fresh), explained_by, values, noise_um);
+        if best.as_ref().is_none_or(|(s, _)| sigma > s * 1.05) {
+            best = Some((sigma, line));
+        }
+    }
+    let (expected_sigma, line) = best?;
+    let name = |part: Part| model.library.kind(part).to_string();
+    let separates = [name(model.parts[place]), name(rival)];
+    let text = if expected_sigma < now + 1.0 {
+        format!(
+            "No simple line tells {} from {}: a different kind of measurement is needed.",
+            separates[0], separates[1]
+        )
+    } else {
+        format!("Measure {}: it tells {} from {}.", line.text, separates[0], separates[1])
+    };
+    Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
+}
+
+/// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
+#[must_use]
+pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
+    let line = lines(data).into_iter().find(|line| line.text.starts_with("the body diagonal"))?;
+    let text = format!(
+        "Measure {}, and once more from its other end: what no effect explains must come back there.",
+        line.text
+    );
+    let separates = ["what has no name".to_owned(), "chance".to_owned()];
+    Some(NextMeasurement { text, separates, expected_sigma: 0.0, rows: line.rows })
+}
+
+/// Length of what the first columns cannot imitate of the last ones' displacement, standard deviations.
+fn separation(products: &DMatrix<f64>, explained_by: usize, values: &[f64], noise_um: f64) -> f64 {
+    let imitators: Vec<usize> = (0..explained_by).collect();
+    let squares: Vec<f64> = (0..products.nrows()).map(|i| products[(i, i)]).collect();
+    let with = |i: usize| -> f64 {
+        values.iter().enumerate().map(|(k, v)| v * products[(i, explained_by + k)]).sum()
+    };
+    let square: f64 = values.iter().enumerate().map(|(k, v)| v * with(explained_by + k)).sum();
+    let factor = Factor::new(products, &imitators, &squares);
+    let b: Vec<f64> = factor.kept.iter().map(|k| with(*k)).collect();
+    let imitated: f64 = factor.forward(&b).iter().map(|v| v * v).sum();
+    (square - imitated).max(0.0).sqrt() / noise_um.max(1e-9)
+}
+
+/// Cheap lines inside the measured box, the simplest first.
+#[must_use]
+pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
+    let Some(typical) = data.rows.get(data.rows.len() / 2).copied() else { return Vec::new() };
+    let time = data
+        .rows
+        .iter()
+        .filter_map(|r| r.conditions.time_s)
+        .fold(None, |m: Option<f64>, t| Some(m.map_or(t, |m| m.max(t))));
+    let base = Row {
+        conditions: machine_model::effects::Conditions {
+            time_s: time.map(|t| t + 60.0),
+            share: None,
+            since_turn_mm: [None; 3],
+            curvature_per_mm: None,
+            ..typical.conditions
+        },
+        predicted_mm: Vector::zeros(),
+        u_um: [None; 3],
+        instrument: None,
+        station: None,
+        artefact: None,
+        reading: Reading::Displacement([Some(0.0); 3]),
+        ..typical
+    };
+    let plain = ends(data);
+    let mut lines = Vec::new();
+    for (text, from, to) in &plain {
+        lines.push(Line { text: format!("{text}, both ways"), rows: both_ways(*from, *to, &base) });
+    }
+    let mut vary = |words: &str, changed: &Row| {
+        for (text, from, to) in &plain {
+            lines.push(Line {
+                text: format!("{text}, both ways, {words}"),
+                rows: both_ways(*from, *to, changed),
+            });
+        }
+    };
+    let c = base.conditions;
+    if let Some(feed) = c.feed_mm_min {
+        let other = if feed > 1500.0 { feed / 4.0 } else { feed * 4.0 };
+        let mut changed = base;
+        changed.conditions.feed_mm_min = Some(other);
+        vary(&format!("at {other:.0} mm/min"), &changed);
+    }
+    let mut changed = base;
+    changed.command.tool_mm.z -= 100.0;
+    vary("with a tool 100 mm longer", &changed);
+    changed.command.tool_mm = base.command.tool_mm + Vector::new(80.0, 0.0, 0.0);
+    vary("with the target 80 mm aside in X", &changed);
+    if let Some(time) = time {
+        let mut changed = base;
+        changed.conditions.time_s = Some(3.0 * time);
+        vary(&format!("again after {:.0} min", 3.0 * time / 60.0), &changed);
+    }
+    if c.temp_c.iter().any(Option::is_some) {
+        let mut changed = base;
+        changed.conditions.temp_c = c.temp_c.map(|t| t.map(|t| t + 4.0));
+        vary("4 degrees warmer", &changed);
+    }
+    if let Some(load) = c.load_kg {
+        let mut changed = base;
+        changed.conditions.load_kg = Some(load + 100.0);
+        vary("with 100 kg more load", &changed);
+    }
+    lines
+}
+
+/// Lines along the axes and their diagonals in the measured box: in words, from where, to where.
+fn ends(data: &Measurements) -> Vec<(String, Vector, Vector)> {
+    let range = [0, 1, 2].map(|a| data.range_mm(a));
+    let travels: Vec<usize> = (0..3).filter(|a| range[*a].1 > range[*a].0).collect();
+    let at = |share: f64| Vector::from_fn(|a, _| range[a].0 + share * (range[a].1 - range[a].0));
+    let (low, middle, high) = (at(0.0), at(0.5), at(1.0));
+    let name = |a: usize| ["X", "Y", "Z"][a];
+    let mut all: Vec<(String, Vector, Vector)> = Vec::new();
+    for place in [middle, low, high] {
+        for a in &travels {
+            let (mut from, mut to) = (place, place);
+            (from[*a], to[*a]) = (low[*a], high[*a]);
+            let others: Vec<String> =
+                (0..3).filter(|b| b != a).map(|b| format!("{} {:.0}", name(b), place[b])).collect();
+            all.push((format!("a line along {} at {}", name(*a), others.join(", ")), from, to));
+        }
+    }
+    for (i, a) in travels.iter().enumerate() {
+        for b in travels.iter().skip(i + 1) {
+            let (mut from, mut to) = (middle, middle);
+            (from[*a], to[*a], from[*b], to[*b]) = (low[*a], high[*a], low[*b], high[*b]);
+            all.push((format!("the diagonal in {}{}", name(*a), name(*b)), from, to));
+            (from[*b], to[*b]) = (high[*b], low[*b]);
+            all.push((format!("the other diagonal in {}{}", name(*a), name(*b)), from, to));
+        }
+    }
+    all.push(("the body diagonal".to_owned(), low, high));
+    all
+}
+
+fn both_ways(from: Vector, to: Vector, base: &Row) -> Vec<Row> {
+    let row = |share: f64, sign: f64| {
+        let mut row = *base;
+        row.command.linear_mm = from + (to - from) * share;
+        row.command.direction = std::array::from_fn(|a| {
+            let step = sign * (to[a] - from[a]);
+            if step > 0.0 {
+                1
+            } else if step < 0.0 {
+                -1
+            } else {
+                0
+            }
+        });
+        row
+    };
+    // Uneven steps: an even one cannot tell a screw's period from a curve.
+    let share = |k: usize| {
+        let uneven = if k == 0 || k + 1 == POINTS { 0.0 } else { (k as f64 * 0.618_034).fract() - 0.5 };
+        (k as f64 + 0.6 * uneven) / (POINTS - 1) as f64
+    };
+    (0..POINTS).map(|k| row(share(k), 1.0)).chain((0..POINTS).rev().map(|k| row(share(k), -1.0))).collect()
+}

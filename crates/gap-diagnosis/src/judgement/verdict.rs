@@ -1,0 +1,235 @@
+//! From figures to one word.
+
+use crate::judgement::answer::Verdict;
+
+/// More than this share of the reducible gap left: the causes named do not explain it.
+pub(crate) const PHI_PARTIAL: f64 = 0.05;
+/// Lack of fit counts below this probability.
+pub(crate) const LACK_OF_FIT: f64 = 1e-3;
+/// The best absorber must explain this share, else it is not worth calling the gap partly explained.
+pub(crate) const PHI_UNKNOWN: f64 = 0.5;
+/// Stated and observed noise may differ by this factor.
+pub(crate) const NOISE_FACTOR: f64 = 1.6;
+
+/// What the verdict depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Evidence {
+    /// Equations minus set-up.
+    pub degrees: f64,
+    /// Runs.
+    pub runs: usize,
+    /// Effects that the design can show.
+    pub visible: usize,
+    /// Causes named.
+    pub causes: usize,
+    /// Causes that are faults of the instrument.
+    pub instrument_causes: usize,
+    /// Any cause has rivals.
+    pub ambiguous: bool,
+    /// Share of the reducible gap left.
+    pub phi: f64,
+    /// Lack of fit.
+    pub lack_of_fit_p: f64,
+    /// Residual noise over stated noise, where stated.
+    pub noise_ratio: Option<f64>,
+    /// What the causes displace is known better than the gap is large, everywhere it would be used.
+    pub carries: bool,
+    /// Repeats of one command differ by more than neighbouring readings do.
+    pub slow: bool,
+    /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
+    pub trifling: bool,
+    /// What rows that no fit has seen say.
+    pub unseen: Option<Unseen>,
+}
+
+/// Forecast and outcome on rows that no fit has seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unseen {
+    /// RMS without the causes, in units of what noise alone leaves there.
+    pub before: f64,
+    /// RMS with them, in the same units.
+    pub after: f64,
+    /// Low end and middle of the forecast shrinkage.
+    pub promised: (f64, f64),
+    /// Standard error of the achieved shrinkage by the number of rows alone.
+    pub error: f64,
+}
+
+impl Unseen {
+    pub(crate) fn achieved(&self) -> f64 {
+        if self.before > 0.0 { 1.0 - self.after / self.before } else { 0.0 }
+    }
+
+    /// The forecast does not hold: less than the low end of its interval, by more than chance, and what is left is no
+    /// noise, or hardly anything of it came true.
+    pub(crate) fn refutes(&self) -> bool {
+        let short = self.promised.0 - self.achieved();
+        let little = self.achieved() < LITTLE * self.promised.1;
+        short > f64::max(SHORT, 2.0 * self.error) && (self.after > NOISE_LEFT || little)
+    }
+
+    /// A gap where nothing was named.
+    pub(crate) fn shows_a_gap(&self) -> bool {
+        self.before > UNSEEN_GAP
+    }
+
+    /// A forecast that does not hold, and of which hardly anything came true, where noise is not all that is left.
+    fn contradicts(&self) -> bool {
+        self.refutes() && self.after > NOISE_LEFT && self.achieved() < LITTLE * self.promised.1
+    }
+}
+
+/// Hardly anything of a forecast.
+const LITTLE: f64 = 0.25;
+/// A forecast may miss the low end of its interval by so much, as a share of the gap.
+const SHORT: f64 = 0.05;
+/// Up to this factor above the noise, what is left on unseen rows is noise: tails and blunders among them are not left out.
+const NOISE_LEFT: f64 = 1.6;
+/// An unseen gap of so many times the noise is one, whatever the rows of the fit say.
+const UNSEEN_GAP: f64 = 2.0;
+/// Beside structure without a name, a cause that takes off less than this share of the RMS is none that anyone acts on.
+pub(crate) const WORTH_NAMING: f64 = 0.1;
+
+/// The verdict, by the first rule that holds:
+///
+/// 1. UNDERPOWERED: fewer than 12 equations beside the set-up, one run (set-up and machine are the same then), or a design
+///    that shows no effect of the library.
+/// 2. Nothing named: UNKNOWN where more than [`PHI_PARTIAL`] of the gap is structure by the lack-of-fit test, NOISE MODEL
+///    SUSPECT where the scatter is not what the file states by more than [`NOISE_FACTOR`], else NO GAP.
+/// 3. Something named and structure left: UNDERPOWERED where the causes are not known better than the gap is large in the
+///    corners of the volume, UNKNOWN where more than [`PHI_UNKNOWN`] is left, else PARTIAL. A share alone is not enough: a small
+///    gap leaves a large share of noise; a test alone is not enough: with many rows a nanometre is significant.
+/// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
+///    the machine explains as well is not known to be the instrument's.
+/// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
+///
+/// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
+/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise.
+#[must_use]
+pub(crate) fn verdict(e: &Evidence) -> Verdict {
+    let seen = on_the_rows(e);
+    let Some(unseen) = e.unseen else { return seen };
+    match seen {
+        Verdict::NoGap | Verdict::NoiseModelSuspect if e.causes == 0 && unseen.shows_a_gap() => {
+            Verdict::Unknown
+        }
+        Verdict::Named | Verdict::Ambiguous | Verdict::NoiseModelSuspect | Verdict::Partial
+            if e.causes > 0 && unseen.contradicts() =>
+        {
+            Verdict::Unknown
+        }
+        Verdict::Named | Verdict::Ambiguous | Verdict::NoiseModelSuspect
+            if e.causes > 0 && unseen.refutes() =>
+        {
+            Verdict::Partial
+        }
+        _ => seen,
+    }
+}
+
+/// The verdict of the rows that were fitted.
+fn on_the_rows(e: &Evidence) -> Verdict {
+    if e.degrees < 12.0 || e.runs < 2 || e.visible == 0 {
+        return Verdict::Underpowered;
+    }
+    let structured = e.phi > PHI_PARTIAL && e.lack_of_fit_p < LACK_OF_FIT;
+    if e.causes == 0 {
+        if structured {
+            return Verdict::Unknown;
+        }
+        let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
+        return if suspect || e.slow { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
+    }
+    if structured {
+        // What is left is no noise, so the intervals are too narrow, and even those exceed the gap.
+        if !e.carries {
+            return Verdict::Underpowered;
+        }
+        return if e.phi > PHI_UNKNOWN || e.trifling { Verdict::Unknown } else { Verdict::Partial };
+    }
+    if e.ambiguous {
+        return Verdict::Ambiguous;
+    }
+    if e.instrument_causes == e.causes { Verdict::NoiseModelSuspect } else { Verdict::Named }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLEAR: Evidence = Evidence {
+        degrees: 900.0,
+        runs: 12,
+        visible: 40,
+        causes: 1,
+        instrument_causes: 0,
+        ambiguous: false,
+        phi: 0.01,
+        lack_of_fit_p: 0.4,
+        noise_ratio: None,
+        carries: true,
+        slow: false,
+        trifling: false,
+        unseen: None,
+    };
+
+    #[test]
+    fn one_rule_after_the_other() {
+        let none = Evidence { causes: 0, ..CLEAR };
+        let left = Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..CLEAR };
+        let cases = [
+            (CLEAR, Verdict::Named),
+            (Evidence { degrees: 11.0, ..CLEAR }, Verdict::Underpowered),
+            (Evidence { runs: 1, ..CLEAR }, Verdict::Underpowered),
+            (Evidence { visible: 0, ..CLEAR }, Verdict::Underpowered),
+            (none, Verdict::NoGap),
+            (Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..none }, Verdict::Unknown),
+            (Evidence { noise_ratio: Some(2.0), ..none }, Verdict::NoiseModelSuspect),
+            (Evidence { noise_ratio: Some(1.5), ..none }, Verdict::NoGap),
+            (left, Verdict::Partial),
+            (Evidence { phi: 0.6, ..left }, Verdict::Unknown),
+            (Evidence { carries: false, ..left }, Verdict::Underpowered),
+            // A share left that noise explains, and a lack of fit that is no share, are neither.
+            (Evidence { lack_of_fit_p: 0.4, ..left }, Verdict::Named),
+            (Evidence { phi: 0.01, ..left }, Verdict::Named),
+            (Evidence { ambiguous: true, ..CLEAR }, Verdict::Ambiguous),
+            // A fault of the instrument that a machine could have as well is a set, not a verdict on the instrument.
+            (Evidence { ambiguous: true, instrument_causes: 1, ..CLEAR }, Verdict::Ambiguous),
+            (Evidence { instrument_causes: 1, ..CLEAR }, Verdict::NoiseModelSuspect),
+            (Evidence { instrument_causes: 1, causes: 2, ..CLEAR }, Verdict::Named),
+            (Evidence { trifling: true, ..left }, Verdict::Unknown),
+            (Evidence { slow: true, ..none }, Verdict::NoiseModelSuspect),
+        ];
+        for (evidence, expected) in cases {
+            assert_eq!(verdict(&evidence), expected, "{evidence:?}");
+        }
+    }
+
+    /// Forecast 50 % (40 % at least) of a gap ten times the noise.
+    #[test]
+    fn unseen_rows_have_the_last_word() {
+        let kept = Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01 };
+        let with = |unseen: Unseen, e: Evidence| verdict(&Evidence { unseen: Some(unseen), ..e });
+        let after = |after: f64| Unseen { after, ..kept };
+        let none = Evidence { causes: 0, ..CLEAR };
+        let open = Evidence { ambiguous: true, ..CLEAR };
+        let left = Evidence { phi: 0.2, lack_of_fit_p: 1e-6, ..CLEAR };
+        for (found, expected) in [
+            (with(kept, CLEAR), Verdict::Named),
+            (with(after(6.4), CLEAR), Verdict::Named),
+            (with(after(7.0), CLEAR), Verdict::Partial),
+            (with(after(7.0), open), Verdict::Partial),
+            (with(after(9.0), CLEAR), Verdict::Unknown),
+            (with(after(11.0), open), Verdict::Unknown),
+            (with(after(11.0), left), Verdict::Unknown),
+            (with(after(7.0), left), Verdict::Partial),
+            // Few rows prove little, and what is left at the level of the noise refutes nothing.
+            (with(Unseen { error: 0.2, ..after(7.0) }, CLEAR), Verdict::Named),
+            (with(Unseen { before: 2.0, after: 1.5, ..kept }, CLEAR), Verdict::Named),
+            (with(Unseen { before: 1.9, after: 1.9, ..kept }, none), Verdict::NoGap),
+            (with(Unseen { before: 2.1, after: 2.1, ..kept }, none), Verdict::Unknown),
+        ] {
+            assert_eq!(found, expected);
+        }
+    }
+}

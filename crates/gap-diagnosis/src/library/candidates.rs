@@ -1,0 +1,136 @@
+//! The candidates: every effect the data could show, in its textbook form and bent ones.
+
+use std::ops::Range;
+
+use machine_model::effects::{EffectKind, Shape};
+
+use crate::equations::term::Term;
+
+/// One form of an effect: columns of the design.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Variant {
+    /// Positions in [`Library::terms`].
+    pub columns: Vec<usize>,
+    /// True for forms that only bend the textbook form.
+    pub enriched: bool,
+    /// True for forms that these rows sample too coarsely to be named: a wave seen at less than two places per
+    /// period can be any curve. They stay rivals.
+    pub only_rival: bool,
+}
+
+/// One effect with all its forms.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    /// Which.
+    pub kind: EffectKind,
+    /// Its forms.
+    pub variants: Vec<Variant>,
+    /// Forms that were looked at and not kept, so that looking has its price.
+    pub rejected: usize,
+}
+
+impl Candidate {
+    /// Number of forms the data were asked about.
+    #[must_use]
+    pub(crate) fn asked(&self) -> usize {
+        self.variants.len() + self.rejected
+    }
+}
+
+/// One effect of a model: where it stands in the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Index of its form.
+    pub variant: usize,
+}
+
+/// All columns and all candidates.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Library {
+    /// Set-up columns first, then those of the effects.
+    pub terms: Vec<Term>,
+    /// How many of the columns are the measuring frame's and the runs' angles.
+    pub framing: usize,
+    /// How many of the columns are set-up: these, and what the instruments add.
+    pub nuisances: usize,
+    /// The effects.
+    pub candidates: Vec<Candidate>,
+}
+
+impl Library {
+    /// Adds columns of an effect, unless they are there, and returns their positions.
+    pub(crate) fn add_columns(&mut self, kind: EffectKind, shape: Shape, indices: &[usize]) -> Vec<usize> {
+        let place = |term: Term, terms: &mut Vec<Term>| {
+            terms.iter().position(|t| *t == term).unwrap_or_else(|| {
+                terms.push(term);
+                terms.len() - 1
+            })
+        };
+        indices.iter().map(|i| place(Term::Effect { kind, index: *i, shape }, &mut self.terms)).collect()
+    }
+
+    /// Adds forms to an effect, as the search proposes them; `asked`: how many were looked at to find them.
+    pub(crate) fn add_variants(&mut self, kind: EffectKind, variants: Vec<Variant>, asked: usize) {
+        if let Some(candidate) = self.candidates.iter_mut().find(|c| c.kind == kind) {
+            for variant in variants {
+                if candidate.variants.iter().all(|v| v.columns != variant.columns) {
+                    candidate.variants.push(variant);
+                }
+            }
+            candidate.rejected = candidate.rejected.max(asked);
+        } else {
+            self.candidates.push(Candidate { kind, variants, rejected: asked });
+        }
+    }
+
+    /// Forms made of a list of coefficient indices each; the first list is the textbook form.
+    pub(crate) fn selections(&mut self, kind: EffectKind, shape: Shape, lists: &[&[usize]]) -> Vec<Variant> {
+        let mut indices: Vec<usize> = lists.iter().flat_map(|l| l.iter().copied()).collect();
+        indices.sort_unstable();
+        indices.dedup();
+        let columns = self.add_columns(kind, shape, &indices);
+        let at = |index: &usize| indices.iter().position(|i| i == index).map_or(0, |p| columns[p]);
+        let pick = |(place, list): (usize, &&[usize])| Variant {
+            columns: list.iter().map(at).collect(),
+            enriched: place > 0,
+            only_rival: false,
+        };
+        lists.iter().enumerate().map(pick).collect()
+    }
+
+    /// The effect of a part.
+    #[must_use]
+    pub(crate) fn kind(&self, part: Part) -> EffectKind {
+        self.candidates[part.candidate].kind
+    }
+
+    /// The form of a part.
+    #[must_use]
+    pub(crate) fn form(&self, part: Part) -> &Variant {
+        &self.candidates[part.candidate].variants[part.variant]
+    }
+
+    /// Columns of a model: the set-up's, then those of its parts.
+    #[must_use]
+    pub(crate) fn model_columns(&self, parts: &[Part]) -> Vec<usize> {
+        let own = parts.iter().flat_map(|part| &self.form(*part).columns);
+        (0..self.nuisances).chain(own.copied()).collect()
+    }
+
+    /// Positions of a part's columns among those of its model.
+    #[must_use]
+    pub(crate) fn positions(&self, parts: &[Part], place: usize) -> Range<usize> {
+        let length = |part: &Part| self.form(*part).columns.len();
+        let start = self.nuisances + parts.iter().take(place).map(length).sum::<usize>();
+        start..start + length(&parts[place])
+    }
+
+    /// By how much the p value of one form of a candidate must be multiplied (weighted Bonferroni): every
+    /// effect has the same share of the level, and its forms divide it.
+    #[must_use]
+    pub(crate) fn questions(&self, candidate: usize) -> f64 {
+        (self.candidates.len() * self.candidates[candidate].asked()) as f64
+    }
+}

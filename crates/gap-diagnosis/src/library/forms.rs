@@ -1,0 +1,246 @@
+//! The forms of every effect: textbook first, then bent ones.
+
+use machine_model::effects::{EffectKind, Shape};
+
+use crate::equations::observation::Measurements;
+use crate::equations::set_up::{Clamping, frame, instruments};
+use crate::equations::term::Term;
+use crate::library::candidates::{Candidate, Library, Variant};
+use crate::library::seen::{Seen, is_coarse};
+
+/// Places along an axis where damage is looked for; finer ones are proposed by the search.
+const LOCAL_PLACES: usize = 14;
+/// Times at which a knock is looked for; finer ones are proposed by the search.
+const STEP_TIMES: usize = 24;
+/// Ways over which a spike at a turning point fades, mm.
+const SPIKES_MM: [f64; 5] = [0.75, 1.5, 3.0, 6.0, 12.0];
+/// Time constants as shares of the time the measurement took.
+const TAU_SHARES: [f64; 6] = [0.03, 0.08, 0.2, 0.5, 1.2, 3.0];
+
+/// Damage at a place is narrower than this share of the axis.
+pub(crate) const LOCAL_WIDEST: f64 = 0.3;
+
+impl Library {
+    /// Every effect whose columns the rows hold, except those in `without`; `clamping`: what the set-ups of the runs hold.
+    #[must_use]
+    pub(crate) fn new(data: &Measurements, without: &[EffectKind], clamping: Clamping) -> Self {
+        let seen = Seen::new(data);
+        let mut terms = frame(data, clamping);
+        let framing = terms.len();
+        terms.extend(instruments(data));
+        if data.has_lengths() {
+            terms.push(Term::BarLength);
+        }
+        for axis in 0..3 {
+            if seen.direction[axis] && seen.unknown_direction[axis] {
+                terms.push(Term::UnknownApproach(axis));
+            }
+        }
+        let nuisances = terms.len();
+        let mut library = Self { terms, framing, nuisances, candidates: Vec::new() };
+        for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
+            let mut variants = library.forms(kind, &seen);
+            variants.retain(|form| seen.carry(kind, form.columns.len()));
+            if !variants.is_empty() {
+                library.candidates.push(Candidate { kind, variants, rejected: 0 });
+            }
+        }
+        library
+    }
+
+    fn forms(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let travels = |a: usize| seen.range[a].1 - seen.range[a].0 > 1e-6;
+        let none = Shape::default();
+        match kind {
+            EffectKind::Scale(a) if travels(a) => self.selections(kind, none, &[&[0]]),
+            EffectKind::Squareness(a, b) if travels(a) && travels(b) => self.selections(kind, none, &[&[0]]),
+            EffectKind::Backlash(a) | EffectKind::LostMotion { axis: a, .. } if seen.direction[a] => {
+                self.selections(kind, seen.interval(a), &[&[0], &[0, 1], &[0, 1, 2, 3]])
+            }
+            EffectKind::Thermal(a) if seen.temperature[a] && travels(a) => {
+                self.selections(kind, none, &[&[0, 1], &[0], &[0, 1, 2]])
+            }
+            EffectKind::Warmup(_) => self.warmup(kind, seen),
+            EffectKind::Positioning(a) | EffectKind::Straightness { axis: a, .. } if travels(a) => {
+                self.curve(kind, a, seen)
+            }
+            EffectKind::Angular { axis: a, about } if travels(a) => self.angle(kind, a, about, seen),
+            EffectKind::Sag(a) if travels(a) => self.sag(kind, a, seen),
+            // With two loads a line and a parabola can be any two values: a bend needs three. A lag bent over
+            // the feed could be a backlash, so lags stay straight.
+            EffectKind::Load(_) if seen.load => {
+                self.selections(kind, none, if seen.loads > 2 { &[&[0], &[0, 1]] } else { &[&[0]] })
+            }
+            EffectKind::ServoLag(a) if seen.feed && seen.direction[a] => {
+                self.selections(kind, none, &[&[0], &[1]])
+            }
+            EffectKind::ServoMismatch(a, b) if seen.feed && seen.direction[a] && seen.direction[b] => {
+                self.selections(kind, none, &[&[0]])
+            }
+            EffectKind::Rotary { axis, .. } if seen.rotary[axis] => self.selections(kind, none, &[&[0]]),
+            EffectKind::Eccentricity(axis) if seen.rotary[axis] => {
+                self.selections(kind, none, &[&[0, 1], &[0, 1, 2, 3, 4, 5]])
+            }
+            EffectKind::ProbeLobing if seen.direction[0] && seen.direction[1] => {
+                self.selections(kind, none, &[&[0, 1], &[0, 1, 4], &[0, 1, 2, 3, 4]])
+            }
+            EffectKind::InstrumentDrift if seen.time.is_some() => {
+                let lists: [&[usize]; 8] =
+                    [&[0, 1, 2], &[0], &[1], &[2], &[0, 3], &[1, 4], &[2, 5], &[0, 1, 2, 3, 4, 5]];
+                self.selections(kind, none, &lists)
+            }
+            EffectKind::Step(_) => self.steps(kind, seen),
+            EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a], seen.narrowest_mm[a]),
+            EffectKind::Spike(a) => SPIKES_MM
+                .into_iter()
+                .filter(|width| seen.direction[a] && *width >= seen.turns_mm[a])
+                .flat_map(|width_mm| self.selections(kind, Shape { width_mm, ..Shape::default() }, &[&[0]]))
+                .collect(),
+            // With one feed on one radius it is a scale of all axes that move.
+            EffectKind::Contraction if seen.curved => {
+                let mut forms =
+                    self.selections(kind, none, &[&[0], &[1], &[2], &[3], &[1, 2], &[1, 3], &[2, 3]]);
+                forms.iter_mut().for_each(|form| {
+                    form.enriched = form.columns.len() > 1;
+                    form.only_rival = !seen.accelerations;
+                });
+                forms
+            }
+            EffectKind::SpindleTilt(_) if seen.tools => self.selections(kind, none, &[&[0]]),
+            EffectKind::Tracker(2 | 3) if seen.station => self.selections(kind, none, &[&[0, 1]]),
+            EffectKind::Tracker(_) if seen.station => self.selections(kind, none, &[&[0]]),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A curve along an axis.
+    fn curve(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
+        let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
+        // A polynomial with nearly as many terms as places is a guess between them.
+        let lists: Vec<&[usize]> =
+            lists.into_iter().filter(|l| l.len() <= 2 || 10 * (l.len() + 2) <= 7 * seen.places[a]).collect();
+        let mut forms = self.selections(kind, seen.interval(a), &lists);
+        // Any curve is one; only beyond the fifth order is it bent so that it could be anything.
+        forms.iter_mut().for_each(|f| f.enriched = f.columns.len() > 4);
+        forms
+    }
+
+    /// An angle along an axis.
+    fn angle(&mut self, kind: EffectKind, a: usize, about: usize, seen: &Seen) -> Vec<Variant> {
+        let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
+        let lists: Vec<&[usize]> =
+            lists.into_iter().filter(|l| l.len() <= 2 || 10 * (l.len() + 1) <= 7 * seen.places[a]).collect();
+        let mut forms = self.selections(kind, seen.interval(a), &lists);
+        forms.iter_mut().for_each(|form| form.only_rival = seen.one_lever[a][about]);
+        forms
+    }
+
+    /// A droop along an axis.
+    fn sag(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
+        // The overhang begins where the ram leaves its support: at the end of travel, before or behind.
+        let (low, high) = seen.range[a];
+        [0.0, -1.0, -0.4, 0.2, 0.4, 0.6]
+            .into_iter()
+            .flat_map(|share| {
+                let from_mm = low + share * (high - low);
+                let shape = Shape { from_mm, to_mm: high, ..Shape::default() };
+                let lists: &[&[usize]] = if share == 0.0 { &[&[0], &[1], &[2]] } else { &[&[0], &[1]] };
+                let mut forms = self.selections(kind, shape, lists);
+                forms.iter_mut().for_each(|f| {
+                    f.enriched = share != 0.0;
+                    // On a circle a droop is a straightness.
+                    f.only_rival = seen.lengths;
+                });
+                forms
+            })
+            .collect()
+    }
+
+    fn warmup(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let Some((start, end)) = seen.time else { return Vec::new() };
+        let taus = TAU_SHARES.map(|share| share * (end - start));
+        let columns: Vec<usize> = taus
+            .iter()
+            .flat_map(|tau| {
+                self.add_columns(kind, Shape { tau_s: *tau, tau2_s: *tau, ..Shape::default() }, &[0])
+            })
+            .collect();
+        let single =
+            columns.iter().map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false });
+        let double = columns.iter().zip(columns.iter().skip(2));
+        let double =
+            double.map(|(a, b)| Variant { columns: vec![*a, *b], enriched: true, only_rival: false });
+        single.chain(double).collect()
+    }
+
+    fn steps(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
+        let Some((start, end)) = seen.time else { return Vec::new() };
+        (1..=STEP_TIMES)
+            .map(|k| {
+                let time_s = start + (end - start) * k as f64 / (STEP_TIMES + 1) as f64;
+                let columns = self.add_columns(kind, Shape { time_s, ..Shape::default() }, &[0]);
+                Variant { columns, enriched: false, only_rival: false }
+            })
+            .collect()
+    }
+
+    fn places(&mut self, kind: EffectKind, (low, high): (f64, f64), narrowest_mm: f64) -> Vec<Variant> {
+        let width_mm = (2.0 * (high - low) / LOCAL_PLACES as f64).max(narrowest_mm);
+        if width_mm > LOCAL_WIDEST * (high - low) {
+            return Vec::new();
+        }
+        (0..=LOCAL_PLACES)
+            .flat_map(|k| {
+                let centre_mm = low + (high - low) * k as f64 / LOCAL_PLACES as f64;
+                self.place(kind, centre_mm, width_mm)
+            })
+            .collect()
+    }
+
+    /// Rails that do not meet at a place: sideways in one direction or both.
+    pub(crate) fn join(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
+        let EffectKind::Joint(axis) = kind else { return Vec::new() };
+        let sideways: Vec<usize> = (0..3).filter(|d| *d != axis).collect();
+        let shape = Shape { centre_mm, width_mm, ..Shape::default() };
+        let columns = self.add_columns(kind, shape, &sideways);
+        let one = |c: &usize| Variant { columns: vec![*c], enriched: false, only_rival: false };
+        let mut variants: Vec<Variant> = columns.iter().map(one).collect();
+        variants.push(Variant { columns, enriched: true, only_rival: false });
+        variants
+    }
+
+    /// Damage at one place: along one direction or all three.
+    pub(crate) fn place(&mut self, kind: EffectKind, centre_mm: f64, width_mm: f64) -> Vec<Variant> {
+        let columns = self.add_columns(kind, Shape { centre_mm, width_mm, ..Shape::default() }, &[0, 1, 2]);
+        let mut variants: Vec<Variant> = columns
+            .iter()
+            .map(|c| Variant { columns: vec![*c], enriched: false, only_rival: false })
+            .collect();
+        variants.push(Variant { columns, enriched: true, only_rival: false });
+        variants
+    }
+
+    /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
+    /// places are too coarse for is not asked about; where the period itself is, the forms stay rivals.
+    pub(crate) fn pitch(&mut self, data: &Measurements, axis: usize, pitch_mm: f64) -> Vec<Variant> {
+        let range = data.range_mm(axis);
+        let shape = Shape { pitch_mm, from_mm: range.0, to_mm: range.1, ..Shape::default() };
+        let only_rival = is_coarse(data, axis, pitch_mm);
+        let lists: [(f64, &[usize]); 5] = [
+            (1.0, &[0, 1]),
+            (2.0, &[0, 1, 2, 3]),
+            (1.0, &[0, 1, 6, 7]),
+            (3.0, &[0, 1, 2, 3, 4, 5]),
+            (3.0, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]),
+        ];
+        let shown = |(harmonic, list): &(f64, &[usize])| {
+            list.len() == 2
+                || (!is_coarse(data, axis, pitch_mm / harmonic)
+                    && 2.0 * list.len() as f64 <= data.effective_places(axis))
+        };
+        let lists: Vec<&[usize]> = lists.into_iter().filter(shown).map(|(_, list)| list).collect();
+        let mut forms = self.selections(EffectKind::Pitch(axis), shape, &lists);
+        forms.iter_mut().for_each(|form| form.only_rival = only_rival);
+        forms
+    }
+}

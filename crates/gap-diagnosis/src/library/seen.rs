@@ -1,0 +1,200 @@
+//! What the rows of a file vary in, and so which effects they could show.
+
+use machine_model::effects::{EffectKind, Shape};
+
+use crate::equations::noise::median;
+use crate::equations::observation::{Measurements, Reading, Row};
+
+/// A joint is proposed by the search where an axis has so many places: with fewer it is any curve.
+pub(crate) const JOINT_PLACES: f64 = 8.0;
+/// So many places at uneven distances show a wave even where they lie further apart than half its period.
+const ENOUGH_PLACES: usize = 24;
+/// A step that differs from the typical one by more than this share is uneven.
+const UNEVEN: f64 = 0.15;
+/// What the rows vary in.
+pub(super) struct Seen {
+    /// Number of different places per axis.
+    pub(super) places: [usize; 3],
+    /// Of these, as many as a curve can tell apart.
+    pub(super) effective: [f64; 3],
+    /// Narrowest damage that these places could show.
+    pub(super) narrowest_mm: [f64; 3],
+    pub(super) range: [(f64, f64); 3],
+    pub(super) direction: [bool; 3],
+    pub(super) unknown_direction: [bool; 3],
+    pub(super) temperature: [bool; 3],
+    pub(super) time: Option<(f64, f64)>,
+    pub(super) load: bool,
+    pub(super) feed: bool,
+    /// Different loads.
+    pub(super) loads: usize,
+    pub(super) rotary: [bool; 3],
+    /// Readings are lengths of a bar.
+    pub(super) lengths: bool,
+    /// Tools of different lengths.
+    pub(super) tools: bool,
+    /// Every row has its station's place.
+    pub(super) station: bool,
+    /// Typical step between rows that are read while an axis moves on after it turned, mm; infinite where none is.
+    pub(super) turns_mm: [f64; 3],
+    /// Rows are read on curves, at a feed.
+    pub(super) curved: bool,
+    /// Their accelerations differ so that what grows with them is no constant.
+    pub(super) accelerations: bool,
+    /// Levers, by the axis that carries and the direction turned about, that are one number all over a file of lengths: on
+    /// such a circle an angle is a straightness, a squareness or a scale, as ISO 230-4 has it.
+    pub(super) one_lever: [[bool; 3]; 3],
+}
+
+impl Seen {
+    /// True where an effect of this kind may have so many coefficients: a curve along an axis at most half of the places
+    /// measured there, shift and slope (which are the set-up's) left over for two more.
+    pub(super) fn carry(&self, kind: EffectKind, coefficients: usize) -> bool {
+        curve_axis(kind).is_none_or(|axis| {
+            let places = self.effective[axis];
+            2.0 * coefficients as f64 <= places && coefficients as f64 + 2.0 <= places
+        })
+    }
+
+    /// A shape over the whole of an axis.
+    pub(super) fn interval(&self, axis: usize) -> Shape {
+        let (from_mm, to_mm) = self.range[axis];
+        Shape { from_mm, to_mm, ..Shape::default() }
+    }
+
+    pub(super) fn new(data: &Measurements) -> Self {
+        let accelerations = accelerations(&data.rows);
+        let rows = &data.rows;
+        let varies = |value: &dyn Fn(&Row) -> Option<f64>| range(rows, value).is_some_and(|(a, b)| b > a);
+        let places = [0, 1, 2].map(|a| data.places_mm(a).len());
+        Self {
+            places,
+            // Half a place is rounding.
+            effective: [0, 1, 2].map(|a| data.effective_places(a) + 0.5),
+            narrowest_mm: [0, 1, 2].map(|a| narrowest_mm(data, a)),
+            range: [0, 1, 2].map(|a| data.range_mm(a)),
+            direction: [0, 1, 2].map(|a| {
+                let has = |d: i8| rows.iter().any(|r| r.command.direction[a] == d);
+                has(1) && has(-1)
+            }),
+            unknown_direction: [0, 1, 2].map(|a| rows.iter().any(|r| r.command.direction[a] == 0)),
+            temperature: [0, 1, 2].map(|a| {
+                range(rows, &|r| r.conditions.temp_c[a])
+                    .is_some_and(|(low, high)| high > low || high != data.geometry.reference_temp_c)
+            }),
+            time: range(rows, &|r| r.conditions.time_s).filter(|(a, b)| b > a),
+            load: varies(&|r| r.conditions.load_kg),
+            feed: rows.iter().any(|r| r.conditions.feed_mm_min.is_some_and(|f| f > 0.0)),
+            loads: distinct(rows, &|r| r.conditions.load_kg),
+            rotary: [0, 1, 2]
+                .map(|a| data.geometry.has_rotary(a) && varies(&|r| Some(r.command.rotary_rad[a]))),
+            lengths: data.has_lengths(),
+            tools: varies(&|r| Some(r.command.tool_mm.z)),
+            station: rows.iter().all(|r| r.conditions.station_mm.is_some()),
+            turns_mm: [0, 1, 2].map(|a| step_after_turning(rows, a)),
+            curved: accelerations.1 > 0.0,
+            accelerations: accelerations.1 > TWICE * accelerations.0,
+            one_lever: [0, 1, 2].map(|axis| [0, 1, 2].map(|about| one_lever(data, about, axis))),
+        }
+    }
+}
+
+/// Median difference of the ways since an axis turned, of rows in a row that are nearer to the turn than thirty steps.
+fn step_after_turning(rows: &[Row], axis: usize) -> f64 {
+    let pairs = rows.windows(2).filter(|w| w[0].run == w[1].run);
+    let ways = pairs
+        .filter_map(|w| Some((w[0].conditions.since_turn_mm[axis]?, w[1].conditions.since_turn_mm[axis]?)));
+    let mut steps: Vec<f64> =
+        ways.filter(|(a, b)| b > a && *a < 30.0 * (b - a)).map(|(a, b)| b - a).collect();
+    if steps.len() < 12 { f64::INFINITY } else { median(&mut steps).unwrap_or(f64::INFINITY) }
+}
+
+/// The largest acceleration must be so many times the smallest for what grows with it to be told from a radius.
+const TWICE: f64 = 2.0;
+
+/// Smallest and largest acceleration of the rows that are read on a curve at a feed, mm/min² per mm; none where these are
+/// fewer than a quarter.
+fn accelerations(rows: &[Row]) -> (f64, f64) {
+    let of = |row: &Row| {
+        let curvature = machine_model::Vector::from(row.conditions.curvature_per_mm?).norm();
+        (curvature > 0.0).then_some(row.conditions.feed_mm_min?.powi(2) * curvature)
+    };
+    let all: Vec<f64> = rows.iter().filter_map(of).filter(|a| *a > 0.0).collect();
+    if all.len() * 4 < rows.len() {
+        return (f64::INFINITY, 0.0);
+    }
+    all.into_iter().fold((f64::INFINITY, 0.0), |(low, high), a| (low.min(a), f64::max(high, a)))
+}
+
+/// True where a rotation about a direction along an axis acts, in what the rows see, through levers that never change.
+fn one_lever(data: &Measurements, about: usize, axis: usize) -> bool {
+    /// Share of the lever that it may change by, and a change that is none, mm.
+    const SAME: f64 = 0.01;
+    let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+    for row in &data.rows {
+        let lever = data.geometry.lever_mm(axis, &row.command);
+        let moved = crate::equations::term::unit(about).cross(&lever);
+        let seen = match row.reading {
+            Reading::Displacement(components) => components.map(|c| c.is_some()),
+            Reading::Magnitude(_) => [true; 3],
+            Reading::Length { ball_mm, .. } => {
+                let bar = data.geometry.nominal_tip_mm(&row.command) - ball_mm;
+                [0, 1, 2].map(|c| bar[c].abs() > SAME * bar.norm())
+            }
+        };
+        for c in (0..3).filter(|c| seen[*c]) {
+            range[c] = (range[c].0.min(moved[c]), range[c].1.max(moved[c]));
+        }
+    }
+    // Vectors show what a length in one plane never does.
+    data.has_lengths()
+        && range
+            .iter()
+            .all(|(low, high)| high - low <= SAME * low.abs().max(high.abs()).max(1.0) || high < low)
+}
+
+/// The axis along which an effect is a curve.
+#[must_use]
+pub(crate) const fn curve_axis(kind: EffectKind) -> Option<usize> {
+    match kind {
+        EffectKind::Positioning(axis)
+        | EffectKind::Straightness { axis, .. }
+        | EffectKind::Angular { axis, .. }
+        | EffectKind::Pitch(axis)
+        | EffectKind::Sag(axis) => Some(axis),
+        _ => None,
+    }
+}
+
+/// A bump narrower than this falls between the places measured: two and a half steps between them.
+#[must_use]
+pub(crate) fn narrowest_mm(data: &Measurements, axis: usize) -> f64 {
+    let places = data.places_mm(axis);
+    let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).collect();
+    2.5 * median(&mut steps).unwrap_or(0.0)
+}
+
+fn distinct(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> usize {
+    let mut values: Vec<f64> = rows.iter().filter_map(value).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values.len()
+}
+
+fn range(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> Option<(f64, f64)> {
+    let mut known = rows.iter().filter_map(value);
+    let first = known.next()?;
+    Some(known.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
+}
+
+/// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.
+///
+/// Many places at uneven distances show a wave even where they lie further apart; even ones never do.
+#[must_use]
+pub(crate) fn is_coarse(data: &Measurements, axis: usize, period_mm: f64) -> bool {
+    let spacing = data.spacing_mm(axis);
+    let places = data.places_mm(axis);
+    let odd = |w: &&[f64]| ((w[1] - w[0]) / spacing - 1.0).abs() > UNEVEN;
+    let uneven = 3 * places.windows(2).filter(odd).count() >= places.len();
+    2.0 * spacing > period_mm && (places.len() <= ENOUGH_PLACES || !uneven)
+}

@@ -1,0 +1,116 @@
+//! Bounds that no cause may exceed: what it does between the places measured, and what its physics allows.
+//!
+//! A fit is tied down at the places that were measured and nowhere else. A wave or a polynomial that passes through ten
+//! readings of 40 µm may swing by millimetres between them, and two causes nearly alike with opposite signs cancel where
+//! they were fitted and nowhere else. So every cause is evaluated between the places, too.
+
+use machine_model::Vector;
+use machine_model::effects::{EffectGeometry, EffectKind};
+
+use crate::equations::noise::median;
+use crate::equations::observation::{Measurements, Row, Scalar};
+use crate::equations::term::Term;
+
+/// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
+const LARGEST: f64 = 2.0;
+/// Rows at which a cause is evaluated, and places per axis between which it is.
+const ROWS: usize = 240;
+const PLACES: usize = 120;
+/// Where between two places, as shares of their distance.
+const BETWEEN: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+
+/// Points of a file at which causes are evaluated.
+#[derive(Clone, Debug)]
+pub(crate) struct Bounds {
+    /// Rows of the file, then points between the places of each axis.
+    probes: Vec<Row>,
+    /// How many of them are rows.
+    measured: usize,
+    /// How many places of each axis a curve can tell apart.
+    pub(crate) places: [f64; 3],
+    /// Largest reading, µm: measured minus predicted, from the median of its component.
+    largest_um: f64,
+    /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
+    /// while the measuring frame takes up to half of it off each reading.
+    widest_um: f64,
+}
+
+impl Bounds {
+    /// Rows and points between them, evenly thinned.
+    #[must_use]
+    pub(crate) fn new(data: &Measurements, scalars: &[Scalar]) -> Self {
+        let mut probes: Vec<Row> =
+            data.rows.iter().step_by(data.rows.len().div_ceil(ROWS).max(1)).copied().collect();
+        let measured = probes.len();
+        for axis in 0..3 {
+            let mut rows: Vec<&Row> = data.rows.iter().collect();
+            let place = |row: &Row| row.command.linear_mm[axis];
+            rows.sort_by(|a, b| place(a).total_cmp(&place(b)));
+            rows.dedup_by(|b, a| place(b) - place(a) < 1e-3);
+            let step = rows.len().div_ceil(PLACES).max(1);
+            for pair in rows.windows(2).step_by(step) {
+                for share in BETWEEN {
+                    let mut row = *pair[0];
+                    row.command.linear_mm[axis] += share * (place(pair[1]) - place(pair[0]));
+                    probes.push(row);
+                }
+            }
+        }
+        let (mut largest_um, mut widest_um): (f64, f64) = (0.0, 0.0);
+        for class in 0..4 {
+            let gaps = || scalars.iter().filter(|s| s.class == class).map(|s| s.gap_um);
+            if let Some(middle) = median(&mut gaps().collect::<Vec<f64>>()) {
+                largest_um = gaps().fold(largest_um, |most, gap| most.max((gap - middle).abs()));
+                let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
+                widest_um = widest_um.max(ends.1 - ends.0);
+            }
+        }
+        let places = [0, 1, 2].map(|axis| data.effective_places(axis));
+        Self { probes, measured, places, largest_um, widest_um }
+    }
+
+    /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.
+    fn excursion_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> f64 {
+        let at = |row: &Row| -> Vector {
+            terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
+        };
+        let all: Vec<Vector> = self.probes.iter().map(at).collect();
+        let mean = all.iter().take(self.measured).sum::<Vector>() / self.measured.max(1) as f64;
+        all.iter().map(|d| (d - mean).amax()).fold(0.0, f64::max)
+    }
+
+    /// What is wrong with a cause of these numbers; `None` where nothing is.
+    #[must_use]
+    pub(crate) fn broken_by(
+        &self,
+        kind: EffectKind,
+        terms: &[(Term, f64)],
+        geometry: &EffectGeometry,
+    ) -> Option<&'static str> {
+        if let Some(reason) = implausible(kind, terms) {
+            return Some(reason);
+        }
+        // What is straight does not swing between places.
+        let straight = matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..));
+        let largest_um = if straight { self.widest_um } else { self.largest_um };
+        let harmful = self.excursion_um(terms, geometry) > LARGEST * largest_um;
+        harmful
+            .then_some("between the places measured it would displace by more than twice the largest reading")
+    }
+}
+
+/// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.
+fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<&'static str> {
+    let (largest, reason) = match kind {
+        EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
+            (500.0, "a play of a millimetre is felt by hand")
+        }
+        EffectKind::Pitch(_) => (200.0, "no screw errs by 0.2 mm within a turn"),
+        EffectKind::Squareness(..) => (20_000.0, "axes that lean by 20 mm per metre are seen by eye"),
+        EffectKind::Scale(_) => (10_000.0, "a scale wrong by 10 mm per metre is a wrong unit"),
+        EffectKind::ServoLag(_) | EffectKind::ServoMismatch(..) => (1000.0, "no servo runs a second behind"),
+        EffectKind::ProbeLobing => (200.0, "no probe has a pre-travel of 0.2 mm"),
+        _ => return None,
+    };
+    terms.iter().any(|(_, value)| value.abs() > largest).then_some(reason)
+}

@@ -1,0 +1,181 @@
+//! One pass of the search: uphill in score, every new effect on trial.
+
+use machine_model::effects::EffectKind;
+
+use crate::equations::columns::Source;
+use crate::equations::observation::{Measurements, Scalar};
+use crate::equations::pool::Pool;
+use crate::library::candidates::Part;
+use crate::search::doubt::Setting;
+use crate::search::explanation::{Explanation, Refused};
+use crate::search::moves::{MOST_TRIED, Move, next_move, without};
+use crate::search::space::Fit;
+use crate::search::state::State;
+use crate::search::trial::{NOT_ELSEWHERE, UNPROVEN};
+
+/// With fewer runs one that is left out is an extrapolation: that an effect does not foretell it hides nothing.
+const ENOUGH_RUNS: usize = 8;
+/// Most causes named.
+const MOST_CAUSES: usize = 8;
+
+/// What a pass over the equations does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// Looks for causes.
+    Search,
+    /// Looks for shapes of other effects that imitate the causes found.
+    Imitate,
+}
+
+/// One pass without the rows in `dropped`, beginning with the model of `start`.
+pub(crate) fn pass(
+    data: &Measurements,
+    pool: &mut Pool<'_>,
+    dropped: &[usize],
+    without: &[EffectKind],
+    setting: Setting,
+    start: Option<Explanation>,
+    task: Task,
+) -> Explanation {
+    let all = *pool.source();
+    let (lost, scalars): (Vec<Scalar>, Vec<Scalar>) =
+        all.scalars.iter().partition(|s| dropped.binary_search(&s.row).is_ok());
+    let source = Source { scalars: &scalars, ..all };
+    // Too few to look anything up.
+    let lost = Source { scalars: &lost, places: None, ..all };
+    let mut state = State::new(data, &source, pool, lost, without, setting, start);
+    match task {
+        Task::Search => state.search(),
+        Task::Imitate => state.imitate(),
+    }
+    let State { library, space, parts, fit, refused, .. } = state;
+    let sub = space.gram.select(&library.model_columns(&parts));
+    let rho = sub.best_rho(space.rho(fit.level));
+    let rho = if space.rho(fit.level) == 0.0 && rho < 1e-3 { 0.0 } else { rho };
+    let solution = sub.solve(rho, &source);
+    Explanation {
+        library,
+        space,
+        parts,
+        fit,
+        solution,
+        outliers: Vec::new(),
+        dropped_residuals_um: Vec::new(),
+        equally_good: Vec::new(),
+        refused,
+        phi: setting.phi,
+        caution: setting.caution.max(setting.phi),
+        clamping: setting.clamping,
+        scalars,
+    }
+}
+
+impl State<'_, '_> {
+    fn search(&mut self) {
+        self.refused = None;
+        // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang together,
+        // for what one cause leaves of the others does so as well.
+        if self.phi > 0.0 {
+            self.weed();
+        }
+        let earlier = if self.phi > 0.0 { Vec::new() } else { std::mem::take(&mut self.parts) };
+        for part in earlier {
+            let mut with = self.parts.clone();
+            with.push(part);
+            let fit = self.space.fit(&self.library, &with);
+            if self.objection(&self.parts, part, &fit).is_none() {
+                self.parts = with;
+            }
+        }
+        self.fit = self.space.fit(&self.library, &self.parts);
+        self.propose();
+        for _ in 0..60 {
+            let may = |rest: &[Part], part: Part, fit: &Fit| self.objection(rest, part, fit).is_none();
+            match next_move(&self.space, &self.library, &self.parts, self.fit.score, may) {
+                Move::Change(parts, fit) => {
+                    self.complete(&parts);
+                    (self.parts, self.fit) = (parts, fit);
+                }
+                Move::Add(proposed) => {
+                    if self.parts.len() >= MOST_CAUSES {
+                        break;
+                    }
+                    match self.admitted(&proposed) {
+                        Ok((new, fit)) => {
+                            self.parts.extend(new);
+                            self.fit = fit;
+                            self.propose();
+                        }
+                        Err(refused) => {
+                            self.refused = refused;
+                            break;
+                        }
+                    }
+                }
+                Move::Stop => break,
+            }
+        }
+        self.prune();
+        self.restrain();
+    }
+
+    /// Takes out causes that fail their tests beside all others, the weakest first.
+    fn weed(&mut self) {
+        loop {
+            let full = self.space.fit(&self.library, &self.parts);
+            let failed = (0..self.parts.len()).filter_map(|place| {
+                let rest = without(&self.parts, place);
+                let refused = self.objection(&rest, self.parts[place], &full)?;
+                Some((refused.p, rest, refused))
+            });
+            let Some((_, rest, refused)) = failed.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            (self.parts, self.refused) = (rest, Some(refused));
+        }
+    }
+
+    /// The first of some effects that passes its tests, or two that pass beside each other; else why the best did not.
+    ///
+    /// What few runs cannot prove (a knock between two of them explains their offsets) does not keep the next ones from
+    /// their tests. What does not hold on other lines ends the search: the structure is there, and has no name. But two
+    /// faults may hide each other: on circles of either sense a lag adds to a squareness or takes off it, and neither alone
+    /// foretells a circle that was left out.
+    fn admitted(&mut self, proposed: &[(Part, Fit)]) -> Result<(Vec<Part>, Fit), Option<Refused>> {
+        let mut first = None;
+        for (part, fit) in proposed.iter().take(MOST_TRIED) {
+            let Some(refused) = self.objection(&self.parts, *part, fit) else {
+                return Ok((vec![*part], *fit));
+            };
+            let reason = refused.reason;
+            first.get_or_insert(refused);
+            let many = self.source.runs >= ENOUGH_RUNS;
+            if many && reason == NOT_ELSEWHERE && self.parts.len() + 2 <= MOST_CAUSES {
+                let others = proposed.iter().take(MOST_TRIED).map(|(other, _)| *other);
+                if let Some(pair) = self.hidden_by(*part, others.filter(|other| other != part)) {
+                    return Ok(pair);
+                }
+            }
+            if reason != UNPROVEN {
+                break;
+            }
+        }
+        Err(first)
+    }
+
+    /// A part and the best of some others, where each passes its tests beside the other.
+    fn hidden_by(&mut self, part: Part, others: impl Iterator<Item = Part>) -> Option<(Vec<Part>, Fit)> {
+        let beside = |new: Part| -> Vec<Part> { self.parts.iter().copied().chain([new]).collect() };
+        let with = beside(part);
+        let pairs: Vec<(Part, Vec<Part>)> = others.map(|other| (other, beside(other))).collect();
+        self.complete(&with);
+        let judged = |(other, rest): (Part, Vec<Part>)| {
+            let both: Vec<Part> = with.iter().copied().chain([other]).collect();
+            (self.space.fit(&self.library, &both), other, rest)
+        };
+        let mut pairs: Vec<(Fit, Part, Vec<Part>)> = pairs.into_iter().map(judged).collect();
+        pairs.sort_by(|a, b| a.0.score.total_cmp(&b.0.score));
+        pairs.into_iter().find_map(|(fit, other, rest)| {
+            let passes = |rest: &[Part], new: Part| self.objection(rest, new, &fit).is_none();
+            (passes(&with, other) && passes(&rest, part)).then(|| (vec![part, other], fit))
+        })
+    }
+}

@@ -1,0 +1,60 @@
+//! What a search arrived at.
+
+use machine_model::effects::EffectKind;
+
+use crate::equations::fit::Solution;
+use crate::equations::observation::Scalar;
+use crate::equations::set_up::Clamping;
+use crate::library::candidates::{Library, Part};
+use crate::search::space::{Fit, Space};
+
+/// What the search arrived at.
+#[derive(Clone, Debug)]
+pub(crate) struct Explanation {
+    /// Equations that were used.
+    pub scalars: Vec<Scalar>,
+    /// Library with all proposed shapes.
+    pub library: Library,
+    /// Products of all its columns, raw and whitened.
+    pub space: Space,
+    /// The model.
+    pub parts: Vec<Part>,
+    /// Its judgement.
+    pub fit: Fit,
+    /// It, solved.
+    pub solution: Solution,
+    /// Rows left out as outliers, ascending.
+    pub outliers: Vec<usize>,
+    /// Effects of other explanations that are as good (readings that are lengths only).
+    pub equally_good: Vec<EffectKind>,
+    /// Residuals of the rows left out, µm.
+    pub dropped_residuals_um: Vec<f64>,
+    /// The effect that would come next and why it did not.
+    pub refused: Option<Refused>,
+    /// Correlation of a reading with the next one of its run.
+    pub phi: f64,
+    /// The same as tests and intervals count with, for runs of any length.
+    pub caution: f64,
+    /// How the set-ups of the runs may differ.
+    pub clamping: Clamping,
+}
+
+impl Explanation {
+    /// BIC of the whole model, its set-up counted, so that models with different set-ups compare.
+    pub(crate) fn evidence(&self) -> f64 {
+        self.space.evidence(&self.fit)
+    }
+}
+
+/// An effect that scored and failed a test.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Refused {
+    /// Which.
+    pub kind: EffectKind,
+    /// Share of the square left that it explains.
+    pub share: f64,
+    /// Corrected p value.
+    pub p: f64,
+    /// Which test it failed.
+    pub reason: &'static str,
+}

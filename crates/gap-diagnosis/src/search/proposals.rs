@@ -1,0 +1,287 @@
+//! Non-linear shapes, found on the residual: where, when, with which period.
+
+use machine_model::Vector;
+use units::math;
+
+use crate::equations::columns::Source;
+use crate::equations::noise::median;
+use crate::equations::observation::Scalar;
+
+/// Pitches that screws, racks and gears are made with, mm.
+const NOMINAL_PITCHES_MM: [f64; 17] =
+    [2.0, 2.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 16.0, 20.0, 24.0, 25.0, 30.0, 32.0, 40.0, 50.0];
+/// How far from a nominal pitch is still a neighbour.
+const NEIGHBOURHOOD: f64 = 0.025;
+/// Free periods are looked for where an axis was read at so many places, from so many of them per period on …
+const MANY: usize = 100;
+const FINE: f64 = 3.0;
+/// … and within these, mm.
+const SHORTEST_MM: f64 = 1.0;
+const LONGEST_MM: f64 = 60.0;
+/// Equations that a scan over shapes looks at; more are thinned evenly.
+pub(crate) const SCAN_EQUATIONS: usize = 12_000;
+
+/// Every n-th equation, so that at most [`SCAN_EQUATIONS`] remain.
+#[must_use]
+pub(crate) fn thinned(scalars: &[Scalar]) -> Vec<usize> {
+    let step = scalars.len().div_ceil(SCAN_EQUATIONS).max(1);
+    (0..scalars.len()).step_by(step).collect()
+}
+
+/// The pitches of one axis that can be asked about: nominal ones, each with its neighbours, and any where the axis is read
+/// finely.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pitches {
+    /// Neighbouring periods, mm.
+    grid: Vec<Vec<f64>>,
+    /// How many are looked at.
+    asked: usize,
+}
+
+impl Pitches {
+    /// What the rows of a file can show of one axis.
+    #[must_use]
+    pub(crate) fn new(source: &Source<'_>, axis: usize) -> Self {
+        let places = || {
+            let seen = thinned(source.scalars).into_iter().map(|i| &source.scalars[i]);
+            seen.filter(|s| s.along[axis].abs() > 0.3).map(|s| source.rows[s.row].command.linear_mm[axis])
+        };
+        let (low, high) = places().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), q| (l.min(q), h.max(q)));
+        let length = high - low;
+        let mut found = Self::default();
+        if places().count() < 12 || length.is_nan() {
+            return found;
+        }
+        let steps: Vec<f64> = source
+            .rows
+            .windows(2)
+            .filter(|pair| pair[0].run == pair[1].run)
+            .map(|pair| (pair[1].command.linear_mm[axis] - pair[0].command.linear_mm[axis]).abs())
+            .filter(|step| *step > 0.0)
+            .collect();
+        for nominal in NOMINAL_PITCHES_MM.into_iter().filter(|p| 3.0 * p <= length) {
+            let step = (0.25 * nominal * nominal / length).max(2.0 * NEIGHBOURHOOD * nominal / 60.0);
+            let count = (NEIGHBOURHOOD * nominal / step).floor() as i32;
+            found.asked += 2 * count.unsigned_abs() as usize + 1;
+            let neighbours = (-count..=count).map(|k| nominal + step * f64::from(k));
+            found.grid.push(neighbours.filter(|pitch| !is_strobed(&steps, *pitch)).collect());
+        }
+        // Where an axis is read so finely that no curve passes for a wave, gears and racks may have any period.
+        let read = thinned(source.scalars).into_iter().map(|i| source.scalars[i].row);
+        let mut distinct: Vec<f64> = read.map(|row| source.rows[row].command.linear_mm[axis]).collect();
+        distinct.sort_by(f64::total_cmp);
+        let square: f64 = distinct.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum();
+        distinct.dedup();
+        if distinct.len() < MANY {
+            return found;
+        }
+        // Lines beside each other do not make a wave of what each sees at few places.
+        let step = median(&mut steps.clone()).unwrap_or(f64::INFINITY);
+        let mut pitch = (FINE * (square / length.max(1e-9)).max(step)).max(SHORTEST_MM);
+        while pitch <= LONGEST_MM.min(length / 3.0) {
+            let group_end = 1.25 * pitch;
+            let mut group = Vec::new();
+            while pitch <= group_end.min(LONGEST_MM).min(length / 3.0) {
+                found.asked += 1;
+                group.push(pitch);
+                pitch += 0.25 * pitch * pitch / length;
+            }
+            group.retain(|pitch| !is_strobed(&steps, *pitch));
+            found.grid.push(group);
+        }
+        found
+    }
+
+    /// Those that explain most of the residual, the best first, and how many were looked at.
+    #[must_use]
+    pub(crate) fn best(&self, source: &Source<'_>, residuals_um: &[f64], axis: usize) -> (Vec<f64>, usize) {
+        let mut places: Vec<Place> = thinned(source.scalars)
+            .into_iter()
+            .map(|i| (&source.scalars[i], residuals_um[i]))
+            .filter(|(s, _)| s.along[axis].abs() > 0.3)
+            .map(|(s, r)| Place {
+                position_mm: source.rows[s.row].command.linear_mm[axis],
+                count: 1.0,
+                sum_um: r * s.along[axis],
+            })
+            .collect();
+        places.sort_by(|a, b| a.position_mm.total_cmp(&b.position_mm));
+        places.dedup_by(|next, first| {
+            let same = next.position_mm == first.position_mm;
+            if same {
+                first.count += next.count;
+                first.sum_um += next.sum_um;
+            }
+            same
+        });
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        for neighbours in &self.grid {
+            let powers = neighbours.iter().map(|pitch| (*pitch, power(&places, *pitch)));
+            found.extend(powers.reduce(|best, next| if next.1 > best.1 { next } else { best }));
+        }
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        (found.into_iter().take(2).map(|(p, _)| p).collect(), self.asked)
+    }
+}
+
+/// Residuals at one position of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    position_mm: f64,
+    count: f64,
+    sum_um: f64,
+}
+
+/// Square explained by a sine and a cosine of this period beside a constant.
+fn power(places: &[Place], pitch_mm: f64) -> f64 {
+    let (mut s, mut c, mut ss, mut sc, mut cc, mut sy, mut cy, mut y, mut n) =
+        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for place in places {
+        let (sin, cos) = math::sin_cos(std::f64::consts::TAU * place.position_mm / pitch_mm);
+        let (k, r) = (place.count, place.sum_um);
+        (s, c, ss, sc, cc) =
+            (s + k * sin, c + k * cos, ss + k * sin * sin, sc + k * sin * cos, cc + k * cos * cos);
+        (sy, cy, y, n) = (sy + sin * r, cy + cos * r, y + r, n + k);
+    }
+    let (ss, sc, cc) = (ss - s * s / n, sc - s * c / n, cc - c * c / n);
+    let (sy, cy) = (sy - s * y / n, cy - c * y / n);
+    let determinant = ss * cc - sc * sc;
+    if determinant < 0.02 * n * n {
+        return 0.0;
+    }
+    (cc * sy * sy - 2.0 * sc * sy * cy + ss * cy * cy) / determinant
+}
+
+/// The time at which the residual of one axis jumps most, and how many were looked at.
+#[must_use]
+pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let mut points: Vec<(f64, f64)> = source
+        .scalars
+        .iter()
+        .zip(residuals_um)
+        .filter(|(s, _)| s.along[axis].abs() > 0.3)
+        .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = points.len() as f64;
+    let total: f64 = points.iter().map(|p| p.1).sum();
+    let mut before = 0.0;
+    let mut best: Option<(f64, f64)> = None;
+    let mut asked = 0;
+    for (place, pair) in points.windows(2).enumerate() {
+        before += pair[0].1;
+        if pair[1].0 <= pair[0].0 {
+            continue;
+        }
+        asked += 1;
+        let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
+        // Square explained by two means instead of one.
+        let gap = before / n - (total - before) / m;
+        let power = gap * gap * n * m / count;
+        if best.is_none_or(|(_, p)| power > p) {
+            best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+        }
+    }
+    best.map(|(time, _)| (time, asked))
+}
+
+/// The place of an axis at which the residual of one other component jumps most, and how many were looked at.
+#[must_use]
+pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
+    let mut best: Option<(f64, f64)> = None;
+    let mut asked = 0;
+    for class in (0..3).filter(|class| *class != axis) {
+        let mut points: Vec<(f64, f64)> = thinned(source.scalars)
+            .into_iter()
+            .filter(|i| source.scalars[*i].along[class].abs() > 0.3)
+            .map(|i| {
+                let s = &source.scalars[i];
+                (source.rows[s.row].command.linear_mm[axis], residuals_um[i] * s.along[class])
+            })
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let count = points.len() as f64;
+        let total: f64 = points.iter().map(|p| p.1).sum();
+        let mut before = 0.0;
+        for (place, pair) in points.windows(2).enumerate() {
+            before += pair[0].1;
+            if pair[1].0 - pair[0].0 < 1e-3 {
+                continue;
+            }
+            asked += 1;
+            let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
+            let gap = before / n - (total - before) / m;
+            let power = gap * gap * n * m / count;
+            if best.is_none_or(|(_, p)| power > p) {
+                best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+            }
+        }
+    }
+    best.map(|(place, _)| (place, asked))
+}
+
+/// Place and width where a bump along one axis explains most of the residual, all components together; how many
+/// were looked at.
+#[must_use]
+pub(crate) fn damage(
+    source: &Source<'_>,
+    residuals_um: &[f64],
+    axis: usize,
+    narrowest_mm: f64,
+) -> Option<(f64, f64, usize)> {
+    const WIDTHS: [f64; 5] = [0.04, 0.07, 0.12, 0.18, 0.27];
+    let mut points: Vec<(f64, Vector, f64)> = thinned(source.scalars)
+        .into_iter()
+        .map(|i| (&source.scalars[i], residuals_um[i]))
+        .map(|(s, r)| (source.rows[s.row].command.linear_mm[axis], s.along, r))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (low, high) = (points.first()?.0, points.last()?.0);
+    let length = high - low;
+    if length <= 0.0 {
+        return None;
+    }
+    let (mut best, mut asked) = (None, 0);
+    let mut most = 0.0;
+    for share in WIDTHS.into_iter().filter(|share| share * length >= narrowest_mm) {
+        let (width, step) = (share * length, share * length / 4.0);
+        let count = (length / step) as i32;
+        for k in 0..=count {
+            let centre = low + step * f64::from(k);
+            asked += 1;
+            let from = points.partition_point(|p| p.0 <= centre - 0.5 * width);
+            let to = points.partition_point(|p| p.0 < centre + 0.5 * width);
+            let (mut cross, mut square, mut different) = (Vector::zeros(), Vector::zeros(), 0);
+            let mut last = f64::NAN;
+            for (q, along, r) in &points[from..to] {
+                let wave = math::cos(std::f64::consts::PI * (q - centre) / width);
+                let bump = along * (wave * wave);
+                cross += bump * *r;
+                square += bump.component_mul(&bump);
+                different += i32::from(*q != last);
+                last = *q;
+            }
+            // One or two places alone could be anything.
+            if different < 3 {
+                continue;
+            }
+            let power: f64 =
+                (0..3).filter(|c| square[*c] > 1e-9).map(|c| cross[c] * cross[c] / square[c]).sum();
+            if power > most {
+                most = power;
+                best = Some((centre, width));
+            }
+        }
+    }
+    best.map(|(centre, width)| (centre, width, asked))
+}
+
+/// True where steps from row to row are so close to whole periods that the wave is sampled as a slow curve.
+fn is_strobed(steps_mm: &[f64], pitch_mm: f64) -> bool {
+    let long = steps_mm.iter().filter(|step| **step >= 0.5 * pitch_mm);
+    let (all, slow) = long.fold((0, 0), |(all, slow), step| {
+        let phase = step / pitch_mm;
+        (all + 1, slow + i32::from((phase - phase.round()).abs() < 0.12))
+    });
+    all > 8 && 10 * slow > 8 * all
+}

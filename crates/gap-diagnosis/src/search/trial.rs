@@ -1,0 +1,241 @@
+//! The trial of an effect that scores: what must hold before it is named, and when it goes again.
+//!
+//! Four tests, each against a mistake that the others let pass. The F test, its level divided among everything that was
+//! asked, keeps noise from being named; the least share keeps what no one would repair out of the answer; lines that were
+//! left out show whether the effect is one of the machine or of a single run.
+
+use machine_model::effects::EffectKind;
+
+use crate::equations::f_test::f_tail;
+use crate::equations::linear::Products;
+use crate::equations::term::Term;
+use crate::library::candidates::Part;
+use crate::library::seen::curve_axis;
+use crate::search::crossval::{Folding, Folds};
+use crate::search::doubt::inflations;
+use crate::search::explanation::Refused;
+use crate::search::moves::without;
+use crate::search::space::Fit;
+use crate::search::state::State;
+
+/// Level of the F test, over all questions asked: shared evenly among the effects, and within an effect among
+/// its forms. Blunders that pass for damage come on top: 3 % leave room below one false alarm in twenty.
+pub(crate) const LEVEL: f64 = 3e-2;
+/// Least share of the reducible square that a cause must explain.
+pub(crate) const LEAST_SHARE: f64 = 0.02;
+/// Least share of a joint of rails: where curves are bent otherwise than in textbooks a step fits a little.
+const LEAST_STEP: f64 = 0.15;
+
+/// Why an effect is refused that may be there and is not proven.
+pub(crate) const UNPROVEN: &str = "the F test";
+/// Why an effect is refused that explains the rows and not the next ones.
+pub(crate) const NOT_ELSEWHERE: &str = "it does not predict lines it has not seen";
+
+impl State<'_, '_> {
+    /// Why an effect that scores must not be named beside `rest`; `None` where it may.
+    pub(crate) fn objection(&self, rest: &[Part], part: Part, fit: &Fit) -> Option<Refused> {
+        let mut with = rest.to_vec();
+        with.push(part);
+        let kind = self.library.kind(part);
+        let (before, rank_before) = self.space.left(&self.library, rest, fit.level);
+        let gain = (before - fit.residual).max(0.0);
+        let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
+        let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
+        let inflation = self.inflation(rest, part, fit.level);
+        // Readings that hang together are as good as (1 - φ)/(1 + φ) times as many independent ones.
+        let independent = degrees * (1.0 - self.phi) / (1.0 + self.phi);
+        let effective = self.effective_degrees(part, fit.level, independent.max(1.0));
+        let ratio = gain / columns / (fit.residual / degrees).max(self.floor) / inflation;
+        // Once with everything, once with the runs' offsets left free: within the runs no drift between
+        // them can deceive, and the better of two tests costs a factor of two.
+        let p = 2.0
+            * self.library.questions(part.candidate)
+            * f_tail(ratio, columns, effective).min(self.within_runs(&with, inflation));
+        let share = gain / before.max(1e-12);
+        let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
+        if p > LEVEL {
+            return refuse(UNPROVEN);
+        }
+        let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
+        if matches!(kind, EffectKind::Joint(_)) && gain / reducible < LEAST_STEP {
+            return refuse("so small a step is what a curve's own shape leaves");
+        }
+        if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
+            return refuse("its share is below 2 % of what can be explained");
+        }
+        if let Some(reason) = self.crowded(&with).or_else(|| self.out_of_bounds(&with, fit.level)) {
+            return refuse(reason);
+        }
+        if !self.predicts(&with, fit.level) {
+            return refuse(NOT_ELSEWHERE);
+        }
+        None
+    }
+
+    /// True where the last of `with` is small only because the others took its part over: it explains most of what they
+    /// leave, and beside it they have other numbers, so that its own displacement is no trifle.
+    fn was_taken_over(&self, with: &[Part], gain: f64, before: f64, level: usize) -> bool {
+        /// Share of what is left that it must explain.
+        const MOST: f64 = 0.5;
+        if gain < MOST * before {
+            return false;
+        }
+        let values =
+            self.space.gram.select(&self.library.model_columns(with)).coefficients(self.space.rho(level));
+        let own = values.get(self.library.positions(with, with.len() - 1)).unwrap_or_default();
+        let columns = with.last().map_or_else(Vec::new, |part| self.space.columns(&self.library, &[*part]));
+        let products = self.space.products(level);
+        let square: f64 = (0..own.len())
+            .flat_map(|i| (0..own.len()).map(move |j| (i, j)))
+            .map(|(i, j)| own[i] * own[j] * products.product(columns[i], columns[j]))
+            .sum();
+        square >= LEAST_SHARE * self.space.total(level)
+    }
+
+    /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
+    fn crowded(&self, with: &[Part]) -> Option<&'static str> {
+        let crowd = |axis: usize, component: usize| {
+            let columns = with.iter().flat_map(|part| {
+                let candidate = &self.library.candidates[part.candidate];
+                let own = curve_axis(candidate.kind) == Some(axis);
+                candidate.variants[part.variant].columns.iter().filter(move |_| own)
+            });
+            let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
+            2.0 * columns.filter(seen).count() as f64 > self.bounds.places[axis] + 0.5
+        };
+        let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
+        crowded.then_some(
+            "the curves along that axis would have more coefficients than half the places measured",
+        )
+    }
+
+    /// Why a part, with the numbers it has beside the others, must not be used.
+    fn out_of_bounds(&self, parts: &[Part], level: usize) -> Option<&'static str> {
+        let sub = self.space.gram.select(&self.library.model_columns(parts));
+        let values = sub.coefficients(self.space.rho(level));
+        (0..parts.len()).find_map(|place| {
+            let kind = self.library.kind(parts[place]);
+            let own = self.library.positions(parts, place);
+            let terms: Vec<(Term, f64)> = own.map(|i| (sub.terms[i], values[i])).collect();
+            self.bounds.broken_by(kind, &terms, self.source.geometry)
+        })
+    }
+
+    /// Takes out causes that break their bounds in the model that the search ended with, the worst scoring first.
+    pub(crate) fn restrain(&mut self) {
+        while !self.parts.is_empty() {
+            let Some(reason) = self.out_of_bounds(&self.parts, self.fit.level) else { break };
+            let kept = (0..self.parts.len()).map(|place| without(&self.parts, place));
+            let judged = kept.map(|rest| (self.space.fit(&self.library, &rest), rest));
+            let (tame, wild): (Vec<_>, Vec<_>) =
+                judged.partition(|(fit, rest)| self.out_of_bounds(rest, fit.level).is_none());
+            let pool = if tame.is_empty() { wild } else { tame };
+            let Some((fit, rest)) = pool.into_iter().min_by(|a, b| a.0.score.total_cmp(&b.0.score)) else {
+                break;
+            };
+            let gone = self.parts.iter().find(|p| !rest.contains(p));
+            if let Some(part) = gone {
+                let (before, _) = self.space.left(&self.library, &rest, fit.level);
+                let share = (before - self.fit.residual).max(0.0) / before.max(1e-12);
+                let kind = self.library.kind(*part);
+                self.refused = Some(Refused { kind, share, p: 0.0, reason });
+            }
+            (self.parts, self.fit) = (rest, fit);
+        }
+    }
+
+    /// F test of the last part with the runs' offsets left free.
+    fn within_runs(&self, with: &[Part], inflation: f64) -> f64 {
+        let level = crate::search::space::RHO_GRID.len() - 1;
+        let (before, rank_before) = self.space.left(&self.library, &with[..with.len() - 1], level);
+        let (after, rank_after) = self.space.left(&self.library, with, level);
+        let columns = rank_after.saturating_sub(rank_before) as f64;
+        let degrees = self.space.degrees - 3.0 * self.source.runs as f64 - rank_after as f64;
+        if columns < 1.0 || degrees < 1.0 {
+            return 1.0;
+        }
+        let independent = (degrees * (1.0 - self.phi) / (1.0 + self.phi)).max(1.0);
+        f_tail(
+            (before - after) / columns / (after / degrees).max(self.floor) / inflation,
+            columns,
+            independent,
+        )
+    }
+
+    /// By how much the readings' hanging together widens what is known of a part beside the rest: its columns with the
+    /// rest and the runs' offsets taken out, the widest counts.
+    fn inflation(&self, rest: &[Part], part: Part, level: usize) -> f64 {
+        if self.phi == 0.0 {
+            return 1.0;
+        }
+        let beside: Vec<Term> =
+            self.library.model_columns(rest).into_iter().map(|c| self.library.terms[c]).collect();
+        let own = &self.library.form(part).columns;
+        let own: Vec<Term> = own.iter().map(|c| self.library.terms[*c]).collect();
+        inflations(&beside, &own, self.space.rho(level), self.phi, self.source)
+            .into_iter()
+            .fold(1.0, f64::max)
+    }
+
+    /// Degrees of freedom of the noise that an effect competes with: few where only the differences
+    /// between runs show it (Satterthwaite's combination of within and between).
+    fn effective_degrees(&self, part: Part, level: usize, within: f64) -> f64 {
+        let columns = self.space.columns(&self.library, &[part]);
+        let last_level = crate::search::space::RHO_GRID.len() - 1;
+        let information = |l: usize| -> f64 {
+            columns
+                .iter()
+                .map(|c| self.space.products(l).product(*c, *c) / self.space.reference()[*c].max(1e-300))
+                .sum()
+        };
+        let (here, free) = (information(level), information(last_level));
+        let share = if here > 0.0 { (free / here).clamp(0.0, 1.0) } else { 1.0 };
+        let between = (self.source.runs as f64 - 2.0).max(1.0);
+        1.0 / (share * share / within + (1.0 - share) * (1.0 - share) / between)
+    }
+
+    /// True where the last of `with` helps to predict lines left out.
+    fn predicts(&self, with: &[Part], level: usize) -> bool {
+        let columns = self.library.model_columns(with);
+        let terms: Vec<Term> = columns.iter().map(|c| self.library.terms[*c]).collect();
+        let nuisances = self.library.nuisances;
+        let all: Vec<usize> = (0..terms.len() - nuisances).collect();
+        let own = with.last().map_or(0, |p| self.library.form(*p).columns.len());
+        let (base, added) = all.split_at(all.len() - own);
+        let rho = self.space.rho(level);
+        let passes = |folding| {
+            let folds = Folds::new(&terms, nuisances, rho, self.source, folding);
+            let (gain, error) = folds.gain(base, &all);
+            (gain > error, folds.concentration(added))
+        };
+        let (passed, concentration) = passes(Folding::Runs);
+        let few = self.source.runs < 8 || concentration > 0.3;
+        passed || (few && passes(Folding::Stretches).0)
+    }
+
+    /// Takes out causes that others have made superfluous.
+    pub(crate) fn prune(&mut self) {
+        loop {
+            let level = self.fit.level;
+            let (full, _) = self.space.left(&self.library, &self.parts, level);
+            let reducible = (self.space.total(level) - full).max(1e-12);
+            let weakest = (0..self.parts.len())
+                .filter_map(|place| {
+                    let rest = without(&self.parts, place);
+                    let left = self.space.left(&self.library, &rest, level).0;
+                    let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
+                    let share = (left - full) / reducible;
+                    let stays = share < LEAST_SHARE && self.was_taken_over(&with, left - full, left, level);
+                    (!stays).then_some((share, rest))
+                })
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            match weakest {
+                Some((share, rest)) if share < LEAST_SHARE && self.parts.len() > 1 => {
+                    self.parts = rest;
+                    self.fit = self.space.fit(&self.library, &self.parts);
+                }
+                _ => break,
+            }
+        }
+    }
+}

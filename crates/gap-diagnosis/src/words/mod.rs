@@ -1,0 +1,7 @@
+//! The answer in words.
+
+pub(crate) mod cause;
+pub(crate) mod notes;
+pub(crate) mod remedy;
+pub(crate) mod report;
+pub(crate) mod sentence;

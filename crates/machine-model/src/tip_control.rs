@@ -1,0 +1,272 @@
+//! Tool centre point control: the program says where the tip shall be, the control where the axes go. Equation (61).
+
+use crate::chord_bound::{Length, lies_inside};
+use crate::rigid_body::ideally_turned;
+use crate::solve::{inside, solve};
+use crate::turning_bound::error_in_turn;
+use crate::{
+    Axis, Command, Description, Engine, EngineId, LinearAxis, Move, PathModel, Range, RigidBody, RotaryAxis,
+    Solution, SolveError, Squareness, Turn, Vector, Volume,
+};
+
+/// A machine under tool centre point control (G43.4, TRAORI, switched kinematics).
+///
+/// Places of the linear axes are *tip commands* here: what X, Y, Z would be told with all rotary axes at 0, so that the
+/// tip stands there in the frame of the workpiece, which turns with the table. The control makes axis commands of them
+/// with its own centres, as if the machine were perfect; where its centres are others than the machine's, that is an error
+/// like any other. Errors are those of the tip in the workpiece.
+///
+/// ```
+/// use machine_model::{Command, PathModel, TipControl, Vector};
+/// # use machine_model::{Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness};
+/// # let linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: -500.0, high: 500.0 }));
+/// # let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+/// # let chain = Chain::parse("[w C b X Y Z t]").unwrap();
+/// # let machine = RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap();
+/// // The control has C's centre 10 µm beside where it is: no error at 0, twice that after half a turn.
+/// let centres_mm = [Vector::zeros(), Vector::zeros(), Vector::new(0.010, 0.0, 0.0)];
+/// let tip = TipControl::new(&machine, centres_mm).unwrap();
+/// let at = |c: f64| Command {
+///     linear_mm: Vector::new(100.0, 0.0, 0.0),
+///     rotary_rad: Vector::new(0.0, 0.0, c),
+///     tool_mm: Vector::zeros(),
+///     direction: [0; 3],
+/// };
+/// assert_eq!(tip.error_mm(&at(0.0)), Vector::zeros());
+/// assert!((tip.error_mm(&at(std::f64::consts::PI)).x + 0.020).abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug)]
+pub struct TipControl {
+    machine: RigidBody,
+    /// The machine that the control believes in.
+    control: RigidBody,
+    /// Distances between the centres that it believes in and those that there are, all together, mm.
+    apart_mm: f64,
+}
+
+/// Where a tip may be: whether the axes get there is asked of them.
+const ANYWHERE: Volume = Volume([Range { low: f64::NEG_INFINITY, high: f64::INFINITY }; 3]);
+
+/// Bounds hold for stretches that turn by less than this, all rotary axes together, rad: then a coordinate passes a place
+/// no more often than [`passes`] says.
+const MOST_TURN_RAD: f64 = 3.0;
+
+/// More than nothing, mm: an axis that several tip coordinates move does not run evenly through the box of its places.
+const NOT_EVEN_MM: f64 = 1e-12;
+
+/// How often an axis passes a place at most while so many rotary axes turn evenly.
+///
+/// Its command is a sum of 1, s, and both times sines and cosines of sums and differences of the angles: `2·3ⁿ` functions
+/// that solve one linear equation with constant coefficients, whose solutions have fewer zeros than its order on a stretch
+/// on which the fastest of them turns by less than π (Pólya).
+fn passes(turning: usize) -> f64 {
+    [1.0, 5.0, 17.0, 53.0][turning.min(3)]
+}
+
+/// Upper bounds of the distance from a centre that turns evenly, and of its derivatives along a stretch, mm.
+#[derive(Clone, Copy)]
+struct Course([f64; 4]);
+
+impl Course {
+    /// The same seen from what turns by `speed` rad a stretch, about a centre so far away in the middle of the stretch.
+    fn turned(self, arm_mm: f64, speed: f64) -> Self {
+        let Self([_, first, second, third]) = self;
+        // From the middle it goes half of its way at most.
+        let value = arm_mm + 0.5 * first;
+        Self([
+            value,
+            first + speed * value,
+            second + speed * (2.0 * first + speed * value),
+            third + speed * (3.0 * second + speed * (3.0 * first + speed * value)),
+        ])
+    }
+}
+
+impl TipControl {
+    /// Puts a machine under the control.
+    ///
+    /// * `centres_mm` – of A, B, C as the control has them, machine coordinates; those of axes that the machine does not have
+    ///   are not used
+    ///
+    /// `None` where the machine's error depends on the direction of motion: under such control axes turn back on the way.
+    #[must_use]
+    pub fn new(machine: &RigidBody, centres_mm: [Vector; 3]) -> Option<Self> {
+        if machine.depends_on_direction() {
+            return None;
+        }
+        let real = machine.description();
+        let rotary = [0, 1, 2].map(|axis| RotaryAxis {
+            direction: real.rotary[axis].direction,
+            ..RotaryAxis::perfect(centres_mm[axis])
+        });
+        let apart_mm = real
+            .chain
+            .axes()
+            .filter(|axis| !axis.is_linear())
+            .map(|axis| (real.rotary[axis.direction()].centre_mm - centres_mm[axis.direction()]).norm())
+            .sum();
+        let linear = real.linear.each_ref().map(|axis| LinearAxis::perfect(axis.travel_mm));
+        let control =
+            Description { chain: real.chain.clone(), linear, rotary, squareness: Squareness::default() };
+        Some(Self { machine: machine.clone(), control: RigidBody::new(control).ok()?, apart_mm })
+    }
+
+    /// What the control tells the axes for a tip command.
+    #[must_use]
+    pub fn axis_command(&self, tip: &Command) -> Command {
+        Command { linear_mm: self.control.reach(&(tip.linear_mm + tip.tool_mm), tip), ..*tip }
+    }
+
+    /// The tip command at an axis command.
+    #[must_use]
+    pub fn tip_command(&self, axes: &Command) -> Command {
+        Command { linear_mm: self.control.nominal_position(&axes.linear_mm, axes) - axes.tool_mm, ..*axes }
+    }
+
+    /// How axes run while tip and rotary axes run evenly; `None` where they turn too far for one bound.
+    fn turning(&self, stretch: &Move, turn: &Turn) -> Option<Move> {
+        let Description { chain, rotary, .. } = self.control.description();
+        let rates = turn.commanded_rad[1] - turn.commanded_rad[0];
+        let turning =
+            || chain.axes().filter(|axis| !axis.is_linear()).map(|axis| rates[axis.direction()].abs());
+        if turning().sum::<f64>() >= MOST_TURN_RAD {
+            return None;
+        }
+        let rotary_rad = 0.5 * (turn.commanded_rad[0] + turn.commanded_rad[1]);
+        let linear_mm = Vector::from_fn(|i, _| 0.5 * (stretch.range_mm[i].low + stretch.range_mm[i].high));
+        let middle = Command { linear_mm, rotary_rad, ..stretch.state };
+        // Of each rotary axis: how it stands in the middle, and how what stands so far from its centre moves with it.
+        let around = |axis: Axis| {
+            let (data, k) = (&rotary[axis.direction()], axis.direction());
+            let line = data.direction.unwrap_or_else(|| Vector::ith(k, 1.0));
+            (ideally_turned(data, axis, rotary_rad[k]), line * rates[k], data.centre_mm)
+        };
+        // From the workpiece through the table to the linear axes: where the tip is, how it goes there with the turning
+        // alone, and bounds of how it goes altogether.
+        let (mut tip, mut carried) = (linear_mm + middle.tool_mm, Vector::zeros());
+        let mut seen = Course([0.0, Vector::from(stretch.speed_mm).norm(), 0.0, 0.0]);
+        for axis in chain.table() {
+            let (stands, rate, centre) = around(*axis);
+            seen = seen.turned((tip - centre).norm(), rate.norm());
+            let arm = stands * (tip - centre);
+            (tip, carried) = (centre + arm, stands * carried + rate.cross(&arm));
+        }
+        let mut tool = middle.tool_mm;
+        let mut swung = Vector::zeros();
+        let mut swings = Course([0.0; 4]);
+        for axis in chain.head().iter().rev() {
+            let (stands, rate, centre) = around(*axis);
+            swings = swings.turned((tool - centre).norm(), rate.norm());
+            let arm = stands * (tool - centre);
+            (tool, swung) = (centre + arm, stands * swung + rate.cross(&arm));
+        }
+        let [acceleration, jerk] = [2, 3].map(|order| seen.0[order] + swings.0[order]);
+        let with_tip = self.control.table_turn(&middle).transpose().abs() * Vector::from(stretch.speed_mm);
+        // In the middle, and as much as that may change.
+        let (by_turning, unsure) = ((carried - swung).abs(), with_tip + Vector::repeat(0.5 * acceleration));
+        let speed = by_turning + unsure;
+        let at = tip - tool;
+        // An axis that does not turn back passes each place once. One that does is nowhere faster than it accelerates, and
+        // passes a place twice where it always accelerates one way; where it does not, it accelerates by no more than its
+        // jerk. Once at so many times the speed is as much.
+        let often = passes(turning().filter(|rate| *rate > 0.0).count());
+        let back = (2.0 * acceleration).max(often * jerk);
+        let once =
+            Vector::from_fn(|i, _| if by_turning[i] > unsure[i] { speed[i] } else { speed[i].max(back) });
+        Some(Move {
+            range_mm: [0, 1, 2].map(|i| Range { low: at[i] - 0.5 * speed[i], high: at[i] + 0.5 * speed[i] }),
+            speed_mm: once.into(),
+            acceleration_mm: [acceleration.max(NOT_EVEN_MM); 3],
+            passes: 1,
+            ..*stretch
+        })
+    }
+
+    /// How axes run while the tip runs and the rotary axes stand.
+    fn standing(&self, stretch: &Move) -> Move {
+        let [low, high] = [|range: &Range| range.low, |range: &Range| range.high]
+            .map(|end| Vector::from_iterator(stretch.range_mm.iter().map(end)));
+        let middle = self.axis_command(&Command { linear_mm: 0.5 * (low + high), ..stretch.state }).linear_mm;
+        let turn = self.control.table_turn(&stretch.state).transpose();
+        let size = turn.abs();
+        let half = size * (0.5 * (high - low));
+        let [speed, acceleration] =
+            [stretch.speed_mm, stretch.acceleration_mm].map(|of| size * Vector::from(of));
+        let mixed = |axis: usize| size.row(axis).iter().filter(|share| **share != 0.0).count() > 1;
+        Move {
+            range_mm: [0, 1, 2].map(|i| Range { low: middle[i] - half[i], high: middle[i] + half[i] }),
+            speed_mm: speed.into(),
+            acceleration_mm: [0, 1, 2]
+                .map(|i| if mixed(i) { acceleration[i].max(NOT_EVEN_MM) } else { acceleration[i] }),
+            ..*stretch
+        }
+    }
+}
+
+impl Engine for TipControl {
+    fn id(&self) -> EngineId {
+        self.machine.id()
+    }
+
+    fn volume(&self) -> Volume {
+        ANYWHERE
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.machine.rotary_inside(target)?;
+        let solution = solve(&target.linear_mm, &ANYWHERE, |tip| {
+            self.error_mm(&Command { linear_mm: *tip, ..*target })
+        })?;
+        for tip in [target.linear_mm, solution.linear_mm] {
+            let axes = self.axis_command(&Command { linear_mm: tip, ..*target });
+            inside(&axes.linear_mm, &self.machine.volume)?;
+        }
+        Ok(solution)
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl PathModel for TipControl {
+    /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
+    fn error_mm(&self, command: &Command) -> Vector {
+        let axes = self.axis_command(command);
+        let own = self.machine.predict(&axes).error_mm;
+        if self.apart_mm == 0.0 {
+            // No more than that: what is zero stays zero to the last bit.
+            return own;
+        }
+        own + self.machine.nominal_position(&axes.linear_mm, &axes) - command.linear_mm - command.tool_mm
+    }
+
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        let Some(turn) = &stretch.turn else {
+            // What turns nothing changes no length, and with standing axes other centres are a shift.
+            return self.machine.chord_bound_mm(&self.standing(stretch));
+        };
+        // The tip asked for is the same wherever the rotary axes stand.
+        let turn = Turn { programmed_rad: turn.commanded_rad, commanded_rad: turn.commanded_rad };
+        let Some(axes) = self.turning(stretch, &turn) else { return f64::INFINITY };
+        if !lies_inside(&self.machine, &axes) {
+            return f64::INFINITY;
+        }
+        let (error, turned) = error_in_turn(&self.machine, &axes, &turn);
+        let all = (turn.commanded_rad[1] - turn.commanded_rad[0]).abs().sum();
+        let apart = Length { second: 2.0 * self.apart_mm * all * all, ..Length::default() };
+        error.turned(turned).plus(apart).leaves_chord_mm()
+    }
+
+    fn follows_turns(&self) -> bool {
+        true
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        linear_mm + state.tool_mm
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        self.machine.tilt_rad(&self.axis_command(command))
+    }
+}

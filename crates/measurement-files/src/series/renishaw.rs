@@ -1,0 +1,169 @@
+//! Files of laser interferometers: Renishaw's RTL text, and tables with one column a run.
+
+use std::collections::BTreeSet;
+
+use machine_model::Axis;
+
+use crate::codes::{AXES, CELL, RUNS, UNIT};
+use crate::refusal::{Codes, Refusal};
+use crate::table::{Table, value};
+use crate::unit::{MM, Unit};
+
+use super::{File, Line, Origin, Series, numbers};
+
+/// One deviation: run, target (from 1), value, and where it stands.
+struct Deviation<'f> {
+    run: usize,
+    target: usize,
+    value: f64,
+    line: Line<'f>,
+}
+
+/// Renishaw's RTL text.
+pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
+    let (function, axis) = file.function()?;
+    let factor = file.factor(function, None)?;
+    let (mut section, mut part) = (String::new(), String::new());
+    let mut targets: Vec<f64> = Vec::new();
+    let mut rows: Vec<Deviation<'_>> = Vec::new();
+    let (mut announced_targets, mut announced_runs) = (None, None);
+    for line in file.lines() {
+        let words = numbers(line.text);
+        if let Some(title) = line.text.strip_suffix("::") {
+            section = title.trim().to_uppercase();
+            part.clear();
+            if section == "DEVIATIONS" && !rows.is_empty() {
+                let message = "a second measurement in one file".to_owned();
+                return Err(file.refuse(
+                    RUNS,
+                    line.span,
+                    message,
+                    "export each measurement to a file of its own",
+                ));
+            }
+        } else if let Some((key, rest)) = line.text.split_once(':') {
+            part = key.trim().to_lowercase();
+            let count = rest.trim().parse::<usize>().ok().map(|count| (count, line.span.clone()));
+            match (section.as_str(), part.as_str()) {
+                ("TARGET DATA", "target-count") => announced_targets = count,
+                ("RUNS", "run-count") => announced_runs = count,
+                ("USER-TEXT", "axis") => {
+                    let letters: Vec<Axis> = rest
+                        .chars()
+                        .filter_map(|c| Axis::from_letter(c.to_ascii_uppercase()))
+                        .filter(|a| a.is_linear())
+                        .collect();
+                    if let [other] = letters[..]
+                        && other != axis
+                    {
+                        let message = format!(
+                            "{}: the file says axis {}, the command line {axis}",
+                            file.name,
+                            rest.trim()
+                        );
+                        return Err(file.refuse(
+                            AXES,
+                            line.span,
+                            message,
+                            "correct the symbol behind the file's name",
+                        ));
+                    }
+                }
+                _ => {}
+            }
+        } else if let Some(words) = words {
+            match (section.as_str(), part.as_str()) {
+                ("TARGET DATA", "targets") => targets.extend(words),
+                ("DEVIATIONS", "run target data") => match words[..] {
+                    [run, target, value] if run >= 1.0 && target >= 1.0 => {
+                        rows.push(Deviation { run: run as usize, target: target as usize, value, line });
+                    }
+                    _ => return Err(file.damaged(&line, "expected run, target and deviation".to_owned())),
+                },
+                _ => {}
+            }
+        }
+    }
+    let (announced, span) = announced_targets.unwrap_or((targets.len(), 0..0));
+    if announced != targets.len() || targets.is_empty() {
+        let message = format!("{announced} targets are announced and {} are there", targets.len());
+        return Err(file.damaged(&Line { span, text: "" }, message));
+    }
+    let found = rows.iter().map(|row| row.run).max().unwrap_or(0);
+    if let Some((announced, place)) = announced_runs.filter(|(count, _)| *count != found) {
+        let message = format!("{}: {announced} runs are announced and {found} are there", file.name);
+        let help = "the measurement was broken off, or the file is damaged: export complete runs";
+        return Err(file.refuse(RUNS, place, message, help));
+    }
+    let mut series = Series::new(axis, function, file.name, Origin::Instrument);
+    for run in rows.iter().map(|row| row.run).collect::<BTreeSet<_>>() {
+        let own: Vec<_> = rows.iter().filter(|row| row.run == run).collect();
+        // A run passes the targets in one direction: the order of its rows says which.
+        let at = |row: &&Deviation<'_>| targets.get(row.target - 1).copied();
+        let direction = match (own.first().and_then(at), own.last().and_then(at)) {
+            (Some(a), Some(b)) if b > a => 1,
+            (Some(a), Some(b)) if b < a => -1,
+            _ => 0,
+        };
+        for row in own {
+            let Some(position) = at(&row) else {
+                return Err(file.damaged(&row.line, format!("target {} of {}", row.target, targets.len())));
+            };
+            // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
+            series.push(&run.div_ceil(2).to_string(), position, row.value * factor, direction);
+        }
+    }
+    Ok(series)
+}
+
+/// A target column and one column a run. Directions: from `+`/`-`, `forward`/`reverse` or `up`/`down` in the column's title;
+/// otherwise odd runs go up and even ones down, as instruments run them.
+pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
+    let (function, axis) = file.function()?;
+    let of = |diagnostic| Refusal::of(file.name, file.text, diagnostic);
+    let known =
+        |header: &str| ["target", "position", "run"].iter().any(|word| header.to_lowercase().contains(word));
+    let codes = Codes::MEASUREMENTS;
+    let table = Table::read(file.text, codes, "a target column and one column a run", known).map_err(of)?;
+    let cells = table.records.iter().flat_map(|record| &record.cells);
+    let mark = table.mark(file.text, codes.cell, cells).map_err(of)?;
+    let titles: Vec<String> =
+        table.header.cells.iter().map(|cell| value(file.text, cell).to_lowercase()).collect();
+    let bracket = |title: &String| Some(title.split_once('(')?.1.trim_end_matches(')').to_owned());
+    let factor = file.factor(function, titles.iter().skip(1).find_map(bracket).as_deref())?;
+    if bracket(&titles[0]).is_some_and(|unit| Unit::named(&unit, None) != Some(MM)) {
+        let (span, message) = (table.header.cells[0].span.clone(), format!("targets in `{}`", titles[0]));
+        return Err(file.refuse(UNIT, span, message, "give the target positions in mm"));
+    }
+    let directions: Vec<i8> = titles
+        .iter()
+        .enumerate()
+        .map(|(k, t)| {
+            let says = |words: [&str; 3]| words.iter().any(|w| t.contains(w));
+            if says(["+", "forward", "up"]) {
+                1
+            } else if says(["-", "reverse", "down"]) || k % 2 == 0 {
+                -1
+            } else {
+                1
+            }
+        })
+        .collect();
+    let mut series = Series::new(axis, function, file.name, Origin::Instrument);
+    for record in &table.records {
+        let number = |k: usize| {
+            let (cell, text) = (&record.cells[k], value(file.text, &record.cells[k]));
+            let refusal = || {
+                let what = if k == 0 { "target" } else { "number" };
+                let help = "write decimal numbers with a point";
+                file.refuse(CELL, cell.span.clone(), format!("`{text}` is no {what}"), help)
+            };
+            mark.number(&text).ok_or_else(refusal)
+        };
+        let target = number(0)?;
+        for k in (1..record.cells.len()).filter(|k| !record.cells[*k].span.is_empty()) {
+            series.push(&k.div_ceil(2).to_string(), target, number(k)? * factor, directions[k]);
+        }
+    }
+    Ok(series)
+}

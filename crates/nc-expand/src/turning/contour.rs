@@ -1,0 +1,414 @@
+//! The blocks between P and Q as a way in the plane of radius and Z.
+
+use nc_syntax::dialect::Action;
+use nc_syntax::{ItemKind, Span, Value};
+use units::math;
+
+use super::emit::Code;
+use super::state::Motion;
+use super::{Fault, Spot, Writer};
+use crate::shorthand::Words;
+
+/// Ends and centres of programs are rounded: so far may a contour turn back, mm or inches.
+const TURNS_BACK: f64 = 1e-3;
+/// Angles nearer to an end of an arc than this are that end, rad.
+const AT_AN_END_RAD: f64 = 1e-9;
+
+/// Index in the plane: radius (X), or Z.
+pub(super) type Axis = usize;
+pub(super) type Point = [f64; 2];
+
+/// One block of a contour.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) code: Code,
+    pub(super) to: Spot,
+    /// Words of the centre or radius, as they were written.
+    pub(super) round: Vec<u8>,
+    pub(super) way: Way,
+    /// Index of its block.
+    pub(super) block: usize,
+}
+
+/// A piece's geometry, radius and Z in units of the program.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    pub(super) from: Point,
+    pub(super) to: Point,
+    pub(super) arc: Option<Arc>,
+}
+
+/// Centre and signed angle from start to end, positive from Z towards X (G3).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arc {
+    centre: Point,
+    sweep_rad: f64,
+}
+
+/// What lies between P and Q.
+#[derive(Debug)]
+pub(super) struct Contour {
+    /// Block of P.
+    pub(super) first: usize,
+    /// Block of Q.
+    pub(super) last: usize,
+    /// A: where the tool stands.
+    pub(super) start: Spot,
+    /// The way from A to A'.
+    pub(super) entry: Piece,
+    /// From A' to B.
+    pub(super) pieces: Vec<Piece>,
+    /// The first block names both axes.
+    pub(super) names_both: bool,
+    /// F stands in one of its blocks.
+    pub(super) says_feed: bool,
+}
+
+impl Contour {
+    /// B: where it ends.
+    pub(super) fn end(&self) -> Point {
+        self.pieces.last().map_or(self.entry.way.to, |piece| piece.way.to)
+    }
+}
+
+impl Way {
+    fn angle(&self, centre: Point, point: Point) -> f64 {
+        math::atan2(point[0] - centre[0], point[1] - centre[1])
+    }
+
+    /// The point of an arc at `share` of its sweep; of a line, of its length.
+    fn at(&self, share: f64) -> Point {
+        match self.arc {
+            None => [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k])),
+            Some(Arc { centre, sweep_rad }) => {
+                let [from, to] =
+                    [self.from, self.to].map(|p| math::hypot(p[0] - centre[0], p[1] - centre[1]));
+                let radius = from + share * (to - from);
+                let (sin, cos) = math::sin_cos(self.angle(centre, self.from) + share * sweep_rad);
+                [centre[0] + radius * sin, centre[1] + radius * cos]
+            }
+        }
+    }
+
+    /// Ends, and the places between them where an axis turns.
+    pub(super) fn extremes(&self) -> Vec<Point> {
+        let mut points = vec![self.from];
+        if let Some(Arc { centre, sweep_rad }) = self.arc {
+            let start = self.angle(centre, self.from);
+            let quarter = std::f64::consts::FRAC_PI_2;
+            let mut shares: Vec<f64> = (-8..=8)
+                .map(|k| (f64::from(k) * quarter - start) / sweep_rad)
+                .filter(|share| *share > AT_AN_END_RAD && *share < 1.0 - AT_AN_END_RAD)
+                .collect();
+            shares.sort_by(f64::total_cmp);
+            points.extend(shares.into_iter().map(|share| self.at(share)));
+        }
+        points.push(self.to);
+        points
+    }
+
+    /// The first place where `axis` has `value`, where the way gets there.
+    pub(super) fn crossing(&self, axis: Axis, value: f64) -> Option<Point> {
+        let (from, to) = (self.from[axis] - value, self.to[axis] - value);
+        let shares: Vec<f64> = match self.arc {
+            None if from == to => {
+                if from != 0.0 {
+                    return None;
+                }
+                vec![0.0]
+            }
+            None => vec![from / (from - to)],
+            Some(Arc { centre, sweep_rad }) => {
+                let radius = math::hypot(self.from[0] - centre[0], self.from[1] - centre[1]);
+                let ratio = (value - centre[axis]) / radius;
+                if ratio.abs() > 1.0 {
+                    return None;
+                }
+                let turn = std::f64::consts::TAU;
+                let start = self.angle(centre, self.from);
+                // The radius is the sine of the angle, Z its cosine.
+                let angles = if axis == 0 {
+                    [math::asin(ratio), std::f64::consts::PI - math::asin(ratio)]
+                } else {
+                    [math::acos(ratio), -math::acos(ratio)]
+                };
+                let around = [-2.0, -1.0, 0.0, 1.0, 2.0];
+                let mut shares: Vec<f64> = angles
+                    .into_iter()
+                    .flat_map(|angle| around.map(|k| (angle + k * turn - start) / sweep_rad))
+                    .collect();
+                shares.sort_by(f64::total_cmp);
+                shares
+            }
+        };
+        let share =
+            shares.into_iter().find(|share| (-AT_AN_END_RAD..=1.0 + AT_AN_END_RAD).contains(share))?;
+        let mut point = self.at(share.clamp(0.0, 1.0));
+        point[axis] = value;
+        Some(point)
+    }
+
+    pub(super) fn shifted(&self, by: Point) -> Self {
+        let shift = |p: Point| [p[0] + by[0], p[1] + by[1]];
+        let arc = self.arc.map(|arc| Arc { centre: shift(arc.centre), ..arc });
+        Self { from: shift(self.from), to: shift(self.to), arc }
+    }
+}
+
+impl Writer<'_, '_> {
+    /// Reads the contour between the blocks that P and Q of a cycle name, from where the tool stands.
+    pub(super) fn contour(&self, words: &Words<'_, '_>, start: Spot) -> Result<Contour, Fault> {
+        let first = self.numbered(words, b'P')?;
+        let last = self.numbered(words, b'Q')?;
+        if last < first {
+            let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
+            return Err(words.contour_fault(
+                span,
+                "the block of Q stands before the block of P",
+                "Q ends the contour",
+            ));
+        }
+        let mut state = self.state.clone();
+        state.stands_at(start);
+        // A code of the blocks before does not reach into the contour.
+        state.motion = Motion::Unknown;
+        let (mut at, mut pieces) = (start, Vec::new());
+        let (mut names_both, mut says_feed) = (false, false);
+        for index in first..=last {
+            let block = self.words(index);
+            self.check_contour_block(&block)?;
+            says_feed |= block.number(b'F').is_some();
+            state.step(&block);
+            if !state.moves(&block) {
+                if index == first {
+                    return Err(block.contour_fault(
+                        block.whole(),
+                        "the contour does not begin with a move",
+                        "G0 or G1 with X or Z was expected in the block of P",
+                    ));
+                }
+                continue;
+            }
+            let code = match state.motion {
+                Motion::Rapid if pieces.is_empty() => Code::Rapid,
+                Motion::Line => Code::Line,
+                Motion::Clockwise if !pieces.is_empty() => Code::Clockwise,
+                Motion::CounterClockwise if !pieces.is_empty() => Code::CounterClockwise,
+                Motion::Rapid => {
+                    return Err(block.contour_fault(
+                        block.whole(),
+                        "a rapid within the contour",
+                        "feeds were expected",
+                    ));
+                }
+                _ => {
+                    return Err(block.contour_fault(
+                        block.whole(),
+                        "the contour does not begin with G0 or G1",
+                        "the block of P must say which",
+                    ));
+                }
+            };
+            let [Some(x), Some(z)] = state.at else {
+                return Err(block.contour_fault(
+                    block.whole(),
+                    "where the contour leads here is not known",
+                    "another frame, or more decimals than six",
+                ));
+            };
+            if index == first {
+                let named = |letters: [u8; 2]| letters.iter().any(|letter| block.number(*letter).is_some());
+                names_both = named(*b"XU") && named(*b"ZW");
+            }
+            let to = [x, z];
+            let (from_plane, to_plane) = (self.plane(at), self.plane(to));
+            let (arc, round) = match code {
+                Code::Clockwise | Code::CounterClockwise => {
+                    let arc = self.arc(&block, from_plane, to_plane, code == Code::Clockwise)?;
+                    (Some(arc), round_words(&block))
+                }
+                _ => (None, Vec::new()),
+            };
+            pieces.push(Piece {
+                code,
+                to,
+                round,
+                way: Way { from: from_plane, to: to_plane, arc },
+                block: index,
+            });
+            at = to;
+        }
+        let entry = pieces.remove(0);
+        if pieces.is_empty() {
+            let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
+            return Err(words.contour_fault(
+                span,
+                "the contour ends where it begins",
+                "one move only leads to it",
+            ));
+        }
+        Ok(Contour { first, last, start, entry, pieces, names_both, says_feed })
+    }
+
+    /// The only block whose N is the number of P or Q.
+    fn numbered(&self, words: &Words<'_, '_>, letter: u8) -> Result<usize, Fault> {
+        let name = letter as char;
+        let Some((number, span)) = words.number(letter) else {
+            let message = format!("a cycle without {name}");
+            return Err(words.contour_fault(
+                words.whole(),
+                &message,
+                "P and Q name the blocks of its contour",
+            ));
+        };
+        let is_it = |index: &usize| {
+            let n = self.words(*index).number(b'N');
+            n.is_some_and(|(n, _)| n.integer() == number.integer() && number.integer().is_some())
+        };
+        let mut found = (0..self.blocks.len()).filter(is_it);
+        match (found.next(), found.next()) {
+            (Some(only), None) => Ok(only),
+            (None, _) => {
+                let message = format!("no block N{} for {name} of the cycle", number.to_f64());
+                Err(words.contour_fault(span, &message, "this program has none"))
+            }
+            (Some(_), Some(_)) => {
+                let message = format!("two blocks N{} for {name} of the cycle", number.to_f64());
+                Err(words.contour_fault(span, &message, "which of the two?"))
+            }
+        }
+    }
+
+    /// Refuses what no control takes, or takes differently, between P and Q.
+    fn check_contour_block(&self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let refuse = |span: Span, label: &str| {
+            let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
+            Err(words.contour_fault(span, &format!("{text} within a contour"), label))
+        };
+        for item in &words.block.items {
+            match item.kind {
+                ItemKind::Comment | ItemKind::Name => {}
+                ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
+                    let action =
+                        words.actions().find(|(_, span)| *span == item.span).map(|(action, _)| action);
+                    let fits = matches!(
+                        action,
+                        Some(
+                            Action::Rapid
+                                | Action::Line
+                                | Action::ArcClockwise
+                                | Action::ArcCounterClockwise
+                                | Action::FeedPerMinute
+                                | Action::FeedPerRevolution
+                                | Action::Absolute
+                                | Action::Incremental
+                                | Action::CompensationOff
+                                | Action::Pass { takes_words: false }
+                        )
+                    );
+                    // Compensation and all that is refused is refused by its own message, where it is executed.
+                    let own = matches!(action, None | Some(Action::Refuse { .. } | Action::CompensationOn));
+                    if !fits && !own {
+                        return refuse(item.span, "lines and arcs were expected");
+                    }
+                    if own {
+                        return refuse(item.span, "lines and arcs were expected, G40 in force");
+                    }
+                }
+                ItemKind::Word {
+                    letter: b'X' | b'Z' | b'U' | b'W' | b'I' | b'K' | b'R',
+                    value: Value::Number(_),
+                }
+                | ItemKind::Word { letter: b'N' | b'F' | b'S' | b'E', value: Value::Number(_) } => {}
+                ItemKind::Skip => return refuse(item.span, "behind block delete there are two contours"),
+                _ => return refuse(item.span, "controls differ in whether roughing heeds it"),
+            }
+        }
+        Ok(())
+    }
+
+    /// Centre and sweep of an arc by I and K, or by R.
+    fn arc(&self, words: &Words<'_, '_>, from: Point, to: Point, clockwise: bool) -> Result<Arc, Fault> {
+        let refuse = |label: &str| Err(words.contour_fault(words.whole(), "an arc that cannot be", label));
+        let value = |letter: u8| {
+            let (number, _) = words.number(letter)?;
+            Some(words.dialect.numbers.length(number, self.state.inch).to_f64())
+        };
+        let centre = match (value(b'R'), value(b'I'), value(b'K')) {
+            (Some(radius), None, None) => {
+                let chord = [to[0] - from[0], to[1] - from[1]];
+                let length = math::hypot(chord[0], chord[1]);
+                let square = radius * radius - 0.25 * length * length;
+                if length == 0.0 || square < -TURNS_BACK * radius.abs() {
+                    return refuse("its radius is smaller than half of its chord");
+                }
+                // Left of the way lies the centre of G3 with a positive radius.
+                let left = if clockwise == (radius < 0.0) { 1.0 } else { -1.0 };
+                let height = left * math_sqrt(square) / length;
+                [0.5 * (from[0] + to[0]) + height * chord[1], 0.5 * (from[1] + to[1]) - height * chord[0]]
+            }
+            (None, i, k) if i.is_some() || k.is_some() => {
+                [from[0] + i.unwrap_or_default(), from[1] + k.unwrap_or_default()]
+            }
+            (Some(_), ..) => return refuse("R beside I or K"),
+            _ => return refuse("R, or I and K, were expected"),
+        };
+        let angle = |p: Point| math::atan2(p[0] - centre[0], p[1] - centre[1]);
+        let turn = std::f64::consts::TAU;
+        let sweep = (angle(to) - angle(from)).rem_euclid(turn);
+        let sweep_rad = if clockwise {
+            if sweep == 0.0 { -turn } else { sweep - turn }
+        } else if sweep == 0.0 {
+            turn
+        } else {
+            sweep
+        };
+        Ok(Arc { centre, sweep_rad })
+    }
+
+    /// Refuses a contour that turns back along an axis; `forwards`: the signs of its way.
+    pub(super) fn require_monotone(
+        &self,
+        words: &Words<'_, '_>,
+        contour: &Contour,
+        axis: Axis,
+        forwards: f64,
+    ) -> Result<(), Fault> {
+        let mut furthest = contour.entry.way.to[axis] * forwards;
+        for piece in &contour.pieces {
+            for point in piece.way.extremes() {
+                let here = point[axis] * forwards;
+                if here < furthest - TURNS_BACK {
+                    let block = self.words(piece.block);
+                    let name = ["X", "Z"][axis];
+                    let cycle = String::from_utf8_lossy(words.block.bytes.trim_ascii()).into_owned();
+                    return Err(block.contour_fault(
+                        block.whole(),
+                        &format!("the contour turns back along {name} (cycle `{cycle}`)"),
+                        &format!("by {:.4} in this block", furthest - here),
+                    ));
+                }
+                furthest = furthest.max(here);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn math_sqrt(square: f64) -> f64 {
+    square.max(0.0).sqrt()
+}
+
+/// The words of a centre or a radius, as they stand.
+fn round_words(words: &Words<'_, '_>) -> Vec<u8> {
+    let mut text = Vec::new();
+    for letter in *b"IKR" {
+        if let Some((_, span)) = words.number(letter) {
+            if !text.is_empty() {
+                text.push(b' ');
+            }
+            text.extend_from_slice(words.block.text(span));
+        }
+    }
+    text
+}

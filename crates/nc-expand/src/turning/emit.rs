@@ -1,0 +1,183 @@
+//! Blocks out: what a cycle's block sets, then its moves.
+
+use nc_syntax::dialect::Action;
+use nc_syntax::{Block, Item, ItemKind, Span, Value};
+
+use super::state::millionths;
+use super::{AXES, Fault, MILLION, Spot, Writer};
+use crate::output::{From, Style, word};
+use crate::shorthand::{Words, from, shown};
+
+/// What a written move is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Code {
+    Rapid,
+    Line,
+    Clockwise,
+    CounterClockwise,
+    Thread,
+}
+
+/// The moves of one cycle on their way out.
+#[derive(Debug)]
+pub(super) struct Moves {
+    /// Whom they stand for.
+    pub(super) from: From,
+    at: Spot,
+    /// Words that go before the first move.
+    before: Vec<u8>,
+    /// Words that the control executes behind its motion, for the last one.
+    behind: Vec<u8>,
+    /// The move that was made last: its code and words, without what stands around them.
+    last: Option<(Vec<u8>, From)>,
+}
+
+impl Moves {
+    /// Moves from a place, for a block that is written already.
+    pub(super) const fn new(from: From, at: Spot) -> Self {
+        Self { from, at, before: Vec::new(), behind: Vec::new(), last: None }
+    }
+
+    pub(super) const fn at(&self) -> Spot {
+        self.at
+    }
+}
+
+impl<'b> Writer<'b, '_> {
+    /// Begins the moves of a block's cycle: the block as a comment; of its words `own` are the cycle's.
+    pub(super) fn begin(&mut self, words: &Words<'_, '_>, at: Spot, own: &[u8]) -> Result<Moves, Fault> {
+        let block = words.block;
+        let (mut before, mut behind) = (Vec::new(), Vec::new());
+        for item in &block.items {
+            match item.kind {
+                ItemKind::Word { letter, value: Value::Number(number) } if own.contains(&letter) => {
+                    if millionths(number.decimal).is_none() {
+                        return Err(words.cycle_fault(
+                            item.span,
+                            "a number that is none of a cycle's",
+                            "more decimals than six, or 400 km",
+                            "correct it",
+                        ));
+                    }
+                }
+                ItemKind::Word { letter: b'G', value: Value::Number(_) } => {
+                    if setting(words, item.span)? {
+                        push(&mut before, block, item.span);
+                    }
+                }
+                ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
+                    let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
+                    let late = row.is_some_and(|row| row.after_motion);
+                    push(if late { &mut behind } else { &mut before }, block, item.span);
+                }
+                ItemKind::Word { letter: b'N' | b'F' | b'S', .. } => push(&mut before, block, item.span),
+                ItemKind::Comment | ItemKind::Name => {}
+                _ => return Err(stray(words, item)),
+            }
+        }
+        self.out.comment(shown(block), from(block));
+        Ok(Moves { before, behind, ..Moves::new(from(block), at) })
+    }
+
+    /// A move to a place. Axes that a feed leaves where they are get no word; a rapid names both, so that both are corrected
+    /// for where it ends, and what follows starts there.
+    pub(super) fn go(&mut self, moves: &mut Moves, code: Code, to: Spot) {
+        self.go_with(moves, code, to, b"");
+    }
+
+    /// The same with further words, which are written even where no axis moves.
+    pub(super) fn go_with(&mut self, moves: &mut Moves, code: Code, to: Spot, further: &[u8]) {
+        if to == moves.at && further.is_empty() {
+            return;
+        }
+        let mut line = self.code(code);
+        for axis in 0..2 {
+            let named = code == Code::Rapid && self.state.absolute;
+            if named || to[axis] != moves.at[axis] {
+                let value = if self.state.absolute { to[axis] } else { to[axis] - moves.at[axis] };
+                line.push(b' ');
+                // Millionths of a unit have six decimals.
+                let _ = word(&mut line, AXES[axis], value as f64 / MILLION, Style::Decimals(6));
+            }
+        }
+        if !further.is_empty() {
+            line.push(b' ');
+            line.extend_from_slice(further);
+        }
+        moves.at = to;
+        let last = moves.last.replace((line, moves.from));
+        self.line(moves, last, false);
+    }
+
+    /// Ends the moves; the tool stands where the last one ended.
+    pub(super) fn end(&mut self, mut moves: Moves) {
+        let last = moves.last.take().or_else(|| {
+            let idle = moves.before.is_empty() && moves.behind.is_empty();
+            (!idle).then(|| (Vec::new(), moves.from))
+        });
+        self.line(&mut moves, last, true);
+        self.state.stands_at(moves.at);
+    }
+
+    fn line(&mut self, moves: &mut Moves, line: Option<(Vec<u8>, From)>, last: bool) {
+        let Some((line, from)) = line else { return };
+        let behind: &[u8] = if last { &moves.behind } else { b"" };
+        let before = std::mem::take(&mut moves.before);
+        let parts: Vec<&[u8]> =
+            [&before, &line, behind].into_iter().filter(|part| !part.is_empty()).collect();
+        self.out.line(&parts.join(&b' '), from);
+    }
+
+    /// The dialect's own code.
+    fn code(&self, code: Code) -> Vec<u8> {
+        let action = match code {
+            Code::Rapid => Action::Rapid,
+            Code::Line => Action::Line,
+            Code::Clockwise => Action::ArcClockwise,
+            Code::CounterClockwise => Action::ArcCounterClockwise,
+            Code::Thread => Action::Thread,
+        };
+        let row = self.dialect.codes.iter().find(|row| row.action == action);
+        row.map_or_else(Vec::new, |row| row.code.to_string().into_bytes())
+    }
+}
+
+fn push(words: &mut Vec<u8>, block: &Block<'_>, span: Span) {
+    if !words.is_empty() {
+        words.push(b' ');
+    }
+    words.extend_from_slice(block.text(span));
+}
+
+/// True for a code beside a cycle that sets something, false for the cycle's own; what moves or owns words is refused.
+fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
+    let action = words.actions().find(|(_, other)| *other == span).map(|(action, _)| action);
+    match action {
+        Some(Action::Turning(_)) => Ok(false),
+        Some(
+            Action::FeedPerMinute
+            | Action::FeedPerRevolution
+            | Action::Absolute
+            | Action::Incremental
+            | Action::Plane(_)
+            | Action::CompensationOff
+            | Action::Pass { takes_words: false },
+        ) => Ok(true),
+        _ => Err(words.cycle_fault(
+            span,
+            "another code beside a cycle",
+            "whose are the words of this block?",
+            "write it in a block of its own",
+        )),
+    }
+}
+
+fn stray(words: &Words<'_, '_>, item: &Item) -> Fault {
+    let text = String::from_utf8_lossy(words.block.text(item.span)).into_owned();
+    words.cycle_fault(
+        item.span,
+        &format!("{text} beside a cycle"),
+        "it is no word of this cycle",
+        "write it in a block of its own before the cycle, or remove it",
+    )
+}

@@ -1,0 +1,239 @@
+//! Cycles of lathes written out as the moves they are.
+//!
+//! Fanuc's single passes (G90, G92, G94 of system A), contours (G70 to G73), pecks (G74, G75) and threads (G76), by their
+//! names in systems A, B and C. What each of them does is told by the manual (B-64304EN-1, Series 0i-D, lathe system:
+//! "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
+//! ([`nc_syntax::dialect::TurningParameters`]).
+//!
+//! * [`pass`]: one pass there and back, repeated by each block that names a place.
+//! * [`contour`]: the blocks between P and Q as a way in the plane.
+//! * [`rough`]: passes down to a contour, and the contour itself.
+//! * [`pecks`]: grooves and holes.
+//! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
+//!
+//! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
+//! on a slope or an arc, the place is rounded to one of them.
+
+mod compound;
+mod contour;
+mod emit;
+mod pass;
+mod pecks;
+mod rough;
+mod state;
+mod threads;
+
+use diagnostic::Diagnostic;
+use nc_syntax::dialect::{Action, Turning, TurningCycle};
+use nc_syntax::{Block, Dialect, Reader, Span};
+
+use crate::codes;
+use crate::output::{Output, Segment};
+use crate::shorthand::{Words, from};
+use pass::Pass;
+use state::{Motion, State};
+
+type Fault = Box<Diagnostic>;
+
+/// X word and Z, in millionths of the unit.
+type Spot = [i64; 2];
+
+/// Millionths in a unit.
+const MILLION: f64 = 1e6;
+
+/// X and Z.
+const AXES: [u8; 2] = *b"XZ";
+
+/// True where the block has a cycle that is written out.
+pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.turning.is_some() && cycle_of(&Words { block, dialect }).is_some()
+}
+
+/// The cycle whose code stands in a block.
+fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
+    words.actions().find_map(|(action, span)| match action {
+        Action::Turning(cycle) => Some((*cycle, span)),
+        _ => None,
+    })
+}
+
+/// The program with its cycles written out, and where each stretch of it comes from.
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+    let Some(turning) = &dialect.turning else { return Ok((text.to_vec(), Vec::new())) };
+    let mut blocks = Vec::new();
+    let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
+    while reader.next(&mut block) {
+        blocks.push(block.clone());
+    }
+    let mut writer = Writer {
+        dialect,
+        turning,
+        blocks: &blocks,
+        out: Output::new(dialect, text),
+        state: State::initial(dialect, turning),
+        pass: None,
+        first_blocks: rough::FirstBlocks::default(),
+        unsure_feed: false,
+    };
+    let mut at = 0;
+    while at < blocks.len() {
+        at = writer.block(at)?;
+    }
+    Ok((writer.out.text, writer.out.segments))
+}
+
+/// Writes the program block by block.
+struct Writer<'b, 'a> {
+    dialect: &'b Dialect,
+    turning: &'b Turning,
+    blocks: &'b [Block<'a>],
+    out: Output,
+    state: State,
+    /// The single pass in force.
+    pass: Option<Pass>,
+    /// What the blocks without P and Q said, which hold for those with them.
+    first_blocks: rough::FirstBlocks,
+    /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
+    unsure_feed: bool,
+}
+
+impl<'b, 'a> Writer<'b, 'a> {
+    /// Writes a block, and says which one is next.
+    fn block(&mut self, at: usize) -> Result<usize, Fault> {
+        let words = self.words(at);
+        let Some((cycle, span)) = cycle_of(&words) else {
+            if self.repeats(&words) {
+                self.repeated(at)?;
+            } else {
+                self.plain(&words)?;
+            }
+            return Ok(at + 1);
+        };
+        if words.skipped() {
+            return Err(words.cycle_fault(
+                span,
+                "a cycle behind block delete",
+                "two programs in one: what follows starts from two places",
+                "write it without `/`, or let the CAM write the moves",
+            ));
+        }
+        match cycle {
+            TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
+                self.first_pass(at, cycle, span)?;
+                Ok(at + 1)
+            }
+            TurningCycle::Finish => {
+                self.finish(at, span)?;
+                Ok(at + 1)
+            }
+            TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern => {
+                self.rough(at, cycle, span)
+            }
+            TurningCycle::PeckFace | TurningCycle::PeckGroove => {
+                self.pecks(at, cycle, span)?;
+                Ok(at + 1)
+            }
+            TurningCycle::ThreadPasses => {
+                // Where K is the lead of a thread, its cycle has LinuxCNC's words.
+                if self.turning.thread_lead == b'K' {
+                    self.compound_thread(at, span)?;
+                } else {
+                    self.thread(at, span)?;
+                }
+                Ok(at + 1)
+            }
+        }
+    }
+
+    fn words(&self, at: usize) -> Words<'b, 'a> {
+        Words { block: &self.blocks[at], dialect: self.dialect }
+    }
+
+    /// A block that is no cycle's.
+    fn plain(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        if self.state.motion == Motion::Unknown && self.state.moves(words) && !self.state.owns_motion(words) {
+            return Err(words.cycle_fault(
+                words.whole(),
+                "axis words without a motion code behind a cycle",
+                "which code is in force behind it the manual leaves open",
+                "write G0 or G1 in this block",
+            ));
+        }
+        self.unsure_feed &= words.number(b'F').is_none();
+        self.state.step(words);
+        if !matches!(self.state.motion, Motion::Pass(_)) {
+            self.pass = None;
+        }
+        self.out.copy(words.block.bytes, from(words.block));
+        Ok(())
+    }
+
+    /// Where the tool stands, both axes.
+    fn standing(&self, words: &Words<'_, '_>, span: Span) -> Result<Spot, Fault> {
+        if let [Some(x), Some(z)] = self.state.at {
+            return Ok([x, z]);
+        }
+        Err(words.cycle_fault(
+            span,
+            "where the cycle starts is not known",
+            "it starts, and ends, where the tool stands",
+            "before it name X and Z in a rapid, as in `G0 X60. Z2.`",
+        ))
+    }
+
+    /// Millimetres or inches of radius and Z in a millionth of the words.
+    fn scale(&self) -> [f64; 2] {
+        [if self.state.diameters == Some(true) { 0.5 / MILLION } else { 1.0 / MILLION }, 1.0 / MILLION]
+    }
+
+    /// A place in the plane of radius and Z.
+    fn plane(&self, spot: Spot) -> [f64; 2] {
+        let scale = self.scale();
+        [0, 1].map(|k| spot[k] as f64 * scale[k])
+    }
+
+    /// The place whose words are nearest.
+    fn spot(&self, plane: [f64; 2]) -> Spot {
+        let scale = self.scale();
+        [0, 1].map(|k| units::decimal::round(plane[k] / scale[k]))
+    }
+
+    /// Whether X is a diameter must be known for depths and tapers, which are radii.
+    fn require_diameters(&self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
+        if self.state.diameters.is_some() {
+            return Ok(());
+        }
+        Err(words.cycle_fault(
+            span,
+            "whether X is a diameter or a radius is not said",
+            "depths and tapers are radii",
+            "write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile",
+        ))
+    }
+}
+
+impl Words<'_, '_> {
+    fn cycle_fault(&self, span: Span, message: &str, label: &str, help: &str) -> Fault {
+        self.fault(codes::TURNING_CYCLE, span, message, label, help)
+    }
+
+    fn contour_fault(&self, span: Span, message: &str, label: &str) -> Fault {
+        self.fault(
+            codes::CONTOUR,
+            span,
+            message,
+            label,
+            "write the contour between N of P and N of Q, or let the CAM write the moves",
+        )
+    }
+
+    fn parameter_fault(&self, span: Span, what: &str, key: &str, value: &str) -> Fault {
+        self.fault(
+            codes::CYCLE_PARAMETER,
+            span,
+            &format!("{what} is a parameter of the control, and nobody says it"),
+            "it decides how the cycle moves",
+            &format!("write `{key} = {value}` with the control's value under `[program]` in the profile"),
+        )
+    }
+}

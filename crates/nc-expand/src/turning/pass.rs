@@ -1,0 +1,275 @@
+//! Single passes: G90, G92, G94 of system A, G77 to G79 of B, G20, G21, G24 of C.
+//!
+//! Four moves from where the tool stands and back there (B-64304EN-1, "Canned cycle (G90, G92, G94)"): to the first place
+//! in a rapid, the cut, out, and back in a rapid. Out is a feed behind a cut and a rapid behind a thread. R is the taper:
+//! what the radius (along X: Z, of a face) at the start of the cut is more than at its end. Words hold until they are
+//! written again, and each block that has one makes a pass.
+//!
+//! A thread ends in a chamfer of so many leads, under an angle, which parameters of the control say: it is written as a
+//! thread that goes on outwards, in step with the spindle. What a control makes of a stop (feed hold) during a cycle is
+//! not what it makes of one during moves.
+
+use nc_syntax::Span;
+use nc_syntax::dialect::{Action, TurningCycle};
+use units::math;
+
+use super::emit::{Code, Moves};
+use super::state::Motion;
+use super::{Fault, MILLION, Spot, Writer};
+use crate::shorthand::Words;
+
+/// What a pass holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass {
+    cycle: TurningCycle,
+    /// Where each pass starts and ends.
+    start: Spot,
+    /// Where the cut ends; `None`: not named yet.
+    to: [Option<i64>; 2],
+    /// R: millionths of the unit, of radius or Z.
+    taper: i64,
+}
+
+/// Chamfer at the end of a thread: 45 degrees where the parameter is zero or not said.
+const CHAMFER_DEG: f64 = 45.0;
+
+impl Writer<'_, '_> {
+    /// A block with the code of a pass.
+    pub(super) fn first_pass(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        if !self.state.moves(&words) {
+            return Err(words.cycle_fault(
+                span,
+                "a cycle without a place",
+                "in G-code system A this code is a single pass, with X and Z",
+                "write X and Z; where the control has system B or C, write it as `g_code_system` under `[program]` in the profile",
+            ));
+        }
+        self.require_diameters(&words, span)?;
+        let start = self.standing(&words, span)?;
+        let held = self.pass.filter(|_| matches!(self.state.motion, Motion::Pass(_)));
+        let tapered = held.is_some_and(|pass| pass.taper != 0);
+        if tapered && taper_word(&words, cycle).is_none() {
+            return Err(words.cycle_fault(
+                span,
+                "a taper that may still be in force",
+                "R of the pass before holds until another is written",
+                "write R in this block, R0 for none",
+            ));
+        }
+        self.state.motion = Motion::Pass(cycle);
+        let to = held.map_or([None; 2], |pass| if pass.cycle == cycle { pass.to } else { [None; 2] });
+        self.pass = Some(Pass { cycle, start, to, taper: 0 });
+        self.repeated(at)
+    }
+
+    /// True where a block repeats the pass in force, or cannot stand behind one.
+    pub(super) fn repeats(&self, words: &Words<'_, '_>) -> bool {
+        let row = |m: i64| self.dialect.m_code(u16::try_from(m).ok()?);
+        let ends = words.number(b'M').and_then(|(number, _)| row(number.integer()?));
+        let own = |action: &Action| {
+            matches!(
+                action,
+                Action::Rapid
+                    | Action::Line
+                    | Action::ArcClockwise
+                    | Action::ArcCounterClockwise
+                    | Action::Thread
+                    | Action::Dwell
+                    | Action::Reference
+                    | Action::MachineCoordinates
+            )
+        };
+        matches!(self.state.motion, Motion::Pass(_))
+            && words.block.acts()
+            && !ends.is_some_and(|row| row.ends_program)
+            && !words.actions().any(|(action, _)| own(action))
+    }
+
+    /// A pass with the words of a block.
+    pub(super) fn repeated(&mut self, at: usize) -> Result<(), Fault> {
+        let words = self.words(at);
+        let span = words.whole();
+        let Some(mut pass) = self.pass else { return Ok(()) };
+        let taper = taper_word(&words, pass.cycle);
+        if words.skipped() || (!self.state.moves(&words) && taper.is_none()) {
+            return Err(words.cycle_fault(
+                span,
+                "a block without a place while a single pass is in force",
+                "whether the control repeats the pass here is not certain",
+                "end the passes with G0 or G1 before it",
+            ));
+        }
+        // G90 and G91 of systems B and C hold for the words of their own block.
+        for (action, _) in words.actions() {
+            match action {
+                Action::Absolute => self.state.absolute = true,
+                Action::Incremental => self.state.absolute = false,
+                _ => {}
+            }
+        }
+        self.state.stands_at(pass.start);
+        let target = self.state.target(&words);
+        let letters = [(b'X', b'U'), (b'Z', b'W')];
+        for (axis, (own, increment)) in letters.into_iter().enumerate() {
+            if words.number(own).is_some() || words.number(increment).is_some() {
+                pass.to[axis] = target[axis];
+            }
+        }
+        if let Some(letter) = taper {
+            pass.taper = self.state.length(&words, letter).unwrap_or_default();
+        }
+        let [Some(x), Some(z)] = pass.to else {
+            return Err(words.cycle_fault(
+                span,
+                "a single pass with one place only",
+                "X and Z were expected, until each has been named once",
+                "write X and Z of the end of the cut",
+            ));
+        };
+        self.pass = Some(pass);
+        let own: &[u8] = match pass.cycle {
+            TurningCycle::FacePass => b"XZUWRK",
+            TurningCycle::ThreadPass => b"XZUWRIQE",
+            _ => b"XZUWRI",
+        };
+        let mut moves = self.begin(&words, pass.start, own)?;
+        if words.number(b'F').is_some() {
+            self.state.feed = words.number(b'F').map(|(number, _)| number);
+            self.unsure_feed = false;
+        }
+        let to = [x, z];
+        if pass.cycle == TurningCycle::ThreadPass {
+            self.thread_pass(&mut moves, &words, &pass, to)?;
+        } else {
+            // Along Z the cut starts at the radius, along X at the Z, of the taper.
+            let (across, along) = if pass.cycle == TurningCycle::FacePass { (1, 0) } else { (0, 1) };
+            let mut first = pass.start;
+            first[across] = to[across] + self.taper(&pass);
+            let mut out = to;
+            out[along] = to[along];
+            out[across] = pass.start[across];
+            self.go(&mut moves, Code::Rapid, first);
+            self.go(&mut moves, Code::Line, to);
+            self.go(&mut moves, Code::Line, out);
+            self.go(&mut moves, Code::Rapid, pass.start);
+        }
+        self.end(moves);
+        Ok(())
+    }
+
+    /// R as the words of its axis count.
+    fn taper(&self, pass: &Pass) -> i64 {
+        let twice = pass.cycle != TurningCycle::FacePass && self.state.diameters == Some(true);
+        if twice { 2 * pass.taper } else { pass.taper }
+    }
+
+    fn thread_pass(
+        &mut self,
+        moves: &mut Moves,
+        words: &Words<'_, '_>,
+        pass: &Pass,
+        to: Spot,
+    ) -> Result<(), Fault> {
+        let first = [to[0] + self.taper(pass), pass.start[1]];
+        let mut further = Vec::new();
+        for letter in *b"QE" {
+            if let Some((_, span)) = words.number(letter) {
+                if !further.is_empty() {
+                    further.push(b' ');
+                }
+                further.extend_from_slice(words.block.text(span));
+            }
+        }
+        self.go(moves, Code::Rapid, first);
+        self.chamfered_thread(moves, words, to, pass.start[0], &further)?;
+        self.go(moves, Code::Rapid, [pass.start[0], to[1]]);
+        self.go(moves, Code::Rapid, pass.start);
+        Ok(())
+    }
+
+    /// A thread from where the tool stands to a place, its chamfer outwards to `clear` where parameters say one.
+    pub(super) fn chamfered_thread(
+        &mut self,
+        moves: &mut Moves,
+        words: &Words<'_, '_>,
+        to: Spot,
+        clear: i64,
+        further: &[u8],
+    ) -> Result<(), Fault> {
+        let Some(leads) = self.turning.cycles.thread_chamfer_leads else {
+            return Err(words.parameter_fault(
+                words.whole(),
+                "the chamfer at the end of a thread",
+                "thread_chamfer_leads",
+                "0.0",
+            ));
+        };
+        self.chamfered(moves, words, to, clear, further, leads)
+    }
+
+    /// The same with a chamfer of so many leads.
+    pub(super) fn chamfered(
+        &mut self,
+        moves: &mut Moves,
+        words: &Words<'_, '_>,
+        to: Spot,
+        clear: i64,
+        further: &[u8],
+        leads: f64,
+    ) -> Result<(), Fault> {
+        let exact = |lead: nc_syntax::Number| {
+            lead.has_point || self.dialect.numbers.point_free == nc_syntax::dialect::PointFree::Unit
+        };
+        let lead = self.state.feed.filter(|lead| exact(*lead));
+        let start = moves.at();
+        let length = match (leads > 0.0, lead, words.number(b'E')) {
+            (false, ..) => 0.0,
+            (true, Some(lead), None) => leads * lead.to_f64(),
+            (true, ..) => {
+                return Err(words.cycle_fault(
+                    words.whole(),
+                    "a thread whose lead is not certain",
+                    "its chamfer is so many leads long",
+                    "write F with a point in this block",
+                ));
+            }
+        };
+        let ([r0, z0], [r1, z1]) = (self.plane(start), self.plane(to));
+        let whole = (z1 - z0).abs();
+        if length == 0.0 || whole == 0.0 {
+            self.go_with(moves, Code::Thread, to, further);
+            return Ok(());
+        }
+        let deg = self.turning.cycles.thread_chamfer_deg.filter(|deg| *deg > 0.0).unwrap_or(CHAMFER_DEG);
+        let outwards = math::tan(deg.to_radians()) * length;
+        let clear_mm = self.plane([clear, 0])[0];
+        let share = 1.0 - length / whole;
+        let begins = [r0 + share * (r1 - r0), z0 + share * (z1 - z0)];
+        if share < 0.0 || outwards > (clear_mm - begins[0]).abs() {
+            return Err(words.cycle_fault(
+                words.whole(),
+                "a thread shorter than its chamfer",
+                &format!("its chamfer is {length} long and leads {outwards:.4} outwards"),
+                "correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out",
+            ));
+        }
+        let ends = [begins[0] + outwards * (clear_mm - begins[0]).signum(), z1];
+        let (begins, ends) = (self.spot(begins), [self.spot(ends)[0], to[1]]);
+        self.go_with(moves, Code::Thread, begins, further);
+        self.go(moves, Code::Thread, ends);
+        Ok(())
+    }
+
+    /// Words of a number with six decimals.
+    pub(super) fn millionths_of(&self, mm: f64) -> i64 {
+        let unit_mm = if self.state.inch { 25.4 } else { 1.0 };
+        units::decimal::round(mm / unit_mm * MILLION)
+    }
+}
+
+/// R, or the letter of the series 10 and 11.
+fn taper_word(words: &Words<'_, '_>, cycle: TurningCycle) -> Option<u8> {
+    let other = if cycle == TurningCycle::FacePass { b'K' } else { b'I' };
+    [b'R', other].into_iter().find(|letter| words.number(*letter).is_some())
+}

@@ -1,0 +1,133 @@
+//! Pecks: G74 along Z, G75 along X (systems A and B), G76 and G77 of C.
+//!
+//! B-64304EN-1, "End face peck drilling cycle", "Outer diameter / internal diameter drilling cycle". From where the tool
+//! stands it goes down in steps (G74: Q, G75: P), back by the return (R of the first block) behind each but the last, and from
+//! the bottom in a rapid to where it began; then along by the other step, until it has been at the place of X and Z; then back
+//! to the start. P and Q are radius or Z, without a point least increments. R of the second block, the relief at the
+//! bottom, is refused: at the first groove there is no room for it, and what a control does there the manual leaves open.
+
+use nc_syntax::Span;
+use nc_syntax::dialect::TurningCycle;
+
+use super::emit::Code;
+use super::state::Motion;
+use super::{Fault, Spot, Writer};
+
+/// Pecks of one cycle at all its places; more are a wrong step.
+const MOST: i64 = 10_000;
+
+impl Writer<'_, '_> {
+    pub(super) fn pecks(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        self.require_diameters(&words, span)?;
+        // The axis of the pecks: Z of G74, X of G75.
+        let down = if cycle == TurningCycle::PeckFace { 1 } else { 0 };
+        let along = 1 - down;
+        if !self.state.moves(&words) {
+            let Some(back) = self.state.length(&words, b'R') else {
+                return Err(words.cycle_fault(
+                    span,
+                    "a cycle without a place",
+                    "neither X and Z nor a return",
+                    "write X and Z, or R alone in its first block",
+                ));
+            };
+            let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);
+            let moves = self.begin(&words, standing, b"R")?;
+            self.end(moves);
+            self.state.at = known;
+            self.first_blocks.peck_return[down] = Some(back.abs());
+            return Ok(());
+        }
+        let start = self.standing(&words, span)?;
+        if let Some((number, span)) = words.number(b'R').filter(|(number, _)| number.to_f64() != 0.0) {
+            return Err(words.cycle_fault(
+                span,
+                &format!("a relief of {} at the bottom", number.to_f64()),
+                "what the control does at the first groove, where there is no room, is not certain",
+                "leave R out of this block",
+            ));
+        }
+        let target = self.state.target(&words);
+        let [Some(x), Some(z)] = target else {
+            return Err(words.cycle_fault(
+                span,
+                "where the cycle leads is not known",
+                "more decimals than six",
+                "write X and Z with six decimals at most",
+            ));
+        };
+        let to = [x, z];
+        let whole = [to[0] - start[0], to[1] - start[1]];
+        let twice = [if self.state.diameters == Some(true) { 2 } else { 1 }, 1];
+        let letters = [b'P', b'Q'];
+        let step = |axis: usize| {
+            let said = self.state.depth(&words, letters[axis]).map(|step| twice[axis] * step.abs());
+            said.filter(|step| *step > 0).unwrap_or_else(|| whole[axis].abs())
+        };
+        let (peck, across) = (step(down), step(along));
+        if whole[along] != 0 && words.number(letters[along]).is_none() {
+            return Err(words.cycle_fault(
+                span,
+                "a groove wider than the tool without its step",
+                "how far from one place to the next?",
+                if along == 0 { "write P, the step along X (radius)" } else { "write Q, the step along Z" },
+            ));
+        }
+        let (pecks, places) = (1 + whole[down].abs() / peck.max(1), 1 + whole[along].abs() / across.max(1));
+        if whole[down] == 0 || pecks.saturating_mul(places) > MOST {
+            return Err(words.cycle_fault(
+                span,
+                "a cycle without a depth, or of more than 10000 pecks",
+                "P and Q count least increments where they have no point",
+                "correct X, Z, P and Q",
+            ));
+        }
+        let needs_return = whole[down].abs() > peck;
+        let said = self.first_blocks.peck_return[down].map(|back| back * twice[down]);
+        let parameter = self.turning.cycles.groove_return_mm;
+        let back = match said.or_else(|| parameter.map(|mm| self.millionths_of(mm) * twice[down])) {
+            Some(back) => back,
+            None if !needs_return => 0,
+            None => {
+                return Err(words.parameter_fault(
+                    span,
+                    "by how much pecks go back",
+                    "groove_return_mm",
+                    "0.5",
+                ));
+            }
+        };
+        let mut moves = self.begin(&words, start, b"XZUWPQRIKD")?;
+        let place = |at_along: i64, at_down: i64| -> Spot {
+            let mut spot = start;
+            spot[along] += at_along * whole[along].signum();
+            spot[down] += at_down * whole[down].signum();
+            spot
+        };
+        let mut sideways = 0;
+        loop {
+            self.go(&mut moves, Code::Rapid, place(sideways, 0));
+            let (deep, mut reached) = (whole[down].abs(), 0);
+            while reached < deep {
+                reached = (reached + peck).min(deep);
+                self.go(&mut moves, Code::Line, place(sideways, reached));
+                if reached < deep {
+                    self.go(&mut moves, Code::Rapid, place(sideways, (reached - back).max(0)));
+                }
+            }
+            self.go(&mut moves, Code::Rapid, place(sideways, 0));
+            if sideways >= whole[along].abs() {
+                break;
+            }
+            sideways = (sideways + across).min(whole[along].abs());
+        }
+        self.go(&mut moves, Code::Rapid, start);
+        if let Some((feed, _)) = words.number(b'F') {
+            (self.state.feed, self.unsure_feed) = (Some(feed), false);
+        }
+        self.end(moves);
+        self.state.motion = Motion::Unknown;
+        Ok(())
+    }
+}

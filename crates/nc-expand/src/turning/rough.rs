@@ -1,0 +1,357 @@
+//! Contours: G70 to G73 (systems A and B), G72 to G75 (C).
+//!
+//! B-64304EN-1, "Multiple repetitive cycle". G71, with A where the tool stands, A' the end of the block of P and B that of Q:
+//! the tool goes to C, which lies off A by the finishing allowances, and from there down in depths of cut; each pass runs
+//! along Z to the contour that lies off the programmed one by the allowances, leaves it by the escape at 45 degrees, and goes
+//! back in a rapid. Behind the last whole depth that contour is cut as a whole, and the tool goes back to A. Infeeds are
+//! rapids or feeds as the block of P is. G72 is the same with the axes changed. Type I: the block of P names the axis of the
+//! infeed only, and the contour turns back along neither axis. G73 cuts the contour so many times, the first one off by the
+//! relief, the last one by the allowances.
+//!
+//! Roughing heeds F and S of its own block, not those of the contour. G70 makes the contour's blocks as they stand, with F
+//! and S of their own, and goes back in a rapid to where it began.
+
+use nc_syntax::dialect::TurningCycle;
+use nc_syntax::{ItemKind, Span};
+
+use super::contour::{Axis, Contour, Piece};
+use super::emit::{Code, Moves};
+use super::state::Motion;
+use super::{Fault, MILLION, Spot, Writer};
+use crate::shorthand::{Words, from, shown};
+
+/// Passes of one cycle; more are a wrong depth.
+const MOST_PASSES: i64 = 10_000;
+/// Cuts of G73.
+const MOST_CUTS: i64 = 999;
+
+/// What the blocks without P and Q said.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FirstBlocks {
+    /// Depth of cut of G71 and G72, millionths of the unit, radius.
+    depth: [Option<i64>; 2],
+    /// Escape of G71 and G72.
+    escape: [Option<i64>; 2],
+    /// Relief of G73 along radius and Z.
+    relief: Option<[i64; 2]>,
+    /// Cuts of G73.
+    cuts: Option<i64>,
+    /// Return of G74 and G75.
+    pub(super) peck_return: [Option<i64>; 2],
+    /// What the first block of G76 says.
+    pub(super) thread: Option<super::threads::Settings>,
+}
+
+impl Writer<'_, '_> {
+    /// G71, G72, G73: the block that sets, or the one that cuts; says which block is next.
+    pub(super) fn rough(&mut self, at: usize, cycle: TurningCycle, span: Span) -> Result<usize, Fault> {
+        let words = self.words(at);
+        self.require_diameters(&words, span)?;
+        if words.number(b'P').is_none() && words.number(b'Q').is_none() {
+            self.set(&words, cycle, span)?;
+            return Ok(at + 1);
+        }
+        let start = self.standing(&words, span)?;
+        let contour = self.contour(&words, start)?;
+        let between = at + 1..contour.first;
+        if contour.first < at || between.into_iter().any(|index| self.words(index).block.acts()) {
+            return Err(words.contour_fault(
+                span,
+                "the contour does not stand behind its cycle",
+                "where the program goes on behind the cycle is certain only there",
+            ));
+        }
+        let own: &[u8] = if cycle == TurningCycle::RoughPattern { b"PQUWDIK" } else { b"PQUWD" };
+        let mut moves = self.begin(&words, start, own)?;
+        let allowance = self.allowance(&words);
+        if cycle == TurningCycle::RoughPattern {
+            self.pattern(&mut moves, &words, span, &contour, allowance)?;
+        } else {
+            self.passes(&mut moves, &words, cycle, span, &contour, allowance)?;
+        }
+        let feed = words.number(b'F').map(|(number, _)| number);
+        let other =
+            feed.is_some_and(|feed| self.state.feed.is_none_or(|known| known.to_f64() != feed.to_f64()));
+        self.end(moves);
+        if let Some(feed) = feed {
+            (self.state.feed, self.unsure_feed) = (Some(feed), other);
+        }
+        self.state.motion = Motion::Unknown;
+        for index in contour.first..=contour.last {
+            let block = &self.blocks[index];
+            self.out.comment(shown(block), from(block));
+        }
+        Ok(contour.last + 1)
+    }
+
+    /// The block without P and Q.
+    fn set(&mut self, words: &Words<'_, '_>, cycle: TurningCycle, span: Span) -> Result<(), Fault> {
+        let length = |letter: u8| self.state.length(words, letter);
+        let mut set = self.first_blocks;
+        match cycle {
+            TurningCycle::RoughPattern => {
+                if let (Some(x), Some(z)) = (length(b'U'), length(b'W')) {
+                    set.relief = Some([x, z]);
+                }
+                if let Some((number, span)) = words.number(b'R') {
+                    set.cuts = number.integer();
+                    if set.cuts.is_none() {
+                        return Err(words.cycle_fault(
+                            span,
+                            "a number of cuts that is none",
+                            "R counts the cuts here",
+                            "write a whole number, like R3",
+                        ));
+                    }
+                }
+            }
+            _ => {
+                let axis = axis_of(cycle);
+                let depth = if axis == 0 { b'U' } else { b'W' };
+                set.depth[axis] = length(depth).or(set.depth[axis]);
+                set.escape[axis] = length(b'R').or(set.escape[axis]);
+            }
+        }
+        let said = b"URW".iter().any(|letter| words.number(*letter).is_some());
+        if !said {
+            return Err(words.cycle_fault(
+                span,
+                "a cycle without P and Q",
+                "neither a contour nor a setting",
+                "write P and Q of its contour, or U, W and R of its first block",
+            ));
+        }
+        let at = self.state.at.map(Option::unwrap_or_default);
+        let known = self.state.at;
+        let moves = self.begin(words, at, b"UWR")?;
+        self.end(moves);
+        (self.state.at, self.first_blocks) = (known, set);
+        Ok(())
+    }
+
+    /// U and W as X and Z words count.
+    fn allowance(&self, words: &Words<'_, '_>) -> Spot {
+        [b'U', b'W'].map(|letter| self.state.length(words, letter).unwrap_or_default())
+    }
+
+    /// G73.
+    fn pattern(
+        &mut self,
+        moves: &mut Moves,
+        words: &Words<'_, '_>,
+        span: Span,
+        contour: &Contour,
+        allowance: Spot,
+    ) -> Result<(), Fault> {
+        let one_block = words.number(b'D').is_some();
+        let (relief, cuts) = if one_block {
+            let length = |letter: u8| self.state.length(words, letter).unwrap_or_default();
+            let cuts = words.number(b'D').and_then(|(number, _)| number.integer());
+            (Some([length(b'I'), length(b'K')]), cuts)
+        } else {
+            (self.first_blocks.relief, self.first_blocks.cuts)
+        };
+        let (Some(relief), Some(cuts)) = (relief, cuts.filter(|cuts| (2..=MOST_CUTS).contains(cuts))) else {
+            return Err(words.cycle_fault(
+                span,
+                "the relief or the number of cuts is not said, or there are less than two",
+                "parameters of the control would say them",
+                "write U, W and R in a block of this cycle before it: relief along X (radius) and Z, and number of cuts",
+            ));
+        };
+        // The relief along X is a radius, X words may be diameters.
+        let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
+        let relief = [twice * relief[0], relief[1]];
+        for cut in 0..cuts {
+            let share = |whole: i64| {
+                units::decimal::round(whole as f64 * (cuts - 1 - cut) as f64 / (cuts - 1) as f64)
+            };
+            let off = [allowance[0] + share(relief[0]), allowance[1] + share(relief[1])];
+            self.go(moves, Code::Rapid, sum(contour.start, off));
+            self.along(moves, contour, off);
+        }
+        self.go(moves, Code::Rapid, contour.start);
+        Ok(())
+    }
+
+    /// G71, G72.
+    fn passes(
+        &mut self,
+        moves: &mut Moves,
+        words: &Words<'_, '_>,
+        cycle: TurningCycle,
+        span: Span,
+        contour: &Contour,
+        allowance: Spot,
+    ) -> Result<(), Fault> {
+        let down: Axis = axis_of(cycle);
+        let along: Axis = 1 - down;
+        let (depth, escape) = self.depths(words, span, down)?;
+        if contour.names_both {
+            let block = self.words(contour.first);
+            return Err(block.cycle_fault(
+                block.whole(),
+                "a contour with pockets (type II)",
+                "its first block names both axes; how controls cut pockets differs",
+                "name only the axis of the infeed in the block of P (type I), or let the CAM write the moves",
+            ));
+        }
+        let [a, a1, b] = [self.plane(contour.start), contour.entry.way.to, contour.end()];
+        let sign = (a1[down] - a[down]).signum();
+        let forwards = (b[along] - a1[along]).signum();
+        if a1[down] == a[down] || a1[along] != a[along] || b[along] == a1[along] {
+            let block = self.words(contour.first);
+            let name = ["X", "Z"][down];
+            return Err(block.contour_fault(
+                block.whole(),
+                "the contour does not begin with the infeed",
+                &format!("a move along {name} was expected in the block of P, and a way along the other axis behind it"),
+            ));
+        }
+        self.require_monotone(words, contour, along, forwards)?;
+        self.require_monotone(words, contour, down, -sign)?;
+        let off = self.plane(allowance);
+        let pieces: Vec<Piece> = contour
+            .pieces
+            .iter()
+            .map(|piece| Piece { way: piece.way.shifted(off), ..piece.clone() })
+            .collect();
+        let deepest = a1[down] + off[down];
+        let corner = sum(contour.start, allowance);
+        let from_corner = self.plane(corner);
+        let count = ((deepest - from_corner[down]) * sign / depth - 1e-9).ceil() as i64 - 1;
+        if count > MOST_PASSES {
+            return Err(words.cycle_fault(
+                span,
+                "more than 10000 passes",
+                "the depth of cut is too small",
+                "correct the depth of cut: a length without a point may count least increments",
+            ));
+        }
+        self.go(moves, Code::Rapid, corner);
+        for pass in 1..=count {
+            let level = from_corner[down] + sign * depth * pass as f64;
+            let stop = pieces
+                .iter()
+                .find_map(|piece| piece.way.crossing(down, level))
+                .map_or(b[along] + off[along], |point| point[along]);
+            if (stop - from_corner[along]) * forwards <= 0.0 {
+                continue;
+            }
+            let back = escape.min((stop - from_corner[along]).abs());
+            let place = |at: f64, level: f64| if down == 0 { [level, at] } else { [at, level] };
+            let ends = [
+                (contour.entry.code, place(from_corner[along], level)),
+                (Code::Line, place(stop, level)),
+                (Code::Rapid, place(stop - forwards * back, level - sign * escape)),
+                (Code::Rapid, place(from_corner[along], level - sign * escape)),
+            ];
+            for (code, end) in ends {
+                let spot = self.spot(end);
+                self.go(moves, code, spot);
+            }
+        }
+        self.along(moves, contour, allowance);
+        self.go(moves, Code::Rapid, contour.start);
+        Ok(())
+    }
+
+    /// Depth of cut and escape in units of radius or Z.
+    fn depths(&self, words: &Words<'_, '_>, span: Span, down: Axis) -> Result<(f64, f64), Fault> {
+        let depth = self.state.depth(words, b'D').or(self.first_blocks.depth[down]);
+        let Some(depth) = depth.filter(|depth| *depth != 0) else {
+            let letter = ["U", "W"][down];
+            return Err(words.cycle_fault(
+                span,
+                "a depth of cut that nobody says",
+                "a parameter of the control would",
+                &format!("write {letter} and R in a block of this cycle before it, or D in this one"),
+            ));
+        };
+        // The series 10 and 11, with D, leave the escape to the parameter.
+        let said = self.first_blocks.escape[down].filter(|_| words.number(b'D').is_none());
+        let parameter = self.turning.cycles.roughing_escape_mm.map(|mm| self.millionths_of(mm));
+        let Some(escape) = said.or(parameter) else {
+            return Err(words.parameter_fault(
+                span,
+                "by how much roughing leaves the contour",
+                "roughing_escape_mm",
+                "0.5",
+            ));
+        };
+        Ok((depth.abs() as f64 / MILLION, escape.abs() as f64 / MILLION))
+    }
+
+    /// The contour as a whole, off by `by`.
+    fn along(&mut self, moves: &mut Moves, contour: &Contour, by: Spot) {
+        let whom = moves.from;
+        for piece in std::iter::once(&contour.entry).chain(&contour.pieces) {
+            moves.from = from(&self.blocks[piece.block]);
+            self.go_with(moves, piece.code, sum(piece.to, by), &piece.round);
+        }
+        moves.from = whom;
+    }
+
+    /// G70.
+    pub(super) fn finish(&mut self, at: usize, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        let start = self.standing(&words, span)?;
+        let contour = self.contour(&words, start)?;
+        let next = (at + 1..self.blocks.len()).find(|index| self.words(*index).block.acts());
+        if (contour.first..=contour.last).contains(&at) || next == Some(contour.first) {
+            return Err(words.contour_fault(
+                span,
+                "the contour stands behind its finishing",
+                "whether the control makes it once more is not certain",
+            ));
+        }
+        if !contour.says_feed && words.number(b'F').is_none() && self.unsure_feed {
+            return Err(words.cycle_fault(
+                span,
+                "a finishing without F",
+                "the last F stood in a roughing block, which does not hold here",
+                "write F in this block, or in the contour",
+            ));
+        }
+        let moves = self.begin(&words, start, b"PQUW")?;
+        self.unsure_feed &= words.number(b'F').is_none();
+        self.end(moves);
+        for index in contour.first..=contour.last {
+            let block = self.words(index);
+            self.unsure_feed &= block.number(b'F').is_none();
+            self.state.step(&block);
+            self.copy_without_number(&block);
+        }
+        let end = self.state.at.map(Option::unwrap_or_default);
+        let mut back = Moves::new(from(words.block), end);
+        self.go(&mut back, Code::Rapid, start);
+        self.end(back);
+        self.state.motion = Motion::Unknown;
+        Ok(())
+    }
+
+    /// A block of the contour, which its N named elsewhere.
+    fn copy_without_number(&mut self, words: &Words<'_, '_>) {
+        let block = words.block;
+        let number = block.items.iter().find(|item| matches!(item.kind, ItemKind::Word { letter: b'N', .. }));
+        let rest = match number {
+            None => block.bytes.to_vec(),
+            Some(item) => [
+                &block.bytes[..item.span.start as usize],
+                block.bytes[item.span.end as usize..].trim_ascii_start(),
+            ]
+            .concat(),
+        };
+        self.out.fresh_line();
+        self.out.write(&rest, from(block));
+    }
+}
+
+/// The axis of the infeed: X of G71, Z of G72.
+fn axis_of(cycle: TurningCycle) -> Axis {
+    if cycle == TurningCycle::RoughFace { 1 } else { 0 }
+}
+
+fn sum(spot: Spot, by: Spot) -> Spot {
+    [spot[0] + by[0], spot[1] + by[1]]
+}

@@ -1,0 +1,146 @@
+//! Threads in several passes: G76 (systems A and B), G78 of C.
+//!
+//! B-64304EN-1, "Multiple threading cycle". The first block says in P six digits: finishing passes, chamfer in tenths of the
+//! lead, angle of the tool's tip; in Q the least infeed; in R the finishing allowance. The second one: X and Z of the thread's
+//! root at its end, R the taper (what the radius at the start is more), P the height, Q the first infeed, F the lead. The
+//! n-th pass lies the first infeed times the root of n deep, and at least the least infeed below the one before, down to the
+//! finishing allowance above the root; then the finishing passes, at the root.
+//!
+//! With a tip of zero degrees the tool feeds straight in. Of other angles one edge cuts, and the start of each pass moves
+//! along Z; from where the manual counts that way is a figure and no sentence, so that it is refused.
+
+use nc_syntax::Span;
+
+use super::emit::Code;
+use super::state::Motion;
+use super::{Fault, Spot, Writer};
+
+/// Passes of one thread; more are a wrong infeed.
+const MOST_PASSES: usize = 1000;
+
+/// What the first block says; lengths are millionths of the unit, radius.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    finishing_passes: i64,
+    chamfer_leads: f64,
+    tip_deg: i64,
+    least: i64,
+    allowance: i64,
+}
+
+impl Writer<'_, '_> {
+    pub(super) fn thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        self.require_diameters(&words, span)?;
+        if !self.state.moves(&words) {
+            return self.set_thread(at, span);
+        }
+        let start = self.standing(&words, span)?;
+        let refuse =
+            |message: &str, label: &str, help: &str| Err(words.cycle_fault(span, message, label, help));
+        let Some(settings) = self.first_blocks.thread.filter(|_| words.number(b'K').is_none()) else {
+            return refuse(
+                "a thread of several passes without its first block",
+                "finishing passes, chamfer, angle and infeeds are parameters of the control then",
+                "write the first block, as in `G76 P020000 Q100 R0.05`",
+            );
+        };
+        if settings.tip_deg != 0 {
+            return refuse(
+                &format!("a thread cut with one edge, tip of {} degrees", settings.tip_deg),
+                "from where the control moves the start of each pass along Z is not certain",
+                "write 00 as the last digits of P in the first block, or let the CAM write the passes",
+            );
+        }
+        let [Some(x), Some(z)] = self.state.target(&words) else {
+            return refuse("where the thread ends is not known", "X and Z were expected", "write X and Z");
+        };
+        let (height, first) = (self.state.depth(&words, b'P'), self.state.depth(&words, b'Q'));
+        let (Some(height), Some(first)) = (height.filter(|h| *h > 0), first.filter(|q| *q > 0)) else {
+            return refuse(
+                "a thread without its height or its first infeed",
+                "P and Q above zero were expected",
+                "write P, the height of the thread, and Q, the first infeed, both of the radius",
+            );
+        };
+        let Some((feed, _)) = words.number(b'F') else {
+            return refuse("a thread without its lead", "F was expected", "write F, the lead, in this block");
+        };
+        let taper = self.state.length(&words, b'R').unwrap_or_default();
+        let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
+        // Outside threads start above their root.
+        let outwards = (start[0] - (x + twice * taper)).signum();
+        if outwards == 0 || (start[0] - x) * outwards < twice * height || start[1] == z {
+            return refuse(
+                "a thread that starts within its own height",
+                "between start and root there is less than the height",
+                "start it further out, or correct X, Z, R and P",
+            );
+        }
+        let depths = depths(height, first, &settings);
+        let Some(depths) = depths else {
+            return refuse("more than 1000 passes", "the infeeds are too small", "correct Q of both blocks");
+        };
+        let mut moves = self.begin(&words, start, b"XZUWPQRI")?;
+        self.state.feed = Some(feed);
+        self.unsure_feed = false;
+        for depth in depths {
+            let above = outwards * twice * (height - depth);
+            let from: Spot = [x + twice * taper + above, start[1]];
+            self.go(&mut moves, Code::Rapid, from);
+            self.chamfered(&mut moves, &words, [x + above, z], start[0], b"", settings.chamfer_leads)?;
+            self.go(&mut moves, Code::Rapid, [start[0], z]);
+            self.go(&mut moves, Code::Rapid, start);
+        }
+        self.end(moves);
+        self.state.motion = Motion::Unknown;
+        Ok(())
+    }
+
+    /// The first block.
+    fn set_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        let digits = words.number(b'P').and_then(|(number, _)| number.integer());
+        let least = self.state.depth(&words, b'Q');
+        let allowance = self.state.length(&words, b'R');
+        let (Some(digits), Some(least), Some(allowance)) =
+            (digits.filter(|p| (0..1_000_000).contains(p)), least, allowance)
+        else {
+            return Err(words.cycle_fault(
+                span,
+                "the first block of a thread without P, Q or R",
+                "what it leaves out parameters of the control say",
+                "write all of them, as in `G76 P020000 Q100 R0.05`",
+            ));
+        };
+        let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);
+        let moves = self.begin(&words, standing, b"PQR")?;
+        self.end(moves);
+        self.state.at = known;
+        self.first_blocks.thread = Some(Settings {
+            finishing_passes: (digits / 10_000).max(1),
+            chamfer_leads: (digits / 100 % 100) as f64 * 0.1,
+            tip_deg: digits % 100,
+            least: least.abs(),
+            allowance: allowance.abs(),
+        });
+        Ok(())
+    }
+}
+
+/// How deep each pass lies, millionths; `None` where there are too many.
+fn depths(height: i64, first: i64, settings: &Settings) -> Option<Vec<i64>> {
+    let rough = height - settings.allowance;
+    let (mut depths, mut depth) = (Vec::new(), 0);
+    while depth < rough {
+        let count = depths.len() as f64 + 1.0;
+        let next = units::decimal::round(first as f64 * count.sqrt());
+        depth = next.max(depth + settings.least).max(depth + 1).min(rough);
+        depths.push(depth);
+        if depths.len() > MOST_PASSES {
+            return None;
+        }
+    }
+    depths.extend((0..settings.finishing_passes).map(|_| height));
+    Some(depths)
+}

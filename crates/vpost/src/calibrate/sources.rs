@@ -1,0 +1,55 @@
+//! What `calibrate` reads: `FILE[=SYMBOL[:UNIT]]`, and tables with named columns.
+
+use std::path::Path;
+
+use calibration::functions::FunctionReading;
+use measurement_files::series::{Content, Series, Told, Values, symbol};
+use measurement_files::{Codes, Kind, Sheet};
+
+use crate::file;
+use crate::message::Failure;
+
+/// Reads a table of one of the instruments.
+pub(super) fn sheet(path: &Path, columns: &str, expected: &str, ignore: &[String]) -> Result<Sheet, Failure> {
+    let kind = Kind {
+        columns,
+        expected,
+        passes_over: Some("published_"),
+        may_be_empty: false,
+        codes: Codes::MEASUREMENTS,
+    };
+    Ok(Sheet::read(&file::name(path), &file::read(path)?, &kind, Some(ignore))?)
+}
+
+/// The file of `FILE[=SYMBOL[:UNIT]]`.
+pub(super) fn path_of(spec: &str) -> &str {
+    spec.rsplit_once('=').map_or(spec, |(path, _)| path)
+}
+
+/// Reads `FILE[=SYMBOL[:UNIT]]`.
+pub(super) fn series(spec: &str, values: Option<Values>, ignore: &[String]) -> Result<Content, Failure> {
+    let mut told = Told { values, ..Told::default() };
+    if let Some((_, rest)) = spec.rsplit_once('=') {
+        let (name, unit) = rest.split_once(':').map_or((rest, None), |(name, unit)| (name, Some(unit)));
+        let known = symbol(name).ok_or_else(|| {
+            Failure::option(
+                format!("`{name}` is no error function of a linear axis"),
+                "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
+            )
+        })?;
+        (told.symbol, told.unit) = (Some(known), unit);
+    }
+    let path = Path::new(path_of(spec));
+    Ok(measurement_files::series::read(&file::name(path), &file::read(path)?, told, ignore)?)
+}
+
+/// The readings of a series as the evaluation takes them.
+pub(super) fn readings(series: &Series) -> Vec<FunctionReading> {
+    let reading = |r: &measurement_files::series::SeriesReading| FunctionReading {
+        run: r.run.clone(),
+        position_mm: r.position_mm,
+        value: r.value,
+        direction: r.direction,
+    };
+    series.readings.iter().map(reading).collect()
+}

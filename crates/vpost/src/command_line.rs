@@ -1,0 +1,200 @@
+//! The command line: the main job, and what is asked for besides it.
+
+use clap::{Args, CommandFactory, Parser, Subcommand};
+
+use crate::arguments::{Check, Completions, Correct, Grammar, Predict, Profile, Shared, Solve};
+use crate::batch::Batch;
+use crate::budget::Budget;
+use crate::calibrate::Calibrate;
+use crate::diagnose::Diagnose;
+use crate::explain::Explain;
+use crate::file;
+use crate::map::Map;
+use crate::message::Failure;
+
+/// Rewrites NC programs so that a measured machine goes where the program says.
+#[derive(Debug, Parser)]
+#[command(
+    name = "vpost",
+    version,
+    max_term_width = 80,
+    subcommand_negates_reqs = true,
+    arg_required_else_help = true,
+    override_usage = "vpost [OPTIONS] <IN.nc>\n       vpost <COMMAND> [OPTIONS]"
+)]
+pub struct Arguments {
+    /// The work.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The main job.
+    #[command(flatten)]
+    pub correct: Correct,
+    /// What all jobs share.
+    #[command(flatten)]
+    pub shared: Shared,
+}
+
+/// What is asked for besides the main job.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Correct a program: the main job, which needs no name.
+    Correct(Correct),
+    /// Correct many programs, on all cores or on many machines.
+    Batch(Batch),
+    /// Do two programs cut alike on this machine?
+    Check(Check),
+    /// Where the machine really goes for commanded points.
+    Predict(Predict),
+    /// What to command so that the tool reaches points.
+    Solve(Solve),
+    /// Make a machine profile from an instrument's files.
+    Calibrate(Calibrate),
+    /// Which unmodelled effect explains the measurements.
+    Diagnose(Diagnose),
+    /// The error over the volume, and where to put the workpiece.
+    Map(Map),
+    /// What each deviation of the machine costs.
+    Budget(Budget),
+    /// Check, show or describe machine profiles.
+    Profile(Profile),
+    /// List or check dialect tables.
+    Grammar(Grammar),
+    /// What a message means and what to do: VP0509.
+    Explain(Explain),
+    /// Completions for a shell.
+    Completions(Completions),
+    /// The manual page (roff).
+    Man,
+}
+
+/// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
+const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
+const OF_PROGRAM: [&str; 10] = [
+    "dialect",
+    "tolerance",
+    "work_offset",
+    "tool",
+    "start_at",
+    "set",
+    "include",
+    "decimal",
+    "strict",
+    "outside",
+];
+/// Those about messages, which all commands read, but for one.
+const VERBOSE: &str = "verbose";
+
+/// Whether a command, by its names from the first on, reads an option of [`Shared`].
+fn reads(command: &[&str], option: &str) -> bool {
+    let machine = OF_MACHINE.contains(&option);
+    match command {
+        ["correct" | "batch", ..] => true,
+        // A plan may be written as a program.
+        ["check" | "predict" | "diagnose", ..] => option != VERBOSE,
+        ["solve", ..] => machine,
+        ["map" | "budget", ..] => machine || ["outside", "tool"].contains(&option),
+        ["calibrate"] => ["machine", "dialect", "at"].contains(&option),
+        ["calibrate", which, ..] => {
+            ["machine", "dialect", "at"].contains(&option) || (option == "engine" && *which == "tracker")
+        }
+        _ => false,
+    }
+}
+
+/// The options of [`Shared`] that not every command reads.
+fn shared_options() -> impl Iterator<Item = &'static str> {
+    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain([VERBOSE])
+}
+
+/// The command line, each command listing what it reads.
+#[must_use]
+pub fn command() -> clap::Command {
+    fn own(root: &clap::Command, names: &[&str], mut command: clap::Command) -> clap::Command {
+        for option in shared_options() {
+            if let Some(argument) = root.get_arguments().find(|argument| argument.get_id() == option) {
+                command = command.arg(argument.clone().global(false).hide(!reads(names, option)));
+            }
+        }
+        let inner: Vec<String> = command.get_subcommands().map(|inner| inner.get_name().to_owned()).collect();
+        for name in inner {
+            let names: Vec<&str> = names.iter().copied().chain([name.as_str()]).collect();
+            command = command.mut_subcommand(&name, |inner| own(root, &names, inner));
+        }
+        compact(command)
+    }
+    let mut command = compact(Arguments::command());
+    let root = command.clone();
+    let inner: Vec<String> = root.get_subcommands().map(|inner| inner.get_name().to_owned()).collect();
+    for name in inner {
+        command = command.mut_subcommand(&name, |inner| own(&root, &[name.as_str()], inner));
+    }
+    // The first screen is for the commands; the main job's options are those of `correct`.
+    let shown = ["input", "output", "machine", "help", "version"];
+    for option in root.get_arguments().map(|argument| argument.get_id().as_str()) {
+        if !shown.contains(&option) {
+            command = command.mut_arg(option, |argument| argument.hide(true));
+        }
+    }
+    command.after_help(
+        "All options: vpost correct --help\n\nExit: 0 done; 1 refused, nothing is written; 2 usage; 75 try again; 130, 143 signal\nExample: vpost in.nc -m machine-profiles/stan_s500.toml -o out.nc",
+    )
+}
+
+/// Help on one screen, by `-h` and `--help` alike.
+fn compact(command: clap::Command) -> clap::Command {
+    let help = clap::Arg::new("help").short('h').long("help").action(clap::ArgAction::HelpShort);
+    command.disable_help_flag(true).arg(help.help("Print this help").help_heading("Messages"))
+}
+
+impl Arguments {
+    /// Reads a command line.
+    ///
+    /// # Errors
+    /// What clap refuses, help and version among it; options that the command does not read.
+    pub fn read(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<Self, clap::Error> {
+        let mut command = command();
+        let matches = command.try_get_matches_from_mut(arguments)?;
+        let given = |matches: &clap::ArgMatches, id: &str| {
+            matches.try_contains_id(id).is_ok()
+                && matches.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
+        };
+        let (mut names, mut at) = (Vec::new(), &matches);
+        while let Some((name, inner)) = at.subcommand() {
+            names.push(name);
+            at = inner;
+        }
+        if let Some((first, _)) = matches.subcommand() {
+            let of_main = Correct::augment_args(clap::Command::new("correct"));
+            let stray = of_main.get_arguments().find(|argument| given(&matches, argument.get_id().as_str()));
+            let ignored = shared_options().find(|option| !reads(&names, option) && given(at, option));
+            let ignored = ignored
+                .and_then(|option| command.get_arguments().find(|argument| argument.get_id() == option));
+            if let Some(argument) = stray.or(ignored) {
+                let message = format!(
+                    "`vpost {}` does not read `{}`\n\nSee `vpost {} --help`",
+                    names.join(" "),
+                    argument.get_long().map_or_else(|| "IN.nc".to_owned(), |long| format!("--{long}")),
+                    if stray.is_some() { first.to_owned() } else { names.join(" ") },
+                );
+                return Err(command.error(clap::error::ErrorKind::ArgumentConflict, message));
+            }
+        }
+        clap::FromArgMatches::from_arg_matches(&matches)
+    }
+}
+
+/// Prints completions.
+pub(crate) fn completions(arguments: &Completions) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command(), "vpost", &mut text);
+    file::print(&text)
+}
+
+/// Prints the manual page.
+pub(crate) fn man() -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(command())
+        .render(&mut text)
+        .map_err(|error| Failure::file("standard output", "write", &error))?;
+    file::print(&text)
+}

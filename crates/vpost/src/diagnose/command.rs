@@ -1,0 +1,151 @@
+//! `vpost diagnose`: files in, the answer of `gap-diagnosis` out.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use gap_diagnosis::Options;
+use machine_model::effects::EffectKind;
+
+use super::change::{self, Change};
+use super::model::Model;
+use super::plan::{self, Form};
+use super::read::{Books, Measured, of_one_machine, read};
+use super::report::{Facts, File, Report};
+use super::{json, summary, written};
+use crate::arguments::Shared;
+use crate::file;
+use crate::message::{Failure, Messages};
+use crate::roles::Roles;
+use crate::settings::machine;
+
+/// `vpost diagnose`
+#[derive(Debug, Args)]
+pub struct Diagnose {
+    /// Measurements (CSV); - for standard input.
+    #[arg(value_name = "MEASUREMENTS.csv", required_unless_present = "plan")]
+    pub measurements: Option<PathBuf>,
+    /// Print what to measure on this machine, and nothing else: rows to fill in, or the NC program that goes there.
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "measurements")]
+    pub plan: Option<Form>,
+    /// Measurements that no fit may see: the predicted shrinkage is checked on them.
+    #[arg(long, value_name = "FILE")]
+    pub holdout: Option<PathBuf>,
+    /// Write the diagnosis as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the diagnosis as one page for a browser: drawings, no network, no script.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Write the profile with the causes added as effects.
+    #[arg(long, value_name = "FILE")]
+    pub write_profile: Option<PathBuf>,
+    /// Column of the measurements to pass over (repeatable).
+    #[arg(long, value_name = "NAME")]
+    pub ignore_column: Vec<String>,
+    /// Take the columns as they are named, even where the rows fit better with a sign flipped or two columns swapped.
+    #[arg(long)]
+    pub as_written: bool,
+    /// Seed of the random relabellings behind the p values of places.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Take an effect out of the library (repeatable).
+    #[arg(long, value_name = "ID", hide = true)]
+    pub without: Vec<String>,
+}
+
+/// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
+pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let model = Model::load(shared)?;
+    let Some(measurements) = &arguments.measurements else {
+        return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
+    };
+    Roles::default()
+        .reads("the measurements", measurements)
+        .reads_all("the hold-out", &arguments.holdout)
+        .reads_all("read by the profile", &model.files)
+        .writes("--json", arguments.json.as_deref())
+        .writes("--html", arguments.html.as_deref())
+        .writes("--write-profile", arguments.write_profile.as_deref())
+        .are_apart()?;
+    let books = if arguments.as_written { Books::AsWritten } else { Books::Checked };
+    let read = |path: &Path| read(path, &model, &arguments.ignore_column, books);
+    let measured = read(measurements)?;
+    let unseen = arguments.holdout.as_deref();
+    let holdout = unseen.map(read).transpose()?;
+    if let (Some(path), Some(held)) = (unseen, &holdout) {
+        of_one_machine(path, &measured, held)?;
+    }
+    let without = arguments
+        .without
+        .iter()
+        .map(|id| id.parse::<EffectKind>())
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
+    let steps = model.profile.resolution_mm.iter().map(|step| 1e3 * step);
+    let options = Options {
+        without,
+        seed: arguments.seed,
+        volume: Some(model.profile.volume()),
+        resolution_um: steps.fold(f64::INFINITY, f64::min),
+    };
+    let unseen = holdout.as_ref().map(|h| &h.data);
+    let diagnosis = gap_diagnosis::diagnose(&measured.data, unseen, &options);
+    let changes: Vec<Vec<Change>> =
+        diagnosis.causes.iter().map(|cause| change::of(cause, &model.profile)).collect();
+    let json = json::text(&diagnosis, &changes);
+    if let Some(path) = &arguments.json {
+        file::write(path, json.as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        let facts = facts(&model, arguments, shared, &measured, holdout.as_ref())?;
+        let page = Report {
+            diagnosis: &diagnosis,
+            changes: &changes,
+            data: &measured.data,
+            holdout: unseen,
+            facts: &facts,
+            json: &json,
+        };
+        file::write(path, page.html().as_bytes())?;
+    }
+    if let Some(path) = &arguments.write_profile {
+        written::write(path, machine(shared)?, &diagnosis)?;
+        messages.note(&format!("{} holds the profile with the causes as effects", file::name(path)));
+    }
+    file::print(summary::text(&diagnosis, &changes).as_bytes())
+}
+
+/// What the report says of files, options and machine.
+fn facts(
+    model: &Model,
+    arguments: &Diagnose,
+    shared: &Shared,
+    measured: &Measured,
+    holdout: Option<&Measured>,
+) -> Result<Facts, Failure> {
+    let calibrated = model.profile.calibrated.as_ref().map_or_else(String::new, |c| {
+        let temperature = c.temperature_c.map(|t| format!("{t} \u{b0}C"));
+        [c.date.clone(), temperature, c.instrument.clone()]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(", ")
+    });
+    Ok(Facts {
+        machine: model.profile.name.clone(),
+        chain: model.profile.chain().to_string(),
+        calibrated,
+        profile: File {
+            name: file::name(machine(shared)?),
+            hash: model.hash.to_string(),
+            comments: Vec::new(),
+        },
+        measurements: measured.file.clone(),
+        holdout: holdout.map(|h| h.file.clone()),
+        engine: shared.engine.clone().unwrap_or_else(|| "rigid-body".to_owned()),
+        seed: arguments.seed,
+        ignored_columns: arguments.ignore_column.clone(),
+        without: arguments.without.clone(),
+        tolerance_um: shared.tolerance.unwrap_or(model.profile.correction.tolerance_um),
+    })
+}

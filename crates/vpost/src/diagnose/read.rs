@@ -1,0 +1,143 @@
+//! A measurement file with its predictions.
+
+use std::path::Path;
+
+use gap_diagnosis::{Measurements, Row};
+use machine_profile::Profile;
+
+use super::books;
+use super::measurements;
+use super::model::{Model, geometry};
+use super::report::File;
+use crate::file;
+use crate::message::Failure;
+use crate::settings::setup_tool;
+
+/// A measurement file with its predictions, and what a report says of the file.
+pub(super) struct Measured {
+    pub(super) data: Measurements,
+    pub(super) file: File,
+}
+
+/// Whether rows that fit better with a sign flipped or two columns swapped are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Books {
+    /// They are.
+    Checked,
+    /// The columns are taken as they are named.
+    AsWritten,
+}
+
+/// Refuses a hold-out whose rows move what the measurements hold still: a rotary axis, or nothing that they move.
+pub(super) fn of_one_machine(path: &Path, measured: &Measured, held: &Measured) -> Result<(), Failure> {
+    /// An angle that is the same, rad.
+    const SAME_RAD: f64 = 1e-6;
+    let turns = |data: &Measurements, axis: usize| {
+        let angles = || data.rows.iter().map(|row| row.command.rotary_rad[axis]);
+        let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        high - low > SAME_RAD
+    };
+    let refuse = |message: String| {
+        Failure::option(
+            format!("the hold-out {}: {message}", file::name(path)),
+            "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
+        )
+    };
+    for (axis, letter) in ["A", "B", "C"].into_iter().enumerate() {
+        if turns(&held.data, axis) && !turns(&measured.data, axis) {
+            return Err(refuse(format!("{letter} turns there, and stands still in the measurements")));
+        }
+    }
+    let moves = |data: &Measurements, axis: usize| {
+        let (low, high) = data.range_mm(axis);
+        high - low > 1e-3
+    };
+    let letters = |data: &Measurements| -> Vec<&str> {
+        ["X", "Y", "Z"].into_iter().enumerate().filter(|(a, _)| moves(data, *a)).map(|(_, l)| l).collect()
+    };
+    let (fitted, unseen) = (letters(&measured.data), letters(&held.data));
+    if !unseen.is_empty() && unseen.iter().all(|letter| !fitted.contains(letter)) {
+        return Err(refuse(format!(
+            "it moves {}, and the measurements {}",
+            unseen.join(", "),
+            fitted.join(", ")
+        )));
+    }
+    Ok(())
+}
+
+/// Reads measurements, and leaves it at that.
+pub(crate) fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
+    let (data, sheet) =
+        measurements::read("measurements", bytes, setup_tool(profile), &[], &geometry(profile))?;
+    measurements::commands_and_frames(&sheet, &data, profile)
+}
+
+/// Reads a file and predicts its rows; columns in `ignore` are passed over.
+pub(super) fn read(path: &Path, model: &Model, ignore: &[String], books: Books) -> Result<Measured, Failure> {
+    let bytes = file::read(path)?;
+    let tool_mm = setup_tool(&model.profile);
+    let name = file::name(path);
+    let (mut data, sheet) = measurements::read(&name, &bytes, tool_mm, ignore, &model.geometry)?;
+    measurements::commands_and_frames(&sheet, &data, &model.profile)?;
+    let rigid = model.profile.rigid_body_without_effects();
+    let predict = |row: &mut Row| -> Result<(), Failure> {
+        row.predicted_mm = match model.engine.as_deref().and_then(|e| e.path_model()) {
+            // Said along the linear axes, read by the workpiece.
+            Some(engine) => model.geometry.table_turn(&row.command) * engine.error_mm(&row.command),
+            None => rigid.predict(&row.command).error_mm,
+        };
+        for effect in &model.effects {
+            row.predicted_mm += effect.displacement_mm(&row.command, &row.conditions).map_err(|error| {
+                Failure::option(
+                    format!("{} of the profile: {error}", effect.kind()),
+                    "give the measurements that column, or take the effect out of the profile",
+                )
+            })?;
+        }
+        Ok(())
+    };
+    data.rows.iter_mut().try_for_each(predict)?;
+    measurements::readings_against_model(&sheet, &data)?;
+    let travel_mm =
+        [0, 1, 2].map(|axis| model.profile.description.linear[axis].travel_mm).map(|r| (r.low, r.high));
+    if books == Books::Checked
+        && let Some(slip) = books::slip(&data, &model.profile.work_offsets, travel_mm, predict)
+    {
+        return Err(measurements::slipped(&sheet, &slip));
+    }
+    in_order_of_time(&mut data);
+    let comments = sheet.comments().to_vec();
+    let file = File { name, hash: blake3::hash(&bytes).to_string(), comments };
+    Ok(Measured { data, file })
+}
+
+/// Neighbours are rows that were measured one after the other: where every row has its time, that is the order, whatever
+/// the order of the lines. Else a run was measured as its lines stand, and the runs as they first appear.
+fn in_order_of_time(data: &mut Measurements) {
+    if data.rows.iter().any(|row| row.conditions.time_s.is_none()) {
+        return;
+    }
+    let names = std::mem::take(&mut data.runs);
+    let key = |row: &Row| {
+        let command = &row.command;
+        let vectors = [command.linear_mm, command.rotary_rad, command.tool_mm];
+        let mut numbers = vec![row.conditions.time_s.unwrap_or_default()];
+        numbers.extend(vectors.iter().flat_map(|v| v.iter().copied()));
+        numbers.extend(command.direction.map(f64::from));
+        numbers
+    };
+    data.rows.sort_by(|a, b| {
+        let pairs = key(a).into_iter().zip(key(b));
+        let order = pairs.map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne());
+        // What was measured at one time in one place has no order but that of the lines.
+        order.unwrap_or(std::cmp::Ordering::Equal).then_with(|| names[a.run].cmp(&names[b.run]))
+    });
+    let mut place: Vec<Option<usize>> = vec![None; names.len()];
+    for row in &mut data.rows {
+        row.run = *place[row.run].get_or_insert_with(|| {
+            data.runs.push(names[row.run].clone());
+            data.runs.len() - 1
+        });
+    }
+}

@@ -1,0 +1,39 @@
+//! What a page is about: files, options and machine.
+
+/// A file that was read.
+#[derive(Debug, Clone)]
+pub(in crate::diagnose) struct File {
+    /// As it was given.
+    pub name: String,
+    /// BLAKE3 of its bytes.
+    pub hash: String,
+    /// Its comment lines.
+    pub comments: Vec<String>,
+}
+
+/// Files, options and machine.
+#[derive(Debug, Clone)]
+pub(in crate::diagnose) struct Facts {
+    /// Name in the profile.
+    pub machine: String,
+    /// Its kinematic chain.
+    pub chain: String,
+    /// When, at what temperature and with what it was calibrated.
+    pub calibrated: String,
+    /// The profile, with the hash of its tables.
+    pub profile: File,
+    /// The measurements.
+    pub measurements: File,
+    /// Points for the proof.
+    pub holdout: Option<File>,
+    /// What predicts the rows.
+    pub engine: String,
+    /// Seed of the relabellings.
+    pub seed: u64,
+    /// Columns that were passed over.
+    pub ignored_columns: Vec<String>,
+    /// Effects taken out of the library.
+    pub without: Vec<String>,
+    /// Tolerance that the distribution is held against, µm.
+    pub tolerance_um: f64,
+}

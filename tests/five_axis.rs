@@ -1,0 +1,243 @@
+//! Tool centre point control: the tip goes where the program says, on a crooked tilting rotary table.
+
+use std::fmt::Write as _;
+
+use crate::common::{messages, run};
+
+const PROFILE: &str = "tests/profiles/five_axis.toml";
+/// As the profile has it: where the program's zero is, the tool's length, the control's centres.
+const ZERO_MM: [f64; 3] = [10.0, 145.0, 180.0];
+const LENGTH_MM: f64 = 120.0;
+const CONTROL_MM: [[f64; 3]; 2] = [[5.0, 150.02, 119.98], [5.01, 150.0, 160.0]];
+const MACHINE_MM: [[f64; 3]; 2] = [[5.0, 150.0, 120.0], [5.0, 150.0, 160.0]];
+
+/// X, Y, Z, A, C of the tip at the end of each block.
+const PLACES: [[f64; 5]; 8] = [
+    [20.0, 10.0, 40.0, 0.0, 30.0],
+    [20.0, 10.0, 5.0, 0.0, 30.0],
+    [30.0, 12.0, 5.0, -5.0, 42.0],
+    [38.0, 5.0, 4.0, -18.0, 75.0],
+    [30.0, -15.0, 4.5, -35.0, 130.0],
+    [10.0, -25.0, 6.0, -50.0, 160.5],
+    [-12.0, -20.0, 6.0, -42.0, 210.0],
+    [-12.0, -20.0, 46.0, -42.0, 210.0],
+];
+
+/// The same cut in the words of a dialect.
+fn program(dialect: &str) -> String {
+    let (on, off, equals) = match dialect {
+        "fanuc" => ("G43.4 H1", "G49", ""),
+        "haas" => ("G234 H1", "G49", ""),
+        "linuxcnc" => ("G43 H1\nM428", "M429\nG49", ""),
+        _ => ("TRAORI", "TRAFOOF", "="),
+    };
+    let point = if dialect == "sinumerik" { "" } else { "." };
+    let mut text =
+        format!("G17 G90 G94 G54 G{}\nG0 A{equals}0 C{equals}0\n{on}\n", if equals == "=" { 71 } else { 21 });
+    for (k, [x, y, z, a, c]) in PLACES.into_iter().enumerate() {
+        let number =
+            |value: f64| if value.fract() == 0.0 { format!("{value}{point}") } else { value.to_string() };
+        let [x, y, z, a, c] = [x, y, z, a, c].map(number);
+        let code = match k {
+            0 => "G0 ",
+            1 => "G1 ",
+            7 => "G0 ",
+            _ => "",
+        };
+        let feed = if k == 1 { " F600" } else { "" };
+        writeln!(text, "{code}X{x} Y{y} Z{z} A{equals}{a} C{equals}{c}{feed}").expect("a string takes all");
+    }
+    text + off + "\nM30\n"
+}
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new(text: &str) -> Self {
+        let place = Self(tempfile::tempdir().expect("a temporary folder"));
+        std::fs::write(place.path("in.nc"), text).expect("writable");
+        place
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.path().join(name).to_str().expect("a plain path").to_owned()
+    }
+}
+
+/// The profile's machine without tool lengths: a Sinumerik has its own.
+fn length_mm(dialect: &str) -> f64 {
+    if dialect == "sinumerik" { 0.0 } else { LENGTH_MM }
+}
+
+fn dialect_of(name: &str) -> &str {
+    if name == "haas" { "fanuc" } else { name }
+}
+
+/// Where a word with this letter leads.
+fn word(line: &str, letter: char) -> Option<f64> {
+    let at = line.find(letter)?;
+    let rest = line[at + 1..].trim_start_matches('=');
+    let end = rest.find(|c: char| !matches!(c, '0'..='9' | '.' | '-')).unwrap_or(rest.len());
+    rest[..end].parse().ok()
+}
+
+/// What a control with these centres makes of a tip: LinuxCNC's xyzac-trt, the inverse of
+/// `p = c_C + Rz(-C) (c_A + Rx(-A) (q - c_A) - c_C)`.
+fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [[f64; 3]; 2]) -> [f64; 3] {
+    let (sin, cos) = units::math::sin_cos(c.to_radians());
+    let (u, v) = (x - about_c[0], y - about_c[1]);
+    let turned = [about_c[0] + cos * u - sin * v, about_c[1] + sin * u + cos * v, z];
+    let (sin, cos) = units::math::sin_cos(a.to_radians());
+    let (u, v) = (turned[1] - about_a[1], turned[2] - about_a[2]);
+    [turned[0], about_a[1] + cos * u - sin * v, about_a[2] + sin * u + cos * v + length_mm]
+}
+
+#[test]
+fn the_tip_goes_where_the_program_says() {
+    for name in ["fanuc", "haas", "linuxcnc", "sinumerik"] {
+        let dialect = dialect_of(name);
+        let place = Place::new(&program(name));
+        let [from, to, points] = ["in.nc", "out.nc", "points.csv"].map(|name| place.path(name));
+        let ran = run(&[&from, "-m", PROFILE, "-d", dialect, "-o", &to]);
+        assert!(ran.status.success(), "{name}: {}", messages(&ran));
+        let check = run(&["check", &from, &to, "-m", PROFILE, "-d", dialect]);
+        let said = String::from_utf8_lossy(&check.stdout).into_owned();
+        assert!(check.status.success(), "{name}: {said}");
+
+        // Through the control's kinematics and the machine as it is, to where the tip was to go.
+        let made = std::fs::read_to_string(&to).expect("written");
+        let mut table = "x_mm,y_mm,z_mm,a_deg,c_deg,tool_x_mm,tool_y_mm,tool_z_mm\n".to_owned();
+        let mut at = [0.0; 5];
+        let mut wanted = Vec::new();
+        for line in made.lines().filter(|line| !line.starts_with('(') && !line.starts_with(';')) {
+            for (value, letter) in at.iter_mut().zip(['X', 'Y', 'Z', 'A', 'C']) {
+                *value = word(line, letter).unwrap_or(*value);
+            }
+            let ends = PLACES
+                .iter()
+                .find(|place| place[3] == at[3] && place[4] == at[4] && (place[2] - at[2]).abs() < 1.0);
+            let Some(ends) = ends.filter(|_| line.contains('X')) else { continue };
+            let tip = [at[0] + ZERO_MM[0], at[1] + ZERO_MM[1], at[2] + ZERO_MM[2], at[3], at[4]];
+            let [x, y, z] = axis_command(tip, length_mm(name), CONTROL_MM);
+            writeln!(table, "{x},{y},{z},{},{},0,0,{}", at[3], at[4], -length_mm(name))
+                .expect("a string takes all");
+            wanted.push([0, 1, 2].map(|i| ends[i] + ZERO_MM[i]));
+        }
+        assert_eq!(wanted.len(), PLACES.len(), "{name}:\n{made}");
+        std::fs::write(&points, table).expect("writable");
+        let predicted = run(&["predict", &points, "-m", PROFILE]);
+        assert!(predicted.status.success(), "{}", messages(&predicted));
+        let rows = String::from_utf8(predicted.stdout).expect("text");
+        for (row, wanted) in rows.lines().skip(1).zip(wanted) {
+            let real: Vec<f64> =
+                row.split(',').skip(8).take(3).map(|cell| cell.parse().expect("a number")).collect();
+            let off_um = [0, 1, 2].map(|i| (real[i] - wanted[i]) * 1e3);
+            // Half an output step in each direction.
+            let distance = off_um.iter().map(|v| v * v).sum::<f64>().sqrt();
+            assert!(distance < 0.9, "{name}: {distance} um off at {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn without_correction_it_does_not() {
+    let place = Place::new(&program("fanuc"));
+    let from = place.path("in.nc");
+    let check = run(&["check", &from, &from, "-m", PROFILE]);
+    assert_eq!(check.status.code(), Some(1), "{}", String::from_utf8_lossy(&check.stdout));
+}
+
+/// The same cut with axis words, made by the formulas with the machine's own centres: `check` compares tips.
+#[test]
+fn the_same_tip_by_axis_words_is_the_same_path() {
+    let line = |code: &str, [x, y, z, a, c]: [f64; 5]| {
+        let tip = [x + ZERO_MM[0], y + ZERO_MM[1], z + ZERO_MM[2], a, c];
+        let q = axis_command(tip, 0.0, MACHINE_MM);
+        let [x, y, z] = [0, 1, 2].map(|i| q[i] - ZERO_MM[i]);
+        format!("{code} X{x:.5} Y{y:.5} Z{z:.5} A{a:.5} C{c:.5} F600\n")
+    };
+    let mut text = "G17 G90 G94 G54 G21\nG0 A0. C0.\nG43 H1\n".to_owned() + &line("G0", PLACES[0]);
+    for pair in PLACES[..7].windows(2) {
+        // The tip's line in so many of the axes that none bends by more than the tolerance.
+        const PARTS: u32 = 400;
+        for k in 1..=PARTS {
+            let s = f64::from(k) / f64::from(PARTS);
+            text += &line("G1", [0, 1, 2, 3, 4].map(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * s));
+        }
+    }
+    text += &line("G0", PLACES[7]);
+    text += "G49\nM30\n";
+    let place = Place::new(&program("fanuc"));
+    let [from, axes, made] = ["in.nc", "axes.nc", "made.nc"].map(|name| place.path(name));
+    std::fs::write(&axes, &text).expect("writable");
+    let ran = run(&[&axes, "-m", PROFILE, "-o", &made]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let check = run(&["check", &from, &made, "-m", PROFILE]);
+    let said = String::from_utf8_lossy(&check.stdout).into_owned();
+    let path: Vec<&str> = said.lines().filter(|line| line.contains("off the path")).collect();
+    assert!(path.is_empty(), "{said}");
+    assert!(said.starts_with("6 feed motions in, 2400 out"), "{said}");
+    let after = said.lines().find_map(|line| line.strip_prefix("after:  the tool is up to ")).expect("said");
+    let after_um: f64 =
+        after.split_whitespace().next().and_then(|number| number.parse().ok()).expect("a number");
+    assert!(after_um < 2.0, "{said}");
+}
+
+#[test]
+fn what_does_not_go_together_is_refused_by_name() {
+    let refused = |middle: &str| {
+        let place = Place::new(&format!(
+            "G21 G90 G94 G54 G0 A0. C0.\nG43.4 H1\nG0 X0. Y0. Z50. A-10. C20.\n{middle}\nM30\n"
+        ));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE]);
+        (ran.status.code(), messages(&ran))
+    };
+    for (middle, says) in [
+        ("G41 D1 G1 X10. F100.", "cutter compensation under tool centre point control"),
+        ("G81 X5. Y5. Z-5. R2. F100.", "a drilling cycle under tool centre point control"),
+        ("G68 X0. Y0. R30.", "a rotation, scaling or mirror under tool centre point control"),
+    ] {
+        let (status, said) = refused(middle);
+        assert_eq!(status, Some(1), "{middle}");
+        assert!(
+            said.contains("error[VP0230]") && said.contains(says) && said.contains("help:"),
+            "{middle}: {said}"
+        );
+    }
+    // Behind the switch nobody knows where the tip is before it is said.
+    for (middle, since) in [
+        ("G49\nG1 Z0. F100.", "tool centre point control was switched in line 4"),
+        ("G53 G0 Z100.\nG1 X5. F100.", "X, Y, Z not known since G53 in line 4"),
+        ("G91 G28 Z0.\nG90 G1 X5. F100.", "X, Y, Z not known since the reference return in line 4"),
+    ] {
+        let (status, said) = refused(middle);
+        assert_eq!(status, Some(1));
+        assert!(said.contains(since), "{said}");
+    }
+}
+
+#[test]
+fn without_a_model_it_is_refused() {
+    let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
+    let start = profile.find("[kinematics]").expect("a section");
+    let tables = crate::common::root().join("tests/profiles");
+    let tables = tables.to_str().expect("a plain path");
+    let with = |text: String| text.replace("\"wavy_", &format!("\"{tables}/wavy_"));
+    for (text, says) in [
+        (with(profile[..start].to_owned()), "with which centres the control computes is not said"),
+        (
+            with(profile.replace("errors = \"wavy_x.csv\"", "errors = \"wavy_x.csv\"\nbacklash_um = 4.0")),
+            "with lost motion of linear axes",
+        ),
+    ] {
+        let place = Place::new(&program("fanuc"));
+        std::fs::write(place.path("machine.toml"), text).expect("writable");
+        let ran = run(&[&place.path("in.nc"), "-m", &place.path("machine.toml")]);
+        assert_eq!(ran.status.code(), Some(1));
+        assert!(
+            messages(&ran).contains("error[VP0230]") && messages(&ran).contains(says),
+            "{}",
+            messages(&ran)
+        );
+    }
+}

@@ -1,0 +1,127 @@
+//! The help of each command: what it reads, on one screen.
+
+use crate::common::{messages, run};
+
+/// Those that read so many options of their own that one screen of 80 by 50 does not hold them.
+const LONG: [&str; 2] = ["calibrate tracker", "calibrate interferometer"];
+
+const COMMANDS: [&str; 22] = [
+    "",
+    "correct",
+    "batch",
+    "batch plan",
+    "batch run",
+    "batch merge",
+    "check",
+    "predict",
+    "solve",
+    "calibrate",
+    "calibrate tracker",
+    "calibrate interferometer",
+    "calibrate volumetric",
+    "calibrate ballbar",
+    "diagnose",
+    "map",
+    "budget",
+    "profile",
+    "profile export",
+    "grammar",
+    "explain",
+    "completions",
+];
+
+fn help(command: &str) -> String {
+    let words: Vec<&str> = command.split_whitespace().chain(["--help"]).collect();
+    let ran = run(&words);
+    assert!(ran.status.success(), "{command}: {}", messages(&ran));
+    String::from_utf8(ran.stdout).expect("text")
+}
+
+#[test]
+fn it_fits_a_screen() {
+    for command in COMMANDS.into_iter().filter(|command| !LONG.contains(command)) {
+        let lines = help(command).lines().count();
+        assert!(lines <= 50, "{command}: {lines} lines");
+    }
+}
+
+/// What a command does not read it neither lists nor takes.
+#[test]
+fn no_option_is_ignored() {
+    let options = [
+        ("--strict", None),
+        ("--tolerance", Some("2")),
+        ("--start-at", Some("0,0,0")),
+        ("--set", Some("#1=2")),
+        ("--outside", Some("clamp")),
+        ("--at", Some("temp_c=20")),
+        ("-m", Some("machine-profiles/stan_s500.toml")),
+    ];
+    let mut ignored = 0;
+    for command in ["solve", "map", "budget", "diagnose", "profile check", "grammar list", "explain"] {
+        let listed = help(command);
+        for (option, value) in options {
+            if listed.contains(option) {
+                continue;
+            }
+            ignored += 1;
+            let place = match command {
+                "map" | "budget" | "grammar list" => None,
+                _ => Some("x"),
+            };
+            let words = command.split_whitespace().chain([option]).chain(value).chain(place);
+            let ran = run(&words.collect::<Vec<_>>());
+            let said = messages(&ran);
+            assert_eq!(ran.status.code(), Some(2), "{command} {option}: {said}");
+            assert!(said.contains("does not read"), "{command} {option}: {said}");
+        }
+    }
+    assert!(ignored > 20, "only {ignored} cases");
+}
+
+#[test]
+fn options_may_stand_before_the_command() {
+    const POINTS: &str = "samples/points/table_4_9_targets.csv";
+    const PROFILE: &str = "machine-profiles/stan_s500.toml";
+    let before = run(&["-m", PROFILE, "-q", "solve", POINTS]);
+    let behind = run(&["solve", POINTS, "-m", PROFILE, "-q"]);
+    assert!(before.status.success(), "{}", messages(&before));
+    assert_eq!(before.stdout, behind.stdout);
+    // Those of the main job are no options of another.
+    let stray = run(&["-o", "x.nc", "-m", PROFILE, "check", "a.nc", "b.nc"]);
+    assert_eq!(stray.status.code(), Some(2));
+    assert!(messages(&stray).contains("`vpost check` does not read `--output`"), "{}", messages(&stray));
+}
+
+#[test]
+fn the_main_job_has_a_name() {
+    const PROGRAM: &str = "samples/plate_linuxcnc.nc";
+    const PROFILE: &str = "machine-profiles/stan_s500.toml";
+    let [named, unnamed] = [vec!["correct", PROGRAM], vec![PROGRAM]]
+        .map(|words| run(&[words.as_slice(), &["-m", PROFILE, "-d", "linuxcnc"]].concat()));
+    assert!(named.status.success() && !named.stdout.is_empty(), "{}", messages(&named));
+    assert_eq!(named.stdout, unnamed.stdout);
+}
+
+#[test]
+fn alone_it_shows_what_there_is() {
+    let ran = run(&[]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(messages(&ran).contains("Commands:") && messages(&ran).contains("vpost correct --help"));
+}
+
+#[test]
+fn every_message_is_explained() {
+    let page = std::fs::read_to_string(crate::common::root().join("docs/diagnostics.md")).expect("readable");
+    let codes: Vec<&str> =
+        page.lines().filter_map(|line| line.strip_prefix("### ")?.split(' ').next()).collect();
+    assert!(codes.len() > 80);
+    for code in codes {
+        let ran = run(&["explain", code]);
+        let text = String::from_utf8_lossy(&ran.stdout).into_owned();
+        assert!(ran.status.success() && text.starts_with(code) && !text.contains("```"), "{code}: {text}");
+    }
+    let unknown = run(&["explain", "VP9999"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(messages(&unknown).contains("there is no message `VP9999`"));
+}
