@@ -16,7 +16,7 @@ fn accepted_programs_follow_their_path() {
     let mut failed = Vec::new();
     let mut count = 0;
     for dialect in DIALECTS {
-        for path in files(&root().join("grammars").join(dialect).join("accept"), &ENDINGS) {
+        for path in files(&root().join("tests/corpus").join(dialect).join("accept"), &ENDINGS) {
             count += 1;
             let program = path.to_str().expect("a plain path");
             let ran = run(&[program, "-m", PROFILE, "-d", dialect, "-o", out]);
@@ -40,7 +40,7 @@ fn rejected_programs_are_refused_for_their_reason() {
     let mut failed = Vec::new();
     let mut count = 0;
     for dialect in DIALECTS {
-        for path in files(&root().join("grammars").join(dialect).join("reject"), &ENDINGS) {
+        for path in files(&root().join("tests/corpus").join(dialect).join("reject"), &ENDINGS) {
             count += 1;
             let program = path.to_str().expect("a plain path");
             let text = std::fs::read(&path).expect("readable");
@@ -89,7 +89,7 @@ fn the_second_judge_agrees_on_the_corpus() {
     let out_text = out.to_str().expect("a plain path");
     let mut failed = Vec::new();
     let mut judged = 0;
-    for path in files(&root().join("grammars/linuxcnc/accept"), &ENDINGS) {
+    for path in files(&root().join("tests/corpus/linuxcnc/accept"), &ENDINGS) {
         let program = path.to_str().expect("a plain path");
         let name = path.file_stem().expect("a name").to_string_lossy();
         if NOT_READ.contains(&name.as_ref()) {

@@ -198,6 +198,9 @@ fn proves(program: &Program, row: &Row, dialect: &Dialect, setup: &Setup) -> boo
     }
 }
 
+/// Shows every row that refuses its code.
+const BY_ITS_ROW: &str = "`what_a_table_refuses_is_refused` in tests/dialects.rs";
+
 /// The test of this file that shows what no program of the corpus can: where a code stands in the output,
 /// and an offset that the corpus' profile lacks so that others can be refused for it.
 fn named(row: &Row) -> Option<&'static str> {
@@ -212,13 +215,16 @@ fn named(row: &Row) -> Option<&'static str> {
     {
         return Some("`the_tip_goes_where_the_program_says` in tests/five_axis.rs");
     }
+    if row.treatment == Treatment::Refused && !row.note.starts_with("with more than") {
+        return Some(BY_ITS_ROW);
+    }
     (row.code == GIVEN && row.treatment == Treatment::Followed)
         .then_some("`an_offset_given_on_the_command_line_is_followed` in tests/dialects.rs")
 }
 
 /// The programs of a dialect, those first that prove best.
 fn programs(dialect: &Dialect, setup: &Setup) -> Vec<Program> {
-    let folder = root().join("grammars").join(&dialect.name);
+    let folder = root().join("tests/corpus").join(&dialect.name);
     let mut found: Vec<Program> = ["accept", "reject"]
         .iter()
         .flat_map(|kind| files(&folder.join(kind), &["nc", "ngc"]))
@@ -340,6 +346,36 @@ fn every_code_is_listed_with_its_proof() {
     } else {
         assert!(document == wanted, "{DOCUMENT} is stale: VPOST_UPDATE_DOCS=1 writes its lists anew");
     }
+}
+
+/// A refusal that only its row decides needs no program: one with the code alone, and another one without it.
+#[test]
+fn what_a_table_refuses_is_refused() {
+    let setup = setup();
+    let mut tried = 0;
+    for dialect in mills() {
+        let Rows { g_codes, m_codes, commands } = rows(dialect);
+        for row in g_codes.iter().chain(&m_codes).chain(&commands) {
+            if named(row) != Some(BY_ITS_ROW) {
+                continue;
+            }
+            tried += 1;
+            let begin = "G54 G90\nG0 X10. Y10. Z60.\n";
+            let bracketed = commands.contains(row) && dialect.paren == Paren::Command;
+            let code = if bracketed { format!("({})", row.code) } else { row.code.clone() };
+            let run = interpret(format!("{begin}{code}\nG1 Z50. F200.\n").as_bytes(), dialect, &setup);
+            let Some((number, message)) = &run.refused else {
+                panic!("{}: {} is not refused", dialect.name, row.code);
+            };
+            assert!(matches!(number, 208 | 224), "{}: {} is VP{number:04}", dialect.name, row.code);
+            let why = format!("{} is refused: {}", row.code, row.note);
+            assert!(why.starts_with(message.as_str()), "{message}\n{why}");
+            assert_eq!(run.steps.len(), 2, "{}: {}", dialect.name, row.code);
+            let run = interpret(format!("{begin}G1 Z50. F200.\n").as_bytes(), dialect, &setup);
+            assert_eq!(run.refused, None, "{}", dialect.name);
+        }
+    }
+    assert!(tried > 150, "{tried}");
 }
 
 /// M0, M5, M9 and their like end up behind the last piece of a block that is split, and nowhere else.

@@ -52,7 +52,7 @@ const HEAD: &str = "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\n";
 fn a_machine_without_errors_leaves_flow_as_it_is() {
     let mut count = 0;
     for dialect in ["fanuc", "linuxcnc"] {
-        for path in files(&root().join("grammars").join(dialect).join("accept"), &["nc"]) {
+        for path in files(&root().join("tests/corpus").join(dialect).join("accept"), &["nc"]) {
             let text = std::fs::read(&path).expect("readable");
             if !text.contains(&b'#') && !text.windows(3).any(|w| w == b"M98" || w == b"G65") {
                 continue;

@@ -50,7 +50,7 @@ fn programs() -> Vec<Vec<u8>> {
     };
     for dialect in targets::DIALECTS {
         for kind in ["accept", "reject"] {
-            let folder = root().join("grammars").join(dialect).join(kind);
+            let folder = root().join("tests/corpus").join(dialect).join(kind);
             files(&folder, &["nc", "ngc"]).iter().for_each(|path| take(dialect, path));
         }
     }

@@ -31,11 +31,11 @@ fn traps(document: &str) -> Vec<Trap> {
         .collect()
 }
 
-/// The programs that a reference such as `*/accept/helix.nc` stands for, relative to `grammars/`.
+/// The programs that a reference such as `*/accept/helix.nc` stands for, relative to `tests/corpus/`.
 fn programs(reference: &str) -> Vec<String> {
     let Some(rest) = reference.strip_prefix("*/") else { return vec![reference.to_owned()] };
     let all = DIALECTS.iter().map(|dialect| format!("{dialect}/{rest}"));
-    all.filter(|path| root().join("grammars").join(path).is_file()).collect()
+    all.filter(|path| root().join("tests/corpus").join(path).is_file()).collect()
 }
 
 /// True where a file of tests has a test of that name, among the plain ones or the properties.
@@ -67,7 +67,7 @@ fn every_trap_has_its_proof() {
                 None => {
                     let programs = programs(what);
                     let all = !programs.is_empty()
-                        && programs.iter().all(|path| root().join("grammars").join(path).is_file());
+                        && programs.iter().all(|path| root().join("tests/corpus").join(path).is_file());
                     named.extend(programs);
                     all
                 }
@@ -85,10 +85,10 @@ fn every_trap_has_its_proof() {
         let section = codes.split(&format!("### `{dialect}`")).nth(1).expect("every dialect is listed");
         let section = section.split("\n### ").next().unwrap_or_default();
         for kind in ["accept", "reject"] {
-            for path in files(&root().join("grammars").join(dialect).join(kind), &["nc", "ngc"]) {
+            for path in files(&root().join("tests/corpus").join(dialect).join(kind), &["nc", "ngc"]) {
                 let file = format!("{kind}/{}", path.file_name().expect("a name").to_string_lossy());
                 if !section.contains(&format!("`{file}`")) && !named.contains(&format!("{dialect}/{file}")) {
-                    writeln!(faults, "grammars/{dialect}/{file} is named in neither document")
+                    writeln!(faults, "tests/corpus/{dialect}/{file} is named in neither document")
                         .expect("a string");
                 }
             }
@@ -270,7 +270,7 @@ fn a_split_block_keeps_its_feed_word_once() {
 fn outputs() -> Vec<(String, Vec<u8>, Vec<u8>)> {
     let mut found = Vec::new();
     for dialect in DIALECTS {
-        for path in files(&root().join("grammars").join(dialect).join("accept"), &["nc", "ngc"]) {
+        for path in files(&root().join("tests/corpus").join(dialect).join("accept"), &["nc", "ngc"]) {
             let text = path.to_str().expect("a plain path");
             let ran = run(&[text, "-m", PROFILE, "-d", dialect]);
             assert!(ran.status.success(), "{text}: {}", messages(&ran));
@@ -297,7 +297,7 @@ fn no_exponent_and_no_minus_zero() {
     let mut written = 0;
     for (name, before, after) in outputs() {
         let dialect =
-            name.split("/grammars/").nth(1).and_then(|rest| rest.split('/').next()).expect("a dialect");
+            name.split("/tests/corpus/").nth(1).and_then(|rest| rest.split('/').next()).expect("a dialect");
         let dialect = nc_dialect::builtin(dialect).expect("shipped");
         let minus_zero = |text: &[u8]| {
             let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());

@@ -1,4 +1,4 @@
-//! The programs in `grammars/*/accept` and `grammars/*/reject`, as far as reading and the tables decide.
+//! The programs in `tests/corpus/*/accept` and `tests/corpus/*/reject`, as far as reading and the tables decide.
 //!
 //! The whole-program test runs them through the command; here it is made sure that every accepted one is
 //! readable and holds known codes only, and that every rejected one says which message it expects.
@@ -22,7 +22,7 @@ const EXPANSION: std::ops::Range<u16> = 120..160;
 
 /// Name and bytes of every program in a folder, in alphabetical order.
 fn programs(dialect: &str, folder: &str) -> BTreeMap<String, Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../grammars").join(dialect).join(folder);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/corpus").join(dialect).join(folder);
     let Ok(entries) = std::fs::read_dir(folder) else { return BTreeMap::new() };
     let read = |entry: std::io::Result<std::fs::DirEntry>| {
         let entry = entry.expect("the corpus can be listed");

@@ -1,5 +1,0 @@
-;expect VP0208: cuts a thread in step with the spindle
-G17 G71 G90
-G0 X10 Y10 Z60
-G33
-M30

@@ -1,5 +1,0 @@
-; expect VP0208: returns through the point of an earlier G28
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G29 X20. Y20.
-M30

@@ -1,5 +1,0 @@
-; expect VP0208: moves an axis until a switch closes
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-M105 X P5 F100.
-M30

@@ -1,8 +1,0 @@
-%
-O0001
-(expect VP0208: cuts an involute)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G2.2 X20. Y20. I5. J0. R3. F200.
-M30
-%

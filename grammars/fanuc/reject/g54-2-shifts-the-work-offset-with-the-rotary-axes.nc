@@ -1,8 +1,0 @@
-%
-O0001
-(expect VP0208: shifts the work offset with the rotary axes)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G54.2 P1
-M30
-%

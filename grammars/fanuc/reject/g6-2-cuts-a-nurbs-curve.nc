@@ -1,8 +1,0 @@
-%
-O0001
-(expect VP0208: cuts a NURBS curve)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G6.2 P4 K0 X10. Y10. Z60. R1. F200.
-M30
-%

@@ -1,8 +1,0 @@
-%
-O0001
-(expect VP0208: copies a subprogram in a circle)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G72.1 P1000 L4 X0 Y0 R90.
-M30
-%

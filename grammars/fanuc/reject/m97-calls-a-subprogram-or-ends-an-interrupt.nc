@@ -1,8 +1,0 @@
-%
-O0001
-(expect VP0208: calls a subprogram on Haas, ends an interrupt on Fanuc)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-M97 P1000
-M30
-%

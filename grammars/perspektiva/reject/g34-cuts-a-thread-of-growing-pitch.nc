@@ -1,7 +1,0 @@
-%CORPUS
-(expect VP0208: cuts a thread of growing pitch)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G34 X50. Y50. I20. J0 L6
-M30
-%

@@ -1,7 +1,0 @@
-%CORPUS
-(expect VP0208: moves the axes so that the tool's tip follows the path, tool centre point)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G43.5 H1
-M30
-%

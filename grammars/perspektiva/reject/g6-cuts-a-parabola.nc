@@ -1,7 +1,0 @@
-%CORPUS
-(expect VP0208: cuts a parabola)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G6 X20. Y20. I5. F200.
-M30
-%

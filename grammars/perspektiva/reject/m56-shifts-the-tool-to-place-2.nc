@@ -1,9 +1,0 @@
-%CORPUS
-(expect VP0208: shifts the tool to place 2 GOST 20999-83)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G1 Z50. F200.
-M56
-X20.
-M30
-%

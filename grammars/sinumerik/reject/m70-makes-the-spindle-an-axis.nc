@@ -1,8 +1,0 @@
-%_N_PAexpect VP0208: makes the spindle an axisT_MPF
-;R
-G17 G40 G54 G71 G90
-G0 X10 Y10 Z60
-G1 Z50 F200
-M70
-X20
-M30

@@ -1,6 +1,0 @@
-%_N_PART_MPF
-;expect VP0224: mirrors the frame
-G17 G40 G54 G71 G90
-G0 X10 Y10 Z60
-MIRROR
-M30
