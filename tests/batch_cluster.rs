@@ -185,7 +185,7 @@ fn what_changed_since_the_plan_is_refused() {
 
     let options = planned.command("run").args(["--tolerance", "2"]).output().unwrap();
     assert_status(&options, 2);
-    assert!(messages(&options).contains("the manifest says"), "{}", messages(&options));
+    assert!(messages(&options).contains("does not read `--tolerance`"), "{}", messages(&options));
 }
 
 #[test]

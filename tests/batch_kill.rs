@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::common::vpost;
 use crate::folders::{PROFILE, release, temporaries, tree};
@@ -24,15 +24,14 @@ fn signal(child: &Child, name: &str) {
     Command::new("kill").args([name, &id]).stderr(Stdio::null()).status().expect("kill is there");
 }
 
-/// One test at a time: each measures how long a run takes.
+/// One test at a time: each kills runs in their middle.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// A release, what its correction is, and how long that takes here and now.
+/// A release, and what its correction is.
 struct Release {
     folder: tempfile::TempDir,
     input: PathBuf,
     wanted: BTreeMap<PathBuf, Vec<u8>>,
-    takes: Duration,
 }
 
 impl Release {
@@ -41,13 +40,8 @@ impl Release {
         let input = folder.path().join("release");
         release(&input, 60, 1500);
         let output = folder.path().join("wanted");
-        let timed = |output: &Path| {
-            let begun = Instant::now();
-            assert!(start(&input, output).wait().expect("it ends").success());
-            begun.elapsed()
-        };
-        let takes = timed(&output).min(timed(&folder.path().join("again")));
-        Self { wanted: tree(&output), takes, input, folder }
+        assert!(start(&input, &output).wait().expect("it ends").success());
+        Self { wanted: tree(&output), input, folder }
     }
 
     /// Everything under a final name is whole.
@@ -69,7 +63,15 @@ impl Release {
         assert_eq!(journal.len(), 1, "{journal:?}");
     }
 
-    /// Kills `times` runs, each in its share of the time that a run takes: how many outputs stood then.
+    /// Waits until so many outputs stand, or the run has ended.
+    fn wait_for(&self, count: usize, child: &mut Child, output: &Path) {
+        let there = || if output.exists() { tree(output).len() } else { 0 };
+        while there() < count && child.try_wait().expect("it can be asked").is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Kills `times` runs, each when its share of the outputs stands: how many stood then.
     fn kill(&self, times: u32) -> Vec<usize> {
         let mut whole = Vec::new();
         for k in 0..times {
@@ -77,7 +79,8 @@ impl Release {
             // Somewhere in the k-th share: the fractional part of multiples of the golden ratio.
             let within = f64::from(k + 1) * 0.618_033_988_749_895 % 1.0;
             let mut child = start(&self.input, &output);
-            std::thread::sleep(self.takes.mul_f64((f64::from(k) + within) / f64::from(times)));
+            let share = (f64::from(k) + within) / f64::from(times);
+            self.wait_for((share * self.wanted.len() as f64) as usize, &mut child, &output);
             signal(&child, "-KILL");
             child.wait().expect("it ends");
             whole.push(self.assert_whole(&output));
@@ -112,11 +115,8 @@ fn interrupted_it_ends_at_once_and_leaves_nothing_half_done() {
     for (name, status) in [("-INT", 130), ("-TERM", 143)] {
         let output = release.folder.path().join(name);
         let mut child = start(&release.input, &output);
-        let begun = Instant::now();
         // Once the first output stands, the run is in its middle.
-        while release.assert_whole(&output) == 0 && begun.elapsed() < Duration::from_secs(60) {
-            std::thread::sleep(Duration::from_millis(2));
-        }
+        release.wait_for(1, &mut child, &output);
         signal(&child, name);
         assert_eq!(child.wait().unwrap().code(), Some(status));
         assert!(release.assert_whole(&output) < release.wanted.len());

@@ -391,7 +391,7 @@ fn what_has_no_budget_is_refused_with_what_to_type() {
     refused(&["--rotary", "C=90"], &["VP0002", "no such axis"]);
     refused(&["--tool-vector", "H7"], &["VP0002", "--tool H7=120"]);
     refused(&["--engine", "tracker"], &["VP0002", "engine `tracker`", "leave `--engine` out"]);
-    refused(&["--engine", "newton"], &["VP0002", "there is no engine"]);
+    refused(&["--engine", "newton"], &["VP0002", "there is no such engine"]);
     refused(&["--points", "p.csv", "--grid", "3x3x3"], &["--points", "--grid"]);
     said(2, &run(&["budget"]), &["VP0002", "-m PROFILE.toml"]);
     said(

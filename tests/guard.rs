@@ -45,6 +45,23 @@ impl Place {
 }
 
 #[test]
+fn a_batch_puts_the_same_guards() {
+    let place = Place::new("linuxcnc");
+    let one = place.guarded();
+    let [programs, outputs, machine] = ["programs", "outputs", "machine.toml"].map(|name| place.path(name));
+    std::fs::create_dir(&programs).expect("writable");
+    std::fs::write(Path::new(&programs).join("in.nc"), PROGRAM).expect("writable");
+    let batch = |more: &[&str]| {
+        let ran = run(&[&["batch", &programs, "-O", &outputs, "-m", &machine, START], more].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        std::fs::read_to_string(Path::new(&outputs).join("in.nc")).expect("written")
+    };
+    assert_eq!(batch(&["--guard"]), one);
+    // Another job: what an earlier run left does not stand for it.
+    assert!(!batch(&[]).contains("VPOST GUARD"));
+}
+
+#[test]
 fn a_fanuc_program_asks_for_each_work_offset_once() {
     let made = Place::new("fanuc").guarded();
     let guards: Vec<&str> = made.lines().filter(|line| line.contains("VPOST GUARD")).collect();

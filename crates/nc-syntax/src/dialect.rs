@@ -554,6 +554,23 @@ pub struct MCode {
     pub refuse: Option<(String, String)>,
 }
 
+impl MCode {
+    /// A code that moves nothing and switches nothing that this crate's users follow.
+    #[must_use]
+    pub fn harmless(number: u16) -> Self {
+        Self {
+            number,
+            after_motion: false,
+            loses_position: [false; 3],
+            ends_program: false,
+            changes_tool: false,
+            switches: None,
+            tip: None,
+            refuse: None,
+        }
+    }
+}
+
 /// A block that stands in programs of lathes: any of the codes or commands, all of the letters, none of the others.
 ///
 /// ```

@@ -3,17 +3,33 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use machine_model::EngineId;
+use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
+
+use crate::values::{Conditions, Given, Point3, ToolLength, Unread, WorkOffset};
 
 /// Options of every job.
 #[derive(Debug, Clone, Args)]
 pub struct Shared {
+    /// What decides the output.
+    #[command(flatten)]
+    pub job: JobOptions,
+    /// What is said meanwhile.
+    #[command(flatten)]
+    pub messages: MessageOptions,
+}
+
+/// What decides the output of a job besides the program; a manifest keeps it.
+#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct JobOptions {
     /// Machine profile (TOML).
     #[arg(short = 'm', long = "machine", value_name = "PROFILE", global = true, help_heading = "Machine")]
     pub machine: Option<PathBuf>,
     /// Correction engine; default: the profile's.
     #[arg(short, long, value_name = "ENGINE", global = true, help_heading = "Machine")]
-    pub engine: Option<String>,
+    pub engine: Option<Given<EngineId>>,
     /// Dialect of the control; default: the profile's.
     ///
     /// A name of `vpost grammar list`, or a grammar file.
@@ -32,7 +48,7 @@ pub struct Shared {
         help_heading = "Program",
         allow_hyphen_values = true
     )]
-    pub work_offset: Vec<String>,
+    pub work_offset: Vec<Given<WorkOffset>>,
     /// Length of an H number, mm (repeatable).
     ///
     /// H1=120, or the vector H1=0,0,120.
@@ -43,7 +59,7 @@ pub struct Shared {
         help_heading = "Program",
         allow_hyphen_values = true
     )]
-    pub tool: Vec<String>,
+    pub tool: Vec<Given<ToolLength>>,
     /// Where the axes stand at the start, mm.
     ///
     /// Machine coordinates.
@@ -54,7 +70,7 @@ pub struct Shared {
         help_heading = "Program",
         allow_hyphen_values = true
     )]
-    pub start_at: Option<String>,
+    pub start_at: Option<Given<Point3>>,
     /// Variable that the program does not set.
     ///
     /// Repeatable: `#500=12.5`, `#<depth>=2`, `#1=#0` for empty. Quote it for the shell.
@@ -65,7 +81,7 @@ pub struct Shared {
         help_heading = "Program",
         allow_hyphen_values = true
     )]
-    pub set: Vec<String>,
+    pub set: Vec<Given<Preset>>,
     /// Folder of subprograms (repeatable).
     ///
     /// Those that the program calls by number or name.
@@ -83,12 +99,20 @@ pub struct Shared {
         hide_possible_values = true,
         help_heading = "Program"
     )]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub decimal: Option<Decimal>,
     /// Refuse doubtful programs.
     ///
     /// Those that are warned of: cut off, unknown M codes, no unit, lengths without a point.
     #[arg(long, global = true, help_heading = "Program")]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub strict: bool,
+    /// Put in blocks that stop where offsets differ.
+    ///
+    /// Where the control's work offsets (LinuxCNC: and tool lengths) are others than it was corrected for.
+    #[arg(long, global = true, help_heading = "Program")]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub guard: bool,
     /// Conditions: temp_c=24, time_s=600 … (repeatable).
     ///
     /// Those that effects of the profile depend on: temp_c (temp_x_c …), time_s, load_kg, feed_mm_min.
@@ -99,12 +123,26 @@ pub struct Shared {
         help_heading = "Machine",
         allow_hyphen_values = true
     )]
-    pub at: Vec<String>,
+    pub at: Vec<Given<Conditions>>,
     /// Beyond the volume: refuse, or clamp to its edge.
     ///
     /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
     #[arg(long, value_enum, global = true, hide_possible_values = true, help_heading = "Machine")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<Outside>,
+}
+
+impl JobOptions {
+    /// The engine asked for.
+    #[must_use]
+    pub fn engine(&self) -> Option<EngineId> {
+        self.engine.as_deref().copied()
+    }
+}
+
+/// What is said while a job is done.
+#[derive(Debug, Clone, Args)]
+pub struct MessageOptions {
     /// No warnings.
     #[arg(short, long, global = true, help_heading = "Messages")]
     pub quiet: bool,
@@ -119,7 +157,8 @@ pub struct Shared {
 }
 
 /// Feed motion outside the calibrated volume.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Outside {
     /// An error.
     Refuse,
@@ -165,11 +204,6 @@ pub struct Correct {
     /// Correct a program that says it was corrected before.
     #[arg(long)]
     pub force: bool,
-    /// Put in blocks that stop where offsets differ.
-    ///
-    /// Where the control's work offsets (LinuxCNC: and tool lengths) are others than it was corrected for.
-    #[arg(long)]
-    pub guard: bool,
     /// Report progress: linuxcnc.
     ///
     /// In this style, on standard error.
@@ -292,31 +326,28 @@ pub struct Completions {
 ///
 /// # Errors
 /// What was expected.
-pub fn finite(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("expected a finite number".to_owned()),
-    }
+pub fn finite(text: &str) -> Result<f64, Unread> {
+    number(text, |_| true).ok_or_else(|| Unread::number("a finite number is expected"))
+}
+
+fn number(text: &str, may_be: impl Fn(f64) -> bool) -> Option<f64> {
+    text.trim().parse::<f64>().ok().filter(|value| value.is_finite() && may_be(*value))
 }
 
 /// A size of an option: above zero, and no larger than a metre in micrometres, beyond which it is a slip.
 ///
 /// # Errors
 /// What was expected.
-pub fn size(text: &str) -> Result<f64, String> {
-    finite(text)
-        .ok()
-        .filter(|v| *v > 0.0 && *v <= 1e6)
-        .ok_or_else(|| "expected a number above 0, at most 1000000".to_owned())
+pub fn size(text: &str) -> Result<f64, Unread> {
+    number(text, |value| value > 0.0 && value <= 1e6)
+        .ok_or_else(|| Unread::number("a number above 0, at most 1000000, is expected"))
 }
 
 /// A size of an option that may be zero.
 ///
 /// # Errors
 /// What was expected.
-pub fn size_or_zero(text: &str) -> Result<f64, String> {
-    finite(text)
-        .ok()
-        .filter(|v| *v >= 0.0 && *v <= 1e6)
-        .ok_or_else(|| "expected a number from 0 to 1000000".to_owned())
+pub fn size_or_zero(text: &str) -> Result<f64, Unread> {
+    number(text, |value| (0.0..=1e6).contains(&value))
+        .ok_or_else(|| Unread::number("a number from 0 to 1000000 is expected"))
 }

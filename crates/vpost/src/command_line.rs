@@ -11,6 +11,7 @@ use crate::explain::Explain;
 use crate::file;
 use crate::map::Map;
 use crate::message::Failure;
+use crate::values::Unread;
 
 /// Rewrites NC programs so that a measured machine goes where the program says.
 #[derive(Debug, Parser)]
@@ -81,16 +82,18 @@ const OF_PROGRAM: [&str; 10] = [
     "strict",
     "outside",
 ];
-/// Those about messages, which all commands read, but for one.
-const VERBOSE: &str = "verbose";
+/// Of the corrections alone.
+const OF_OUTPUT: [&str; 2] = ["guard", "verbose"];
 
 /// Whether a command, by its names from the first on, reads an option of [`Shared`].
 fn reads(command: &[&str], option: &str) -> bool {
     let machine = OF_MACHINE.contains(&option);
     match command {
+        // The manifest says which profile and options hold.
+        ["batch", "run" | "merge"] => false,
         ["correct" | "batch", ..] => true,
         // A plan may be written as a program.
-        ["check" | "predict" | "diagnose", ..] => option != VERBOSE,
+        ["check" | "predict" | "diagnose", ..] => !OF_OUTPUT.contains(&option),
         ["solve", ..] => machine,
         ["map" | "budget", ..] => machine || ["outside", "tool"].contains(&option),
         ["calibrate"] => ["machine", "dialect", "at"].contains(&option),
@@ -103,7 +106,7 @@ fn reads(command: &[&str], option: &str) -> bool {
 
 /// The options of [`Shared`] that not every command reads.
 fn shared_options() -> impl Iterator<Item = &'static str> {
-    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain([VERBOSE])
+    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain(OF_OUTPUT)
 }
 
 /// The command line, each command listing what it reads.
@@ -181,6 +184,27 @@ impl Arguments {
         }
         clap::FromArgMatches::from_arg_matches(&matches)
     }
+}
+
+/// A value that an option cannot take, said as all failures are; `None` where the command line is wrong otherwise.
+pub(crate) fn unread(error: &clap::Error) -> Option<Failure> {
+    let text = |kind| match error.get(kind)? {
+        clap::error::ContextValue::String(text) => Some(text.as_str()),
+        _ => None,
+    };
+    if error.kind() != clap::error::ErrorKind::ValueValidation {
+        return None;
+    }
+    // `--work-offset <G54=X,Y,Z>`
+    let option = text(clap::error::ContextKind::InvalidArg)?.split(' ').next()?;
+    let given = text(clap::error::ContextKind::InvalidValue)?;
+    let why = std::error::Error::source(error)?;
+    Some(match why.downcast_ref::<Unread>() {
+        Some(unread) => Failure::option(unread.message(option, given), unread.help(option)),
+        None => {
+            Failure::option(format!("`{option} {given}`: {why}"), "see `--help` for what the option takes")
+        }
+    })
 }
 
 /// Prints completions.

@@ -7,6 +7,7 @@ use machine_profile::{EngineError, Profile};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages, OPTION, Report};
+use crate::values::Condition;
 
 /// An effect depends on a condition that nobody gave.
 pub(crate) const UNKNOWN_CONDITION: Code = Code(401);
@@ -16,55 +17,30 @@ pub(crate) const ENGINE_WITHOUT_EFFECTS: Code = Code(402);
 /// Warning: another temperature than that of the calibration.
 const OTHER_TEMPERATURE: Code = Code(1111);
 
-const NAMES: [&str; 7] = ["temp_c", "temp_x_c", "temp_y_c", "temp_z_c", "time_s", "load_kg", "feed_mm_min"];
-
 /// The conditions of the command line; later ones fill in, none may stand there twice.
 pub(crate) fn conditions(shared: &Shared) -> Result<Conditions, Failure> {
     let mut found = Conditions::default();
-    let mut seen: Vec<&str> = Vec::new();
-    for given in &shared.at {
-        for part in given.split(',') {
-            let wrong = |what: String| {
-                Failure::option(
-                    format!("`--at {given}`: {what}"),
-                    format!("write as in `--at temp_c=24,load_kg=100`; names: {}", NAMES.join(", ")),
-                )
+    for given in &shared.job.at {
+        for (condition, value) in &given.0 {
+            // One temperature for all axes beside one of an axis says two things of that axis.
+            let places: Vec<&mut Option<f64>> = match condition {
+                Condition::Temperatures => found.temp_c.iter_mut().collect(),
+                Condition::Temperature(axis) => vec![&mut found.temp_c[*axis]],
+                Condition::Time => vec![&mut found.time_s],
+                Condition::Load => vec![&mut found.load_kg],
+                Condition::Feed => vec![&mut found.feed_mm_min],
             };
-            let Some((name, value)) = part.split_once('=').map(|(name, value)| (name.trim(), value.trim()))
-            else {
-                return Err(wrong(format!("`{part}` is not NAME=VALUE")));
-            };
-            let Some(name) = NAMES.into_iter().find(|known| *known == name) else {
-                return Err(wrong(format!("there is no condition `{name}`")));
-            };
-            let number = value.parse::<f64>().ok().filter(|v| v.is_finite());
-            let Some(number) = number else {
-                return Err(wrong(format!("`{value}` is no number")));
-            };
-            if seen.contains(&name) || (name.starts_with("temp") && overlaps(name, &seen)) {
-                return Err(wrong(format!("`{name}` is given twice")));
-            }
-            if !name.starts_with("temp") && number < 0.0 {
-                return Err(wrong(format!("`{name}` cannot be below zero")));
-            }
-            seen.push(name);
-            match name {
-                "temp_c" => found.temp_c = [Some(number); 3],
-                "temp_x_c" => found.temp_c[0] = Some(number),
-                "temp_y_c" => found.temp_c[1] = Some(number),
-                "temp_z_c" => found.temp_c[2] = Some(number),
-                "time_s" => found.time_s = Some(number),
-                "load_kg" => found.load_kg = Some(number),
-                _ => found.feed_mm_min = Some(number),
+            for place in places {
+                if place.replace(*value).is_some() {
+                    return Err(Failure::option(
+                        format!("`--at {given}`: `{}` is given twice", condition.name()),
+                        "leave one",
+                    ));
+                }
             }
         }
     }
     Ok(found)
-}
-
-/// One temperature for all axes beside one of an axis says two things of that axis.
-fn overlaps(name: &str, seen: &[&str]) -> bool {
-    seen.iter().any(|other| other.starts_with("temp") && (*other == "temp_c" || name == "temp_c"))
 }
 
 /// Warns where the machine is warmer or colder than it was calibrated, and no effect of the profile says what that does: steel

@@ -23,14 +23,11 @@ pub(crate) fn run(
     messages: &Messages,
 ) -> Result<(), Failure> {
     let path = arguments.input.as_deref().unwrap_or(Path::new("-"));
-    let mut settings = Settings::load(shared, messages)?;
-    if arguments.guard {
-        settings.put_guards()?;
-    }
+    let settings = Settings::load(shared, messages)?;
     Roles::default()
         .reads("the program", path)
         .reads_all("read by the profile", &settings.files)
-        .reads_folders("in a folder of subprograms", &shared.include)
+        .reads_folders("in a folder of subprograms", &shared.job.include)
         .writes("--output", arguments.output.as_deref())
         .writes("--summary", arguments.summary.as_deref())
         .are_apart()?;
@@ -69,7 +66,7 @@ pub(crate) fn run(
     for report in &done.warnings {
         messages.report(report);
     }
-    if shared.verbose > 0 {
+    if shared.messages.verbose > 0 {
         messages.note(&Summary::line(&done.figures));
     }
     Ok(())

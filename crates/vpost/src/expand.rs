@@ -29,16 +29,7 @@ pub(crate) struct Flow {
 impl Flow {
     /// Reads the options.
     pub(crate) fn load(shared: &Shared) -> Result<Self, Failure> {
-        let mut presets = Vec::with_capacity(shared.set.len());
-        for text in &shared.set {
-            presets.push(Preset::parse(text).ok_or_else(|| {
-                Failure::option(
-                    format!("`--set {text}` cannot be read"),
-                    "write a variable and its value as in `--set \"#500=12.5\"`, `--set \"#<depth>=2\"`; `#1=#0` is an empty one",
-                )
-            })?);
-        }
-        for folder in &shared.include {
+        for folder in &shared.job.include {
             if !folder.is_dir() {
                 return Err(Failure::option(
                     format!("`--include {}` is no folder", folder.display()),
@@ -46,7 +37,8 @@ impl Flow {
                 ));
             }
         }
-        Ok(Self { presets, folders: shared.include.clone(), limits: Limits::default() })
+        let presets = shared.job.set.iter().map(|given| (**given).clone()).collect();
+        Ok(Self { presets, folders: shared.job.include.clone(), limits: Limits::default() })
     }
 
     /// Values of variables.

@@ -34,11 +34,13 @@ mod summary;
 mod terminal;
 mod to_disk;
 mod turned;
+pub mod values;
 
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
+use arguments::Color;
 use command_line::{Arguments, Command};
 use interrupt::Interrupt;
 use message::{Failure, Messages};
@@ -55,6 +57,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::read(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
+            if let Some(failure) = command_line::unread(&error) {
+                Messages::new(Color::Auto, false).failure(&failure);
+                return ExitCode::from(USAGE);
+            }
             let status = if error.use_stderr() { USAGE } else { DONE };
             let printed = if error.use_stderr() {
                 // It quotes what was typed, or what a script put there.
@@ -69,7 +75,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     // From here on: opening a named pipe waits, too.
     let interrupt = Interrupt::listen();
-    let messages = Messages::new(arguments.shared.color, arguments.shared.quiet);
+    let messages = Messages::new(arguments.shared.messages.color, arguments.shared.messages.quiet);
     let result = match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),

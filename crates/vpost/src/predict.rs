@@ -8,7 +8,7 @@ use crate::conditions::{conditions, failure};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages, Report};
 use crate::points::{self, DIRECTION_COLUMNS, direction_fields};
-use crate::settings::{engine_named, machine, setup_tool};
+use crate::settings::{machine, setup_tool};
 use crate::{file, profile};
 
 /// Points outside the calibrated volume.
@@ -30,13 +30,8 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
         profile.machine(&conditions)
     }
     .map_err(|error| failure(&error))?;
-    let engine = match &shared.engine {
-        None => None,
-        Some(name) => match engine_named(name)? {
-            EngineId::RigidBody => None,
-            id => Some(crate::conditions::engine(&profile, id, shared)?),
-        },
-    };
+    let other = shared.job.engine().filter(|id| *id != EngineId::RigidBody);
+    let engine = other.map(|id| crate::conditions::engine(&profile, id, shared)).transpose()?;
     let other = match &engine {
         None => None,
         Some(engine) => Some(engine.path_model().ok_or_else(|| {
@@ -91,7 +86,7 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     }
     if let Some((first, count)) = outside {
         let message = format!("{count} of {} points lie outside the calibrated volume", points.rows.len());
-        if shared.outside == Some(Outside::Refuse) {
+        if shared.job.outside == Some(Outside::Refuse) {
             let diagnostic =
                 Diagnostic::error(POINT_OUTSIDE, format!("{message}, the first is point {}", first + 1))
                     .help("leave them out, or drop `--outside refuse` to take the nearest point's error");

@@ -41,14 +41,11 @@ impl Settings {
         let path = machine(shared)?;
         let loaded = profile::load(path)?;
         let profile = loaded.profile;
-        let engine_id = match &shared.engine {
-            Some(name) => engine_named(name)?,
-            None => profile.correction.engine,
-        };
+        let engine_id = shared.job.engine().unwrap_or(profile.correction.engine);
         let engine = conditions::engine(&profile, engine_id, shared)?;
         let mut dialect = turning_dialect(dialect(shared, &profile)?, &profile)?;
         let mut files = loaded.files;
-        let tables = shared.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
+        let tables = shared.job.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
         files.extend(tables.map(PathBuf::from));
         let mut setup = setup(shared, &profile)?;
         setup.lengths_settled = settle_lengths(shared, &profile, &mut dialect)?;
@@ -64,7 +61,7 @@ impl Settings {
         if let Some(mm) = profile.program.arc_tolerance_mm {
             dialect.output.arc_radius_tolerance_mm = mm;
         }
-        let tolerance_um = shared.tolerance.unwrap_or(profile.correction.tolerance_um);
+        let tolerance_um = shared.job.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
             return Err(Failure::option(
                 format!("a tolerance of {tolerance_um} um cannot be kept"),
@@ -72,7 +69,7 @@ impl Settings {
             ));
         }
         conditions::warn_of_temperature(&profile, shared, tolerance_um, messages)?;
-        let outside = match (shared.outside, profile.correction.outside) {
+        let outside = match (shared.job.outside, profile.correction.outside) {
             (Some(arguments::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => {
                 Outside::Refuse
             }
@@ -84,6 +81,7 @@ impl Settings {
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
         };
+        let guards = guards(shared, &dialect)?;
         let profile_name = file::name(path);
         let flow = Flow::load(shared)?;
         Ok(Self {
@@ -97,25 +95,9 @@ impl Settings {
             tip,
             options,
             flow,
-            strict: shared.strict,
-            guards: Guards::None,
+            strict: shared.job.strict,
+            guards,
         })
-    }
-
-    /// `--guard`: the output asks the control for what it was corrected for.
-    ///
-    /// # Errors
-    /// A control that cannot be asked.
-    pub(crate) fn put_guards(&mut self) -> Result<(), Failure> {
-        // Whether a lathe keeps X as a diameter its parameters say.
-        if self.dialect.flow.macros == Macros::None || self.dialect.turning.is_some() {
-            return Err(Failure::option(
-                format!("no way is known to ask dialect {} for its work offsets", self.dialect.name),
-                "correct without `--guard`, and compare the offsets by hand",
-            ));
-        }
-        self.guards = Guards::Put;
-        Ok(())
     }
 
     /// What is asked of a whole program.
@@ -165,6 +147,21 @@ impl Settings {
             guards: self.guards,
         })
     }
+}
+
+/// `--guard`: the output asks the control for what it was corrected for, where it can be asked.
+fn guards(shared: &Shared, dialect: &Dialect) -> Result<Guards, Failure> {
+    if !shared.job.guard {
+        return Ok(Guards::None);
+    }
+    // Whether a lathe keeps X as a diameter its parameters say.
+    if dialect.flow.macros == Macros::None || dialect.turning.is_some() {
+        return Err(Failure::option(
+            format!("no way is known to ask dialect {} for its work offsets", dialect.name),
+            "correct without `--guard`, and compare the offsets by hand",
+        ));
+    }
+    Ok(Guards::Put)
 }
 
 /// A lathe's dialect for a lathe and a mill's for a mill; of its G-code systems that of the profile.
@@ -235,7 +232,7 @@ fn decimal_steps(step: f64) -> (u8, u32) {
 
 /// Puts into the dialect what command line or profile say of lengths without a point; true where one of them does.
 fn settle_lengths(shared: &Shared, profile: &Profile, dialect: &mut Dialect) -> Result<bool, Failure> {
-    let said = shared.decimal.map(|decimal| match decimal {
+    let said = shared.job.decimal.map(|decimal| match decimal {
         arguments::Decimal::Increments => BareLengths::Increments,
         arguments::Decimal::Millimetres => BareLengths::Millimetres,
     });
@@ -260,16 +257,7 @@ fn settle_lengths(shared: &Shared, profile: &Profile, dialect: &mut Dialect) -> 
 /// Puts the M codes that the profile calls harmless into the dialect, beside those that its table has.
 fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
     for &number in &profile.program.harmless_m_codes {
-        let harmless = MCode {
-            number,
-            after_motion: false,
-            loses_position: [false; 3],
-            ends_program: false,
-            changes_tool: false,
-            switches: None,
-            tip: None,
-            refuse: None,
-        };
+        let harmless = MCode::harmless(number);
         match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
             Err(at) => dialect.m_codes.insert(at, harmless),
             Ok(at) if dialect.m_codes[at].switches.is_some() => dialect.m_codes[at] = harmless,
@@ -302,16 +290,7 @@ fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
     for (number, switch) in
         [codes(&kinematics.on, TipSwitch::On), codes(&kinematics.off, TipSwitch::Off)].concat()
     {
-        let row = MCode {
-            number,
-            after_motion: false,
-            loses_position: [false; 3],
-            ends_program: false,
-            changes_tool: false,
-            switches: None,
-            tip: Some(switch),
-            refuse: None,
-        };
+        let row = MCode { tip: Some(switch), ..MCode::harmless(number) };
         match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
             Err(at) => dialect.m_codes.insert(at, row),
             Ok(at) => dialect.m_codes[at] = row,
@@ -321,7 +300,7 @@ fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
 
 /// The profile's path, which every job needs.
 pub(crate) fn machine(shared: &Shared) -> Result<&Path, Failure> {
-    shared.machine.as_deref().ok_or_else(|| {
+    shared.job.machine.as_deref().ok_or_else(|| {
         Failure::option(
             "which machine? no profile was given",
             "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
@@ -334,16 +313,8 @@ pub(crate) fn setup_tool(profile: &Profile) -> [f64; 3] {
     profile.default_tool_mm
 }
 
-/// The engine of a name.
-pub(crate) fn engine_named(name: &str) -> Result<EngineId, Failure> {
-    EngineId::from_name(name).ok_or_else(|| {
-        let names: Vec<&str> = EngineId::ALL.iter().map(|id| id.name()).collect();
-        Failure::option(format!("there is no engine `{name}`"), format!("one of: {}", names.join(", ")))
-    })
-}
-
 fn dialect(shared: &Shared, profile: &Profile) -> Result<Dialect, Failure> {
-    let Some(name) = shared.dialect.as_deref().or(profile.control.as_deref()) else {
+    let Some(name) = shared.job.dialect.as_deref().or(profile.control.as_deref()) else {
         return Err(Failure::option(
             "which dialect? neither the profile's `control` nor `--dialect` says",
             format!("add `--dialect D`, one of: {}", nc_dialect::builtin_names().join(", ")),
@@ -385,7 +356,7 @@ fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, F
 fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
     let mut setup = Setup {
         work_offsets: profile.work_offsets.clone(),
-        tools: tools(shared, profile)?,
+        tools: tools(shared, profile),
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
@@ -400,75 +371,32 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         diameters: profile.program.diameters,
         lengths_settled: false,
     };
-    for option in &shared.work_offset {
-        let (name, value) = assignment("--work-offset", option, "G54=100,50,0")?;
-        let name = name.to_ascii_uppercase();
-        let value = triple("--work-offset", option, value, "G54=100,50,0")?;
-        match setup.work_offsets.iter_mut().find(|(known, _)| *known == name) {
-            Some(entry) => entry.1 = value,
-            None => setup.work_offsets.push((name, value)),
+    for given in &shared.job.work_offset {
+        match setup.work_offsets.iter_mut().find(|(known, _)| *known == given.name) {
+            Some(entry) => entry.1 = given.zero_mm,
+            None => setup.work_offsets.push((given.name.clone(), given.zero_mm)),
         }
     }
-    if let Some(start) = &shared.start_at {
+    if let Some(start) = &shared.job.start_at {
         if setup.tip_at_start {
             return Err(Failure::option(
                 "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
                 "leave it out: the first rapid that names X, Y and Z says where the tip is",
             ));
         }
-        setup.start_mm = Some(triple("--start-at", start, start, "400,280,200")?);
+        setup.start_mm = Some(start.0);
     }
     Ok(setup)
 }
 
 /// Length vectors of the H numbers: the profile's and the command line's.
-pub(crate) fn tools(shared: &Shared, profile: &Profile) -> Result<Vec<(u32, [f64; 3])>, Failure> {
+pub(crate) fn tools(shared: &Shared, profile: &Profile) -> Vec<(u32, [f64; 3])> {
     let mut tools = profile.tools.clone();
-    for option in &shared.tool {
-        let example = "H1=120 or H1=0,0,120";
-        let (name, value) = assignment("--tool", option, example)?;
-        let number: u32 = name
-            .strip_prefix(['H', 'h'])
-            .and_then(|digits| digits.parse().ok())
-            .ok_or_else(|| wrong("--tool", option, example))?;
-        let vector = if value.contains(',') {
-            triple("--tool", option, value, example)?
-        } else {
-            [0.0, 0.0, millimetres(value).ok_or_else(|| wrong("--tool", option, example))?]
-        };
-        match tools.iter_mut().find(|(known, _)| *known == number) {
-            Some(entry) => entry.1 = vector,
-            None => tools.push((number, vector)),
+    for given in &shared.job.tool {
+        match tools.iter_mut().find(|(known, _)| *known == given.number) {
+            Some(entry) => entry.1 = given.vector_mm,
+            None => tools.push((given.number, given.vector_mm)),
         }
     }
-    Ok(tools)
-}
-
-fn wrong(option: &str, given: &str, example: &str) -> Failure {
-    Failure::option(
-        format!("`{option} {given}` cannot be read"),
-        format!("write millimetres as in `{option} {example}`"),
-    )
-}
-
-fn assignment<'v>(option: &str, given: &'v str, example: &str) -> Result<(&'v str, &'v str), Failure> {
-    given
-        .split_once('=')
-        .map(|(name, value)| (name.trim(), value.trim()))
-        .ok_or_else(|| wrong(option, given, example))
-}
-
-fn millimetres(text: &str) -> Option<f64> {
-    /// A kilometre: no machine is larger, and sums of what is larger lose their micrometres.
-    const FARTHEST_MM: f64 = 1e6;
-    text.trim().parse::<f64>().ok().filter(|v| v.abs() <= FARTHEST_MM)
-}
-
-/// Three lengths of an option, mm.
-pub(crate) fn triple(option: &str, given: &str, value: &str, example: &str) -> Result<[f64; 3], Failure> {
-    let numbers: Option<Vec<f64>> = value.split(',').map(millimetres).collect();
-    match numbers.as_deref() {
-        Some([x, y, z]) => Ok([*x, *y, *z]),
-        _ => Err(wrong(option, given, example)),
-    }
+    tools
 }

@@ -7,17 +7,14 @@ use crate::arguments::{Shared, Solve};
 use crate::figures::fixed;
 use crate::message::{Failure, Messages};
 use crate::points::{self, DIRECTION_COLUMNS, direction_fields};
-use crate::settings::{engine_named, machine, setup_tool};
+use crate::settings::{machine, setup_tool};
 use crate::{conditions, file, profile};
 use rewrite::OUTSIDE;
 
 /// `vpost solve POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
     let profile = profile::load_mill(machine(shared)?)?.profile;
-    let id = match &shared.engine {
-        Some(name) => engine_named(name)?,
-        None => profile.correction.engine,
-    };
+    let id = shared.job.engine().unwrap_or(profile.correction.engine);
     let engine = conditions::engine(&profile, id, shared)?;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);

@@ -65,7 +65,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     let name = format!("{}.{}-of-{}", manifest.name, shard.number, shard.of);
     let earlier = journal::read(&folder.journal(), Some(&[journal::WHOLE, &name]))?;
     let mut journal = Journal::begin(&folder, &name)?;
-    let progress = Progress::new(&items, shared.quiet);
+    let progress = Progress::new(&items, shared.messages.quiet);
     let batch = work::Batch {
         job: &job,
         folder: &folder,

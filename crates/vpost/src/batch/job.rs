@@ -7,6 +7,7 @@ use super::record::{Fault, Record, Status};
 use crate::arguments::Shared;
 use rewrite::Manner;
 
+use crate::conditions::conditions;
 use crate::correct::{self, Input, Program};
 use crate::file::Place;
 use crate::interrupt::Interrupt;
@@ -25,7 +26,7 @@ impl Job {
     pub(crate) fn load(shared: &Shared, messages: &Messages) -> Result<Self, Failure> {
         let settings = Settings::load(shared, messages)?;
         settings.path_model()?;
-        let hash = hash(&settings, shared);
+        let hash = hash(&settings, shared)?;
         Ok(Self { settings, hash })
     }
 
@@ -65,9 +66,8 @@ pub(crate) fn faults(report: &Report) -> Vec<Fault> {
 
 /// Every value that decides the output, each with its name and length, so that none can run into the next.
 ///
-/// The values as they were understood, not as they were written: `--tolerance 1` and `1.0` are the same job. `--at` is
-/// hashed as written.
-fn hash(settings: &Settings, shared: &Shared) -> Hash {
+/// The values as they were understood, not as they were written: `--tolerance 1` and `1.0` are the same job.
+fn hash(settings: &Settings, shared: &Shared) -> Result<Hash, Failure> {
     let mut hasher = Hasher::new();
     let mut put = |name: &str, value: &[u8]| {
         for part in [name.as_bytes(), value] {
@@ -83,6 +83,7 @@ fn hash(settings: &Settings, shared: &Shared) -> Hash {
     put("options", format!("{:?}", settings.options).as_bytes());
     put("values", format!("{:?}", settings.flow.presets()).as_bytes());
     put("strict", &[u8::from(settings.strict)]);
-    put("conditions", format!("{:?}", shared.at).as_bytes());
-    hasher.finalize()
+    put("conditions", format!("{:?}", conditions(shared)?).as_bytes());
+    put("guards", &[u8::from(shared.job.guard)]);
+    Ok(hasher.finalize())
 }

@@ -13,7 +13,7 @@ use super::folder;
 use super::folder::OWN;
 use super::inputs::Item;
 use super::job::Job;
-use crate::arguments::{Decimal, Outside, Shared};
+use crate::arguments::{JobOptions, Shared};
 use crate::file;
 use crate::message::{Failure, Messages};
 
@@ -32,7 +32,7 @@ struct Header {
     version: String,
     /// The output folder.
     output: PathBuf,
-    options: Options,
+    options: JobOptions,
     /// Hash of everything that decides the outputs besides the programs.
     job_blake3: String,
     /// Hash of the folders given with `--include`.
@@ -41,106 +41,6 @@ struct Header {
     programs: usize,
     /// Hash of the lines below.
     programs_blake3: String,
-}
-
-/// The options of the plan's command line that decide the outputs.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct Options {
-    machine: Option<PathBuf>,
-    engine: Option<String>,
-    dialect: Option<String>,
-    tolerance: Option<f64>,
-    work_offset: Vec<String>,
-    tool: Vec<String>,
-    start_at: Option<String>,
-    set: Vec<String>,
-    include: Vec<PathBuf>,
-    at: Vec<String>,
-    clamp: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    decimal: Option<Decimal>,
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    strict: bool,
-}
-
-impl Options {
-    fn of(shared: &Shared) -> Self {
-        // Taken apart so that an option that is added cannot be forgotten here.
-        let Shared {
-            machine,
-            engine,
-            dialect,
-            tolerance,
-            work_offset,
-            tool,
-            start_at,
-            set,
-            include,
-            at,
-            outside,
-            decimal,
-            strict,
-            quiet: _,
-            verbose: _,
-            color: _,
-        } = shared.clone();
-        let clamp = outside.map(|outside| outside == Outside::Clamp);
-        Self {
-            machine,
-            engine,
-            dialect,
-            tolerance,
-            work_offset,
-            tool,
-            start_at,
-            set,
-            include,
-            at,
-            clamp,
-            decimal,
-            strict,
-        }
-    }
-
-    /// These options with the messages of another command line.
-    fn shared(&self, own: &Shared) -> Shared {
-        let Self {
-            machine,
-            engine,
-            dialect,
-            tolerance,
-            work_offset,
-            tool,
-            start_at,
-            set,
-            include,
-            at,
-            clamp,
-            decimal,
-            strict,
-        } = self.clone();
-        let outside = clamp.map(|clamp| if clamp { Outside::Clamp } else { Outside::Refuse });
-        let Shared { quiet, verbose, color, .. } = *own;
-        Shared {
-            machine,
-            engine,
-            dialect,
-            tolerance,
-            work_offset,
-            tool,
-            start_at,
-            set,
-            include,
-            at,
-            outside,
-            decimal,
-            strict,
-            quiet,
-            verbose,
-            color,
-        }
-    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -189,9 +89,9 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
         schema: SCHEMA.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         output: output.to_owned(),
-        options: Options::of(shared),
+        options: shared.job.clone(),
         job_blake3: job.hash.to_hex().to_string(),
-        include_blake3: include_hash(&shared.include)?,
+        include_blake3: include_hash(&shared.job.include)?,
         programs: items.len(),
         programs_blake3: blake3::hash(&lines).to_hex().to_string(),
     };
@@ -324,13 +224,7 @@ impl Manifest {
 
     /// Profile, dialect and options as they were planned; refused where they are others today.
     pub(crate) fn job(&self, own: &Shared, messages: &Messages) -> Result<Job, Failure> {
-        if Options::of(own) != Options::default() {
-            return Err(Failure::option(
-                "the manifest says which profile and options hold",
-                "leave them out here; for others make another plan",
-            ));
-        }
-        let shared = self.header.options.shared(own);
+        let shared = Shared { job: self.header.options.clone(), messages: own.messages.clone() };
         let job = Job::load(&shared, messages)?;
         let changed = |what: &str| {
             Failure::usage(
@@ -341,7 +235,7 @@ impl Manifest {
         if job.hash.to_hex().as_str() != self.header.job_blake3 {
             return Err(changed("the profile, one of its tables, or the dialect"));
         }
-        if include_hash(&shared.include)? != self.header.include_blake3 {
+        if include_hash(&shared.job.include)? != self.header.include_blake3 {
             return Err(changed("a file in a folder of subprograms (`--include`)"));
         }
         Ok(job)

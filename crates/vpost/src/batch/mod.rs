@@ -58,13 +58,13 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     passed_over(&found, messages);
     let interrupt = Interrupt::listen();
     let folder = OutputFolder::open(root, Company::Alone)?;
-    if !folder.is_locked() && shared.verbose > 0 {
+    if !folder.is_locked() && shared.messages.verbose > 0 {
         messages
             .note("the output folder's file system knows no locks: nothing that a killed run left is swept");
     }
     let earlier = journal::read(&folder.journal(), None)?;
     let mut journal = Journal::begin(&folder, journal::WHOLE)?;
-    let progress = Progress::new(&found.items, shared.quiet);
+    let progress = Progress::new(&found.items, shared.messages.quiet);
     let batch = work::Batch {
         job: &job,
         folder: &folder,

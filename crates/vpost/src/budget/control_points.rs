@@ -33,7 +33,7 @@ pub(super) fn read(
     machine: &Machine,
     messages: &Messages,
 ) -> Result<ControlPoints, Failure> {
-    let tool_mm = tool(arguments.tool_vector.as_deref(), shared, profile)?;
+    let tool_mm = tool(arguments.tool_vector.as_ref(), shared, profile)?;
     match &arguments.points {
         Some(path) => {
             let (name, bytes) = (file::name(path), file::read(path)?);
@@ -54,7 +54,7 @@ fn over_the_volume(
     let volume = machine.model().volume();
     let grid = grid(&arguments.grid, volume)?;
     crate::map::outside([grid.axes().each_ref().map(Nodes::range_mm)], volume, shared, messages)?;
-    let rotary_rad = rotary(arguments.rotary.as_deref(), profile)?;
+    let rotary_rad = rotary(arguments.rotary.as_ref(), profile)?;
     // Where lost motion counts, the worst approach of each axis is looked for, too.
     let directions: Vec<[i8; 3]> = if machine.model().depends_on_direction() {
         (0..8_u8).map(|bits| [0, 1, 2].map(|axis| if bits >> axis & 1 == 0 { 1 } else { -1 })).collect()
@@ -115,7 +115,7 @@ fn from_file(
         if volume.contains(&command.linear_mm) {
             continue;
         }
-        if shared.outside != Some(Outside::Clamp) {
+        if shared.job.outside != Some(Outside::Clamp) {
             let known = volume.0.map(|range| format!("{} to {}", range.low, range.high));
             let message = format!(
                 "point {} at {} lies outside the calibrated volume, X {}, Y {}, Z {} mm",

@@ -16,7 +16,8 @@ use crate::arguments::Shared;
 use crate::conditions::{conditions, failure};
 use crate::message::{Failure, Messages, Report};
 use crate::roles::Roles;
-use crate::settings::{engine_named, machine};
+use crate::settings::machine;
+use crate::values::{Given, Lattice, Rotary, ToolVector};
 use crate::{file, profile};
 
 /// A machine without deviations has no budget.
@@ -30,16 +31,16 @@ pub struct Budget {
     /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each
     /// (40:880:40,30:450:20,5:505:25).
     #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
-    pub grid: String,
+    pub grid: Given<Lattice>,
     /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.
     #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["grid", "rotary"])]
     pub points: Option<PathBuf>,
     /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
     #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
-    pub tool_vector: Option<String>,
+    pub tool_vector: Option<Given<ToolVector>>,
     /// Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given.
     #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
-    pub rotary: Option<String>,
+    pub rotary: Option<Given<Rotary>>,
     /// Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be.
     #[arg(long, value_name = "UM", allow_hyphen_values = true)]
     pub target: Option<f64>,
@@ -60,11 +61,9 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
         .reads_all("read by the profile", &files)
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
-    if let Some(name) = &shared.engine
-        && engine_named(name)? != EngineId::RigidBody
-    {
+    if let Some(id) = shared.job.engine().filter(|id| *id != EngineId::RigidBody) {
         return Err(Failure::option(
-            format!("engine `{name}` has no deviations to be scaled one by one"),
+            format!("engine `{id}` has no deviations to be scaled one by one"),
             "leave `--engine` out: a budget is of the rigid-body model",
         ));
     }

@@ -19,7 +19,7 @@ use crate::conditions;
 use crate::message::Failure;
 
 use super::codes::{AXES, failure, question};
-use super::interferometer::{Interferometer, triple};
+use super::interferometer::Interferometer;
 use super::output::{Output, short};
 use super::sources;
 use super::squareness::Asked;
@@ -331,8 +331,8 @@ fn lines(
     description: &Description,
     targets_mm: &[Vec<f64>; 3],
 ) -> Result<[MeasuredLine; 3], Failure> {
-    let through = arguments.through.as_deref().map(|text| triple("--through", Some(text))).transpose()?;
-    let optics = triple("--optics", arguments.optics.as_deref())?;
+    let through = arguments.through.as_ref().map(|given| given.0);
+    let optics = arguments.optics.as_ref().map_or([0.0; 3], |given| given.0);
     let said = arguments.through.is_some() || arguments.optics.is_some();
     let middle = |k: usize| match (targets_mm[k].first(), targets_mm[k].last()) {
         (Some(low), Some(high)) => 0.5 * (low + high),
@@ -377,8 +377,8 @@ fn inside_travel(
     let Range { low, high } = data.travel_mm;
     let beyond = |q: f64| q < low - SLACK_MM || q > high + SLACK_MM;
     let travel = format!("the travel of {axis} in the base is {} to {} mm", short(low, 3), short(high, 3));
-    if let Some(at) = arguments.through.as_deref() {
-        let place = triple("--through", Some(at))?[k];
+    if let Some(at) = &arguments.through {
+        let place = at.0[k];
         if beyond(place) {
             return Err(Failure::option(
                 format!("`--through {at}`: {axis} does not go to {} mm: {travel}", short(place, 3)),

@@ -16,7 +16,7 @@ use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
-use crate::settings::triple;
+use crate::values::{Given, Point3};
 use crate::{conditions, file};
 
 use super::bar_readings::{FAR, Measured, Readings};
@@ -35,7 +35,7 @@ pub struct Ballbar {
     pub target: Target,
     /// A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no centre_mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub crossing: Option<String>,
+    pub crossing: Option<Given<Point3>>,
     /// The same tests after a compensation: a table before and after.
     #[arg(long, value_name = "READINGS.csv")]
     pub after: Option<PathBuf>,
@@ -57,7 +57,7 @@ const SAME_MM: f64 = 1e-3;
 impl Base {
     /// From `-m`, or the chain alone: the axes then go as far as the balls stood.
     fn new(arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<Self, Failure> {
-        let Some(path) = &shared.machine else {
+        let Some(path) = &shared.job.machine else {
             // Where no rotary axis turns, the order of perfect axes makes no difference.
             let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
             let Some(chain) = arguments.target.chain.as_deref().or(any) else {
@@ -94,11 +94,8 @@ impl Base {
 
     /// Settles where the axes that turned are: by the profile, or by `--crossing` where it does not say.
     fn pivots(&mut self, arguments: &Ballbar, shared: &Shared, readings: &Readings) -> Result<(), Failure> {
-        let crossing = match &arguments.crossing {
-            Some(text) => Some((text, Vector::from(triple("--crossing", text, text, "0,0,0")?))),
-            None => None,
-        };
-        let text = match &shared.machine {
+        let crossing = arguments.crossing.as_ref().map(|given| (given, Vector::from(given.0)));
+        let text = match &shared.job.machine {
             Some(path) => ProfileText::parse(&String::from_utf8_lossy(&file::read(path)?)),
             None => None,
         };

@@ -15,7 +15,7 @@ use measurement_files::series::{Origin, Series, Values};
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
-use crate::settings;
+use crate::values::{Given, Point3, SquarenessReadings};
 
 use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
@@ -36,7 +36,7 @@ pub struct Interferometer {
     pub values: Option<Values>,
     /// Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5; what is left out stays as it is.
     #[arg(long, value_name = "XY=…,ZX=…,YZ=…", allow_hyphen_values = true)]
-    pub squareness: Option<String>,
+    pub squareness: Option<Given<SquarenessReadings>>,
     /// What a positive squareness means to the instrument.
     #[arg(long, value_enum)]
     pub squareness_convention: Option<Convention>,
@@ -51,12 +51,12 @@ pub struct Interferometer {
     pub reference: Option<Reference>,
     /// Machine position through which the measured lines ran, mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub through: Option<String>,
+    pub through: Option<Given<Point3>>,
     /// From the gauge point to the optics that moved, mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub optics: Option<String>,
+    pub optics: Option<Given<Point3>>,
     /// Write finer tables, with this step.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = crate::arguments::size)]
     pub refine: Option<f64>,
     /// How finer tables, and the profile, go between the targets.
     #[arg(long, value_enum, default_value_t = Between::Linear)]
@@ -142,12 +142,6 @@ pub(super) type Functions = [Option<Function>; 6];
 
 /// `vpost calibrate interferometer`
 pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    if arguments.refine.is_some_and(|step| !(step > 0.0 && step.is_finite())) {
-        return Err(Failure::option("a step of finer tables is above zero", "write `--refine 2`"));
-    }
-    // Whether they are needed depends on what the files hold; whether they can be read does not.
-    triple("--through", arguments.through.as_deref())?;
-    triple("--optics", arguments.optics.as_deref())?;
     let (mut all, angles_read) = read(arguments)?;
     let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
     if arguments.refine.is_some() && !writes {
@@ -457,10 +451,6 @@ fn write_line(
                 .help("its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`"),
         );
     }
-}
-
-pub(super) fn triple(option: &str, text: Option<&str>) -> Result<[f64; 3], Failure> {
-    text.map_or(Ok([0.0; 3]), |text| settings::triple(option, text, text, "400,200,-50"))
 }
 
 fn summary(out: &mut String, axes: &[Functions; 3]) {

@@ -63,7 +63,7 @@ impl Output {
     pub(super) fn start(target: &Target, shared: &Shared) -> Result<Self, Failure> {
         let stem = target.output.as_deref().and_then(Path::file_stem);
         let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
-        if let Some(path) = &shared.machine {
+        if let Some(path) = &shared.job.machine {
             let base = profile::load_mill(path)?.profile;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
@@ -97,7 +97,7 @@ impl Output {
             ));
         };
         let name = target.name.as_deref().unwrap_or("calibrated machine");
-        let text = ProfileText::new(name, chain, shared.dialect.as_deref());
+        let text = ProfileText::new(name, chain, shared.job.dialect.as_deref());
         Ok(Self { text, base: None, tables: Vec::new(), folder })
     }
 

@@ -30,7 +30,7 @@ pub(super) fn from_the_user(
     axes: &[Functions; 3],
 ) -> Result<Asked, Failure> {
     let read_rad = match &arguments.squareness {
-        Some(text) => given(text)?.map(|urad| Some(urad? * 1e-6)),
+        Some(given) => given.0.map(|urad| Some(urad? * 1e-6)),
         None => match from_file_rad {
             Some(angles) => angles.map(Some),
             None => return Ok(Asked::default()),
@@ -57,26 +57,6 @@ pub(super) fn from_the_user(
         ));
     }
     Ok(Asked { rad: in_the_models_signs(read_rad, convention) })
-}
-
-/// Numbers of `XY=12,ZX=-3,YZ=5`, µrad.
-fn given(text: &str) -> Result<[Option<f64>; 3], Failure> {
-    let mut read = [None; 3];
-    for part in text.split(',') {
-        let wrong = || {
-            Failure::option(
-                format!("`--squareness {text}` cannot be read"),
-                "write µrad, as in `--squareness XY=12,ZX=-3,YZ=5`",
-            )
-        };
-        let (name, value) = part.split_once('=').ok_or_else(wrong)?;
-        let place = ["XY", "ZX", "YZ"]
-            .iter()
-            .position(|known| name.trim().eq_ignore_ascii_case(known))
-            .ok_or_else(wrong)?;
-        read[place] = Some(value.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(wrong)?);
-    }
-    Ok(read)
 }
 
 /// The straightness with the largest slope, where that matters: more than 1 µm over its length.

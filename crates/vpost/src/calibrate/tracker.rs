@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     }
     let mut output = if arguments.target.output.is_some()
         || arguments.target.against.is_some()
-        || shared.machine.is_some()
+        || shared.job.machine.is_some()
         || arguments.target.chain.is_some()
     {
         Some(Output::start(&arguments.target, shared)?)
@@ -247,7 +247,7 @@ fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Resul
 fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let um = |mm: f64| format!("{:.0}", mm * 1e3);
     let far = &found.far_corner;
-    let tangential = shared.engine.as_deref().is_some_and(|name| name.starts_with("tangential"));
+    let tangential = shared.job.engine().is_some_and(|id| id.name().starts_with("tangential"));
     if !tangential || far.verdict() == Verdict::Sound {
         return Ok(());
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use gap_diagnosis::Options;
+use machine_model::EngineId;
 use machine_model::effects::EffectKind;
 
 use super::change::{self, Change};
@@ -142,10 +143,10 @@ fn facts(
         },
         measurements: measured.file.clone(),
         holdout: holdout.map(|h| h.file.clone()),
-        engine: shared.engine.clone().unwrap_or_else(|| "rigid-body".to_owned()),
+        engine: shared.job.engine().unwrap_or(EngineId::RigidBody).to_string(),
         seed: arguments.seed,
         ignored_columns: arguments.ignore_column.clone(),
         without: arguments.without.clone(),
-        tolerance_um: shared.tolerance.unwrap_or(model.profile.correction.tolerance_um),
+        tolerance_um: shared.job.tolerance.unwrap_or(model.profile.correction.tolerance_um),
     })
 }

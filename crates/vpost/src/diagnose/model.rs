@@ -9,7 +9,7 @@ use machine_profile::Profile;
 use crate::arguments::Shared;
 use crate::message::Failure;
 use crate::profile;
-use crate::settings::{engine_named, machine};
+use crate::settings::machine;
 
 /// What predicts the rows: engine or tables, with the profile's effects.
 pub(super) struct Model {
@@ -26,15 +26,10 @@ pub(super) struct Model {
 impl Model {
     pub(super) fn load(shared: &Shared) -> Result<Self, Failure> {
         let profile::Loaded { profile, hash, files } = profile::load_mill(machine(shared)?)?;
-        let engine = match &shared.engine {
-            None => None,
-            Some(name) => {
-                let built = build(engine_named(name)?, profile.engine_inputs_without_effects());
-                Some(built.map_err(|error| {
-                    Failure::option(error.to_string(), "use an engine the profile has the tables for")
-                })?)
-            }
-        };
+        let built = shared.job.engine().map(|id| build(id, profile.engine_inputs_without_effects()));
+        let engine = built.transpose().map_err(|error| {
+            Failure::option(error.to_string(), "use an engine the profile has the tables for")
+        })?;
         let geometry = geometry(&profile);
         let effects = profile
             .effects

@@ -19,7 +19,8 @@ use crate::arguments::{Outside, Shared};
 use crate::message::{Failure, Messages, Report};
 use crate::predict::POINT_OUTSIDE;
 use crate::roles::Roles;
-use crate::settings::{engine_named, machine};
+use crate::settings::machine;
+use crate::values::{Given, Lattice, Layer, NamedRegion, Region3, Rotary, Size3, ToolVector};
 use crate::{conditions, file, profile};
 
 /// `vpost map`
@@ -29,30 +30,30 @@ pub struct Map {
     ///
     /// Of X, Y and Z, over the calibrated volume, or like 40:880:40,30:450:20,5:505:25.
     #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
-    pub grid: String,
+    pub grid: Given<Lattice>,
     /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
     #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
-    pub tool_vector: Option<String>,
+    pub tool_vector: Option<Given<ToolVector>>,
     /// Where the rotary axes stand, degrees; 0 if not given.
     #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
-    pub rotary: Option<String>,
+    pub rotary: Option<Given<Rotary>>,
     /// Tolerance for the share of nodes within it, µm.
-    #[arg(long, value_name = "UM", default_value_t = 20.0)]
+    #[arg(long, value_name = "UM", default_value_t = 20.0, value_parser = crate::arguments::size)]
     pub within: f64,
     /// A part of the volume to give figures and zero points for, mm (repeatable).
     #[arg(long, value_name = "NAME=X0..X1,Y0..Y1,Z0..Z1", allow_hyphen_values = true)]
-    pub region: Vec<String>,
+    pub region: Vec<Given<NamedRegion>>,
     /// The same for a layer of nodes, at a place of the third axis in mm, or for every layer (repeatable).
     #[arg(long, value_name = "XY=Z|XZ=Y|YZ=X|XY|XZ|YZ", allow_hyphen_values = true)]
-    pub plane: Vec<String>,
+    pub plane: Vec<Given<Layer>>,
     /// The same for a workpiece, where its axis commands lie, mm.
     #[arg(long, value_name = "X0..X1,Y0..Y1,Z0..Z1", allow_hyphen_values = true)]
-    pub part_box: Option<String>,
+    pub part_box: Option<Given<Region3>>,
     /// Find the place for a workpiece of this size, mm.
     ///
     /// Where shifting and turning it leave least.
     #[arg(long, value_name = "LX,LY,LZ")]
-    pub clamp: Option<String>,
+    pub clamp: Option<Given<Size3>>,
     /// At which angles products of errors begin to matter.
     ///
     /// And what the order of rotations changes.
@@ -84,7 +85,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let conditions = conditions::conditions(shared)?;
-    let id = shared.engine.as_deref().map_or(Ok(EngineId::RigidBody), engine_named)?;
+    let id = shared.job.engine().unwrap_or(EngineId::RigidBody);
     let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
     let asked = options::read(arguments, shared, &profile, model.volume())?;
@@ -116,12 +117,12 @@ fn facts(
     path: &std::path::Path,
     hash: &blake3::Hash,
 ) -> page::Facts {
-    let mut options = vec![("--grid", arguments.grid.clone())];
-    options.extend(arguments.region.iter().map(|v| ("--region", v.clone())));
-    options.extend(arguments.plane.iter().map(|v| ("--plane", v.clone())));
-    options.extend(arguments.part_box.iter().map(|v| ("--part-box", v.clone())));
-    options.extend(arguments.clamp.iter().map(|v| ("--clamp", v.clone())));
-    options.extend(shared.at.iter().map(|v| ("--at", v.clone())));
+    let mut options = vec![("--grid", arguments.grid.to_string())];
+    options.extend(arguments.region.iter().map(|v| ("--region", v.to_string())));
+    options.extend(arguments.plane.iter().map(|v| ("--plane", v.to_string())));
+    options.extend(arguments.part_box.iter().map(|v| ("--part-box", v.to_string())));
+    options.extend(arguments.clamp.iter().map(|v| ("--clamp", v.to_string())));
+    options.extend(shared.job.at.iter().map(|v| ("--at", v.to_string())));
     page::Facts {
         chain: profile.chain().to_string(),
         profile: file::name(path),
@@ -160,7 +161,7 @@ pub(crate) fn outside(
                 known.low,
                 known.high
             );
-            if shared.outside != Some(Outside::Clamp) {
+            if shared.job.outside != Some(Outside::Clamp) {
                 let help = "stay inside, or take the nearest point's error with `--outside clamp`";
                 return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
             }

@@ -1,0 +1,519 @@
+//! Values of options: read once, where the command line is read.
+
+use std::error::Error;
+use std::fmt;
+use std::ops::Deref;
+use std::str::FromStr;
+
+use error_map::Plane;
+use machine_model::{EngineId, Range};
+use nc_expand::Preset;
+use serde::{Deserialize, Serialize};
+
+/// What an option may be given.
+pub trait Value: Sized {
+    /// What it is, with its unit: "millimetres".
+    const WHAT: &'static str;
+    /// How it is written.
+    const EXAMPLES: &'static [&'static str];
+
+    /// Reads it.
+    ///
+    /// # Errors
+    /// What is wrong, where more can be said than that it is not written so.
+    fn read(text: &str) -> Result<Self, Option<String>>;
+}
+
+/// A value, and the text that it was read from: messages, pages and manifests say what was typed.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+#[serde(bound(deserialize = "T: Value", serialize = "T: Clone"))]
+pub struct Given<T> {
+    text: String,
+    value: T,
+}
+
+impl<T> Given<T> {
+    /// As it was typed.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+impl<T> Deref for Given<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T> PartialEq for Given<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl<T> fmt::Display for Given<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl<T: Value> FromStr for Given<T> {
+    type Err = Unread;
+
+    fn from_str(text: &str) -> Result<Self, Unread> {
+        match T::read(text) {
+            Ok(value) => Ok(Self { text: text.to_owned(), value }),
+            Err(why) => Err(Unread { why, what: T::WHAT, examples: T::EXAMPLES }),
+        }
+    }
+}
+
+impl<T: Value> TryFrom<String> for Given<T> {
+    type Error = Unread;
+
+    fn try_from(text: String) -> Result<Self, Unread> {
+        text.parse()
+    }
+}
+
+impl<T> From<Given<T>> for String {
+    fn from(given: Given<T>) -> Self {
+        given.text
+    }
+}
+
+/// Why a value cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unread {
+    why: Option<String>,
+    what: &'static str,
+    examples: &'static [&'static str],
+}
+
+impl Unread {
+    /// Of a bare number.
+    #[must_use]
+    pub fn number(why: &str) -> Self {
+        Self { why: Some(why.to_owned()), what: "a number", examples: &["20"] }
+    }
+
+    /// What to say of an option that was given this.
+    #[must_use]
+    pub fn message(&self, option: &str, given: &str) -> String {
+        match &self.why {
+            Some(why) => format!("`{option} {given}`: {why}"),
+            None => format!("`{option} {given}` cannot be read"),
+        }
+    }
+
+    /// What to type.
+    #[must_use]
+    pub fn help(&self, option: &str) -> String {
+        let examples: Vec<String> =
+            self.examples.iter().map(|example| format!("`{option} {example}`")).collect();
+        format!("write {} as in {}", self.what, examples.join(" or "))
+    }
+}
+
+impl fmt::Display for Unread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.why {
+            Some(why) => f.write_str(why),
+            None => write!(f, "cannot be read: write {} as in {}", self.what, self.examples.join(" or ")),
+        }
+    }
+}
+
+impl Error for Unread {}
+
+fn finite(text: &str) -> Option<f64> {
+    text.trim().parse::<f64>().ok().filter(|v| v.is_finite())
+}
+
+fn millimetres(text: &str) -> Option<f64> {
+    /// A kilometre: no machine is larger, and sums of what is larger lose their micrometres.
+    const FARTHEST_MM: f64 = 1e6;
+    finite(text).filter(|v| v.abs() <= FARTHEST_MM)
+}
+
+fn three<T>(text: &str, of: impl Fn(&str) -> Option<T>) -> Option<[T; 3]> {
+    let mut parts = text.split(',').map(of);
+    let found = [parts.next()??, parts.next()??, parts.next()??];
+    parts.next().is_none().then_some(found)
+}
+
+fn assignment(text: &str) -> Option<(&str, &str)> {
+    text.split_once('=').map(|(name, value)| (name.trim(), value.trim()))
+}
+
+/// `X,Y,Z`, mm.
+#[derive(Debug, Clone, Copy)]
+pub struct Point3(pub [f64; 3]);
+
+impl Value for Point3 {
+    const WHAT: &'static str = "millimetres";
+    const EXAMPLES: &'static [&'static str] = &["400,280,200"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        three(text, millimetres).map(Self).ok_or(None)
+    }
+}
+
+/// `LX,LY,LZ`, mm, none below zero.
+#[derive(Debug, Clone, Copy)]
+pub struct Size3(pub [f64; 3]);
+
+impl Value for Size3 {
+    const WHAT: &'static str = "millimetres";
+    const EXAMPLES: &'static [&'static str] = &["120,80,40"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        three(text, |part| millimetres(part).filter(|v| *v >= 0.0)).map(Self).ok_or(None)
+    }
+}
+
+/// `G54=X,Y,Z`: machine coordinates of a zero, mm.
+#[derive(Debug, Clone)]
+pub struct WorkOffset {
+    /// `G54`
+    pub name: String,
+    /// Machine coordinates, mm.
+    pub zero_mm: [f64; 3],
+}
+
+impl Value for WorkOffset {
+    const WHAT: &'static str = "millimetres";
+    const EXAMPLES: &'static [&'static str] = &["G54=100,50,0"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (name, value) = assignment(text).ok_or(None)?;
+        let zero_mm = three(value, millimetres).ok_or(None)?;
+        Ok(Self { name: name.to_ascii_uppercase(), zero_mm })
+    }
+}
+
+/// `H1=120`, or the vector `H1=0,0,120`, mm.
+#[derive(Debug, Clone, Copy)]
+pub struct ToolLength {
+    /// 1 of `H1`.
+    pub number: u32,
+    /// From tip to gauge point, mm.
+    pub vector_mm: [f64; 3],
+}
+
+fn h_number(text: &str) -> Option<u32> {
+    text.strip_prefix(['H', 'h']).and_then(|digits| digits.parse().ok())
+}
+
+impl Value for ToolLength {
+    const WHAT: &'static str = "millimetres";
+    const EXAMPLES: &'static [&'static str] = &["H1=120", "H1=0,0,120"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (name, value) = assignment(text).ok_or(None)?;
+        let vector_mm = three(value, millimetres).or_else(|| Some([0.0, 0.0, millimetres(value)?]));
+        Ok(Self { number: h_number(name).ok_or(None)?, vector_mm: vector_mm.ok_or(None)? })
+    }
+}
+
+/// From gauge point to tip: the length of an H number, or `X,Y,Z`, mm.
+#[derive(Debug, Clone, Copy)]
+pub enum ToolVector {
+    /// Minus the length of this H number.
+    Length(u32),
+    /// mm.
+    Vector([f64; 3]),
+}
+
+impl Value for ToolVector {
+    const WHAT: &'static str = "an H number, or millimetres,";
+    const EXAMPLES: &'static [&'static str] = &["H1", "0,0,-120"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let length = h_number(text).map(Self::Length);
+        length.or_else(|| three(text, millimetres).map(Self::Vector)).ok_or(None)
+    }
+}
+
+impl Value for EngineId {
+    const WHAT: &'static str = "its name";
+    const EXAMPLES: &'static [&'static str] = &["rigid-body"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        Self::from_name(text).ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|id| id.name()).collect();
+            Some(format!("there is no such engine; there are {}", names.join(", ")))
+        })
+    }
+}
+
+impl Value for Preset {
+    const WHAT: &'static str = "a variable and its value";
+    const EXAMPLES: &'static [&'static str] = &["\"#500=12.5\"", "\"#<depth>=2\"", "\"#1=#0\""];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        Self::parse(text).ok_or(None)
+    }
+}
+
+/// A condition that effects depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Condition {
+    /// Of an axis, °C.
+    Temperature(usize),
+    /// Of all axes, °C.
+    Temperatures,
+    /// Since power-on, s.
+    Time,
+    /// Of the workpiece, kg.
+    Load,
+    /// mm/min.
+    Feed,
+}
+
+impl Condition {
+    const ALL: [(&'static str, Self); 7] = [
+        ("temp_c", Self::Temperatures),
+        ("temp_x_c", Self::Temperature(0)),
+        ("temp_y_c", Self::Temperature(1)),
+        ("temp_z_c", Self::Temperature(2)),
+        ("time_s", Self::Time),
+        ("load_kg", Self::Load),
+        ("feed_mm_min", Self::Feed),
+    ];
+
+    /// As it is written.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, known)| *known == self).expect("all are listed").0
+    }
+
+    fn is_temperature(self) -> bool {
+        matches!(self, Self::Temperature(_) | Self::Temperatures)
+    }
+}
+
+/// `temp_c=24,load_kg=100`
+#[derive(Debug, Clone)]
+pub struct Conditions(pub Vec<(Condition, f64)>);
+
+impl Value for Conditions {
+    const WHAT: &'static str = "names and values";
+    const EXAMPLES: &'static [&'static str] = &["temp_c=24,load_kg=100"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let one = |part: &str| {
+            let (name, value) = assignment(part).ok_or_else(|| format!("`{part}` is not NAME=VALUE"))?;
+            let (_, condition) =
+                Condition::ALL.into_iter().find(|(known, _)| *known == name).ok_or_else(|| {
+                    let names = Condition::ALL.map(|(known, _)| known).join(", ");
+                    format!("there is no condition `{name}`; there are {names}")
+                })?;
+            let number = finite(value).ok_or_else(|| format!("`{value}` is no number"))?;
+            if !condition.is_temperature() && number < 0.0 {
+                return Err(format!("`{name}` cannot be below zero"));
+            }
+            Ok((condition, number))
+        };
+        text.split(',').map(one).collect::<Result<_, String>>().map(Self).map_err(Some)
+    }
+}
+
+/// `A=30,C=90`, degrees, by axis; those that are not named are `None`.
+#[derive(Debug, Clone, Copy)]
+pub struct Rotary(pub [Option<f64>; 3]);
+
+impl Value for Rotary {
+    const WHAT: &'static str = "degrees";
+    const EXAMPLES: &'static [&'static str] = &["A=30,C=90"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let mut angles = [None; 3];
+        for part in text.split(',') {
+            let (name, value) = assignment(part).ok_or_else(|| "AXIS=DEGREES is expected".to_owned())?;
+            let axis = ["A", "B", "C"].iter().position(|known| known.eq_ignore_ascii_case(name));
+            let axis = axis.ok_or_else(|| "the rotary axes are A, B and C".to_owned())?;
+            angles[axis] = Some(finite(value).ok_or_else(|| format!("`{value}` is no number"))?);
+        }
+        Ok(Self(angles))
+    }
+}
+
+/// `XY=12,ZX=-3,YZ=5`, µrad; planes that are not named are `None`.
+#[derive(Debug, Clone, Copy)]
+pub struct SquarenessReadings(pub [Option<f64>; 3]);
+
+impl Value for SquarenessReadings {
+    const WHAT: &'static str = "µrad,";
+    const EXAMPLES: &'static [&'static str] = &["XY=12,ZX=-3,YZ=5"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let mut read = [None; 3];
+        for part in text.split(',') {
+            let (name, value) = assignment(part).ok_or(None)?;
+            let plane = ["XY", "ZX", "YZ"].iter().position(|known| known.eq_ignore_ascii_case(name));
+            read[plane.ok_or(None)?] = Some(finite(value).ok_or(None)?);
+        }
+        Ok(Self(read))
+    }
+}
+
+/// `X0..X1,Y0..Y1,Z0..Z1`, mm, the lower end first.
+#[derive(Debug, Clone, Copy)]
+pub struct Region3(pub [Range; 3]);
+
+impl Value for Region3 {
+    const WHAT: &'static str = "millimetres";
+    const EXAMPLES: &'static [&'static str] = &["100..220,50..130,20..60"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let range = |part: &str| {
+            let (low, high) = part.split_once("..")?;
+            let range = Range { low: millimetres(low)?, high: millimetres(high)? };
+            (range.low <= range.high).then_some(range)
+        };
+        three(text, range).map(Self).ok_or(None)
+    }
+}
+
+/// `table=0..200,0..140,0..100`
+#[derive(Debug, Clone)]
+pub struct NamedRegion {
+    /// `table`
+    pub name: String,
+    /// mm.
+    pub ranges_mm: [Range; 3],
+}
+
+impl Value for NamedRegion {
+    const WHAT: &'static str = "a name and millimetres";
+    const EXAMPLES: &'static [&'static str] = &["table=0..200,0..140,0..100"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        // Names may hold anything; the ranges hold no equals sign.
+        let (name, ranges) = text.rsplit_once('=').ok_or(None)?;
+        Ok(Self { name: name.trim().to_owned(), ranges_mm: Region3::read(ranges)?.0 })
+    }
+}
+
+/// `XY=100`: a layer at a place of the third axis, mm; `XY`: all layers.
+#[derive(Debug, Clone, Copy)]
+pub struct Layer {
+    /// Its plane.
+    pub plane: Plane,
+    /// Along its normal, mm.
+    pub at_mm: Option<f64>,
+}
+
+impl Value for Layer {
+    const WHAT: &'static str = "a plane and millimetres";
+    const EXAMPLES: &'static [&'static str] = &["XY=100", "XY"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (name, at_mm) = match assignment(text) {
+            Some((name, at)) => (name, Some(millimetres(at).ok_or(None)?)),
+            None => (text.trim(), None),
+        };
+        let plane = Plane::ALL.into_iter().find(|plane| plane.name().eq_ignore_ascii_case(name));
+        Ok(Self { plane: plane.ok_or(None)?, at_mm })
+    }
+}
+
+/// Nodes of three axes: how many, or from:to:step, mm.
+#[derive(Debug, Clone, Copy)]
+pub enum Lattice {
+    /// Over the volume.
+    Counts([u64; 3]),
+    /// mm.
+    Stepped([[f64; 3]; 3]),
+}
+
+impl Value for Lattice {
+    const WHAT: &'static str = "numbers of nodes, or from:to:step in mm,";
+    const EXAMPLES: &'static [&'static str] = &["22x22x21", "40:880:40,30:450:20,5:505:25"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        if text.contains(':') {
+            let stepped = three(text, |part| {
+                let mut numbers = part.split(':').map(millimetres);
+                let found = [numbers.next()??, numbers.next()??, numbers.next()??];
+                numbers.next().is_none().then_some(found)
+            });
+            return stepped
+                .map(Self::Stepped)
+                .ok_or_else(|| Some("three times from:to:step are expected".to_owned()));
+        }
+        let counts = three(&text.replace(['x', 'X', '×'], ","), |part| part.trim().parse::<u64>().ok());
+        counts.map(Self::Counts).ok_or_else(|| Some("three whole numbers are expected".to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused<T: Value>(text: &str) -> String {
+        match text.parse::<Given<T>>() {
+            Ok(_) => panic!("{text} was read"),
+            Err(unread) => format!("{} / {}", unread.message("--o", text), unread.help("--o")),
+        }
+    }
+
+    /// Whatever is an example can be read.
+    fn examples<T: Value>() {
+        for example in T::EXAMPLES {
+            assert!(example.trim_matches('"').parse::<Given<T>>().is_ok(), "{example}");
+        }
+    }
+
+    #[test]
+    fn examples_can_be_read() {
+        examples::<Point3>();
+        examples::<Size3>();
+        examples::<WorkOffset>();
+        examples::<ToolLength>();
+        examples::<ToolVector>();
+        examples::<EngineId>();
+        examples::<Preset>();
+        examples::<Conditions>();
+        examples::<Rotary>();
+        examples::<SquarenessReadings>();
+        examples::<Region3>();
+        examples::<NamedRegion>();
+        examples::<Layer>();
+        examples::<Lattice>();
+    }
+
+    #[test]
+    fn what_cannot_be_read_says_how_it_is_written() {
+        assert_eq!(
+            refused::<WorkOffset>("G54=1,2"),
+            "`--o G54=1,2` cannot be read / write millimetres as in `--o G54=100,50,0`"
+        );
+        for wrong in ["1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "1,2,1e7", ""] {
+            assert!(refused::<Point3>(wrong).contains("cannot be read"), "{wrong}");
+        }
+        assert!(refused::<ToolLength>("H1=1,2").contains("`--o H1=120` or `--o H1=0,0,120`"));
+        assert!(refused::<Size3>("1,-2,3").contains("120,80,40"));
+        assert!(refused::<Region3>("3..1,0..1,0..1").contains("cannot be read"));
+        assert!(refused::<Conditions>("temp=3").contains("there is no condition `temp`; there are temp_c"));
+        assert!(refused::<Conditions>("load_kg=-1").contains("below zero"));
+        assert!(refused::<Rotary>("D=3").contains("the rotary axes are A, B and C"));
+        assert!(refused::<Lattice>("1x2").contains("three whole numbers"));
+        assert!(refused::<EngineId>("magic").contains("rigid-body"));
+    }
+
+    #[test]
+    fn a_manifest_keeps_what_was_typed() {
+        let given: Given<WorkOffset> = "g54= 1,2, 3.50".parse().unwrap();
+        assert_eq!((given.name.as_str(), given.zero_mm), ("G54", [1.0, 2.0, 3.5]));
+        let json = serde_json::to_string(&given).unwrap();
+        assert_eq!(json, "\"g54= 1,2, 3.50\"");
+        assert_eq!(serde_json::from_str::<Given<WorkOffset>>(&json).unwrap(), given);
+        assert!(serde_json::from_str::<Given<WorkOffset>>("\"G54\"").is_err());
+    }
+}
