@@ -103,6 +103,42 @@ fn a_perfect_lathe_returns_the_input() {
     assert_eq!(bench.corrected(SHAFT, &profile), SHAFT);
 }
 
+/// A contour under G42: a taper, an outer and an inner arc, G40 on the way out.
+const UNDER_G42: &str = "%\nO1001\nG21 G18 G40 G99 G54\nG50 S2500\nT0101\nG97 S900 M3\nG0 X60. Z5.\nX20. Z3.\nG42 G1 X16. Z2. F0.3\n\
+X20. Z-20. F0.2\nG3 X30. Z-25. R5.\nG1 Z-40.\nG2 X36. Z-43. I3. K0.\nG1 X46.\nG40 G0 X60. Z-42.\nZ5.\nM5\nM30\n%\n";
+
+#[test]
+fn the_nose_is_led_along_the_corrected_contour() {
+    let bench = Bench::new();
+    let under = bench.corrected(UNDER_G42, PROFILE);
+    // Each block stays one, and the codes stay where they were.
+    let lines = |text: &str| text.lines().filter(|line| !line.starts_with('(')).count();
+    assert_eq!(lines(&under), lines(UNDER_G42));
+    assert_eq!((under.matches("G42").count(), under.matches("G40").count()), (1, 2));
+    // What it cuts is what the same contour is without compensation: but for where the tool comes from and goes to.
+    let without = bench.corrected(&UNDER_G42.replace("G42 ", ""), PROFILE);
+    let words = |text: &str| -> Vec<f64> {
+        let words = text.split(|c: char| c.is_whitespace()).filter(|word| word.starts_with(['X', 'Z']));
+        words.map(|word| word[1..].parse::<f64>().expect("a number")).collect()
+    };
+    let (under, without) = (words(&under), words(&without));
+    assert_eq!(under.len(), without.len());
+    for (led, free) in under.iter().zip(&without) {
+        assert!((led - free).abs() < 1.1e-3, "{led} {free}");
+    }
+    // Nothing is left open where the nose is known; without it that is said.
+    let told = |profile: &str| messages(&run(&[&bench.file("told.nc", UNDER_G42), "-m", profile]));
+    assert!(!told(PROFILE).contains("VP0508"), "{}", told(PROFILE));
+    let noseless =
+        bench.profile(&[("noses      = { H1 = { radius_mm = 0.8, direction = 3, height_um = 30.0 } }", "")]);
+    assert!(told(&noseless).contains("VP0508"), "{}", told(&noseless));
+    // A button tool on a machine that leans: its nose touches where the error is another.
+    let button = bench
+        .profile(&[("radius_mm = 0.8", "radius_mm = 30.0"), ("EB0Z_urad = -80.0", "EB0Z_urad = -800.0")]);
+    let said = bench.refused(&UNDER_G42.replace("G2 X36. Z-43. I3. K0.", "G1 X36. Z-43."), &button);
+    assert!(said.contains("VP0521") && said.contains("another than at its tip"), "{said}");
+}
+
 #[test]
 fn diameters_and_radii_are_one_part() {
     let bench = Bench::new();
@@ -138,7 +174,8 @@ fn what_a_lathe_does_not_do_is_refused_by_name() {
         ("G92 X30. Z-20. F1.5", "VP0145"),
         ("G0 X60.\nG76 P021060 Q100 R0.05\nG76 X38. Z-20. P900 Q300 F1.5", "VP0143"),
         ("G32 Z-20. K1.5", "VP0225"),
-        ("G42 X38.", "VP0208"),
+        ("G42 X38.\nG2 X39. Z1.5 R0.5", "VP0521"),
+        ("G42 X38.\nG90 X30. Z-20.", "VP0143"),
         ("T0202", "VP0215"),
     ] {
         let said = bench.refused(&block(text), PROFILE);

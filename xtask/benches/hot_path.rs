@@ -98,6 +98,7 @@ fn hot_path(c: &mut Criterion) {
         arc_radius_tolerance_mm: 0.02,
         peck_clearance_mm: 0.25,
         chip_retreat_mm: 0.5,
+        reserved_mm: 0.0,
     };
     let at = |linear_mm: [f64; 3]| Position { linear_mm, rotary_deg: [0.0; 3] };
     let feeds: Vec<Motion> = points

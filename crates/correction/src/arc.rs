@@ -114,6 +114,7 @@ impl<'m> Corrector<'m> {
             to,
             corrected,
             own_words: follow.alone,
+            division: follow.whole.division,
             farthest_mm: if sieved.is_some() { limit_mm + BEYOND_DOUBT_MM } else { f64::INFINITY },
         };
         let mut candidates = search.candidates();

@@ -451,7 +451,7 @@ impl<'m> Corrector<'m> {
 
     /// Limit of a proof: tolerance and rounding.
     pub(crate) fn limit_mm(&self, block: &Block) -> f64 {
-        self.options.tolerance_mm + block.rounding_mm() - GUARD_MM
+        self.options.tolerance_mm - block.reserved_mm + block.rounding_mm() - GUARD_MM
     }
 
     fn rapid(&mut self, start: &Partial, end: &Partial, block: &Block) -> Result<Corrected, CorrectionError> {

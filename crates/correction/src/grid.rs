@@ -84,6 +84,8 @@ pub struct Block {
     pub peck_clearance_mm: f64,
     /// Retreat of a G73 peck written as moves, mm.
     pub chip_retreat_mm: f64,
+    /// What of the tolerance something else takes, mm: a tool that touches beside the tip which is corrected.
+    pub reserved_mm: f64,
 }
 
 const AXES: [u8; 3] = *b"XYZ";

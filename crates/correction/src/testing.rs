@@ -52,5 +52,6 @@ pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
         arc_radius_tolerance_mm: 0.01,
         peck_clearance_mm: 0.0,
         chip_retreat_mm: 0.0,
+        reserved_mm: 0.0,
     }
 }

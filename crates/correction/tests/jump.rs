@@ -57,6 +57,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         arc_radius_tolerance_mm: 0.02,
         peck_clearance_mm: 0.5,
         chip_retreat_mm: 0.5,
+        reserved_mm: 0.0,
     };
     let options = Options {
         tolerance_mm: 1e-3,

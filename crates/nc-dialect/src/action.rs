@@ -1,9 +1,9 @@
 //! What the words of a grammar's `does` mean.
 
-use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, TipSwitch, TurningCycle};
+use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, Side, TipSwitch, TurningCycle};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 73] = [
+pub const ACTION_NAMES: [&str; 74] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -19,7 +19,8 @@ pub const ACTION_NAMES: [&str; 73] = [
     "machine-coordinates",
     "probe",
     "compensation-off",
-    "compensation-on",
+    "compensation-left",
+    "compensation-right",
     "length-on",
     "length-on-negative",
     "length-off",
@@ -98,7 +99,8 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "machine-coordinates" => Action::MachineCoordinates,
         "probe" => Action::Probe,
         "compensation-off" => Action::CompensationOff,
-        "compensation-on" => Action::CompensationOn,
+        "compensation-left" => Action::Compensation(Side::Left),
+        "compensation-right" => Action::Compensation(Side::Right),
         "length-on" => Action::LengthOn,
         "length-on-negative" => Action::LengthOnNegative,
         "length-off" => Action::LengthOff,

@@ -177,7 +177,7 @@ impl State {
             Action::Dwell | Action::Pass { takes_words: true } => return false,
             Action::Pass { takes_words: false }
             | Action::DwellP
-            | Action::CompensationOn
+            | Action::Compensation(_)
             | Action::CompensationOff
             | Action::FeedInverseTime
             | Action::FeedPerMinute

@@ -7,6 +7,7 @@
 //! where forgetting is enough (a later block that needs it is refused, one that names all axes makes both states
 //! equal again), and refused where it is not.
 
+use nc_syntax::dialect::Side;
 use toolpath::Kinematics;
 
 use crate::codes;
@@ -128,7 +129,8 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
         pair(&with.compensation, &without.compensation, |v| {
             match v {
                 Compensation::Off => "no cutter compensation",
-                Compensation::On => "cutter compensation",
+                Compensation::On(Side::Left) => "cutter compensation to the left",
+                Compensation::On(Side::Right) => "cutter compensation to the right",
             }
             .to_owned()
         })

@@ -57,7 +57,7 @@ pub(crate) fn execute(
             .refuse(codes::FRAME, message, words.span(letters), "no offset of such an axis is known")
             .help("remove the word where it is zero; else set the offset on the control"));
     }
-    if before.compensation == Compensation::On || state.compensation == Compensation::On {
+    if [before, state].iter().any(|state| state.compensation != Compensation::Off) {
         return Err(refuse(words, span, "under cutter compensation", "the compensated path jumps with it")
             .help("cancel the compensation with G40 before it"));
     }

@@ -1,7 +1,7 @@
 //! Block by block: check the whole block, then commit it.
 
 use diagnostic::Diagnostic;
-use nc_syntax::dialect::{Action, GCode, MCode};
+use nc_syntax::dialect::{Action, GCode, MCode, Side};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Frame, Kinematics, Motion, Plane};
@@ -66,7 +66,7 @@ pub struct Context {
     /// The block is an arc with R.
     pub arc_by_radius: bool,
     /// Cutter compensation is in force before or after the block.
-    pub compensation: bool,
+    pub compensation: Option<Side>,
     /// The block may be skipped, in a cycle that goes on behind it: levels that it wrote would hold for the next
     /// holes only where it is executed.
     pub may_not_set_levels: bool,
@@ -388,7 +388,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         motion_code: state.motion_code(),
         thread: matches!(state.motion, MotionMode::Thread(_)),
         arc_by_radius: moved.arc_by_radius,
-        compensation: before.compensation == Compensation::On || state.compensation == Compensation::On,
+        compensation: state.compensation.side().or(before.compensation.side()),
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),
         repeats: moved.repeats,
         unnamed: moved.unnamed,

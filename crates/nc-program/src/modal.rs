@@ -1,6 +1,6 @@
 //! The state of a program between two blocks: one enum per modal group.
 
-use nc_syntax::dialect::{CycleCode, GCode};
+use nc_syntax::dialect::{CycleCode, GCode, Side};
 use toolpath::{Frame, Kinematics, Partial, Plane};
 use units::decimal::Decimal;
 
@@ -122,7 +122,18 @@ pub enum Compensation {
     /// G40
     Off,
     /// G41, G42
-    On,
+    On(Side),
+}
+
+impl Compensation {
+    /// On which side, if it is on.
+    #[must_use]
+    pub fn side(self) -> Option<Side> {
+        match self {
+            Self::Off => None,
+            Self::On(side) => Some(side),
+        }
+    }
 }
 
 /// Where a drilling cycle ends.

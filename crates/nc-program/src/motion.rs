@@ -274,7 +274,7 @@ pub(crate) fn division(before: &Modal, state: &Modal, turns: bool) -> Division {
 
 /// G41 or G42 is in force before or after a block.
 pub(crate) fn compensated(before: &Modal, state: &Modal) -> bool {
-    before.compensation == Compensation::On || state.compensation == Compensation::On
+    [before, state].iter().any(|state| state.compensation != Compensation::Off)
 }
 
 /// F of a feed motion: under G93 it must stand in the block itself.

@@ -70,7 +70,7 @@ pub(crate) fn disturb(
         forget(words, state, with_length, Why::Miscellaneous { code, changes_tool: true });
     }
     // Beside cutter compensation D is a radius, which is in no frame.
-    let by_radius = [before, state].iter().any(|state| state.compensation == Compensation::On);
+    let by_radius = [before, state].iter().any(|state| state.compensation != Compensation::Off);
     // Beside G96 of a lathe it limits the spindle's speed.
     let by_speed =
         env.dialect.turning.is_some() && words.codes.iter().any(|code| code.entry.code == GCode(960));

@@ -263,7 +263,7 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
         _ => None,
     };
     let Some(span) = off.or(wanted.shift.map(|(_, span)| span)) else { return Ok(()) };
-    if state.compensation == Compensation::On {
+    if state.compensation != Compensation::Off {
         let message = format!("{} under cutter compensation", words.text(span));
         return Err(words
             .refuse(codes::FRAME, message, span, "the compensated path jumps with it")
@@ -346,7 +346,7 @@ fn set<'d>(
             state.compensation = Compensation::Off;
             wanted.compensation_off = Some(span);
         }
-        Action::CompensationOn => state.compensation = Compensation::On,
+        Action::Compensation(side) => state.compensation = Compensation::On(*side),
         Action::LengthOn | Action::TipLengthOn => {
             wanted.length = Some((Length::On { negative: false }, span))
         }

@@ -32,6 +32,8 @@ pub struct Setup {
     /// H number and length vector, mm: the axis command is program + work offset + vector, and the tool
     /// vector (gauge point to tip) is minus the vector. `H1 = 120` is `(1, [0, 0, 120])`.
     pub tools: Vec<(u32, [f64; 3])>,
+    /// H number and radius of the nose of a turning tool, mm, above zero.
+    pub noses_mm: Vec<(u32, f64)>,
     /// Tool vector without G43: from the gauge point to the tip, mm.
     pub default_tool_mm: [f64; 3],
     /// Which of A, B, C the machine has.

@@ -103,7 +103,7 @@ pub(crate) fn check(
             words.codes.first().map_or_else(|| words.span(Letters::NONE), |code| code.span)
         })
     };
-    let (message, help) = if state.compensation == Compensation::On {
+    let (message, help) = if state.compensation != Compensation::Off {
         (
             "cutter compensation under tool centre point control",
             "correct the radius in the CAM: in which plane it is corrected while the tool turns, controls differ",

@@ -266,7 +266,7 @@ fn compensation_keeps_its_blocks_whole() {
         run.steps[1..].iter().map(|step| feed(&step.motions[0]).division).collect();
     let (any, one) = (Division::Any, Division::One);
     assert_eq!(divisions, [any, one, one, one, any]);
-    let on: Vec<bool> = run.steps[1..].iter().map(|step| step.context.compensation).collect();
+    let on: Vec<bool> = run.steps[1..].iter().map(|step| step.context.compensation.is_some()).collect();
     assert_eq!(on, [false, true, true, true, false]);
 }
 

@@ -194,7 +194,7 @@ pub enum Action {
     /// G40
     CompensationOff,
     /// G41, G42
-    CompensationOn,
+    Compensation(Side),
     /// G43
     LengthOn,
     /// G44
@@ -306,6 +306,22 @@ pub enum TipSwitch {
     On,
     /// They say where the axes are.
     Off,
+}
+
+/// On which side of its way a tool is led whose radius the control compensates.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, GCode, Side};
+///
+/// let row = nc_dialect::builtin("fanuc").unwrap().code(GCode(420)).unwrap();
+/// assert_eq!(row.action, Action::Compensation(Side::Right));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// G41
+    Left,
+    /// G42
+    Right,
 }
 
 /// G17, G18, G19; not `toolpath::Plane`, so that reading text needs no geometry.

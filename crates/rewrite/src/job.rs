@@ -22,6 +22,8 @@ pub const LEANING_CYCLE: Code = Code(506);
 pub const RAPID_OUTSIDE: Code = Code(507);
 /// Motion under cutter compensation was corrected.
 pub const COMPENSATED: Code = Code(508);
+/// The nose of a turning tool does not fit, or touches where another correction would be needed.
+pub const NOSE: Code = Code(521);
 /// Nobody knows on which side of its play an axis stands.
 pub const UNKNOWN_SIDE: Code = Code(509);
 /// A hole of more pecks than anybody drills.

@@ -40,6 +40,7 @@ mod feed;
 mod guards;
 mod job;
 mod large;
+mod nose;
 mod notices;
 mod pass;
 mod plain;

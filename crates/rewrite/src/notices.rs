@@ -99,7 +99,7 @@ impl Notices {
             COMPENSATED,
             |count, _| format!("{count} motion(s) under cutter compensation"),
             "the programmed contour was corrected, not the path of the tool's centre",
-            "between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters",
+            "between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give a turning tool its nose in the profile",
         );
         let unknown_side = self.unknown_side.warning(
             UNKNOWN_SIDE,

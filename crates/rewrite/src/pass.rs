@@ -11,6 +11,7 @@ use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 use crate::feed;
 use crate::guards::Guarded;
 use crate::job::{Figures, Job};
+use crate::nose::nose_mm;
 use crate::notices::{Notices, hole_skipped, refusal};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -199,11 +200,14 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
         for motion in motions {
-            let corrected = self
+            let nose = self.nose(motion, block, context)?;
+            info.reserved_mm = nose.unwrap_or_default();
+            let mut corrected = self
                 .state
                 .corrector
                 .correct(motion, &info)
                 .map_err(|error| refusal(&error, motion, block, context))?;
+            corrected.correction.after_mm += info.reserved_mm;
             untouched &= corrected.pieces.is_empty();
             if let Some(turned) = &corrected.correction.turned {
                 feed::require_same(self.job.dialect, turned, motion, block, context)?;
@@ -426,7 +430,8 @@ impl Pass<'_> {
             if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
                 notices.spirals.see(&span, line, apart_mm);
             }
-            if context.compensation && matches!(motion, Motion::Feed(_)) {
+            let unknown_tool = nose_mm(self.job, self.state.interpreter.modal()).is_none();
+            if unknown_tool && context.compensation.is_some() && matches!(motion, Motion::Feed(_)) {
                 notices.compensated.see(&span, line, 0.0);
             }
         }
@@ -473,6 +478,7 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
         peck_clearance_mm: output.peck_clearance_mm,
         chip_retreat_mm: output.chip_retreat_mm,
+        reserved_mm: 0.0,
     }
 }
 

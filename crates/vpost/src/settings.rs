@@ -357,6 +357,7 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
     let mut setup = Setup {
         work_offsets: profile.work_offsets.clone(),
         tools: tools(shared, profile),
+        noses_mm: noses_mm(profile),
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
@@ -387,6 +388,12 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
         setup.start_mm = Some(start.0);
     }
     Ok(setup)
+}
+
+/// Radii of the noses of turning tools.
+fn noses_mm(profile: &Profile) -> Vec<(u32, f64)> {
+    let noses = profile.lathe.iter().flat_map(|lathe| &lathe.noses);
+    noses.filter(|(_, nose)| nose.radius_mm > 0.0).map(|(number, nose)| (*number, nose.radius_mm)).collect()
 }
 
 /// Length vectors of the H numbers: the profile's and the command line's.

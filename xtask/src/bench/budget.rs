@@ -159,6 +159,7 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         arc_radius_tolerance_mm: 0.02,
         peck_clearance_mm: 0.25,
         chip_retreat_mm: 0.5,
+        reserved_mm: 0.0,
     };
     // The first lines bring the axes to where short lines start.
     let (first, rest) = feeds.split_at(feeds.len().min(2));

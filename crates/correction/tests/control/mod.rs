@@ -35,6 +35,7 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
         arc_radius_tolerance_mm: 0.02,
         peck_clearance_mm: 0.5,
         chip_retreat_mm: 0.5,
+        reserved_mm: 0.0,
     }
 }
 

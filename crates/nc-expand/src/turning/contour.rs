@@ -307,7 +307,7 @@ impl Writer<'_, '_> {
                         )
                     );
                     // Compensation and all that is refused is refused by its own message, where it is executed.
-                    let own = matches!(action, None | Some(Action::Refuse { .. } | Action::CompensationOn));
+                    let own = matches!(action, None | Some(Action::Refuse { .. } | Action::Compensation(_)));
                     if !fits && !own {
                         return refuse(item.span, "lines and arcs were expected");
                     }

@@ -117,6 +117,14 @@ impl<'b, 'a> Writer<'b, 'a> {
                 "write it without `/`, or let the CAM write the moves",
             ));
         }
+        if self.state.compensated {
+            return Err(words.cycle_fault(
+                span,
+                "a cycle under compensation of the nose",
+                "which of its moves are compensated, controls differ",
+                "write G40 before it; finish the contour as blocks of its own under G41 or G42",
+            ));
+        }
         match cycle {
             TurningCycle::TurnPass | TurningCycle::ThreadPass | TurningCycle::FacePass => {
                 self.first_pass(at, cycle, span)?;

@@ -31,6 +31,8 @@ pub(super) struct State {
     pub(super) diameters: Option<bool>,
     /// Where the words of X and Z say that the tool stands, in millionths of the unit.
     pub(super) at: [Option<i64>; 2],
+    /// G41 or G42 is in force.
+    pub(super) compensated: bool,
     /// The last F, with its point or without.
     pub(super) feed: Option<Number>,
     /// U and W are increments.
@@ -47,6 +49,7 @@ impl State {
             inch: false,
             diameters: turning.diameters,
             at: [None; 2],
+            compensated: false,
             feed: None,
             increments: turning.increments,
             offset_in_t: turning.offset_in_t,
@@ -83,6 +86,8 @@ impl State {
             }
             Action::Absolute => self.absolute = true,
             Action::Incremental => self.absolute = false,
+            Action::Compensation(_) => self.compensated = true,
+            Action::CompensationOff => self.compensated = false,
             Action::Dwell
             | Action::DwellBySetting
             | Action::SpeedLimit
@@ -94,8 +99,6 @@ impl State {
             Action::Pass { takes_words: false }
             | Action::DwellP
             | Action::Plane(_)
-            | Action::CompensationOn
-            | Action::CompensationOff
             | Action::FeedInverseTime
             | Action::FeedPerMinute
             | Action::FeedPerRevolution

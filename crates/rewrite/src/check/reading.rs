@@ -167,7 +167,13 @@ impl<'a, 'n> Program<'a, 'n> {
             let act = Act::Motion { motion: *motion, tool_mm, kinematics, feed, dwell };
             let turned_mm = self.turn_rounding_mm(motion);
             let limit_mm = (limit_mm * limit_mm + turned_mm * turned_mm).sqrt();
-            self.ready.push(Step { act, line, process, limit_mm, compensated: context.compensation });
+            self.ready.push(Step {
+                act,
+                line,
+                process,
+                limit_mm,
+                compensated: context.compensation.is_some(),
+            });
         }
         says.behind.into_iter().for_each(|said| self.say(said, line, limit_mm));
     }
