@@ -175,18 +175,8 @@ impl State {
             Action::Incremental => self.absolute = false,
             Action::PolarOff => self.polar = None,
             Action::Dwell | Action::Pass { takes_words: true } => return false,
-            Action::Pass { takes_words: false }
-            | Action::DwellP
-            | Action::Compensation(_)
-            | Action::CompensationOff
-            | Action::FeedInverseTime
-            | Action::FeedPerMinute
-            | Action::FeedPerRevolution
-            | Action::ReturnInitial
-            | Action::ReturnR
-            | Action::ArcCentresAbsolute
-            | Action::ArcCentresIncremental
-            | Action::PolarOn => {}
+            Action::PolarOn => {}
+            _ if action.keeps_places() => {}
             // Whatever moves the frame, or the axes by rules of the control.
             _ => {
                 self.at = [None; 3];

@@ -291,6 +291,29 @@ pub enum Action {
     },
 }
 
+impl Action {
+    /// True for what changes neither the frame nor where the axes stand, and owns no words: feed modes, compensation, what
+    /// cycles return to.
+    #[must_use]
+    pub fn keeps_places(&self) -> bool {
+        matches!(
+            self,
+            Self::Pass { takes_words: false }
+                | Self::DwellP
+                | Self::Compensation(_)
+                | Self::CompensationOff
+                | Self::FeedInverseTime
+                | Self::FeedPerMinute
+                | Self::FeedPerRevolution
+                | Self::ReturnInitial
+                | Self::ReturnR
+                | Self::ArcCentresAbsolute
+                | Self::ArcCentresIncremental
+        )
+    }
+}
+
+
 /// Tool centre point control.
 ///
 /// ```

@@ -96,16 +96,8 @@ impl State {
             }
             // With S alone it moves nothing.
             Action::LimitOrPreset if !with_places => return false,
-            Action::Pass { takes_words: false }
-            | Action::DwellP
-            | Action::Plane(_)
-            | Action::FeedInverseTime
-            | Action::FeedPerMinute
-            | Action::FeedPerRevolution
-            | Action::ReturnInitial
-            | Action::ReturnR
-            | Action::ArcCentresAbsolute
-            | Action::ArcCentresIncremental => {}
+            Action::Plane(_) => {}
+            _ if action.keeps_places() => {}
             // Whatever moves the frame, or the axes by rules of the control; a single pass ends with it.
             _ => {
                 self.at = [None; 2];
