@@ -1,10 +1,11 @@
 //! What must hold in a grammar beyond its shape.
 
+use std::ops::Range;
+
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use toml::Spanned;
 
-use crate::load::wide;
 use crate::table::Grammar;
 
 /// No control takes arcs whose radii differ by more of the radius.
@@ -137,4 +138,9 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
             "expected a mark like \"/\"",
         );
     }
+}
+
+/// A place in the file.
+pub(crate) fn wide(span: Range<usize>) -> Range<u64> {
+    span.start as u64..span.end as u64
 }

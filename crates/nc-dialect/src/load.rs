@@ -13,7 +13,7 @@ use nc_syntax::dialect::{
 use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
-use crate::checks;
+use crate::checks::{self, wide};
 use crate::table::{
     CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
     RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49,
@@ -252,10 +252,6 @@ fn refused_by_toml(error: &toml::de::Error) -> Diagnostic {
         Some(span) => diagnostic.at(wide(span), "here"),
         None => diagnostic,
     }
-}
-
-pub(crate) fn wide(span: Range<usize>) -> Range<u64> {
-    span.start as u64..span.end as u64
 }
 
 /// Digits (and point) behind the letter.

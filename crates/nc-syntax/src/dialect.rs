@@ -313,7 +313,6 @@ impl Action {
     }
 }
 
-
 /// Tool centre point control.
 ///
 /// ```

@@ -8,7 +8,6 @@ use nc_syntax::dialect::Side;
 use toolpath::{Feed, Motion, Shape};
 
 use crate::job::{Job, NOSE};
-use crate::pass::Pass;
 
 /// More than this share of the tolerance is not left to where the nose touches.
 const MOST_OF_TOLERANCE: f64 = 0.5;
@@ -44,48 +43,46 @@ fn beside_mm(model: &dyn PathModel, nose_mm: f64, tool_mm: [f64; 3], feed: &Feed
     difference(feed.start.linear_mm).max(difference(feed.end.linear_mm))
 }
 
-impl Pass<'_> {
-    /// What the nose takes of the tolerance under compensation, mm; `None` where no nose is led.
-    ///
-    /// # Errors
-    /// An inner arc that the nose does not fit into, and a nose that touches where another correction is needed.
-    pub(crate) fn nose(
-        &self,
-        motion: &Motion,
-        block: &Block<'_>,
-        context: &Context,
-    ) -> Result<Option<f64>, Vec<Diagnostic>> {
-        let (Some(side), Motion::Feed(feed)) = (context.compensation, motion) else { return Ok(None) };
-        let modal = self.state.interpreter.modal();
-        let Some(nose_mm) = nose_mm(self.job, modal) else { return Ok(None) };
-        let refuse = |message: String, label: &str, help: &str| {
-            Err(vec![Diagnostic::error(NOSE, message).at(block.file_range(), label).help(help)])
-        };
-        if let Shape::Arc(arc) = &feed.shape {
-            let [u, v, _] = arc.plane.axes();
-            let start = feed.start.linear_mm;
-            let arc_mm = units::math::hypot(start[u] - arc.centre_mm[0], start[v] - arc.centre_mm[1]);
-            // The centre lies on the side of the tool.
-            let inner = (arc.sweep_rad > 0.0) == (side == Side::Left);
-            if inner && arc_mm < nose_mm {
-                return refuse(
-                    format!("an inner arc of {arc_mm:.3} mm, and the tool's nose has {nose_mm} mm"),
-                    "the nose does not fit; controls stop here",
-                    "take a tool with a smaller nose, or look whether G41 and G42 are swapped",
-                );
-            }
-        }
-        let beside_mm = beside_mm(self.job.models.axes, nose_mm, context.tool_mm, feed);
-        if beside_mm > MOST_OF_TOLERANCE * self.job.options.tolerance_mm {
+/// What the nose takes of the tolerance under compensation, mm; `None` where no nose is led.
+///
+/// # Errors
+/// An inner arc that the nose does not fit into, and a nose that touches where another correction is needed.
+pub(crate) fn reserved_mm(
+    job: &Job<'_>,
+    modal: &Modal,
+    motion: &Motion,
+    block: &Block<'_>,
+    context: &Context,
+) -> Result<Option<f64>, Vec<Diagnostic>> {
+    let (Some(side), Motion::Feed(feed)) = (context.compensation, motion) else { return Ok(None) };
+    let Some(nose_mm) = nose_mm(job, modal) else { return Ok(None) };
+    let refuse = |message: String, label: &str, help: &str| {
+        Err(vec![Diagnostic::error(NOSE, message).at(block.file_range(), label).help(help)])
+    };
+    if let Shape::Arc(arc) = &feed.shape {
+        let [u, v, _] = arc.plane.axes();
+        let start = feed.start.linear_mm;
+        let arc_mm = units::math::hypot(start[u] - arc.centre_mm[0], start[v] - arc.centre_mm[1]);
+        // The centre lies on the side of the tool.
+        let inner = (arc.sweep_rad > 0.0) == (side == Side::Left);
+        if inner && arc_mm < nose_mm {
             return refuse(
-                format!(
-                    "the nose of {nose_mm} mm touches where the machine's error is up to {:.2} um another than at its tip",
-                    beside_mm * 1e3
-                ),
-                "too much of the tolerance to correct the tip's path for it",
-                "let the CAM write the tip's path, G40 in force, or accept more with `--tolerance`",
+                format!("an inner arc of {arc_mm:.3} mm, and the tool's nose has {nose_mm} mm"),
+                "the nose does not fit; controls stop here",
+                "take a tool with a smaller nose, or look whether G41 and G42 are swapped",
             );
         }
-        Ok(Some(beside_mm))
     }
+    let beside_mm = beside_mm(job.models.axes, nose_mm, context.tool_mm, feed);
+    if beside_mm > MOST_OF_TOLERANCE * job.options.tolerance_mm {
+        return refuse(
+            format!(
+                "the nose of {nose_mm} mm touches where the machine's error is up to {:.2} um another than at its tip",
+                beside_mm * 1e3
+            ),
+            "too much of the tolerance to correct the tip's path for it",
+            "let the CAM write the tip's path, G40 in force, or accept more with `--tolerance`",
+        );
+    }
+    Ok(Some(beside_mm))
 }

@@ -11,7 +11,7 @@ use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 use crate::feed;
 use crate::guards::Guarded;
 use crate::job::{Figures, Job};
-use crate::nose::nose_mm;
+use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{Notices, hole_skipped, refusal};
 use crate::words::{Editing, MotionCodes, Original, letters};
 
@@ -200,8 +200,8 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
         for motion in motions {
-            let nose = self.nose(motion, block, context)?;
-            info.reserved_mm = nose.unwrap_or_default();
+            let modal = self.state.interpreter.modal();
+            info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?.unwrap_or_default();
             let mut corrected = self
                 .state
                 .corrector

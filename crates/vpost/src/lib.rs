@@ -11,6 +11,7 @@ pub mod command_line;
 mod conditions;
 mod correct;
 pub mod diagnose;
+mod exit_status;
 mod expand;
 pub mod explain;
 pub mod export;
@@ -42,15 +43,9 @@ use std::process::ExitCode;
 
 use arguments::Color;
 use command_line::{Arguments, Command};
+use exit_status::{DONE, REFUSED, TRY_AGAIN, USAGE};
 use interrupt::Interrupt;
 use message::{Failure, Messages};
-
-/// Exit status: done; refused or a check failed; usage, profile or grammar error; interrupted.
-const DONE: u8 = 0;
-const REFUSED: u8 = 1;
-const USAGE: u8 = 2;
-/// Trying again may help: `EX_TEMPFAIL` of `sysexits.h`.
-const TRY_AGAIN: u8 = 75;
 
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

@@ -10,7 +10,7 @@
 //! Equation (17) of `docs/equations.md`. Both are sums over the axes, so [`Separable`] carries them. A unit tangent knows nothing of scale: a
 //! step that is 0.1 % too long has the same cosines as one that is right.
 
-use super::BuildError;
+use super::build_error::BuildError;
 use super::separable::Separable;
 use super::traverses::Traverses;
 use crate::{

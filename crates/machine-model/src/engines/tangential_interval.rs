@@ -7,7 +7,7 @@
 
 use nalgebra::Matrix3;
 
-use super::BuildError;
+use super::build_error::BuildError;
 use super::traverses::Traverses;
 use crate::solve::inside;
 use crate::{Command, Engine, EngineId, Move, PathModel, Solution, SolveError, Traverse, Vector, Volume};

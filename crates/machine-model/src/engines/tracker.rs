@@ -5,7 +5,7 @@
 //! (its angles) is not in three traverses and not in this engine; the tool vector adds without being
 //! turned.
 
-use super::BuildError;
+use super::build_error::BuildError;
 use super::separable::Separable;
 use super::traverses::Traverses;
 use crate::{

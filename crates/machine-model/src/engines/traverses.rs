@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::BuildError;
+use super::build_error::BuildError;
 use crate::{Interpolation, Range, Table, Traverse, Vector, Volume};
 
 /// Traverses of X, Y and Z, counted from their common origin.

@@ -6,7 +6,7 @@ use machine_model::Axis;
 use crate::codes::{CELL, COLUMN, QUESTION};
 use crate::refusal::Refusal;
 
-use super::{Content, File, Line, Origin, Series, Values, numbers, symbol};
+use super::file::{Content, File, Line, Origin, Series, Values, numbers, symbol};
 
 /// LinuxCNC: nominal, forward, reverse.
 pub(super) fn triplets(file: &File<'_>) -> Result<Series, Box<Refusal>> {

@@ -5,210 +5,19 @@
 //! product's own CSV. What such a file does not say (function, unit, sign) is asked.
 
 mod controls;
+mod file;
 mod renishaw;
 
-use std::ops::Range;
+pub use file::{Content, Origin, Series, SeriesReading, Told, Values, symbol};
+use file::{File, numbers};
 
-use diagnostic::{Code, Diagnostic};
 use machine_model::Axis;
 
-use crate::codes::{COLUMN, QUESTION, UNREADABLE};
-use crate::number::Mark;
-use crate::refusal::{Codes, Refusal, error};
+use crate::codes::COLUMN;
+use crate::refusal::{Codes, Refusal};
 use crate::sheet::{Kind, Sheet};
 use crate::text::decoded;
-use crate::unit::{MM, Quantity, RAD, Unit};
-
-/// What numbers of a control's table mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Values {
-    /// Where the axis really was (LinuxCNC COMP_FILE_TYPE = 0).
-    Positions,
-    /// Actual minus nominal.
-    Errors,
-    /// What the control adds: nominal minus actual (LinuxCNC COMP_FILE_TYPE = 1).
-    Corrections,
-}
-
-/// What kind of numbers a file holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// What an instrument read, from its own zero and against its own straightedge.
-    Instrument,
-    /// Functions of a control's model.
-    Control,
-    /// The same, at the carriage maybe (ISG).
-    ControlAtCarriage,
-}
-
-/// One reading of an error function.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SeriesReading {
-    /// Run, by any name.
-    pub run: String,
-    /// Target position of the axis, mm.
-    pub position_mm: f64,
-    /// Deviation, mm or rad.
-    pub value: f64,
-    /// Direction of approach: -1, +1, 0 where unknown.
-    pub direction: i8,
-    /// How warm it was, °C, where the file says it.
-    pub temperature_c: Option<f64>,
-}
-
-/// Readings of one error function.
-#[derive(Clone, Debug)]
-pub struct Series {
-    /// The axis that moved.
-    pub axis: Axis,
-    /// 0 to 5: EX EY EZ EA EB EC.
-    pub function: usize,
-    /// In the order of the file.
-    pub readings: Vec<SeriesReading>,
-    /// The file.
-    pub source: String,
-    /// What kind of numbers they are.
-    pub origin: Origin,
-}
-
-impl Series {
-    fn new(axis: Axis, function: usize, source: &str, origin: Origin) -> Self {
-        Self { axis, function, readings: Vec::new(), source: source.to_owned(), origin }
-    }
-
-    fn push(&mut self, run: &str, position_mm: f64, value: f64, direction: i8) {
-        let run = run.to_owned();
-        self.readings.push(SeriesReading { run, position_mm, value, direction, temperature_c: None });
-    }
-
-    /// `EXX`.
-    #[must_use]
-    pub fn name(&self) -> String {
-        format!("E{}{}", Axis::ALL[self.function], self.axis)
-    }
-
-    /// Further runs of the same function, from a file of their own.
-    pub fn append(&mut self, other: Self) {
-        let file = other.source;
-        let renamed = other.readings.into_iter();
-        self.readings.extend(renamed.map(|r| SeriesReading { run: format!("{file}:{}", r.run), ..r }));
-    }
-}
-
-/// What a file holds.
-#[derive(Clone, Debug, Default)]
-pub struct Content {
-    /// One for each error function.
-    pub series: Vec<Series>,
-    /// XY, ZX, YZ as the file has them, rad.
-    pub angles_rad: Option<[f64; 3]>,
-}
-
-impl From<Vec<Series>> for Content {
-    fn from(series: Vec<Series>) -> Self {
-        Self { series, angles_rad: None }
-    }
-}
-
-/// What a file may need to be told.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Told<'t> {
-    /// Function (0 to 5) and axis: `EXX` of `FILE=EXX:um`.
-    pub symbol: Option<(usize, Axis)>,
-    /// Unit of the deviations.
-    pub unit: Option<&'t str>,
-    /// What a control's numbers are.
-    pub values: Option<Values>,
-}
-
-/// `EXX`: function and axis.
-#[must_use]
-pub fn symbol(text: &str) -> Option<(usize, Axis)> {
-    let letters: Vec<char> = text.chars().collect();
-    let [error, direction, axis] = letters[..] else { return None };
-    let direction = Axis::from_letter(direction.to_ascii_uppercase())?;
-    let axis = Axis::from_letter(axis.to_ascii_uppercase()).filter(|a| a.is_linear())?;
-    error.eq_ignore_ascii_case(&'E').then_some((direction as usize, axis))
-}
-
-/// A file that is read.
-struct File<'f> {
-    name: &'f str,
-    text: &'f str,
-    told: Told<'f>,
-}
-
-/// A line that says something: its bytes' place, and what it says.
-#[derive(Clone)]
-struct Line<'f> {
-    span: Range<usize>,
-    text: &'f str,
-}
-
-impl<'f> File<'f> {
-    /// Lines that say something; `#` begins a comment.
-    fn lines(&self) -> impl Iterator<Item = Line<'f>> + Clone + use<'f> {
-        let mut at = 0;
-        let lines = self.text.split_inclusive('\n').map(move |line| {
-            let start = at + (line.len() - line.trim_start().len());
-            at += line.len();
-            let text = line.trim();
-            Line { span: start..start + text.len(), text }
-        });
-        lines.filter(|line| !line.text.is_empty())
-    }
-
-    fn refuse(&self, code: Code, span: Range<usize>, message: String, help: &str) -> Box<Refusal> {
-        Refusal::of(self.name, self.text, error(code, message, &span, "here", help))
-    }
-
-    fn damaged(&self, line: &Line<'_>, message: String) -> Box<Refusal> {
-        self.refuse(UNREADABLE, line.span.clone(), message, "the file is damaged; export it again")
-    }
-
-    fn question(&self, message: &str, help: String) -> Box<Refusal> {
-        Refusal::without_text(Diagnostic::error(QUESTION, format!("{} {message}", self.name)).help(help))
-    }
-
-    fn function(&self) -> Result<(usize, Axis), Box<Refusal>> {
-        self.told.symbol.ok_or_else(|| {
-            self.question(
-                "does not say which error function it holds",
-                format!("write `{}=EXX:um`: the standard's symbol and the unit of the deviations", self.name),
-            )
-        })
-    }
-
-    /// mm or rad per unit; `known`: the unit that the file says.
-    fn factor(&self, function: usize, known: Option<&str>) -> Result<f64, Box<Refusal>> {
-        let own = if function < 3 { MM } else { RAD };
-        let wanted = if own.quantity == Quantity::Length { "um, mm" } else { "urad, arcsec, um_per_mm, rad" };
-        let Some(unit) = self.told.unit.or(known) else {
-            return Err(self.question(
-                "does not say the unit of its deviations",
-                format!(
-                    "write it behind the symbol, as in `{}=EXX:um`; um or mm for lengths, urad, arcsec, um_per_mm or rad for angles",
-                    self.name
-                ),
-            ));
-        };
-        let found = Unit::named(unit, Some(own.quantity)).filter(|unit| unit.quantity == own.quantity);
-        let refusal = || {
-            let message = format!("{}: `{unit}` is no unit of this function", self.name);
-            Refusal::without_text(Diagnostic::error(QUESTION, message).help(format!("one of: {wanted}")))
-        };
-        Ok(found.ok_or_else(refusal)?.factor_to(own))
-    }
-
-    fn values(&self, options: &str) -> Result<Values, Box<Refusal>> {
-        self.told.values.ok_or_else(|| {
-            self.question(
-                "is a control's table: are its numbers what the axis did, or what the control adds?",
-                format!("add `--values {options}`"),
-            )
-        })
-    }
-}
+use crate::unit::{MM, RAD};
 
 /// Reads a file of an interferometer or a control; `ignore` are columns of the product's own CSV to pass over.
 ///
@@ -240,11 +49,6 @@ pub fn read(name: &str, bytes: &[u8], told: Told<'_>, ignore: &[String]) -> Resu
         return Ok(vec![renishaw::columns_of_runs(&file)?].into());
     }
     Ok(own_csv(name, bytes, ignore)?.into())
-}
-
-/// All words of a line as numbers.
-fn numbers(line: &str) -> Option<Vec<f64>> {
-    line.split([' ', '\t', ';', ',']).filter(|w| !w.is_empty()).map(|w| Mark::Point.number(w)).collect()
 }
 
 /// The product's own CSV: `position_mm`, functions with units, `run`, `dir`.

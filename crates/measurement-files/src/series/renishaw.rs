@@ -9,7 +9,7 @@ use crate::refusal::{Codes, Refusal};
 use crate::table::{Table, value};
 use crate::unit::{MM, Unit};
 
-use super::{File, Line, Origin, Series, numbers};
+use super::file::{File, Line, Origin, Series, numbers};
 
 /// One deviation: run, target (from 1), value, and where it stands.
 struct Deviation<'f> {

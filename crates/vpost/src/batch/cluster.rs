@@ -19,11 +19,11 @@ use super::shard::{self, Shard};
 use super::work::{self, Results};
 use super::{finish, has_place, interrupted, passed_over};
 use crate::arguments::Shared;
+use crate::exit_status::{REFUSED, TRY_AGAIN};
 use crate::file;
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
-use crate::{REFUSED, TRY_AGAIN};
 
 /// `vpost batch plan`
 pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Result<(), Failure> {

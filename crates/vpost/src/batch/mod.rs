@@ -22,8 +22,8 @@ use std::path::Path;
 pub use arguments::Batch;
 use arguments::BatchCommand;
 
-use crate::REFUSED;
 use crate::arguments::Shared;
+use crate::exit_status::REFUSED;
 use crate::file;
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};

@@ -6,7 +6,7 @@ use error_map::Nodes;
 use machine_model::{Command, Engine, PathModel, Vector};
 use machine_profile::Profile;
 
-use super::Budget;
+use super::arguments::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::figures::{printable, triple};
 use crate::file;

@@ -1,13 +1,13 @@
 //! `vpost budget`: what each deviation costs, what they may come to together, and what each may be.
 
+mod arguments;
 mod control_points;
 mod json;
 mod study;
 mod text;
 
-use std::path::PathBuf;
+pub use arguments::Budget;
 
-use clap::Args;
 use diagnostic::{Code, Diagnostic};
 use error_budget::Machine;
 use machine_model::EngineId;
@@ -17,40 +17,12 @@ use crate::conditions::{conditions, failure};
 use crate::message::{Failure, Messages, Report};
 use crate::roles::Roles;
 use crate::settings::machine;
-use crate::values::{Given, Lattice, Rotary, ToolVector};
 use crate::{file, profile};
 
 /// A machine without deviations has no budget.
 const NO_DEVIATIONS: Code = Code(917);
 /// Warning: the target cannot be reached while some deviations stay as they are.
 const OUT_OF_REACH: Code = Code(918);
-
-/// `vpost budget`
-#[derive(Debug, Args)]
-pub struct Budget {
-    /// Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each
-    /// (40:880:40,30:450:20,5:505:25).
-    #[arg(long, value_name = "NXxNYxNZ|X,Y,Z", default_value = "21x21x21", allow_hyphen_values = true)]
-    pub grid: Given<Lattice>,
-    /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.
-    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["grid", "rotary"])]
-    pub points: Option<PathBuf>,
-    /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
-    #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
-    pub tool_vector: Option<Given<ToolVector>>,
-    /// Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given.
-    #[arg(long, value_name = "A=DEG,…", allow_hyphen_values = true)]
-    pub rotary: Option<Given<Rotary>>,
-    /// Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be.
-    #[arg(long, value_name = "UM", allow_hyphen_values = true)]
-    pub target: Option<f64>,
-    /// Deviations that stay as they are while the others are made smaller: EXX,EC0Y (repeatable).
-    #[arg(long, value_name = "NAME,…", requires = "target")]
-    pub keep: Vec<String>,
-    /// Write all figures (JSON).
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-}
 
 /// `vpost budget -m PROFILE`
 pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {

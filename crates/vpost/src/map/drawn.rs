@@ -2,8 +2,7 @@
 
 use machine_model::{PathModel, Vector};
 
-use super::command;
-use super::options::Asked;
+use super::options::{Asked, command};
 use super::study::{Kind, Study, ZeroPoint};
 
 /// Places along each curve.

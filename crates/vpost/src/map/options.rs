@@ -4,7 +4,7 @@ use error_map::{Grid, Nodes, Plane};
 use machine_model::{Command, Range, Vector, Volume};
 use machine_profile::Profile;
 
-use super::Map;
+use super::arguments::Map;
 use crate::arguments::Shared;
 use crate::message::Failure;
 use crate::values::{Given, Lattice, Rotary, ToolVector};
@@ -21,6 +21,11 @@ pub(super) struct Asked {
     pub part_box_mm: Option<[Range; 3]>,
     pub clamp_mm: Option<Vector>,
     pub second_order: bool,
+}
+
+/// The state in which errors are asked for.
+pub(super) fn command(asked: &Asked, linear_mm: Vector, direction: [i8; 3]) -> Command {
+    Command { linear_mm, rotary_rad: asked.rotary_rad, tool_mm: asked.tool_mm, direction }
 }
 
 /// Reads the options.

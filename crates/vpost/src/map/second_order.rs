@@ -7,8 +7,7 @@ use machine_model::finite_rotations::{
 use machine_model::{Command, Vector};
 use machine_profile::Profile;
 
-use super::command;
-use super::options::Asked;
+use super::options::{Asked, command};
 use crate::message::Failure;
 
 /// Most nodes that are looked at: the errors of machines are smooth, and each costs 1296 compositions.
