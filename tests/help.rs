@@ -125,3 +125,31 @@ fn every_message_is_explained() {
     assert_eq!(unknown.status.code(), Some(2));
     assert!(messages(&unknown).contains("there is no message `VP9999`"));
 }
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let to = folder.path().join("new/man1");
+    let ran = run(&["man", "-O", to.to_str().expect("UTF-8")]);
+    assert!(ran.status.success() && ran.stdout.is_empty(), "{}", messages(&ran));
+    let mut pages = std::collections::BTreeMap::new();
+    for entry in std::fs::read_dir(&to).expect("made") {
+        let path = entry.expect("readable").path();
+        let name = path.file_stem().expect("a name").to_str().expect("UTF-8").to_owned();
+        pages.insert(name, std::fs::read_to_string(&path).expect("text"));
+    }
+    for command in COMMANDS {
+        let name = ["vpost"].into_iter().chain(command.split_whitespace()).collect::<Vec<_>>().join("-");
+        let page = pages.get(&name).unwrap_or_else(|| panic!("no page {name}"));
+        // The empty date must stay, or `man` shows the version in its place.
+        let title = format!(".TH \"{name}\" 1 \"\" \"vpost {}\"", env!("CARGO_PKG_VERSION"));
+        assert!(page.starts_with(&title), "{name}: {}", page.lines().next().unwrap_or_default());
+        // What the help lists, the page does: in roff a hyphen of an option is escaped.
+        for option in help(command).split_whitespace().filter(|word| word.starts_with("--")) {
+            let option = option.trim_end_matches([',', '.', ':', '`']).replace('-', "\\-");
+            assert!(page.contains(&option) || command.is_empty(), "{name}: {option}");
+        }
+    }
+    assert!(pages.len() > COMMANDS.len(), "{:?}", pages.keys());
+    assert_eq!(String::from_utf8(run(&["man"]).stdout).expect("text"), pages["vpost"]);
+}

@@ -8,7 +8,7 @@ use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::diagnose::Diagnose;
 use crate::explain::Explain;
-use crate::file;
+use crate::manual::Manual;
 use crate::map::Map;
 use crate::message::Failure;
 use crate::values::Unread;
@@ -64,8 +64,8 @@ pub enum Command {
     Explain(Explain),
     /// Completions for a shell.
     Completions(Completions),
-    /// The manual page (roff).
-    Man,
+    /// The manual pages (roff).
+    Man(Manual),
 }
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
@@ -205,20 +205,4 @@ pub(crate) fn unread(error: &clap::Error) -> Option<Failure> {
             Failure::option(format!("`{option} {given}`: {why}"), "see `--help` for what the option takes")
         }
     })
-}
-
-/// Prints completions.
-pub(crate) fn completions(arguments: &Completions) -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_complete::generate(arguments.shell, &mut command(), "vpost", &mut text);
-    file::print(&text)
-}
-
-/// Prints the manual page.
-pub(crate) fn man() -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_mangen::Man::new(command())
-        .render(&mut text)
-        .map_err(|error| Failure::file("standard output", "write", &error))?;
-    file::print(&text)
 }

@@ -20,6 +20,7 @@ mod file;
 mod grammar;
 mod growing;
 mod interrupt;
+pub mod manual;
 pub mod map;
 mod message;
 mod points;
@@ -84,8 +85,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
         Some(Command::Explain(a)) => explain::run(a),
-        Some(Command::Completions(a)) => command_line::completions(a),
-        Some(Command::Man) => command_line::man(),
+        Some(Command::Completions(a)) => manual::print_completions(a),
+        Some(Command::Man(a)) => manual::run(a),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
     };
     match result {
