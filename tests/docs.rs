@@ -597,3 +597,32 @@ fn every_engine_of_the_readme_exists() {
         assert!(known.contains(engine), "{engine} is not in: {known}");
     }
 }
+
+/// What a crate is compiled of must be packed with it: a published one has no clone around it.
+#[test]
+fn no_source_includes_what_lies_outside_its_crate() {
+    let mut folders = vec![root().join("crates")];
+    let (mut files, mut outside) = (0, Vec::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("readable") {
+            let path = entry.expect("readable").path();
+            if path.is_dir() && !path.is_symlink() && !path.ends_with("tests") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                files += 1;
+                let text = std::fs::read_to_string(&path).expect("text");
+                let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+                let includes = code.filter(|line| line.contains("include_") && line.contains("\"../"));
+                outside.extend(includes.map(|line| format!("{}: {}", path.display(), line.trim())));
+            }
+        }
+    }
+    assert!(files > 200, "{files} sources");
+    assert!(outside.is_empty(), "{outside:#?}");
+    // What is taken from above in a clone is inside too, once the crate is packed.
+    for link in ["crates/nc-dialect/grammars/fanuc.toml", "crates/vpost/diagnostics.md"] {
+        if cfg!(unix) {
+            assert!(read(link).len() > 1000, "{link}");
+        }
+    }
+}

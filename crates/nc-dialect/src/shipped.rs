@@ -8,15 +8,15 @@ use crate::load;
 
 /// Names and texts, in alphabetical order.
 pub(crate) const TEXTS: [(&str, &str); 9] = [
-    ("balt-system", include_str!("../../../grammars/balt-system.toml")),
-    ("centroid", include_str!("../../../grammars/centroid.toml")),
-    ("fanuc", include_str!("../../../grammars/fanuc.toml")),
-    ("fanuc-lathe", include_str!("../../../grammars/fanuc-lathe.toml")),
-    ("linuxcnc", include_str!("../../../grammars/linuxcnc.toml")),
-    ("linuxcnc-lathe", include_str!("../../../grammars/linuxcnc-lathe.toml")),
-    ("perspektiva", include_str!("../../../grammars/perspektiva.toml")),
-    ("sinumerik", include_str!("../../../grammars/sinumerik.toml")),
-    ("sinumerik-turn", include_str!("../../../grammars/sinumerik-turn.toml")),
+    ("balt-system", include_str!(concat!(env!("GRAMMARS"), "/balt-system.toml"))),
+    ("centroid", include_str!(concat!(env!("GRAMMARS"), "/centroid.toml"))),
+    ("fanuc", include_str!(concat!(env!("GRAMMARS"), "/fanuc.toml"))),
+    ("fanuc-lathe", include_str!(concat!(env!("GRAMMARS"), "/fanuc-lathe.toml"))),
+    ("linuxcnc", include_str!(concat!(env!("GRAMMARS"), "/linuxcnc.toml"))),
+    ("linuxcnc-lathe", include_str!(concat!(env!("GRAMMARS"), "/linuxcnc-lathe.toml"))),
+    ("perspektiva", include_str!(concat!(env!("GRAMMARS"), "/perspektiva.toml"))),
+    ("sinumerik", include_str!(concat!(env!("GRAMMARS"), "/sinumerik.toml"))),
+    ("sinumerik-turn", include_str!(concat!(env!("GRAMMARS"), "/sinumerik-turn.toml"))),
 ];
 
 static DIALECTS: LazyLock<Vec<Dialect>> = LazyLock::new(|| {

@@ -6,7 +6,7 @@ use crate::file;
 use crate::message::Failure;
 
 /// `docs/diagnostics.md`: an entry for each number.
-const PAGE: &str = include_str!("../../../docs/diagnostics.md");
+const PAGE: &str = include_str!(env!("DIAGNOSTICS_PAGE"));
 
 /// `vpost explain`
 #[derive(Debug, Args)]
