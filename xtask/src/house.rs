@@ -223,7 +223,7 @@ fn megabytes(folder: &Path) -> anyhow::Result<u64> {
     Ok(kilobytes / 1024)
 }
 
-fn text_of(command: &mut Command) -> anyhow::Result<String> {
+pub(crate) fn text_of(command: &mut Command) -> anyhow::Result<String> {
     let output = command.output().with_context(|| format!("{command:?} does not start"))?;
     if !output.status.success() {
         bail!("{command:?}: {}", String::from_utf8_lossy(&output.stderr));

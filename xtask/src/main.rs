@@ -3,6 +3,7 @@
 mod bench;
 mod calibration_samples;
 mod corpus;
+mod dist;
 mod engines;
 mod gap_bench;
 mod house;
@@ -41,6 +42,8 @@ enum Task {
     BenchBatch(bench::batch::Options),
     /// Correct LinuxCNC's samples or its test suite, judge each result twice, and write docs/corpus.md.
     Corpus(corpus::Options),
+    /// Pack what people install: an archive for a machine, a Debian package; needs the tools of docs/releasing.md.
+    Dist(dist::Options),
     /// Print docs/engines.md: the engines against one another.
     Engines,
     /// Diagnose machines with withheld effects and write docs/diagnosis-benchmark.md.
@@ -73,6 +76,7 @@ fn main() -> anyhow::Result<()> {
         Task::CalibrationSamples { folder } => calibration_samples::write(&folder)?,
         Task::BenchBatch(options) => bench::batch::run_all(&options)?,
         Task::Corpus(options) => corpus::run(&options)?,
+        Task::Dist(options) => dist::run(&options)?,
         Task::Engines => engines::page(),
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
