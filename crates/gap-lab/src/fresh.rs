@@ -49,13 +49,22 @@ impl Fresh {
     }
 
     /// The commands as points for `vpost predict`.
+    ///
+    /// With the angle of the table where the machine has one: what the linear axes do wrong is seen from a workpiece that it
+    /// has turned.
     #[must_use]
     pub fn points_csv(&self) -> String {
-        let mut text = String::from("x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,dir_x,dir_y,dir_z\n");
+        let table = self.machine.centre.is_some();
+        let mut text = String::from("x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,dir_x,dir_y,dir_z");
+        text.push_str(if table { ",c_deg\n" } else { "\n" });
         for row in &self.layout.rows {
             let ([x, y, z], [tx, ty, tz], [dx, dy, dz]) = (row.command, row.tool, row.approach);
-            writeln!(text, "{x:.4},{y:.4},{z:.4},{tx:.1},{ty:.1},{tz:.1},{dx:.0},{dy:.0},{dz:.0}")
+            write!(text, "{x:.4},{y:.4},{z:.4},{tx:.1},{ty:.1},{tz:.1},{dx:.0},{dy:.0},{dz:.0}")
                 .expect("writing to a string cannot fail");
+            if table {
+                write!(text, ",{:.3}", row.turn.to_degrees()).expect("writing to a string cannot fail");
+            }
+            text.push('\n');
         }
         text
     }
@@ -105,6 +114,23 @@ impl Fresh {
 #[cfg(test)]
 mod tests {
     use crate::{Kind, catalogue};
+
+    #[test]
+    fn points_of_a_turned_table_tell_its_angle() {
+        let list = catalogue(1200, 8);
+        let spec = list.iter().find(|s| s.kind == Kind::Rotary).unwrap();
+        let fresh = spec.build().fresh;
+        let points = fresh.points_csv();
+        let lines: Vec<Vec<&str>> = points.lines().map(|line| line.split(',').collect()).collect();
+        let angle = lines[0].iter().position(|head| *head == "c_deg").expect("a column of the table's angle");
+        for (line, row) in lines[1..].iter().zip(&fresh.layout.rows) {
+            assert!((line[angle].parse::<f64>().unwrap() - row.turn.to_degrees()).abs() < 1e-3);
+        }
+        assert!(
+            fresh.layout.rows.iter().any(|row| row.turn != 0.0),
+            "a table that stands still shows nothing"
+        );
+    }
 
     #[test]
     fn the_truth_explains_the_gap_down_to_the_noise() {
