@@ -162,34 +162,54 @@ pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
         .filter(|(s, _)| s.along[axis].abs() > 0.3)
         .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
         .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let count = points.len() as f64;
-    let total: f64 = points.iter().map(|p| p.1).sum();
-    let mut before = 0.0;
-    let mut best: Option<(f64, f64)> = None;
-    let mut asked = 0;
-    for (place, pair) in points.windows(2).enumerate() {
-        before += pair[0].1;
-        if pair[1].0 <= pair[0].0 {
-            continue;
-        }
-        asked += 1;
-        let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
-        // Square explained by two means instead of one.
-        let gap = before / n - (total - before) / m;
-        let power = gap * gap * n * m / count;
-        if best.is_none_or(|(_, p)| power > p) {
-            best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+    let mut jumps = Jumps::default();
+    jumps.look(&mut points, f64::MIN_POSITIVE);
+    jumps.largest()
+}
+
+/// Where the mean of some numbers changes most along a line.
+#[derive(Default)]
+struct Jumps {
+    /// The place so far, and the square it explains.
+    best: Option<(f64, f64)>,
+    asked: usize,
+}
+
+impl Jumps {
+    /// Looks between all neighbouring `points` (place, value) that are at least `apart` from each other; sorts them by place.
+    fn look(&mut self, points: &mut [(f64, f64)], apart: f64) {
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let count = points.len() as f64;
+        let total: f64 = points.iter().map(|p| p.1).sum();
+        let mut before = 0.0;
+        for (place, pair) in points.windows(2).enumerate() {
+            before += pair[0].1;
+            if pair[1].0 - pair[0].0 < apart {
+                continue;
+            }
+            self.asked += 1;
+            let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
+            // Square explained by two means instead of one.
+            let gap = before / n - (total - before) / m;
+            let power = gap * gap * n * m / count;
+            if self.best.is_none_or(|(_, p)| power > p) {
+                self.best = Some((0.5 * (pair[0].0 + pair[1].0), power));
+            }
         }
     }
-    best.map(|(time, _)| (time, asked))
+
+    /// The best place, and how many were looked at.
+    fn largest(self) -> Option<(f64, usize)> {
+        self.best.map(|(place, _)| (place, self.asked))
+    }
 }
 
 /// The place of an axis at which the residual of one other component jumps most, and how many were looked at.
 #[must_use]
 pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> Option<(f64, usize)> {
-    let mut best: Option<(f64, f64)> = None;
-    let mut asked = 0;
+    /// Places closer than this are one, mm.
+    const APART_MM: f64 = 1e-3;
+    let mut jumps = Jumps::default();
     for class in (0..3).filter(|class| *class != axis) {
         let mut points: Vec<(f64, f64)> = thinned(source.scalars)
             .into_iter()
@@ -199,25 +219,9 @@ pub(crate) fn joint(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
                 (source.rows[s.row].command.linear_mm[axis], residuals_um[i] * s.along[class])
             })
             .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let count = points.len() as f64;
-        let total: f64 = points.iter().map(|p| p.1).sum();
-        let mut before = 0.0;
-        for (place, pair) in points.windows(2).enumerate() {
-            before += pair[0].1;
-            if pair[1].0 - pair[0].0 < 1e-3 {
-                continue;
-            }
-            asked += 1;
-            let (n, m) = (place as f64 + 1.0, count - place as f64 - 1.0);
-            let gap = before / n - (total - before) / m;
-            let power = gap * gap * n * m / count;
-            if best.is_none_or(|(_, p)| power > p) {
-                best = Some((0.5 * (pair[0].0 + pair[1].0), power));
-            }
-        }
+        jumps.look(&mut points, APART_MM);
     }
-    best.map(|(place, _)| (place, asked))
+    jumps.largest()
 }
 
 /// Place and width where a bump along one axis explains most of the residual, all components together; how many
@@ -284,4 +288,52 @@ fn is_strobed(steps_mm: &[f64], pitch_mm: f64) -> bool {
         (all + 1, slow + i32::from((phase - phase.round()).abs() < 0.12))
     });
     all > 8 && 10 * slow > 8 * all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_jump_lies_between_the_places_where_the_mean_changes() {
+        // Out of order, two readings at one place: none lies between those.
+        let mut points = vec![(5.0, 3.0), (1.0, 0.0), (3.0, 0.1), (2.0, -0.1), (4.0, 2.9), (4.0, 3.1)];
+        let mut jumps = Jumps::default();
+        jumps.look(&mut points, f64::MIN_POSITIVE);
+        assert_eq!(jumps.largest(), Some((3.5, 4)));
+    }
+
+    #[test]
+    fn the_larger_of_two_components_jumps_counts_and_both_were_asked() {
+        let mut jumps = Jumps::default();
+        jumps.look(&mut [(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)], 1e-3);
+        jumps.look(&mut [(0.0, 0.0), (1.0, 5.0), (1.0005, 5.0)], 1e-3);
+        assert_eq!(jumps.largest(), Some((0.5, 3)));
+        assert_eq!(Jumps::default().largest(), None);
+    }
+
+    #[test]
+    fn power_is_the_square_that_the_wave_explains() {
+        let wave = |q: f64, pitch: f64| math::sin(std::f64::consts::TAU * q / pitch);
+        let places: Vec<Place> = (0..200)
+            .map(|k| f64::from(k) * 0.7)
+            .map(|q| Place { position_mm: q, count: 1.0, sum_um: 2.0 + 3.0 * wave(q, 10.0) })
+            .collect();
+        let mean = places.iter().map(|p| p.sum_um).sum::<f64>() / 200.0;
+        let square: f64 = places.iter().map(|p| (p.sum_um - mean) * (p.sum_um - mean)).sum();
+        assert!((power(&places, 10.0) / square - 1.0).abs() < 1e-9);
+        assert!(power(&places, 7.3) < 0.05 * square);
+        // A period on which every place stands alike has no sine to speak of.
+        let strobed: Vec<Place> =
+            (0..50).map(|k| Place { position_mm: 10.0 * f64::from(k), count: 1.0, sum_um: 1.0 }).collect();
+        assert_eq!(power(&strobed, 10.0), 0.0);
+    }
+
+    #[test]
+    fn steps_of_whole_periods_are_strobed() {
+        assert!(is_strobed(&[20.0; 12], 10.0));
+        assert!(!is_strobed(&[23.0; 12], 10.0));
+        assert!(!is_strobed(&[20.0; 8], 10.0), "too few steps to tell");
+        assert!(!is_strobed(&[1.0; 100], 10.0), "steps below half a period see the wave");
+    }
 }
