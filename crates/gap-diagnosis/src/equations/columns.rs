@@ -3,6 +3,8 @@
 //! Most columns are functions of where one axis stands and from which side it came there. An axis stands at far fewer
 //! places than there are rows, so such a column is evaluated once per place and looked up from then on.
 
+use std::rc::Rc;
+
 use machine_model::effects::EffectGeometry;
 use machine_model::{Command, Vector};
 
@@ -55,6 +57,12 @@ pub(crate) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
+    /// Columns that are ready, the first ones there are.
+    #[must_use]
+    pub(crate) fn of(columns: Vec<Column<'a>>) -> Self {
+        Self { columns, ..Self::default() }
+    }
+
     /// All columns: those that were kept and those behind them.
     pub(crate) fn columns(&mut self, terms: &[Term], source: &Source<'a>) -> &[Column<'a>] {
         let new = terms.iter().skip(self.columns.len()).map(|term| Column::new(term, source));
@@ -130,8 +138,27 @@ impl AxisPlaces {
 pub(crate) struct Column<'a> {
     term: Term,
     source: Source<'a>,
-    /// The axis whose places it depends on, and its displacement at each.
-    table: Option<(&'a AxisPlaces, Vec<Vector>)>,
+    table: Option<Table<'a>>,
+}
+
+/// What a column displaces, looked up.
+#[derive(Clone, Debug)]
+struct Table<'a> {
+    /// Places of the axis that the column depends on; without them there is one entry per row.
+    places: Option<&'a AxisPlaces>,
+    displaced_um: Rc<[Vector]>,
+}
+
+impl Table<'_> {
+    fn at(&self, row: usize) -> &Vector {
+        &self.displaced_um[self.places.map_or(row, |places| places.of_row[row] as usize)]
+    }
+
+    /// What an equation sees.
+    fn value(&self, scalar: &Scalar) -> f64 {
+        let displaced = self.at(scalar.row);
+        if scalar.class < 3 { displaced[scalar.class] } else { scalar.along.dot(displaced) }
+    }
 }
 
 impl<'a> Column<'a> {
@@ -140,9 +167,49 @@ impl<'a> Column<'a> {
         let axis = source.places.zip(term.axis()).map(|(places, axis)| &places.axes[axis]);
         let table = axis.filter(|axis| !axis.examples.is_empty()).map(|axis| {
             let at = |row: &usize| term.displacement_um(&source.rows[*row], source.geometry);
-            (axis, axis.examples.iter().map(at).collect())
+            Table { places: Some(axis), displaced_um: axis.examples.iter().map(at).collect() }
         });
         Self { term: *term, source: *source, table }
+    }
+
+    /// The same with a table by row where the places make none: for the few columns of a model, which every component of a
+    /// row and several samples of the equations ask for. Not where only few rows are looked at.
+    #[must_use]
+    pub(crate) fn tabulated(term: &Term, source: &Source<'a>) -> Self {
+        let mut column = Self::new(term, source);
+        let few = 2 * source.scalars.len() < source.rows.len();
+        // The bar's length is no displacement.
+        if column.table.is_none() && !few && *term != Term::BarLength {
+            let all = source.rows.iter().map(|row| term.displacement_um(row, source.geometry));
+            column.table = Some(Table { places: None, displaced_um: all.collect() });
+        }
+        column
+    }
+
+    /// The same column at other equations of the same rows.
+    #[must_use]
+    pub(crate) fn among<'b>(&self, source: Source<'b>) -> Column<'b>
+    where
+        'a: 'b,
+    {
+        Column { term: self.term, source, table: self.table.clone() }
+    }
+
+    /// What the column is.
+    #[must_use]
+    pub(crate) fn term(&self) -> Term {
+        self.term
+    }
+
+    /// Adds so many times what every equation sees of the column.
+    pub(crate) fn add_to(&self, factor: f64, sums: &mut [f64]) {
+        let scalars = self.source.scalars;
+        match &self.table {
+            Some(table) => {
+                sums.iter_mut().zip(scalars).for_each(|(sum, scalar)| *sum += factor * table.value(scalar));
+            }
+            None => sums.iter_mut().enumerate().for_each(|(i, sum)| *sum += factor * self.value(i)),
+        }
     }
 
     /// What an equation sees of the column.
@@ -151,10 +218,7 @@ impl<'a> Column<'a> {
         let scalar = &self.source.scalars[equation];
         match &self.table {
             None => self.term.value(scalar, &self.source.rows[scalar.row], self.source.geometry),
-            Some((places, table)) => {
-                let displaced = &table[places.of_row[scalar.row] as usize];
-                if scalar.class < 3 { displaced[scalar.class] } else { scalar.along.dot(displaced) }
-            }
+            Some(table) => table.value(scalar),
         }
     }
 
@@ -163,8 +227,8 @@ impl<'a> Column<'a> {
         let scalars = self.source.scalars;
         let all = values.iter_mut().zip(equations).zip(roots);
         match (&self.table, equations.first().map(|i| scalars[*i].class)) {
-            (Some((places, table)), Some(class @ 0..=2)) => all.for_each(|((value, i), root)| {
-                *value = root * table[places.of_row[scalars[*i].row] as usize][class];
+            (Some(table), Some(class @ 0..=2)) => all.for_each(|((value, i), root)| {
+                *value = root * table.at(scalars[*i].row)[class];
             }),
             _ => all.for_each(|((value, i), root)| *value = root * self.value(*i)),
         }

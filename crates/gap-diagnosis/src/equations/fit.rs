@@ -32,8 +32,14 @@ impl Gram {
     /// The products of some columns only.
     #[must_use]
     pub(crate) fn select(&self, columns: &[usize]) -> Self {
+        self.towards(columns, self.terms.len())
+    }
+
+    /// The products of some columns with another one in the place of the gap.
+    #[must_use]
+    pub(crate) fn towards(&self, columns: &[usize], target: usize) -> Self {
         let mut all = columns.to_vec();
-        all.push(self.terms.len());
+        all.push(target);
         Self {
             terms: columns.iter().map(|c| self.terms[*c]).collect(),
             products: DMatrix::from_fn(all.len(), all.len(), |i, j| self.products[(all[i], all[j])]),
@@ -101,7 +107,8 @@ impl Gram {
     }
 
     /// Best linear unbiased prediction of the run offsets, µm.
-    fn offsets(&self, rho: f64, coefficients: &[f64]) -> Vec<Vector> {
+    #[must_use]
+    pub(crate) fn offsets(&self, rho: f64, coefficients: &[f64]) -> Vec<Vector> {
         let count = self.terms.len();
         self.run_products
             .iter()
@@ -159,15 +166,10 @@ impl Gram {
 /// Gap minus columns, µm, without run offsets.
 #[must_use]
 pub(crate) fn residuals(terms: &[Term], coefficients: &[f64], source: &Source<'_>) -> Vec<f64> {
-    let used: Vec<(Column<'_>, f64)> = terms
-        .iter()
-        .zip(coefficients)
-        .filter(|(_, v)| **v != 0.0)
-        .map(|(term, v)| (Column::new(term, source), *v))
-        .collect();
-    let left = source.scalars.iter().enumerate().map(|(equation, s)| {
-        let fitted: f64 = used.iter().map(|(column, v)| v * column.value(equation)).sum();
-        s.gap_um - fitted
-    });
-    left.collect()
+    let mut fitted = vec![0.0; source.scalars.len()];
+    // One column after the other: the table of a column is large, and gone before the next one is made.
+    for (term, v) in terms.iter().zip(coefficients).filter(|(_, v)| **v != 0.0) {
+        Column::tabulated(term, source).add_to(*v, &mut fitted);
+    }
+    source.scalars.iter().zip(fitted).map(|(s, fitted)| s.gap_um - fitted).collect()
 }

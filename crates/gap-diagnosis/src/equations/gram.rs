@@ -8,7 +8,7 @@
 use machine_model::Vector;
 use nalgebra::{DMatrix, Matrix3};
 
-use crate::equations::columns::{Kept, Source};
+use crate::equations::columns::{Column, Kept, Source};
 use crate::equations::term::Term;
 use crate::equations::tile::{CHUNK, Tiles};
 
@@ -31,6 +31,20 @@ impl Gram {
     /// All products of `terms`.
     #[must_use]
     pub(crate) fn new(terms: Vec<Term>, source: &Source<'_>) -> Self {
+        let mut gram = Self::without_columns(source);
+        gram.extend(terms, source);
+        gram
+    }
+
+    /// All products of columns that are ready.
+    #[must_use]
+    pub(crate) fn of(columns: Vec<Column<'_>>, source: &Source<'_>) -> Self {
+        let mut gram = Self::without_columns(source);
+        gram.extend_keeping(columns.iter().map(Column::term).collect(), source, &mut Kept::of(columns));
+        gram
+    }
+
+    fn without_columns(source: &Source<'_>) -> Self {
         let mut gram = Self {
             terms: Vec::new(),
             products: DMatrix::zeros(1, 1),
@@ -46,16 +60,20 @@ impl Gram {
                 gram.run_products[run][(c, 0)] += scalar.weight * scalar.along[c] * scalar.gap_um;
             }
         }
-        gram.extend(terms, source);
         gram
     }
 
     /// Adds columns with all their products.
     pub(crate) fn extend(&mut self, new: Vec<Term>, source: &Source<'_>) {
+        self.extend_keeping(new, source, &mut Kept::default());
+    }
+
+    /// The same with what is known of the columns.
+    fn extend_keeping<'a>(&mut self, new: Vec<Term>, source: &Source<'a>, kept: &mut Kept<'a>) {
         let first = self.terms.len();
         self.widen(new, 0.0);
         let order: Vec<usize> = (0..self.terms.len()).collect();
-        self.add_products(&order, first, source, &mut Kept::default(), |shown, tiles| {
+        self.add_products(&order, first, source, kept, |shown, tiles| {
             let (new, gap) = (shown.partition_point(|i| *i < first), shown.len());
             tiles.want(new..gap, 0..new);
             tiles.want_with_later(new..gap, gap + 1);

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::equations::columns::Source;
+use crate::equations::columns::{Column, Source};
 use crate::equations::gram::Gram;
 use crate::equations::linear::Factor;
 use crate::equations::observation::Scalar;
@@ -47,12 +47,12 @@ impl Folds {
         for (scalar, fold) in source.scalars.iter().zip(&names) {
             parts[*fold].push(*scalar);
         }
+        let columns: Vec<Column<'_>> = terms.iter().map(|term| Column::tabulated(term, source)).collect();
         let whitened: Vec<DMatrix<f64>> = parts
             .iter()
             .map(|scalars| {
-                // Few equations each: nothing to look up.
-                let part = Source { scalars, places: None, ..*source };
-                Gram::new(terms.to_vec(), &part).whitened(rho).0
+                let part = Source { scalars, ..*source };
+                Gram::of(columns.iter().map(|c| c.among(part)).collect(), &part).whitened(rho).0
             })
             .collect();
         let size = terms.len() + 1;

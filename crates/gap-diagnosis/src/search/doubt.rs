@@ -193,19 +193,28 @@ pub(crate) fn inflations(
     phi: f64,
     source: &Source<'_>,
 ) -> Vec<f64> {
-    let of = |term: &Term| {
-        let column = Column::new(term, source);
-        let alone: Vec<Scalar> = source
-            .scalars
-            .iter()
-            .enumerate()
-            .map(|(i, s)| Scalar { gap_um: column.value(i), ..*s })
+    let scalars = source.scalars;
+    let all: Vec<Column<'_>> =
+        beside.iter().chain(columns).map(|term| Column::tabulated(term, source)).collect();
+    let (others, own) = all.split_at(beside.len());
+    let gram = Gram::of(all.clone(), source);
+    let places: Vec<usize> = (0..others.len()).collect();
+    let of = |(nth, column): (usize, &Column<'_>)| {
+        let fit = gram.towards(&places, others.len() + nth);
+        let coefficients = fit.coefficients(rho);
+        let offsets = fit.offsets(rho, &coefficients);
+        let mut fitted = vec![0.0; scalars.len()];
+        let used = others.iter().zip(&coefficients).filter(|(_, v)| **v != 0.0);
+        used.for_each(|(other, v)| other.add_to(*v, &mut fitted));
+        let left: Vec<f64> = (0..scalars.len())
+            .map(|i| {
+                let offset = scalars[i].along.dot(&offsets[source.rows[scalars[i].row].run]);
+                column.value(i) - fitted[i] - offset
+            })
             .collect();
-        let source = Source { scalars: &alone, ..*source };
-        let left = Gram::new(beside.to_vec(), &source).solve(rho, &source).residuals_um;
-        inflation(source.rows, &alone, &left, phi)
+        inflation(source.rows, scalars, &left, phi)
     };
-    columns.iter().map(of).collect()
+    own.iter().enumerate().map(of).collect()
 }
 
 /// True where most runs see an area or a volume, so that a turned run shows and is not taken for a slope of one line.
