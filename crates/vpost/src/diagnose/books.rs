@@ -28,6 +28,8 @@ pub(super) struct Slip {
 struct Trial {
     words: String,
     column: &'static str,
+    /// The linear axes were elsewhere than the file says.
+    moves: bool,
     undo: Box<dyn Fn(&mut Row)>,
 }
 
@@ -45,7 +47,11 @@ pub(super) fn slip<E>(
     }
     let before_um = gap_rms_um(data);
     let mut best: Option<Slip> = None;
-    for Trial { words, column, undo } in trials(work_offsets) {
+    // Where a rotary axis turns, one that is beside its place looks like an offset, and so do two linear axes exchanged
+    // that stand at few places.
+    let turns = data.rows.windows(2).any(|pair| pair[0].command.rotary_rad != pair[1].command.rotary_rad);
+    for Trial { words, column, undo, .. } in trials(work_offsets).into_iter().filter(|t| !(turns && t.moves))
+    {
         let mut other = data.clone();
         let fits = other.rows.iter_mut().all(|row| {
             undo(row);
@@ -59,8 +65,6 @@ pub(super) fn slip<E>(
             best = Some(Slip { words, column, before_um, after_um });
         }
     }
-    // Where a rotary axis turns, one that is beside its place looks like an offset.
-    let turns = data.rows.windows(2).any(|pair| pair[0].command.rotary_rad != pair[1].command.rotary_rad);
     best.or_else(|| if turns { None } else { offset_left_in(data, travel_mm, before_um, &predict) })
 }
 
@@ -138,7 +142,8 @@ fn trials(work_offsets: &[(String, [f64; 3])]) -> Vec<Trial> {
     const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
     let mut all: Vec<Trial> = Vec::new();
     let mut trial = |words: String, column: &'static str, undo: Box<dyn Fn(&mut Row)>| {
-        all.push(Trial { words, column, undo });
+        let moves = COMMANDS.contains(&column);
+        all.push(Trial { words, column, moves, undo });
     };
     for (component, column) in READINGS.into_iter().enumerate() {
         let words = format!("the sign of {column} is flipped");
@@ -183,5 +188,21 @@ fn trials(work_offsets: &[(String, [f64; 3])]) -> Vec<Trial> {
 fn read(row: &mut Row, change: impl Fn(&mut [Option<f64>; 3])) {
     if let Reading::Displacement(components) = &mut row.reading {
         change(components);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_slips_of_the_linear_commands_move_the_axes() {
+        let moved: Vec<String> = trials(&[("G54".to_owned(), [10.0, 0.0, 0.0])])
+            .into_iter()
+            .filter(|t| t.moves)
+            .map(|t| t.words)
+            .collect();
+        assert_eq!(moved.len(), 5, "{moved:?}");
+        assert!(moved.iter().all(|words| words.contains("_mm") || words.contains("G54")), "{moved:?}");
     }
 }
