@@ -141,10 +141,9 @@ impl Corrected {
 pub struct Correction {
     /// Largest distance between programmed and corrected command at an end of a piece, mm.
     pub largest_mm: f64,
-    /// Proven bound of the path deviation without correction, mm; 0 for rapids, and where it was not computed
-    /// since it cannot exceed that of an earlier motion.
+    /// Proven upper bound of the path deviation without correction, mm; 0 for rapids.
     pub before_mm: f64,
-    /// Proven bound of the path deviation, mm; 0 as for `before_mm`.
+    /// Proven upper bound of the path deviation, mm: what the cheapest proof says; 0 for rapids.
     pub after_mm: f64,
     /// A rapid ended outside the volume and took the nearest point's correction.
     pub clamped: bool,
@@ -184,8 +183,6 @@ pub struct Corrector<'m> {
     pub(crate) remembered: Option<crate::hole::Remembered>,
     /// What the model does anywhere, for the tool vector and the rotary axes in force.
     pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Arc<Everywhere>>)>,
-    /// The largest bounds that any motion so far was told with: before and after, mm.
-    pub(crate) told_mm: [f64; 2],
 }
 
 /// Which axes a block of output may have words for, and how.
@@ -240,7 +237,6 @@ impl<'m> Corrector<'m> {
             expanding: false,
             remembered: None,
             everywhere: None,
-            told_mm: [0.0; 2],
         }
     }
 
@@ -286,9 +282,7 @@ impl<'m> Corrector<'m> {
             Motion::Uncorrected { .. } => {}
         }
         self.approached = None;
-        let corrected = self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))?;
-        self.tell(&corrected.correction);
-        Ok(corrected)
+        self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
     }
 
     /// From here on X, Y and Z are something else. Where they still say the same, the motions tell.
@@ -308,12 +302,6 @@ impl<'m> Corrector<'m> {
                 CorrectionError::TurnedFrame { distance_um, tolerance_um }
             }
             other => other,
-        }
-    }
-
-    pub(crate) fn tell(&mut self, correction: &Correction) {
-        for (told, bound) in self.told_mm.iter_mut().zip([correction.before_mm, correction.after_mm]) {
-            *told = told.max(bound);
         }
     }
 
@@ -362,7 +350,6 @@ impl<'m> Corrector<'m> {
             model: self.model,
             state: self.state(block, rotary_deg),
             everywhere: self.everywhere.as_ref().and_then(|known| known.2.clone()),
-            told_mm: self.told_mm[1],
             turns: false,
         }
     }
@@ -423,6 +410,11 @@ impl<'m> Corrector<'m> {
             (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(state, nominal)),
             (Err(error), _) => Err(error.into()),
         }
+    }
+
+    /// How far the corrected command for a place is from it, mm, where it was found before.
+    fn correction_mm(&self, state: &Command, nominal: Vector) -> Option<f64> {
+        self.found(state, nominal).map(|answer| (answer - nominal).norm())
     }
 
     /// Solves places together that [`Self::solve`] will be asked for, where the model does that.
@@ -552,17 +544,6 @@ impl<'m> Corrector<'m> {
         words
     }
 
-    /// Bounds that earlier motions were told with, before and after, mm: smaller ones need not be worked out.
-    pub fn set_told_mm(&mut self, told_mm: [f64; 2]) {
-        self.told_mm = told_mm;
-    }
-
-    /// The bounds of [`Corrector::set_told_mm`], and those told since.
-    #[must_use]
-    pub const fn told_mm(&self) -> [f64; 2] {
-        self.told_mm
-    }
-
     /// True where every further motion would be corrected alike.
     #[must_use]
     pub fn continues_as(&self, other: &Self) -> bool {
@@ -582,7 +563,6 @@ impl<'m> Corrector<'m> {
             approached: _,
             known: _,
             everywhere: _,
-            told_mm: _,
         } = self;
         *standing == other.standing
             && *kinematics == other.kinematics
@@ -633,6 +613,7 @@ impl<'m> Corrector<'m> {
             in_step: turns,
             division: feed.division,
         };
+        let start_mm = self.correction_mm(&self.state(block, feed.start.rotary_deg), whole.at(0.0));
         let parts = self.monotone_parts(&whole);
         let alone = parts.len() == 1;
         if feed.division == Division::One && !alone {
@@ -690,11 +671,10 @@ impl<'m> Corrector<'m> {
                 self.before_turning_mm(&whole, &self.state(block, feed.end.rotary_deg));
             return Ok(corrected);
         }
-        let (rotary_deg, largest_mm) = (feed.end.rotary_deg, corrected.correction.largest_mm);
-        corrected.correction.before_mm = match at_quarters_mm {
-            Some(mm) => self.before_arc_mm(&whole, block, rotary_deg, largest_mm, mm),
-            None => self.before_mm(&whole, block, rotary_deg, largest_mm),
-        };
+        let at_ends_mm = start_mm.map(|mm| mm.max(corrected.correction.largest_mm));
+        let by_quarters = at_quarters_mm.and_then(|mm| self.before_by_quarters_mm(&whole, mm));
+        corrected.correction.before_mm = by_quarters
+            .unwrap_or_else(|| self.before_mm(&whole, &self.state(block, feed.end.rotary_deg), at_ends_mm));
         Ok(corrected)
     }
 

@@ -28,8 +28,6 @@ pub(crate) struct Machine<'m> {
     pub(crate) state: Command,
     /// What holds for that state in the whole volume, where the model says so.
     pub(crate) everywhere: Option<Arc<Everywhere>>,
-    /// A bound up to this need not be worked out exactly, mm: an earlier motion was told with it.
-    pub(crate) told_mm: f64,
     /// Rotary axes turn on the motion's way; those of the state stand where the next piece begins.
     pub(crate) turns: bool,
 }
@@ -304,7 +302,7 @@ impl Pair<'_> {
             && !self.commanded.is_steep_spiral()
         {
             let cheap = self.between(a, b, everywhere.chord_bound_of_curve_mm(speed_mm, acceleration_mm));
-            if cheap <= machine.told_mm {
+            if cheap <= limit_mm {
                 return cheap;
             }
         }
@@ -375,19 +373,8 @@ impl Pair<'_> {
             solved.map_or(ByCommands::Open, |solved| self.by_commands(machine, solved, enclosed, limit_mm));
         match known {
             ByCommands::Beyond { s, distance_mm } => Verdict::Beyond { s, distance_mm },
-            ByCommands::Within(bound) => self.proven(machine, bound, limit_mm),
+            ByCommands::Within(bound) => Verdict::Within(bound),
             ByCommands::Open => self.verdict(machine, limit_mm),
-        }
-    }
-
-    /// The verdict where a bound within the limit is known: the summary may have to tell the better one.
-    fn proven(&self, machine: &Machine<'_>, bound: f64, limit_mm: f64) -> Verdict {
-        if bound <= machine.told_mm {
-            return Verdict::Within(bound);
-        }
-        match self.verdict(machine, limit_mm) {
-            Verdict::Within(own) => Verdict::Within(own.min(bound)),
-            Verdict::Beyond { .. } => Verdict::Within(bound),
         }
     }
 
@@ -433,7 +420,7 @@ impl Pair<'_> {
         };
         if let Some(enclosed) = enclosed.filter(|enclosed| enclosed.holds(machine, &extent)) {
             let bound = bound(enclosed.leaves_chord_mm);
-            if bound <= limit_mm && bound <= machine.told_mm {
+            if bound <= limit_mm {
                 return ByCommands::Within(bound);
             }
         }
@@ -450,7 +437,7 @@ impl Pair<'_> {
         limit_mm: f64,
     ) -> Verdict {
         match solved.and_then(|solved| self.line_by_commands(machine, solved)) {
-            Some(bound) if bound <= limit_mm => self.proven(machine, bound, limit_mm),
+            Some(bound) if bound <= limit_mm => Verdict::Within(bound),
             _ => self.verdict(machine, limit_mm),
         }
     }
@@ -584,7 +571,7 @@ mod tests {
     use super::*;
     use crate::testing::machine;
 
-    /// The machine with a tool, with all told that there is to tell.
+    /// The machine with a tool.
     fn with_tool(model: &dyn PathModel) -> Machine<'_> {
         let state = Command {
             linear_mm: Vector::zeros(),
@@ -592,13 +579,7 @@ mod tests {
             tool_mm: Vector::new(3.0, -5.0, -120.0),
             direction: [0; 3],
         };
-        Machine {
-            model,
-            state,
-            everywhere: model.everywhere(&state).map(Arc::new),
-            told_mm: f64::INFINITY,
-            turns: false,
-        }
+        Machine { model, state, everywhere: model.everywhere(&state).map(Arc::new), turns: false }
     }
 
     /// The largest distance found at many places.

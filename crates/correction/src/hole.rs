@@ -165,9 +165,9 @@ impl<'m> Corrector<'m> {
             largest_mm: (top - at_r).norm().max((bottom - at_bottom).norm()),
             ..Correction::default()
         };
-        if self.error_before_mm(correction.largest_mm) > self.told_mm[0] {
-            correction.before_mm = machine.error(at_r).norm().max(machine.error(at_bottom).norm());
-        }
+        correction.before_mm = self
+            .error_before_mm(correction.largest_mm)
+            .unwrap_or_else(|| machine.error(at_r).norm().max(machine.error(at_bottom).norm()));
         // Afterwards the axis has come back out of the hole.
         let out = match (self.standing[normal], &kept) {
             (Some(end), Some(kept)) if flat => heading(kept.r_mm, end, down),
@@ -181,18 +181,17 @@ impl<'m> Corrector<'m> {
             self.over_the_hole(&machine.state, kept.commanded.at(0.0), (!flat).then_some(normal));
             let pair =
                 Pair { wanted: &kept.wanted, commanded: &kept.commanded, in_step: false, begun: Begun::No };
-            let verdict = kept.verdict(&machine, limit_mm);
-            match self.verdict_with_play(&machine, &pair, verdict, limit_mm) {
+            let verdict = |machine: &Machine<'_>, limit_mm| {
+                self.verdict_with_play(machine, &pair, kept.verdict(machine, limit_mm), limit_mm)
+            };
+            match verdict(&machine, limit_mm) {
                 Verdict::Within(bound) => correction.after_mm = bound,
                 Verdict::Beyond { distance_mm, .. } => {
                     // What is said of it is a bound, not the place that was beyond; the least of some limits that holds.
-                    let all = Machine { told_mm: 0.0, ..machine.clone() };
-                    let bound = |factor: f64| {
-                        let limit_mm = distance_mm * factor;
-                        match self.verdict_with_play(&all, &pair, kept.verdict(&all, limit_mm), limit_mm) {
-                            Verdict::Within(bound_mm) => Some(bound_mm),
-                            Verdict::Beyond { .. } => None,
-                        }
+                    let all = Machine { everywhere: None, ..machine.clone() };
+                    let bound = |factor: f64| match verdict(&all, distance_mm * factor) {
+                        Verdict::Within(bound_mm) => Some(bound_mm),
+                        Verdict::Beyond { .. } => None,
                     };
                     let most_mm = [1.01, 1.1, 1.25, 1.5, 2.0, 3.0, f64::INFINITY].into_iter().find_map(bound);
                     let most_mm = most_mm.unwrap_or(distance_mm).max(distance_mm);

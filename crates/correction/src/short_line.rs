@@ -2,8 +2,7 @@
 //!
 //! What is written is what [`crate::line`] would write, word for word: the same answer of the model, rounded the same
 //! way. Only the proof is shorter: bounds that hold everywhere in the volume are looked up instead of being
-//! worked out for this stretch. Where they do not suffice, or a figure of the summary could depend on the exact
-//! bound, the long way is taken.
+//! worked out for this stretch. Where they do not suffice the long way is taken.
 
 use std::array::from_fn;
 use std::cmp::Ordering;
@@ -12,7 +11,6 @@ use machine_model::{Command, Everywhere, LANES, Vector};
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
-use crate::deviation::{Begun, Machine, Pair, Verdict};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
 
@@ -23,6 +21,20 @@ const SLACK_MM: f64 = 1e-9;
 #[inline]
 pub(crate) fn with_its_error(everywhere: &Everywhere, mm: f64) -> f64 {
     mm * (1.0 + everywhere.gradient) + SLACK_MM
+}
+
+/// Upper bounds for a line whose ends lie in the volume: equation (P5).
+///
+/// * `squared_mm` – the larger of its ends' roundings, and of their corrections, mm²
+/// * `ways_mm` – the longest way of an axis as commanded, and as programmed
+#[inline]
+pub(crate) fn figures(everywhere: &Everywhere, squared_mm: [f64; 2], ways_mm: [f64; 2]) -> Correction {
+    // At an end the tool is off by the rounding of its command, and what that changes in the error. The error at a place
+    // is its correction, but for what the error changes over the correction.
+    let [rounded, largest_mm] = squared_mm.map(f64::sqrt);
+    let [after_mm, before_mm] = [(rounded, ways_mm[0]), (largest_mm, ways_mm[1])]
+        .map(|(end, way)| with_its_error(everywhere, end) + everywhere.chord_bound_mm(way));
+    Correction { largest_mm, before_mm, after_mm, ..Correction::default() }
 }
 
 /// A line that was corrected the short way: one block of output.
@@ -47,7 +59,6 @@ impl ShortLine {
 pub struct ShortLines {
     /// Tool and rotary axes; place and directions are not used.
     pub(crate) state: Command,
-    rotary_deg: [f64; 3],
     pub(crate) offset_mm: [f64; 3],
     pub(crate) limit_mm: f64,
     /// An axis this near to a corrected place stands there.
@@ -89,7 +100,6 @@ impl Corrector<'_> {
         }
         Some(ShortLines {
             state: self.state(block, rotary_deg),
-            rotary_deg,
             offset_mm: block.frame.offset_mm(),
             limit_mm: self.limit_mm(block),
             near_mm: from_fn(|i| 0.505 * block.step_mm(i)),
@@ -137,7 +147,6 @@ impl Corrector<'_> {
         let line = self.proven_short(lines, block, start_mm, end_mm, foreseen)?;
         self.expanding = false;
         self.remembered = None;
-        self.tell(&line.correction);
         Some(line)
     }
 
@@ -184,34 +193,22 @@ impl Corrector<'_> {
         }
         let to = block.machine(reached);
 
-        // At an end the tool is off by the rounding of its command, and what that changes in the error.
-        let rounded = (to - wanted).norm_squared().max((from - answer).norm_squared()).sqrt();
-        let at_ends = with_its_error(everywhere, rounded);
-        let way = to - from;
-        let after_mm = at_ends + everywhere.chord_bound_mm(way.amax());
-        // The error at a place is its correction, but for what the error changes over the correction.
-        let held = self.held(answer, from, depends);
-        let largest = (wanted - end).norm_squared().max((held - start).norm_squared()).sqrt();
-        let before_mm = with_its_error(everywhere, largest)
-            + everywhere.chord_bound_of_four_passes_mm((end - start).amax());
+        let squared_mm = [
+            (to - wanted).norm_squared().max((from - answer).norm_squared()),
+            (wanted - end).norm_squared().max((answer - start).norm_squared()),
+        ];
+        let mut correction = figures(everywhere, squared_mm, [(to - from).amax(), (end - start).amax()]);
+        if depends {
+            // The corrected start is where an axis holds its place.
+            let held = self.held(answer, from);
+            correction.largest_mm = (wanted - end).norm_squared().max((held - start).norm_squared()).sqrt();
+        }
         let inside = everywhere.volume.contains(&start)
             && everywhere.volume.contains(&from)
             && everywhere.volume.contains(&to);
         // Not a number is not proven either.
-        if !inside || !matches!(after_mm.partial_cmp(&limit_mm), Some(Ordering::Less)) {
+        if !inside || correction.after_mm.partial_cmp(&limit_mm) != Some(Ordering::Less) {
             return None;
-        }
-        let mut correction = Correction { largest_mm: largest, ..Correction::default() };
-        if after_mm > self.told_mm[1] {
-            let (nominal, commanded) = (Curve::Line(start, end), Curve::Line(from, to));
-            let pair = Pair { wanted: &nominal, commanded: &commanded, in_step: false, begun: Begun::No };
-            let state = Command { direction, ..state };
-            let Verdict::Within(bound) =
-                pair.verdict(&Machine { state, ..self.machine(block, lines.rotary_deg) }, limit_mm)
-            else {
-                return None;
-            };
-            correction.after_mm = bound;
         }
         let (stood, came) = (self.standing, self.direction);
         self.standing = [Some(to.x), Some(to.y), Some(to.z)];
@@ -225,9 +222,6 @@ impl Corrector<'_> {
                 return None;
             }
             self.gone(&state);
-        }
-        if before_mm > self.told_mm[0] {
-            correction.before_mm = self.before_mm(&Curve::Line(start, end), block, lines.rotary_deg, largest);
         }
         self.last = Some((target, wanted));
         Some(ShortLine { axes, correction })
@@ -251,12 +245,10 @@ impl Corrector<'_> {
 
     /// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its
     /// way holds its place.
-    fn held(&self, mut wanted: Vector, standing: Vector, depends: bool) -> Vector {
-        if depends {
-            for i in 0..3 {
-                if (wanted[i] - standing[i]) * f64::from(self.direction[i]) < 0.0 {
-                    wanted[i] = standing[i];
-                }
+    fn held(&self, mut wanted: Vector, standing: Vector) -> Vector {
+        for i in 0..3 {
+            if (wanted[i] - standing[i]) * f64::from(self.direction[i]) < 0.0 {
+                wanted[i] = standing[i];
             }
         }
         wanted

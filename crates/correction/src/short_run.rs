@@ -8,9 +8,9 @@ use std::cmp::Ordering;
 use machine_model::{Command, LANES, Range, Vector};
 use units::decimal::nearest_whole;
 
-use crate::corrector::Corrector;
+use crate::corrector::{Correction, Corrector};
 use crate::grid::Block;
-use crate::short_line::{Foreseen, ShortLines, with_its_error};
+use crate::short_line::{Foreseen, ShortLines, figures};
 
 /// Lines that follow each other, in axis commands.
 #[derive(Clone, Copy, Debug)]
@@ -28,10 +28,12 @@ pub struct Run<'a> {
 pub struct ShortRun {
     /// By line what X, Y, Z become, in output steps; `None` for words that stay or are not there.
     pub counts: [[Option<i64>; 3]; LANES],
-    /// The largest distance between programmed and corrected command at an end, mm.
-    pub largest_mm: f64,
-    /// The first line that has it.
-    pub largest: usize,
+    /// Upper bounds that hold for each of them: those of [`Corrector::short_line`] are no larger.
+    pub worst: Correction,
+    rounding: AtEnds,
+    correction: AtEnds,
+    way_mm: [f64; LANES],
+    programmed_mm: [f64; LANES],
 }
 
 /// A number for where the first line starts and for the end of each.
@@ -98,18 +100,19 @@ fn behind(start: f64, ends: &[f64; LANES]) -> AtEnds {
     [start, a, b, c, d]
 }
 
-/// The longest way from end to end.
+/// The longest way of an axis on each line.
 #[inline]
-fn longest(places: &AtEnds, so_far: f64) -> f64 {
-    (0..LANES).fold(so_far, |longest, at| longest.max((places[at + 1] - places[at]).abs()))
+fn lengthen(longest: &mut [f64; LANES], places: &AtEnds) {
+    for (line, longest) in longest.iter_mut().enumerate() {
+        *longest = longest.max((places[line + 1] - places[line]).abs());
+    }
 }
 
 impl Corrector<'_> {
     /// Corrects lines the short way, for which the model was asked by [`Corrector::foresee`]; `None`, with nothing changed,
     /// where [`Corrector::short_line`] must be asked for one after the other.
     ///
-    /// Where there is an answer, it is what that would have said, and none of the lines would have raised a bound told
-    /// before.
+    /// Where there is an answer, it is what that would have said.
     #[inline]
     pub fn short_run(
         &mut self,
@@ -129,7 +132,7 @@ impl Corrector<'_> {
 
         let mut counts = [[None; 3]; LANES];
         let (mut rounding, mut correction): (AtEnds, AtEnds) = Default::default();
-        let (mut way_mm, mut programmed_mm, mut holds) = (0.0, 0.0, true);
+        let (mut way_mm, mut programmed_mm, mut holds) = ([0.0; LANES], [0.0; LANES], true);
         let mut to = from;
         for axis in 0..3 {
             let mut own = AxisRun {
@@ -146,8 +149,8 @@ impl Corrector<'_> {
                 rounding[at] += off * off;
                 correction[at] += by * by;
             }
-            way_mm = longest(&own.commanded, way_mm);
-            programmed_mm = longest(&own.programmed, programmed_mm);
+            lengthen(&mut way_mm, &own.commanded);
+            lengthen(&mut programmed_mm, &own.programmed);
             for (line, own) in counts.iter_mut().zip(own.counts) {
                 line[axis] = own;
             }
@@ -155,14 +158,10 @@ impl Corrector<'_> {
         }
 
         // As for one line, with the worst of all.
-        let rounded = rounding.into_iter().fold(0.0, f64::max).sqrt();
-        let after_mm = with_its_error(everywhere, rounded) + everywhere.chord_bound_mm(way_mm);
-        let most = correction.into_iter().fold(0.0, f64::max);
-        let largest_mm = most.sqrt();
-        let before_mm =
-            with_its_error(everywhere, largest_mm) + everywhere.chord_bound_of_four_passes_mm(programmed_mm);
-        let proven = after_mm.partial_cmp(&lines.limit_mm) == Some(Ordering::Less);
-        if !holds || !proven || after_mm > self.told_mm[1] || before_mm > self.told_mm[0] {
+        let most = |each: &[f64]| each.iter().copied().fold(0.0, f64::max);
+        let worst =
+            figures(everywhere, [most(&rounding), most(&correction)], [most(&way_mm), most(&programmed_mm)]);
+        if !holds || worst.after_mm.partial_cmp(&lines.limit_mm) != Some(Ordering::Less) {
             return None;
         }
         self.standing = [Some(to.x), Some(to.y), Some(to.z)];
@@ -172,7 +171,15 @@ impl Corrector<'_> {
             Some((target, Vector::new(wanted[0][LANES - 1], wanted[1][LANES - 1], wanted[2][LANES - 1])));
         self.expanding = false;
         self.remembered = None;
-        let end = correction.iter().position(|correction| *correction >= most).unwrap_or(0);
-        Some(ShortRun { counts, largest_mm, largest: end.saturating_sub(1) })
+        Some(ShortRun { counts, worst, rounding, correction, way_mm, programmed_mm })
+    }
+
+    /// What was done with one of the lines.
+    #[must_use]
+    pub fn correction_of(&self, run: &ShortRun, line: usize) -> Correction {
+        let Some((_, _, Some(everywhere))) = &self.everywhere else { return run.worst };
+        let ends = |squared: &AtEnds| squared[line].max(squared[line + 1]);
+        let squared_mm = [ends(&run.rounding), ends(&run.correction)];
+        figures(everywhere, squared_mm, [run.way_mm[line], run.programmed_mm[line]])
     }
 }

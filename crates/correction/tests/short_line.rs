@@ -116,7 +116,6 @@ proptest! {
         let rapid = Motion::Rapid { start: unknown, end: at([0; 3]).into() };
         prop_assert_eq!(short.correct(&rapid, &block).unwrap().pieces, long.correct(&rapid, &block).unwrap().pieces);
         let mut steps = [0; 3];
-        let mut told = [[0.0_f64; 2]; 2];
         let (mut taken, count) = (0, ways.len());
         for (way, named) in ways {
             let from = steps;
@@ -149,11 +148,9 @@ proptest! {
             prop_assert!((a.correction.largest_mm - b.correction.largest_mm).abs() < 1e-9);
             prop_assert_eq!(a.correction.approach, b.correction.approach);
             prop_assert_eq!(a.correction.unknown_side_mm, b.correction.unknown_side_mm);
-            for (told, correction) in told.iter_mut().zip([&a.correction, &b.correction]) {
-                *told = [told[0].max(correction.before_mm), told[1].max(correction.after_mm)];
-            }
-            // What the short way does not tell would not have raised the largest.
-            prop_assert!((told[0][0] - told[1][0]).abs() < 1e-9 && (told[0][1] - told[1][1]).abs() < 1e-9, "{:?}", told);
+            // Bounds that were looked up are no less than those of the stretch.
+            let pairs = [(a.correction.before_mm, b.correction.before_mm), (a.correction.after_mm, b.correction.after_mm)];
+            prop_assert!(pairs.iter().all(|(rough, own)| rough >= &(own - 1e-9)), "{:?}", pairs);
         }
         // Else this test would say nothing.
         prop_assert!(taken * 10 >= count * 9 || play > 0.0, "{} of {}", taken, count);
@@ -165,7 +162,6 @@ proptest! {
         ways in proptest::collection::vec((prop::array::uniform3(-900i32..900), 0u8..8), 4..80),
         monotone: bool,
         all_named: bool,
-        told: bool,
     ) {
         let ways: Vec<Way> = ways;
         let model =
@@ -177,10 +173,6 @@ proptest! {
         let position = |linear_mm| Position { linear_mm, rotary_deg: [0.0; 3] };
         let start = Motion::Rapid { start: Partial::default(), end: position(at([0; 3])).into() };
         together.correct(&start, &block).unwrap();
-        if told {
-            // More than any line will be told with.
-            together.set_told_mm([1.0; 2]);
-        }
         let lines = together.short_lines(&block, [0.0; 3]).unwrap();
         let mut steps = [0; 3];
         let (mut runs, groups) = (0, ways.len() / LANES);
@@ -200,10 +192,10 @@ proptest! {
             let foreseen = together.foresee(&lines, start_mm, &ends_mm);
             let run = Run { start_mm, ends_mm: &ends_mm, names };
             let run = foreseen.and_then(|foreseen| together.short_run(&lines, &block, &run, &foreseen));
-            let (mut from, mut largest) = (start_mm, (0.0, 0));
+            let mut from = start_mm;
             for lane in 0..LANES {
                 block.letters = Letters::axes(names[lane]);
-                let (end, told) = (ends_mm[lane], single.told_mm());
+                let end = ends_mm[lane];
                 let line = single.short_line(&lines, &block, from, end, None);
                 if let Some(run) = &run {
                     let line = line.expect("the short way");
@@ -212,10 +204,10 @@ proptest! {
                         AxisWord::Keep | AxisWord::Omit => None,
                     });
                     prop_assert_eq!(counts, run.counts[lane]);
-                    prop_assert_eq!(told, single.told_mm());
-                    if line.correction.largest_mm > largest.0 {
-                        largest = (line.correction.largest_mm, lane);
-                    }
+                    prop_assert_eq!(line.correction, together.correction_of(run, lane));
+                    let pairs = [(line.correction.largest_mm, run.worst.largest_mm),
+                        (line.correction.before_mm, run.worst.before_mm), (line.correction.after_mm, run.worst.after_mm)];
+                    prop_assert!(pairs.iter().all(|(own, worst)| own <= worst), "{:?}", pairs);
                 } else if line.is_none() {
                     let feed = Feed {
                         start: position(from),
@@ -228,14 +220,13 @@ proptest! {
                 }
                 from = end;
             }
-            if let Some(run) = run {
-                prop_assert_eq!(largest, (run.largest_mm, run.largest));
+            if run.is_some() {
                 prop_assert!(together.continues_as(&single));
                 runs += 1;
             }
             together = single;
         }
         // Else this test would say nothing.
-        prop_assert!(!all_named || !told || runs * 10 >= groups * 9, "{} of {}", runs, groups);
+        prop_assert!(!all_named || runs * 10 >= groups * 9, "{} of {}", runs, groups);
     }
 }

@@ -55,13 +55,6 @@ impl Everywhere {
         Self::of_class(&self.bow_mm, longest_mm)
     }
 
-    /// The same for `passes` at 4.
-    #[must_use]
-    #[inline]
-    pub fn chord_bound_of_four_passes_mm(&self, longest_mm: f64) -> f64 {
-        Self::of_class(&self.bow_of_four_passes_mm, longest_mm)
-    }
-
     /// The same for any stretch inside the volume that passes a place at most twice: its axes have at most these
     /// first and second derivatives, mm, s running from 0 to 1. Bending adds no more than the error's gradient makes
     /// of it.

@@ -304,7 +304,7 @@ fn bounds_of_the_whole_volume_hold_for_every_move() {
             let longest = by.amax();
             for (passes, cheap) in [
                 (1, everywhere.chord_bound_mm(longest)),
-                (4, everywhere.chord_bound_of_four_passes_mm(longest)),
+                (4, everywhere.chord_bound_of_circle_mm(longest, 0.0)),
             ] {
                 let own = model.chord_bound_mm(&Move {
                     range_mm: std::array::from_fn(|i| Range {
@@ -420,7 +420,7 @@ proptest! {
         };
         let near = 1.0 + 1e-12;
         prop_assert!(own(1, 0.0) <= everywhere.chord_bound_mm(speed) * near);
-        prop_assert!(own(4, 0.0) <= everywhere.chord_bound_of_four_passes_mm(speed) * near);
+        prop_assert!(own(4, 0.0) <= everywhere.chord_bound_of_circle_mm(speed, 0.0) * near);
         prop_assert!(own(2, speed) <= everywhere.chord_bound_of_curve_mm(speed, speed * 3f64.sqrt()) * near);
         prop_assert!(own(4, speed) <= everywhere.chord_bound_of_circle_mm(speed, speed * 3f64.sqrt()) * near);
         let at = |s: f64| {

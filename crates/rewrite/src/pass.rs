@@ -55,16 +55,6 @@ impl<'a> State<'a> {
             && *guarded == other.guarded
             && *expects_name == other.expects_name
     }
-
-    /// Bounds that were told to another state and count here too.
-    pub(crate) fn tell_as(&mut self, other: &Self) {
-        self.corrector.set_told_mm(other.corrector.told_mm());
-    }
-
-    /// Bounds in the figures of what came before: smaller ones need not be worked out.
-    pub(crate) fn set_told(&mut self, figures: &Figures) {
-        self.corrector.set_told_mm([figures.before.0, figures.after.0]);
-    }
 }
 
 /// What is counted on the way.
@@ -89,6 +79,22 @@ impl Tally {
         raise(&mut figures.tilt, more.tilt);
         self.notices.add(&later.notices);
         self.evidence.add(&later.evidence);
+    }
+}
+
+impl Figures {
+    /// Takes the bounds of a motion in a line.
+    #[inline]
+    pub(crate) fn raise(&mut self, correction: &Correction, line: u64) {
+        raise(&mut self.largest, (correction.largest_mm, line));
+        raise(&mut self.before, (correction.before_mm, line));
+        raise(&mut self.after, (correction.after_mm, line));
+    }
+
+    /// False where [`Figures::raise`] changes nothing.
+    #[inline]
+    pub(crate) fn would_rise(&self, by: &Correction) -> bool {
+        by.largest_mm > self.largest.0 || by.before_mm > self.before.0 || by.after_mm > self.after.0
     }
 }
 
@@ -413,9 +419,7 @@ impl Pass<'_> {
         let line = block.line;
         let span = block.file_range();
         for (motion, correction) in motions.iter().zip(corrections) {
-            raise(&mut figures.largest, (correction.largest_mm, line));
-            raise(&mut figures.before, (correction.before_mm, line));
-            raise(&mut figures.after, (correction.after_mm, line));
+            figures.raise(correction, line);
             raise(&mut figures.tilt, (correction.turned.map_or(0.0, |turned| turned.tilt_rad), line));
             figures.approaches += u64::from(correction.approach);
             if correction.clamped {

@@ -10,7 +10,7 @@ use nc_program::PlainEnd;
 use nc_syntax::{Block, PlainLine, Reader};
 use toolpath::Motion;
 
-use crate::pass::{Pass, info, raise};
+use crate::pass::{Pass, info};
 use crate::words::letters;
 
 /// A plain line, with what is known of it before its turn.
@@ -123,7 +123,11 @@ impl Pass<'_> {
         let figures = &mut self.tally.figures;
         figures.blocks_in += LANES as u64;
         figures.blocks_out += LANES as u64;
-        raise(&mut figures.largest, (run.largest_mm, lines[run.largest].line));
+        if figures.would_rise(&run.worst) {
+            for (k, line) in lines.iter().enumerate() {
+                figures.raise(&self.state.corrector.correction_of(run, k), line.line);
+            }
+        }
         Ok(())
     }
 
@@ -198,8 +202,6 @@ impl Pass<'_> {
         let figures = &mut self.tally.figures;
         figures.blocks_in += 1;
         figures.blocks_out += 1;
-        raise(&mut figures.largest, (correction.largest_mm, line.line));
-        raise(&mut figures.before, (correction.before_mm, line.line));
-        raise(&mut figures.after, (correction.after_mm, line.line));
+        figures.raise(correction, line.line);
     }
 }

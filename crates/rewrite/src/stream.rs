@@ -180,9 +180,7 @@ where
             let index = chunk.index;
             let (guess, known) = {
                 let board = lock(&self.board);
-                let mut state = board.state.clone();
-                state.set_told(&board.tally.figures);
-                (state, board.turn == index)
+                (board.state.clone(), board.turn == index)
             };
             let guess = if known { guess } else { self.led(guess, &lead, &chunk) };
             let done = self.through(chunk, guess, !known);
@@ -214,7 +212,6 @@ where
 
     /// Leads a state through the lines before a chunk.
     fn led(&self, guess: State<'a>, lead: &[u8], chunk: &Chunk) -> State<'a> {
-        let told = guess.clone();
         let mut pass = Pass::new(self.plan.job, guess, lead.len());
         let place = nc_syntax::Place {
             offset: chunk.offset - lead.len() as u64,
@@ -225,7 +222,6 @@ where
         // A block that makes no sense from here makes no better guess.
         pass.next_stop = u64::MAX;
         while pass.run::<Vec<Diagnostic>>(&mut reader, |_, _| Ok(false), |_| Ok(())).is_err() {}
-        pass.state.tell_as(&told);
         pass.state
     }
 
@@ -239,8 +235,6 @@ where
         let mut next_stop = |at: u64| near.next().map_or(at + FAR_BYTES as u64, |near| *near as u64);
         pass.next_stop = if guessed { chunk.offset + next_stop(0) } else { u64::MAX };
         let end = each(self.plan, &chunk, &mut pass, |pass, offset| {
-            // What was told in a stretch that may not count tells nothing to the next one.
-            pass.state.tell_as(&open.state);
             let next =
                 Stretch { offset, out: pass.out.len(), state: pass.state.clone(), tally: Tally::default() };
             let mut closed = std::mem::replace(&mut open, next);
@@ -261,8 +255,7 @@ where
             let turn = board.turn;
             let Some(done) = board.waiting.remove(&turn) else { return };
             board.busy = true;
-            let mut state = board.state.clone();
-            state.set_told(&board.tally.figures);
+            let state = board.state.clone();
             drop(board);
             let settled = self.settle_one(done, state);
             board = lock(&self.board);
