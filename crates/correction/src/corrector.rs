@@ -11,6 +11,7 @@ use crate::curve::Curve;
 use crate::deviation::{Enclosed, Machine, Solved};
 use crate::grid::{AxisWord, Block};
 use crate::play::heading;
+use crate::short_line::Run;
 use crate::turning::{Turned, Turning};
 use crate::{Piece, PieceKind};
 
@@ -588,9 +589,14 @@ impl<'m> Corrector<'m> {
         if matches!(feed.shape, Shape::Line)
             && feed.start.rotary_deg == feed.end.rotary_deg
             && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
-            && let Some(line) = self.short_line(&lines, block, feed.start.linear_mm, feed.end.linear_mm, None)
+            && let names = block.own_axes()
+            && let ends_mm = [feed.end.linear_mm; LANES]
+            && let run =
+                (Run { start_mm: feed.start.linear_mm, ends_mm: &ends_mm, names: [names; LANES], count: 1 })
+            && let Some(run) = self.short_run(&lines, block, &run)
         {
-            return Ok(one(Piece::new(PieceKind::Line, line.axes, 1.0), line.correction));
+            let piece = Piece::new(PieceKind::Line, run.words(0, names), 1.0);
+            return Ok(one(piece, self.correction_of(&run, 0)));
         }
         let turns = feed.start.rotary_deg != feed.end.rotary_deg;
         if turns && feed.division == Division::Any {

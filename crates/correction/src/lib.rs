@@ -20,7 +20,6 @@ mod hole;
 mod line;
 mod play;
 mod short_line;
-mod short_run;
 #[cfg(test)]
 mod testing;
 mod turning;
@@ -28,8 +27,7 @@ mod turning;
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
 pub use grid::{AxisWord, Block, Letters};
-pub use short_line::{Foreseen, ShortLine, ShortLines};
-pub use short_run::{Run, ShortRun};
+pub use short_line::{Run, ShortLines, ShortRun};
 pub use turning::Turned;
 
 /// One block of output, in whole output steps.

@@ -1,13 +1,16 @@
-//! The motion that programs consist of by millions: one short straight line that goes on where the last one ended.
+//! The motion that programs consist of by millions: short straight lines that go on where the last one ended.
 //!
 //! What is written is what [`crate::line`] would write, word for word: the same answer of the model, rounded the same
 //! way. Only the proof is shorter: bounds that hold everywhere in the volume are looked up instead of being
 //! worked out for this stretch. Where they do not suffice the long way is taken.
+//!
+//! Lines go side by side in lanes, each with a mask of the axes that it names, and as many as are proven from the first
+//! on are done.
 
 use std::array::from_fn;
-use std::cmp::Ordering;
 
 use machine_model::{Command, Everywhere, LANES, Vector};
+use units::decimal::nearest_whole;
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
@@ -28,7 +31,7 @@ pub(crate) fn with_its_error(everywhere: &Everywhere, mm: f64) -> f64 {
 /// * `squared_mm` – the larger of its ends' roundings, and of their corrections, mm²
 /// * `ways_mm` – the longest way of an axis as commanded, and as programmed
 #[inline]
-pub(crate) fn figures(everywhere: &Everywhere, squared_mm: [f64; 2], ways_mm: [f64; 2]) -> Correction {
+fn figures(everywhere: &Everywhere, squared_mm: [f64; 2], ways_mm: [f64; 2]) -> Correction {
     // At an end the tool is off by the rounding of its command, and what that changes in the error. The error at a place
     // is its correction, but for what the error changes over the correction.
     let [rounded, largest_mm] = squared_mm.map(f64::sqrt);
@@ -37,44 +40,152 @@ pub(crate) fn figures(everywhere: &Everywhere, squared_mm: [f64; 2], ways_mm: [f
     Correction { largest_mm, before_mm, after_mm, ..Correction::default() }
 }
 
-/// A line that was corrected the short way: one block of output.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShortLine {
-    /// X, Y, Z words; the block may stay as it is where none is to be written.
-    pub axes: [AxisWord; 3],
-    /// What was done.
-    pub correction: Correction,
-}
-
-impl ShortLine {
-    /// True where the block stays as it is.
-    #[must_use]
-    pub fn is_untouched(&self) -> bool {
-        !self.axes.iter().any(|word| matches!(word, AxisWord::Write(_)))
-    }
-}
-
 /// What is the same for short lines that follow one another.
 #[derive(Clone, Copy, Debug)]
 pub struct ShortLines {
     /// Tool and rotary axes; place and directions are not used.
-    pub(crate) state: Command,
-    pub(crate) offset_mm: [f64; 3],
-    pub(crate) limit_mm: f64,
+    state: Command,
+    offset_mm: [f64; 3],
+    limit_mm: f64,
     /// An axis this near to a corrected place stands there.
-    pub(crate) near_mm: [f64; 3],
-    pub(crate) half_step_mm: [f64; 3],
+    near_mm: [f64; 3],
+    half_step_mm: [f64; 3],
+    /// Words are increments.
+    incremental: bool,
     /// The error depends on the direction of motion.
-    pub(crate) depends: bool,
+    depends: bool,
 }
 
-/// The model's answers for lines before their turn.
+/// Lines that follow each other, in axis commands.
 #[derive(Clone, Copy, Debug)]
-pub struct Foreseen {
-    /// The directions that each holds for.
-    pub(crate) directions: [[i8; 3]; LANES],
-    /// X, Y and Z of each.
-    pub(crate) commands_mm: [[f64; LANES]; 3],
+pub struct Run<'a> {
+    /// Where the first one starts.
+    pub start_mm: [f64; 3],
+    /// Where each ends; lanes without a line hold the end of the last.
+    pub ends_mm: &'a [[f64; 3]; LANES],
+    /// Which of X, Y, Z each has a word for.
+    pub names: [[bool; 3]; LANES],
+    /// How many lines there are.
+    pub count: usize,
+}
+
+/// Lines that were corrected the short way: one block of output each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShortRun {
+    /// How many there are, from the first on.
+    pub count: usize,
+    /// By line what X, Y, Z become, in output steps; `None` for words that stay or are not there.
+    pub counts: [[Option<i64>; 3]; LANES],
+    /// Upper bounds that hold for each of them.
+    pub worst: Correction,
+    rounding: AtEnds,
+    correction: AtEnds,
+    way_mm: [f64; LANES],
+    programmed_mm: [f64; LANES],
+    /// Of the corrections at the starts, where an axis with play may hold its place.
+    starts: [f64; LANES],
+}
+
+impl ShortRun {
+    /// The words of a line that has some for these axes.
+    pub(crate) fn words(&self, line: usize, names: [bool; 3]) -> [AxisWord; 3] {
+        from_fn(|i| match (self.counts[line][i], names[i]) {
+            (Some(counts), _) => AxisWord::Write(counts),
+            (None, true) => AxisWord::Keep,
+            (None, false) => AxisWord::Omit,
+        })
+    }
+}
+
+/// A number for where the first line starts and for the end of each.
+type AtEnds = [f64; LANES + 1];
+
+/// One axis of all lines.
+struct AxisRun {
+    /// Where the lines lead, and the answers of the model.
+    programmed: AtEnds,
+    wanted: AtEnds,
+    /// Where the axis stands.
+    commanded: AtEnds,
+    counts: [Option<i64>; LANES],
+    /// No number is too large.
+    ordinary: [bool; LANES],
+}
+
+/// Whole numbers below are told apart with room to spare.
+const LARGEST: f64 = 1e15;
+
+impl AxisRun {
+    /// Rounds the ends; `programmed`, `wanted` and the first of `commanded` are given. Where a line ends does not depend on the
+    /// line before it, but for an axis that has no word.
+    #[inline]
+    fn round(&mut self, lines: &ShortLines, block: &Block, axis: usize, names: [bool; LANES]) {
+        let (offset, half) = (lines.offset_mm[axis], lines.half_step_mm[axis]);
+        let (mut steps, mut keeps, mut rounded) = ([0.0; LANES], [false; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let (wanted, programmed) = (self.wanted[lane + 1] - offset, self.programmed[lane + 1] - offset);
+            let exact = block.steps(axis, wanted);
+            steps[lane] = nearest_whole(exact);
+            keeps[lane] = (wanted - programmed).abs() <= half;
+            rounded[lane] = block.steps_mm(axis, steps[lane]) + offset;
+            self.commanded[lane + 1] = if keeps[lane] { programmed + offset } else { rounded[lane] };
+            self.ordinary[lane] = exact.abs() < LARGEST;
+        }
+        for lane in 0..LANES {
+            if !names[lane] {
+                // The axis stays where it stands if that is as near as a word would bring it.
+                let standing = self.commanded[lane] - offset;
+                keeps[lane] = (self.wanted[lane + 1] - offset - standing).abs() <= half;
+                self.commanded[lane + 1] = if keeps[lane] { standing + offset } else { rounded[lane] };
+            }
+            if !keeps[lane] {
+                self.counts[lane] = Some(steps[lane] as i64);
+            }
+        }
+    }
+
+    /// The same where words are increments: each counts from where the line before has brought the axis.
+    #[inline]
+    fn round_increments(&mut self, lines: &ShortLines, block: &Block, axis: usize, names: [bool; LANES]) {
+        let (offset, half) = (lines.offset_mm[axis], lines.half_step_mm[axis]);
+        for lane in 0..LANES {
+            let standing = self.commanded[lane] - offset;
+            let wanted = self.wanted[lane + 1] - offset;
+            let by_own_word =
+                (self.commanded[lane] + (self.programmed[lane + 1] - self.programmed[lane])) - offset;
+            let stays = if names[lane] { by_own_word } else { standing };
+            let exact = block.steps(axis, wanted - standing);
+            let steps = nearest_whole(exact);
+            let keeps = (wanted - stays).abs() <= half;
+            let reached = if keeps { stays } else { standing + block.steps_mm(axis, steps) };
+            self.commanded[lane + 1] = reached + offset;
+            self.ordinary[lane] = exact.abs() < LARGEST;
+            if !keeps {
+                self.counts[lane] = Some(steps as i64);
+            }
+        }
+    }
+}
+
+/// What holds at the start, and at the ends.
+#[inline]
+fn behind(start: f64, ends: &[f64; LANES]) -> AtEnds {
+    let [a, b, c, d] = *ends;
+    [start, a, b, c, d]
+}
+
+/// The longest way of an axis on each line.
+#[inline]
+fn lengthen(longest: &mut [f64; LANES], places: &AtEnds) {
+    for (line, longest) in longest.iter_mut().enumerate() {
+        *longest = longest.max((places[line + 1] - places[line]).abs());
+    }
+}
+
+/// The largest.
+#[inline]
+fn most(each: &[f64]) -> f64 {
+    each.iter().copied().fold(0.0, f64::max)
 }
 
 /// The directions after a motion.
@@ -91,7 +202,8 @@ impl Corrector<'_> {
     #[inline]
     pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
         self.heed(block, rotary_deg);
-        let ordinary = block.incremental == [false; 3]
+        let incremental = block.incremental == [true; 3];
+        let ordinary = (incremental || block.incremental == [false; 3])
             && block.frame.is_shift()
             && block.whole == [false; 3]
             && block.named == [true; 3];
@@ -104,132 +216,153 @@ impl Corrector<'_> {
             limit_mm: self.limit_mm(block),
             near_mm: from_fn(|i| 0.505 * block.step_mm(i)),
             half_step_mm: from_fn(|i| block.half_step_mm(i)),
+            incremental,
             depends: self.model.depends_on_direction(),
         })
     }
 
-    /// Asks the model for several lines at once: from `start_mm` to the first of `ends_mm` and on from there.
-    ///
-    /// What it says is used by [`Corrector::short_run`], and by [`Corrector::short_line`] where the directions are those
-    /// foreseen. `None` where it has to be asked for each.
-    #[must_use]
-    pub fn foresee(
-        &self,
-        lines: &ShortLines,
-        mut start_mm: [f64; 3],
-        ends_mm: &[[f64; 3]; LANES],
-    ) -> Option<Foreseen> {
-        let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
-        let mut direction = self.direction;
-        let mut directions = [direction; LANES];
-        for (found, end_mm) in directions.iter_mut().zip(ends_mm) {
-            direction = turned(direction, &start_mm, end_mm);
-            start_mm = *end_mm;
-            *found = direction;
-        }
-        let commands_mm = self.model.commands_for(ends_mm, &directions, &lines.state, everywhere)?;
-        Some(Foreseen { directions, commands_mm })
-    }
-
-    /// Corrects a line the short way; `None`, with nothing changed, where [`Corrector::correct`] must be asked. Where
-    /// there is an answer, it would have been that of [`Corrector::correct`].
-    ///
-    /// * `foreseen` – by [`Corrector::foresee`], and which of its lines this is
+    /// Corrects lines the short way, as many as are proven from the first on; `None`, with nothing changed, where the first
+    /// must be given to [`Corrector::correct`]. What is done is what that would have said.
     #[inline]
-    pub fn short_line(
-        &mut self,
-        lines: &ShortLines,
-        block: &Block,
-        start_mm: [f64; 3],
-        end_mm: [f64; 3],
-        foreseen: Option<(&Foreseen, usize)>,
-    ) -> Option<ShortLine> {
-        let line = self.proven_short(lines, block, start_mm, end_mm, foreseen)?;
+    pub fn short_run(&mut self, lines: &ShortLines, block: &Block, run: &Run<'_>) -> Option<ShortRun> {
+        let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
+        if lines.depends && !self.play.is_certain() {
+            // By how much the tool may be off for that has to be said.
+            return None;
+        }
+        let (from, answer) = self.stands_at(lines, &run.start_mm.into())?;
+        let came = if lines.depends { self.last?.0.direction } else { self.direction };
+        let [a, b, c, d] = *run.ends_mm;
+        let ends = [run.start_mm, a, b, c, d];
+        let mut programmed_mm = [0.0; LANES];
+        (0..3).for_each(|axis| lengthen(&mut programmed_mm, &ends.map(|end| end[axis])));
+        let (mut direction, mut count) = (self.direction, run.count);
+        let mut directions = [direction; LANES];
+        for lane in 0..LANES {
+            direction = turned(direction, &ends[lane], &ends[lane + 1]);
+            directions[lane] = direction;
+            if lines.depends && (direction != came || direction.contains(&0)) {
+                count = count.min(lane);
+            }
+        }
+        let too_long = |way_mm: f64| everywhere.chord_bound_mm(way_mm) > lines.limit_mm;
+        if too_long(most(&programmed_mm)) {
+            // Wherever it ends.
+            count = programmed_mm[..count].iter().take_while(|way_mm| !too_long(**way_mm)).count();
+        }
+        if count == 0 {
+            return None;
+        }
+        let wanted = self.model.commands_for(run.ends_mm, &directions, &lines.state, everywhere)?;
+
+        let mut counts = [[None; 3]; LANES];
+        let (mut rounding, mut correction): (AtEnds, AtEnds) = Default::default();
+        let (mut way_mm, mut holds) = ([0.0; LANES], [true; LANES]);
+        let mut commanded = [[0.0; LANES + 1]; 3];
+        for axis in 0..3 {
+            let mut own = AxisRun {
+                programmed: ends.map(|end| end[axis]),
+                wanted: behind(answer[axis], &wanted[axis]),
+                commanded: [from[axis]; LANES + 1],
+                counts: [None; LANES],
+                ordinary: [true; LANES],
+            };
+            let names = run.names.map(|names| names[axis]);
+            if lines.incremental {
+                own.round_increments(lines, block, axis, names);
+            } else {
+                own.round(lines, block, axis, names);
+            }
+            let (near_mm, range) = (lines.near_mm[axis], &everywhere.volume.0[axis]);
+            let mut stands = [true; LANES + 1];
+            for at in 0..=LANES {
+                let (off, by) = (own.commanded[at] - own.wanted[at], own.wanted[at] - own.programmed[at]);
+                rounding[at] += off * off;
+                correction[at] += by * by;
+                // In the volume, and as near to the corrected place as lines ask for that start there.
+                stands[at] = off.abs() <= near_mm
+                    && range.contains(own.commanded[at])
+                    && range.contains(own.programmed[at]);
+            }
+            for lane in 0..LANES {
+                holds[lane] &= own.ordinary[lane] && stands[lane] && stands[lane + 1];
+                counts[lane][axis] = own.counts[lane];
+            }
+            lengthen(&mut way_mm, &own.commanded);
+            commanded[axis] = own.commanded;
+        }
+        let stands = |at: usize| commanded.each_ref().map(|axis| axis[at]);
+
+        let squared_mm = [most(&rounding), most(&correction)];
+        let worst = figures(everywhere, squared_mm, [most(&way_mm), most(&programmed_mm)]);
+        let starts = from_fn(|lane| correction[lane]);
+        let mut found =
+            ShortRun { count, counts, worst, rounding, correction, way_mm, programmed_mm, starts };
+        // Not a number is not proven either.
+        let proven = |correction: &Correction| correction.after_mm < lines.limit_mm;
+        if !(proven(&worst) && holds == [true; LANES]) {
+            let each = (0..count).take_while(|lane| holds[*lane] && proven(&found.of(everywhere, *lane)));
+            found.count = each.count();
+        }
+        if lines.depends {
+            let places: [Vector; LANES + 1] = from_fn(|at| stands(at).into());
+            found.starts = from_fn(|lane| {
+                // The corrected start is where an axis holds its place.
+                let answer =
+                    if lane == 0 { answer } else { Vector::from_fn(|axis, _| wanted[axis][lane - 1]) };
+                (held(answer, places[lane], came) - Vector::from(ends[lane])).norm_squared()
+            });
+            found.worst.largest_mm = worst.largest_mm.max(most(&found.starts).sqrt());
+            found.count = self.go_short_ways(lines, block, came, &places[..=found.count]);
+        }
+        let last = found.count.checked_sub(1)?;
+        self.standing = stands(found.count).map(Some);
+        self.direction = directions[last];
+        let target =
+            Command { linear_mm: ends[found.count].into(), direction: self.direction, ..lines.state };
+        self.last = Some((target, Vector::from_fn(|axis, _| wanted[axis][last])));
         self.expanding = false;
         self.remembered = None;
-        Some(line)
+        Some(found)
     }
 
-    #[inline]
-    fn proven_short(
+    /// What was done with one of the lines.
+    #[must_use]
+    pub fn correction_of(&self, run: &ShortRun, line: usize) -> Correction {
+        match &self.everywhere {
+            Some((_, _, Some(everywhere))) => run.of(everywhere, line),
+            _ => run.worst,
+        }
+    }
+
+    /// Leads the axes through their play, from place to place; how often none was on another side than it is computed for.
+    fn go_short_ways(
         &mut self,
         lines: &ShortLines,
         block: &Block,
-        start_mm: [f64; 3],
-        end_mm: [f64; 3],
-        foreseen: Option<(&Foreseen, usize)>,
-    ) -> Option<ShortLine> {
-        let Some((_, _, Some(everywhere))) = &self.everywhere else { return None };
-        let (start, end): (Vector, Vector) = (start_mm.into(), end_mm.into());
-        let ShortLines { state, offset_mm: offset, limit_mm, half_step_mm, depends, .. } = *lines;
-        let (from, answer) = self.stands_at(lines, &start)?;
-        let direction = turned(self.direction, &start_mm, &end_mm);
-        if depends
-            && (self.last.is_none_or(|(last, _)| last.direction != direction) || direction.contains(&0))
-        {
-            return None;
-        }
-        if everywhere.chord_bound_mm((end - start).amax()) > limit_mm {
-            // Too long, wherever it ends.
-            return None;
-        }
-        let target = Command { linear_mm: end, direction, ..state };
-        let wanted = match foreseen {
-            Some((Foreseen { directions, commands_mm: [x, y, z] }, line))
-                if directions[line] == direction =>
-            {
-                Vector::new(x[line], y[line], z[line])
-            }
-            _ => self.model.command_for(&target, everywhere).ok()?,
-        };
-
-        let mut axes = [AxisWord::Omit; 3];
-        let mut reached = [0.0; 3];
-        for i in 0..3 {
-            let programmed = block.has_axis(i).then_some(end[i] - offset[i]);
-            let standing = Some(from[i] - offset[i]);
-            (axes[i], reached[i]) =
-                block.choose_within(i, half_step_mm[i], wanted[i] - offset[i], programmed, standing);
-        }
-        let to = block.machine(reached);
-
-        let squared_mm = [
-            (to - wanted).norm_squared().max((from - answer).norm_squared()),
-            (wanted - end).norm_squared().max((answer - start).norm_squared()),
-        ];
-        let mut correction = figures(everywhere, squared_mm, [(to - from).amax(), (end - start).amax()]);
-        if depends {
-            // The corrected start is where an axis holds its place.
-            let held = self.held(answer, from);
-            correction.largest_mm = (wanted - end).norm_squared().max((held - start).norm_squared()).sqrt();
-        }
-        let inside = everywhere.volume.contains(&start)
-            && everywhere.volume.contains(&from)
-            && everywhere.volume.contains(&to);
-        // Not a number is not proven either.
-        if !inside || correction.after_mm.partial_cmp(&limit_mm) != Some(Ordering::Less) {
-            return None;
-        }
-        let (stood, came) = (self.standing, self.direction);
-        self.standing = [Some(to.x), Some(to.y), Some(to.z)];
+        direction: [i8; 3],
+        places: &[Vector],
+    ) -> usize {
+        let state = Command { direction, ..lines.state };
+        let stood = (self.standing, self.direction);
         self.direction = direction;
-        if depends {
-            let (state, commanded) = (Command { direction, ..state }, Curve::Line(from, to));
-            if self.against(&state, stood, self.standing, block).is_some()
-                || self.is_astray(&state, &commanded)
+        for (done, ends) in places.windows(2).enumerate() {
+            let before = self.standing;
+            self.standing = Into::<[f64; 3]>::into(ends[1]).map(Some);
+            if self.against(&state, before, self.standing, block).is_some()
+                || self.is_astray(&state, &Curve::Line(ends[0], ends[1]))
             {
-                (self.standing, self.direction) = (stood, came);
-                return None;
+                (self.standing, self.direction) = if done == 0 { stood } else { (before, direction) };
+                return done;
             }
             self.gone(&state);
         }
-        self.last = Some((target, wanted));
-        Some(ShortLine { axes, correction })
+        places.len() - 1
     }
 
     /// Where the axes stand and the corrected place, where that is `start` and the last line left them there.
     #[inline]
-    pub(crate) fn stands_at(&self, lines: &ShortLines, start: &Vector) -> Option<(Vector, Vector)> {
+    fn stands_at(&self, lines: &ShortLines, start: &Vector) -> Option<(Vector, Vector)> {
         let (last, answer) = self.last?;
         let [Some(x), Some(y), Some(z)] = self.standing else { return None };
         let from = Vector::new(x, y, z);
@@ -242,15 +375,26 @@ impl Corrector<'_> {
             && near(2);
         stands.then_some((from, answer))
     }
+}
 
-    /// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its
-    /// way holds its place.
-    fn held(&self, mut wanted: Vector, standing: Vector) -> Vector {
-        for i in 0..3 {
-            if (wanted[i] - standing[i]) * f64::from(self.direction[i]) < 0.0 {
-                wanted[i] = standing[i];
-            }
+/// The corrected start as [`Corrector::approach`] takes it: an axis with play that stands a little too far on its way holds
+/// its place.
+fn held(mut wanted: Vector, standing: Vector, direction: [i8; 3]) -> Vector {
+    for i in 0..3 {
+        if (wanted[i] - standing[i]) * f64::from(direction[i]) < 0.0 {
+            wanted[i] = standing[i];
         }
-        wanted
+    }
+    wanted
+}
+
+impl ShortRun {
+    /// The figures of a line.
+    fn of(&self, everywhere: &Everywhere, line: usize) -> Correction {
+        let ends = |squared: &AtEnds| squared[line].max(squared[line + 1]);
+        let squared_mm = [ends(&self.rounding), ends(&self.correction)];
+        let mut figures = figures(everywhere, squared_mm, [self.way_mm[line], self.programmed_mm[line]]);
+        figures.largest_mm = self.starts[line].max(self.correction[line + 1]).sqrt();
+        figures
     }
 }

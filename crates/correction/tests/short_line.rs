@@ -100,6 +100,8 @@ proptest! {
         play in prop_oneof![Just(0.0), Just(0.006)],
         monotone: bool,
         one_way: bool,
+        incremental: bool,
+        own_axes: bool,
     ) {
         let ways: Vec<Way> = ways;
         let interpolation = if monotone { Interpolation::Monotone } else { Interpolation::Linear };
@@ -115,118 +117,68 @@ proptest! {
         let unknown = Partial::default();
         let rapid = Motion::Rapid { start: unknown, end: at([0; 3]).into() };
         prop_assert_eq!(short.correct(&rapid, &block).unwrap().pieces, long.correct(&rapid, &block).unwrap().pieces);
-        let mut steps = [0; 3];
-        let (mut taken, count) = (0, ways.len());
+        if incremental {
+            block.incremental = [true; 3];
+        }
+        // Where each line leads, and which axes it names: those that move at least.
+        let (mut steps, mut lines) = ([0; 3], Vec::new());
         for (way, named) in ways {
             let from = steps;
             for i in 0..3 {
-                steps[i] += if one_way { way[i].abs() } else { way[i] };
+                let moves = !own_axes || (named | 1) >> i & 1 == 1;
+                steps[i] += if !moves { 0 } else if one_way { way[i].abs() } else { way[i] };
                 steps[i] = steps[i].clamp(-50_000, 50_000);
             }
-            let names = [0, 1, 2].map(|i| steps[i] != from[i] || named >> i & 1 == 1);
-            block.letters = Letters::axes(names);
-            let feed = Feed {
-                start: at(from),
-                end: at(steps),
-                shape: Shape::Line,
-                rate: FeedRate::PerMinute,
-                division: Division::Any,
-            };
-            let [mut asked, mut foresees] = [short.clone(), short.clone()];
-            let lines = asked.short_lines(&block, [0.0; 3]);
+            lines.push((from, steps, [0, 1, 2].map(|i| steps[i] != from[i] || (named | 1) >> i & 1 == 1)));
+        }
+        let (mut taken, mut next) = (0, 0);
+        while next < lines.len() {
+            // As many as there are lanes, at once; what is not taken goes the long way.
+            let group = &lines[next..lines.len().min(next + LANES)];
+            let ends_mm = std::array::from_fn(|k| at(group[k.min(group.len() - 1)].1).linear_mm);
+            let mut names = [[false; 3]; LANES];
+            names.iter_mut().zip(group).for_each(|(names, line)| *names = line.2);
+            let run = Run { start_mm: at(group[0].0).linear_mm, ends_mm: &ends_mm, names, count: group.len() };
+            let alone = short.clone();
+            let found = short.short_lines(&block, [0.0; 3]);
             // Not before each axis has moved, where it has play.
-            prop_assert!(lines.is_some() || play > 0.0);
-            if let Some(lines) = lines {
-                let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
-                let line = asked.short_line(&lines, &block, start, end, None);
-                let foreseen = foresees.foresee(&lines, start, &[end; LANES]);
-                prop_assert_eq!(foresees.short_line(&lines, &block, start, end, foreseen.as_ref().map(|foreseen| (foreseen, 0))), line);
-                taken += usize::from(line.is_some());
+            prop_assert!(found.is_some() || play > 0.0);
+            let found = found.and_then(|found| short.short_run(&found, &block, &run));
+            let count = found.as_ref().map_or(0, |found| found.count);
+            prop_assert!(count <= group.len());
+            let mut alone = if count > 0 { alone } else { short.clone() };
+            for (lane, (from, to, names)) in group[..count.max(1)].iter().enumerate() {
+                block.letters = Letters::axes(*names);
+                let feed = Feed {
+                    start: at(*from),
+                    end: at(*to),
+                    shape: Shape::Line,
+                    rate: FeedRate::PerMinute,
+                    division: Division::Any,
+                };
+                let (a, b) = (alone.correct(&Motion::Feed(feed), &block).unwrap(), long.correct(&Motion::Feed(feed), &block).unwrap());
+                prop_assert_eq!(&a.pieces, &b.pieces);
+                prop_assert!((a.correction.largest_mm - b.correction.largest_mm).abs() < 1e-9);
+                prop_assert_eq!(a.correction.approach, b.correction.approach);
+                prop_assert_eq!(a.correction.unknown_side_mm, b.correction.unknown_side_mm);
+                // Bounds that were looked up are no less than those of the stretch.
+                let pairs = [(a.correction.before_mm, b.correction.before_mm), (a.correction.after_mm, b.correction.after_mm)];
+                prop_assert!(pairs.iter().all(|(rough, own)| rough >= &(own - 1e-9)), "{:?}", pairs);
+                let Some(found) = found.as_ref().filter(|found| lane < found.count) else { continue };
+                let words = b.pieces.first().map_or([AxisWord::Omit; 3], |piece| piece.axes);
+                let counts = words.map(|word| if let AxisWord::Write(counts) = word { Some(counts) } else { None });
+                prop_assert_eq!(counts, found.counts[lane]);
+                let own = short.correction_of(found, lane);
+                prop_assert_eq!(own, a.correction);
+                let pairs = [(own.largest_mm, found.worst.largest_mm), (own.before_mm, found.worst.before_mm), (own.after_mm, found.worst.after_mm)];
+                prop_assert!(pairs.iter().all(|(own, worst)| own <= worst), "{:?}", pairs);
             }
-            let (a, b) = (short.correct(&Motion::Feed(feed), &block).unwrap(), long.correct(&Motion::Feed(feed), &block).unwrap());
-            prop_assert_eq!(&a.pieces, &b.pieces);
-            prop_assert!((a.correction.largest_mm - b.correction.largest_mm).abs() < 1e-9);
-            prop_assert_eq!(a.correction.approach, b.correction.approach);
-            prop_assert_eq!(a.correction.unknown_side_mm, b.correction.unknown_side_mm);
-            // Bounds that were looked up are no less than those of the stretch.
-            let pairs = [(a.correction.before_mm, b.correction.before_mm), (a.correction.after_mm, b.correction.after_mm)];
-            prop_assert!(pairs.iter().all(|(rough, own)| rough >= &(own - 1e-9)), "{:?}", pairs);
+            if count > 0 {
+                prop_assert!(alone.continues_as(&short));
+            }
+            (short, taken, next) = (alone, taken + count, next + count.max(1));
         }
         // Else this test would say nothing.
-        prop_assert!(taken * 10 >= count * 9 || play > 0.0, "{} of {}", taken, count);
-    }
-
-    #[test]
-    fn a_run_says_what_its_lines_say(
-        values in proptest::collection::vec(-1.0f64..1.0, 90),
-        ways in proptest::collection::vec((prop::array::uniform3(-900i32..900), 0u8..8), 4..80),
-        monotone: bool,
-        all_named: bool,
-    ) {
-        let ways: Vec<Way> = ways;
-        let model =
-            machine(&values, 0.0, if monotone { Interpolation::Monotone } else { Interpolation::Linear });
-        let options = Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 };
-        let mut together = Corrector::new(&model, options);
-        let mut block = block();
-        let at = |steps: [i32; 3]| steps.map(|step| f64::from(step) / 1000.0 + 60.0);
-        let position = |linear_mm| Position { linear_mm, rotary_deg: [0.0; 3] };
-        let start = Motion::Rapid { start: Partial::default(), end: position(at([0; 3])).into() };
-        together.correct(&start, &block).unwrap();
-        let lines = together.short_lines(&block, [0.0; 3]).unwrap();
-        let mut steps = [0; 3];
-        let (mut runs, groups) = (0, ways.len() / LANES);
-        for group in ways.chunks_exact(LANES) {
-            let start_mm = at(steps);
-            let (mut ends_mm, mut names) = ([[0.0; 3]; LANES], [[true; 3]; LANES]);
-            for (lane, (way, named)) in group.iter().enumerate() {
-                for i in 0..3 {
-                    // An axis that no line names stands still.
-                    let moves = all_named || (named | 1) >> i & 1 == 1;
-                    steps[i] = (steps[i] + if moves { way[i] } else { 0 }).clamp(-50_000, 50_000);
-                    names[lane][i] = moves;
-                }
-                ends_mm[lane] = at(steps);
-            }
-            let mut single = together.clone();
-            let foreseen = together.foresee(&lines, start_mm, &ends_mm);
-            let run = Run { start_mm, ends_mm: &ends_mm, names };
-            let run = foreseen.and_then(|foreseen| together.short_run(&lines, &block, &run, &foreseen));
-            let mut from = start_mm;
-            for lane in 0..LANES {
-                block.letters = Letters::axes(names[lane]);
-                let end = ends_mm[lane];
-                let line = single.short_line(&lines, &block, from, end, None);
-                if let Some(run) = &run {
-                    let line = line.expect("the short way");
-                    let counts = line.axes.map(|word| match word {
-                        AxisWord::Write(counts) => Some(counts),
-                        AxisWord::Keep | AxisWord::Omit => None,
-                    });
-                    prop_assert_eq!(counts, run.counts[lane]);
-                    prop_assert_eq!(line.correction, together.correction_of(run, lane));
-                    let pairs = [(line.correction.largest_mm, run.worst.largest_mm),
-                        (line.correction.before_mm, run.worst.before_mm), (line.correction.after_mm, run.worst.after_mm)];
-                    prop_assert!(pairs.iter().all(|(own, worst)| own <= worst), "{:?}", pairs);
-                } else if line.is_none() {
-                    let feed = Feed {
-                        start: position(from),
-                        end: position(end),
-                        shape: Shape::Line,
-                        rate: FeedRate::PerMinute,
-                        division: Division::Any,
-                    };
-                    single.correct(&Motion::Feed(feed), &block).unwrap();
-                }
-                from = end;
-            }
-            if run.is_some() {
-                prop_assert!(together.continues_as(&single));
-                runs += 1;
-            }
-            together = single;
-        }
-        // Else this test would say nothing.
-        prop_assert!(!all_named || runs * 10 >= groups * 9, "{} of {}", runs, groups);
+        prop_assert!(taken * 10 >= lines.len() * 9 || play > 0.0, "{} of {}", taken, lines.len());
     }
 }

@@ -172,6 +172,17 @@ impl Play {
         })
     }
 
+    /// True where every carriage stands for certain, on a side that is known: [`Play::unsure_mm`] is 0 anywhere.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        (0..3).all(|axis| {
+            let stands = |carriage: f64| {
+                self.certain_mm[axis].iter().all(|end| (end - carriage).abs() <= SAME_PLACE_MM)
+            };
+            self.side[axis] != 0 && self.carriage_mm[axis].is_some_and(stands)
+        })
+    }
+
     /// Real tip minus nominal tip with the axes standing here after the way they came, mm, as
     /// [`PathModel::error_mm`].
     ///

@@ -7,7 +7,7 @@ use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Span, Value};
 use crate::edit::{Piece, WordEdit};
 use crate::habits::{Habits, Increments, Modes, is_motion, line_end};
 use crate::numbers::BlockNumbers;
-use crate::splice::{Splices, Style, bit, letters, number_span};
+use crate::splice::{Place, Splices, Style, bit, letters, number_span};
 
 /// A block longer than the control takes.
 const BLOCK_TOO_LONG: Code = Code(601);
@@ -179,13 +179,13 @@ impl<'d> Emitter<'d> {
         out.extend_from_slice(line.bytes);
     }
 
-    /// Writes a plain line in which nothing but numbers of its X, Y and Z words change: [`Emitter::rewrite`] for those
-    /// who come by millions.
+    /// Writes a plain line in which nothing but its X, Y and Z words change: [`Emitter::rewrite`] for those who come by
+    /// millions.
     ///
-    /// * `counts` – what X, Y, Z become, in steps of `10^-decimals`; `None` for words that stay
+    /// * `counts` – what X, Y, Z become, in steps of `10^-decimals`; `None` for words that stay or are not there
+    /// * `names` – which of them the line has words for: at least one; the others are put in
     ///
-    /// The line must have the words of `counts`; of G codes only the motion code in force in the output, which is
-    /// also that of the line's motion.
+    /// Of G codes the line may hold only the motion code in force in the output, which is also that of its motion.
     ///
     /// # Errors
     /// VP0601 as in `rewrite`; `out` is then as it was.
@@ -194,28 +194,50 @@ impl<'d> Emitter<'d> {
         &mut self,
         line: &PlainLine<'_>,
         counts: [Option<i64>; 3],
+        names: [bool; 3],
         decimals: [u8; 3],
         out: &mut Vec<u8>,
     ) -> Result<(), Diagnostic> {
-        self.habits.learn_line(line);
+        let separator = self.habits.learn_line(line);
         let style = Style {
             habits: &self.habits,
-            separator: self.habits.separator,
+            separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
         };
         let from = out.len();
         let content = line.content();
         let mut done = 0;
+        let mut missing = [0, 1, 2].map(|axis| if names[axis] { None } else { counts[axis] });
+        let mut left = names.iter().filter(|named| **named).count();
         for word in line.words() {
             let letter @ b'X'..=b'Z' = word.letter() else { continue };
             let axis = usize::from(letter - b'X');
-            let Some(counts) = counts[axis] else { continue };
+            left -= 1;
+            if missing[..axis] != [None; 3][..axis] {
+                // In front of the first word that comes behind it in the order of words.
+                let start = word.span().start as usize;
+                out.extend_from_slice(&content[done..start]);
+                done = start;
+                for before in 0..axis {
+                    style.put_axis(before, missing[before].take(), decimals, Place::Before, out);
+                }
+            }
             let (replaced, place) = (word.number(), word.number_span());
-            if !style.same_value(letter, replaced, counts, decimals[axis]) {
+            if let Some(counts) = counts[axis]
+                && !style.same_value(letter, replaced, counts, decimals[axis])
+            {
                 // A byte or two: cheaper one by one than by a call.
                 content[done..place.start as usize].iter().for_each(|byte| out.push(*byte));
                 style.write_in_place(word, counts, decimals[axis], out);
                 done = place.end as usize;
+            }
+            if left == 0 && missing != [None; 3] {
+                // Behind the last one.
+                out.extend_from_slice(&content[done..place.end as usize]);
+                done = place.end as usize;
+                for behind in 0..3 {
+                    style.put_axis(behind, missing[behind].take(), decimals, Place::After, out);
+                }
             }
         }
         if done < content.len() {

@@ -98,8 +98,9 @@ impl Habits {
 
     /// [`Habits::learn`] from a plain line.
     #[inline]
-    pub(crate) fn learn_line(&mut self, line: &PlainLine<'_>) {
+    pub(crate) fn learn_line(&mut self, line: &PlainLine<'_>) -> Option<&'static [u8]> {
         let mut before: Option<&PlainWord> = None;
+        let mut own = None;
         for word in line.words() {
             match word.letter() {
                 b'X' | b'Y' | b'Z' if self.knows(word) => {}
@@ -110,6 +111,7 @@ impl Habits {
             if let Some(before) = before {
                 let (end, start) = (before.span().end as usize, word.span().start as usize);
                 let known = separator(&line.bytes[end..start]);
+                own = Some(known);
                 if before.letter() != b'N' || known.is_empty() {
                     self.separator = known;
                 }
@@ -120,6 +122,7 @@ impl Habits {
             self.lower_case = line.bytes[last.span().start as usize].is_ascii_lowercase();
         }
         self.line_end = line_end(line.end());
+        own
     }
 
     /// True where [`Habits::learn_coordinate`] would change nothing, as it is with most words of most files: all

@@ -91,6 +91,23 @@ impl Style<'_> {
         one.is_some() && one == other
     }
 
+    /// A new word for X, Y or Z, if it is to have one.
+    pub(crate) fn put_axis(
+        &self,
+        axis: usize,
+        counts: Option<i64>,
+        decimals: [u8; 3],
+        place: Place,
+        out: &mut Vec<u8>,
+    ) {
+        let Some(counts) = counts else { return };
+        let letter = b"XYZ"[axis];
+        put(place, self.separator, out, |out| {
+            self.write_letter(letter, out);
+            self.write_number(letter, None, counts, decimals[axis], out);
+        });
+    }
+
     pub(crate) fn write_g(&self, code: GCode, out: &mut Vec<u8>) {
         self.write_letter(b'G', out);
         write_code(code, self.habits.two_digit_g, out);
@@ -154,7 +171,7 @@ enum Text {
 
 /// On which side of its place an inserted word has a neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+pub(crate) enum Place {
     Before,
     After,
 }

@@ -366,12 +366,15 @@ mod tests {
     use crate::job::{Corrected, Figures};
 
     /// The pieces of programs: what a state can be carried through.
-    const PARTS: [&str; 12] = [
+    const PARTS: [&str; 15] = [
         "G1 X10. Y5. Z3. F500\n",
         "G1 X11.5 Y5.25 Z2.5\nX12. Y6.\nX12.5\nY7.125\nZ2.\nX13.25 Y8.5 Z1.75\n",
         "(A COMMENT)\nG0 Z20.\nX-5. Y-5.\nG1 Z1. F300\n",
         "G1 X-5. Y-5.\nG3 X-10. Y-5. I-2.5 J0.\n",
         "G91\nG1 X1. Y.5\nX-2. Z.25\nG90\n",
+        "G91\nG1 X.4 Y.5\nX-.2 Z.25\nY.3(AT ONCE)\nZ-.125 X.1\nX.1 Y-.1 Z.1\nX-.2\nG90\n",
+        "G1 X3.5\nY2.5 (A)\nZ.75\nX4.\nN7 Y3.\nZ1. X4.5\nZ1.5 X5. F300.\nY3.5\n",
+        "x7. y2. z1.\nx7.5\ny2.25(b)\nZ1.25Y2.5\nX8.\n",
         "G1 X20. Y0.\nG17 G2 X0. Y0. R30.\n",
         "G0 Z25.\nG98 G81 X5. Y5. Z-3. R8. F100\nX15.\nY15.\nG80\n",
         "G55\nG0 X0. Y0. Z30.\nG1 X1. Y2.\n",

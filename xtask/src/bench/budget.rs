@@ -170,25 +170,13 @@ fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
         let ends_mm = std::array::from_fn(|k| group[k.min(group.len() - 1)].end.linear_mm);
         let start_mm = group[0].start.linear_mm;
         let short = corrector.short_lines(&block, [0.0; 3]);
-        let foreseen = short.as_ref().and_then(|short| corrector.foresee(short, start_mm, &ends_mm));
-        if group.len() == LANES
-            && let (Some(short), Some(foreseen)) = (&short, &foreseen)
-            && let run = (correction::Run { start_mm, ends_mm: &ends_mm, names: [[true; 3]; LANES] })
-            && let Some(run) = corrector.short_run(short, &block, &run, foreseen)
-        {
-            black_box(&run);
-            continue;
+        let run =
+            correction::Run { start_mm, ends_mm: &ends_mm, names: [[true; 3]; LANES], count: group.len() };
+        let run = short.and_then(|short| corrector.short_run(&short, &block, &run));
+        for feed in &group[run.as_ref().map_or(0, |run| run.count)..] {
+            _ = black_box(corrector.correct(&toolpath::Motion::Feed(*feed), &block));
         }
-        for (k, feed) in group.iter().enumerate() {
-            let (start, end) = (feed.start.linear_mm, feed.end.linear_mm);
-            let line = short.as_ref().and_then(|short| {
-                corrector.short_line(short, &block, start, end, foreseen.as_ref().map(|all| (all, k)))
-            });
-            if line.is_none() {
-                _ = black_box(corrector.correct(&toolpath::Motion::Feed(*feed), &block));
-            }
-            black_box(&line);
-        }
+        black_box(&run);
     }
 }
 
