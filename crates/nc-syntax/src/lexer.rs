@@ -10,8 +10,8 @@ use crate::{Dialect, Invalid, Item, ItemKind, Span, Value};
 
 /// The facts of a dialect that reading a block needs, ready to be asked a million times a second.
 pub(crate) struct Lexer<'d> {
-    paren: Paren,
-    semicolon: Semicolon,
+    pub(crate) paren: Paren,
+    pub(crate) semicolon: Semicolon,
     skip: Option<u8>,
     colon: Colon,
     equals_words: bool,

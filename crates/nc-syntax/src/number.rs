@@ -117,8 +117,11 @@ pub(crate) fn common_number(bytes: &[u8], at: usize, spaces_inside: bool) -> Opt
     let starts_word = |byte: &u8| byte.is_ascii_alphabetic() && !byte.eq_ignore_ascii_case(&b'E');
     let plain_end = match bytes.get(next) {
         None | Some(b'\n' | b'\r') => true,
-        Some(b' ' | b'\t') => !spaces_inside || bytes.get(next + 1).is_none_or(u8::is_ascii_alphabetic),
-        Some(byte) => starts_word(byte),
+        Some(b' ' | b'\t') => {
+            let goes_on = |byte: &u8| !byte.is_ascii_alphabetic() && !matches!(byte, b'(' | b';');
+            !spaces_inside || !bytes.get(next + 1).is_some_and(goes_on)
+        }
+        Some(byte) => starts_word(byte) || matches!(byte, b'(' | b';'),
     };
     if !plain_end {
         return None;

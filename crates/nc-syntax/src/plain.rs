@@ -1,9 +1,11 @@
-//! The line that programs consist of by millions: a few words with plain numbers and nothing else.
+//! The line that programs consist of by millions: a few words with plain numbers, and at most a comment behind them.
 //!
 //! Read once, into few bytes. What it holds is what [`crate::Reader::next`] would have shown as items.
 
+use memchr::{memchr, memchr2};
 use units::decimal::Decimal;
 
+use crate::dialect::{Paren, Semicolon};
 use crate::lexer::Lexer;
 use crate::number::common_number;
 use crate::{Number, Sign, Span};
@@ -120,20 +122,22 @@ impl PlainWord {
     }
 }
 
-/// A line of words with plain numbers, none of the letters F, G, N, X, Y, Z twice, and nothing else: one block.
+/// A line of words with plain numbers, none of the letters F, G, N, X, Y, Z twice, and at most one comment behind them: one
+/// block.
 ///
 /// ```
 /// use nc_syntax::{Block, PlainLine, Reader};
 ///
 /// let dialect = nc_dialect::builtin("fanuc").unwrap();
-/// let mut reader = Reader::new(b"G1 X10. Y5.\r\nX11. (last)\n", dialect);
+/// let mut reader = Reader::new(b"G1 X10. Y5. (first)\r\nX11. M5\n", dialect);
 /// let (mut line, mut block) = (PlainLine::default(), Block::default());
 /// assert!(reader.plain_line(&mut line));
-/// assert_eq!((line.content(), line.end()), (&b"G1 X10. Y5."[..], &b"\r\n"[..]));
-/// // A comment is more than plain words: nothing was read, and the slower way shows it.
+/// assert_eq!((line.content(), line.end()), (&b"G1 X10. Y5. (first)"[..], &b"\r\n"[..]));
+/// assert_eq!(line.words().len(), 3);
+/// // M is none of its letters: nothing was read, and the slower way shows it.
 /// assert!(!reader.plain_line(&mut line));
 /// assert!(reader.next(&mut block));
-/// assert_eq!(block.bytes, b"X11. (last)\n");
+/// assert_eq!(block.bytes, b"X11. M5\n");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlainLine<'a> {
@@ -214,6 +218,7 @@ impl Lexer<'_> {
                 b' ' | b'\t' => at += 1,
                 b'\n' => break 1,
                 b'\r' if window.get(at + 1) == Some(&b'\n') => break 2,
+                b'(' | b';' => at = self.comment_end(window, at)?,
                 byte => {
                     let letter = byte.to_ascii_uppercase();
                     let bit = 1_u32.checked_shl(u32::from(letter.wrapping_sub(b'A')))?;
@@ -232,5 +237,19 @@ impl Lexer<'_> {
         (found.count, found.content) = (count as u8, at as u8);
         found.bytes = &text[..at + line_end];
         (count > 0).then_some(())
+    }
+
+    /// The end of the line, where from `at` on a comment stands and blanks behind it.
+    #[inline]
+    fn comment_end(&self, line: &[u8], at: usize) -> Option<usize> {
+        let end = at + memchr2(b'\n', b'\r', &line[at..])?;
+        if line[at] == b';' {
+            return (self.semicolon == Semicolon::Comment).then_some(end);
+        }
+        let Paren::Comment { nested } = self.paren else { return None };
+        let inside = &line[at + 1..end];
+        let close = memchr(b')', inside)?;
+        let blank = inside[close + 1..].iter().all(|byte| matches!(byte, b' ' | b'\t'));
+        (blank && !(nested && inside.contains(&b'('))).then_some(end)
     }
 }
