@@ -37,6 +37,7 @@ pub struct PlainFeeds {
     numbers: Numbers,
     inch: bool,
     offset_mm: [f64; 3],
+    distance: Distance,
 }
 
 /// The end of a plain line.
@@ -64,7 +65,6 @@ impl Plain {
             && env.dialect.turning.is_none()
             && modal.aside.is_none()
             && modal.cycle.is_none()
-            && modal.distance == Distance::Absolute
             && modal.compensation == Compensation::Off
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
@@ -85,6 +85,7 @@ impl Plain {
             numbers: env.dialect.numbers.clone(),
             inch: context.unit_mm != 1.0,
             offset_mm: context.frame.offset_mm(),
+            distance: modal.distance,
             context,
         }))
     }
@@ -102,9 +103,9 @@ impl PlainFeeds {
         let mut bare = false;
         for word in line.words() {
             match word.letter() {
-                b'X' => (x, names[0]) = (self.place(word, 0, &mut bare), true),
-                b'Y' => (y, names[1]) = (self.place(word, 1, &mut bare), true),
-                b'Z' => (z, names[2]) = (self.place(word, 2, &mut bare), true),
+                b'X' => (x, names[0]) = (self.place(word, 0, x, &mut bare), true),
+                b'Y' => (y, names[1]) = (self.place(word, 1, y, &mut bare), true),
+                b'Z' => (z, names[2]) = (self.place(word, 2, z, &mut bare), true),
                 b'G' if word.number().tenths() != Some(self.code.0) => return None,
                 _ => {}
             }
@@ -112,13 +113,16 @@ impl PlainFeeds {
         (names != [false; 3]).then_some(PlainEnd { end_mm: [x, y, z], names, bare })
     }
 
-    /// Where a word brings its axis, mm.
+    /// Where a word brings its axis from `start_mm`, mm.
     #[inline]
-    fn place(&self, word: &PlainWord, axis: usize, bare: &mut bool) -> f64 {
+    fn place(&self, word: &PlainWord, axis: usize, start_mm: f64, bare: &mut bool) -> f64 {
         let number = word.number();
         *bare |= !number.has_point;
-        let length = self.numbers.length(number, self.inch).to_f64();
-        length * self.context.unit_mm + self.offset_mm[axis]
+        let value_mm = self.numbers.length(number, self.inch).to_f64() * self.context.unit_mm;
+        match self.distance {
+            Distance::Absolute => value_mm + self.offset_mm[axis],
+            Distance::Incremental => start_mm + value_mm,
+        }
     }
 
     /// The motion of a plain line.
