@@ -71,6 +71,25 @@ impl Everywhere {
         Self::of_class(&self.bow_of_four_passes_mm, speed_mm) + self.gradient * acceleration_mm / 8.0
     }
 
+    /// The same of a model whose error is larger by one of such bounds: a sum leaves its chord by no more than its parts do.
+    ///
+    /// * `gradient` – of what is added
+    /// * `bow_mm` – for axes that move by so many mm at most, and pass a place so often
+    pub(crate) fn with(mut self, gradient: f64, bow_mm: impl Fn(f64, u8) -> f64) -> Self {
+        self.gradient += gradient;
+        let bows = [
+            (&mut self.bow_mm, 1),
+            (&mut self.bow_of_two_passes_mm, 2),
+            (&mut self.bow_of_four_passes_mm, 4),
+        ];
+        for (bow, passes) in bows {
+            for (bow, longest_mm) in bow.iter_mut().zip(Self::longest_mm()) {
+                *bow += bow_mm(longest_mm, passes);
+            }
+        }
+        self
+    }
+
     /// Longest move of an axis by class, mm.
     pub(crate) fn longest_mm() -> [f64; CLASSES] {
         std::array::from_fn(|class| 2f64.powi(SHORTEST + class as i32))

@@ -1,6 +1,8 @@
 //! The inverse for targets that come by millions: one step of Newton's method and steps of the fixed point, for one
 //! target or for several side by side.
 
+use std::array::from_fn;
+
 use pulp::{Simd, f64x4};
 
 use crate::lanes::{LANES, Lanes, Real, Together, Triple, together};
@@ -74,8 +76,19 @@ impl RigidBody {
         together(NewtonTogether { model: self, targets_mm, directions, state, everywhere })
     }
 
+    /// [`crate::PathModel::error_mm`] of several commands inside the volume, without head and table errors: X, Y, Z of each.
     #[inline]
-    fn is_rotary_outside(&self, state: &Command) -> bool {
+    pub(crate) fn errors_together(
+        &self,
+        q_mm: &[Vector; LANES],
+        directions: &[[i8; 3]; LANES],
+        tool_mm: &Vector,
+    ) -> [Vector; LANES] {
+        together(ErrorsTogether { model: self, q_mm, directions, tool_mm })
+    }
+
+    #[inline]
+    pub(crate) fn is_rotary_outside(&self, state: &Command) -> bool {
         self.description.chain.has_rotary() && self.rotary_inside(state).is_err()
     }
 }
@@ -140,6 +153,32 @@ impl Together for NewtonTogether<'_> {
             }
         }
         None
+    }
+}
+
+/// The error of several commands.
+struct ErrorsTogether<'a> {
+    model: &'a RigidBody,
+    q_mm: &'a [Vector; LANES],
+    directions: &'a [[i8; 3]; LANES],
+    tool_mm: &'a Vector,
+}
+
+impl Together for ErrorsTogether<'_> {
+    type Output = [Vector; LANES];
+
+    #[inline(always)]
+    fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Self::Output {
+        let Self { model, q_mm: [a, b, c, d], directions, tool_mm } = self;
+        let q = [
+            Lanes::new(simd, [a.x, b.x, c.x, d.x]),
+            Lanes::new(simd, [a.y, b.y, c.y, d.y]),
+            Lanes::new(simd, [a.z, b.z, c.z, d.z]),
+        ];
+        let tool = Triple::all(q[0], tool_mm);
+        let Triple([x, y, z]) = model.chain_error(&q, directions, tool, Triple::all(q[0], &Vector::zeros()));
+        let (x, y, z) = (x.each(), y.each(), z.each());
+        from_fn(|lane| Vector::new(x[lane], y[lane], z[lane]))
     }
 }
 

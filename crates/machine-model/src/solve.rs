@@ -8,7 +8,7 @@ use crate::{Solution, SolveError, Vector, Volume};
 pub const TOLERANCE_MM: f64 = 1e-10;
 
 /// Rounds of the fixed point before Newton's method takes over: enough for error gradients up to 0.2.
-const FIXED_POINT_ROUNDS: u32 = 15;
+pub(crate) const FIXED_POINT_ROUNDS: u32 = 15;
 const NEWTON_ROUNDS: u32 = 30;
 /// Step of the difference quotient, mm: large against rounding, small against cells of tables.
 const STEP_MM: f64 = 1e-5;

@@ -1,9 +1,10 @@
 //! The rigid-body model with effects beyond its tables: equation (23) of `docs/equations.md`.
 
 use crate::effects::{Conditions, EffectKind, EffectTerm, MissingCondition};
-use crate::solve::solve;
+use crate::solve::{FIXED_POINT_ROUNDS, TOLERANCE_MM, solve};
 use crate::{
-    Command, Engine, EngineId, Move, PathModel, Prediction, RigidBody, Solution, SolveError, Vector, Volume,
+    Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Prediction, RigidBody, Solution,
+    SolveError, Vector, Volume,
 };
 
 /// An effect cannot be evaluated: what it depends on is not known.
@@ -134,6 +135,15 @@ impl WithEffects {
         Command { linear_mm: self.base.volume().nearest(&command.linear_mm), ..*command }
     }
 
+    /// Sum of the effects, where the linear axes have to undo it.
+    fn along_axes(&self, command: &Command) -> Vector {
+        let seen = self.displacement(command);
+        if self.base.description().chain.table().is_empty() {
+            return seen;
+        }
+        self.base.table_turn(command).tr_mul(&seen)
+    }
+
     /// Sum of the effects, as the workpiece sees it.
     fn displacement(&self, command: &Command) -> Vector {
         self.terms.iter().fold(Vector::zeros(), |sum, term| {
@@ -143,6 +153,9 @@ impl WithEffects {
         })
     }
 }
+
+/// What is proven to be left counts as found: the tolerance less what rounding makes of it, mm.
+const PROVEN_MM: f64 = 0.9 * TOLERANCE_MM;
 
 impl Engine for WithEffects {
     fn id(&self) -> EngineId {
@@ -168,8 +181,7 @@ impl Engine for WithEffects {
 impl PathModel for WithEffects {
     fn error_mm(&self, command: &Command) -> Vector {
         let command = self.inside(command);
-        // Where the linear axes have to undo it.
-        self.base.error_mm(&command) + self.base.table_turn(&command).tr_mul(&self.displacement(&command))
+        self.base.error_mm(&command) + self.along_axes(&command)
     }
 
     /// A sum leaves its chord by no more than its parts do.
@@ -204,6 +216,72 @@ impl PathModel for WithEffects {
 
     fn tilt_rad(&self, command: &Command) -> f64 {
         self.base.tilt_rad(command)
+    }
+
+    /// Those of the tables, and of every effect over the whole volume: equation (24) grows with the range. `None` on a machine
+    /// with play: there the room that a stretch's own bound leaves decides.
+    fn everywhere(&self, state: &Command) -> Option<Everywhere> {
+        if self.depends_on_direction {
+            return None;
+        }
+        let base = self.base.everywhere(state)?;
+        let bound = |speed_mm: f64, acceleration_mm: f64, passes: u8| -> f64 {
+            let stretch = Move {
+                range_mm: base.volume.0,
+                speed_mm: [speed_mm; 3],
+                acceleration_mm: [acceleration_mm; 3],
+                passes,
+                state: *state,
+                turn: None,
+            };
+            self.terms.iter().map(|term| term.chord_bound_mm(&stretch, &self.conditions)).sum()
+        };
+        // The second derivative of what stands and is accelerated is the gradient's alone; a chord is left by an eighth of it.
+        Some(base.with(8.0 * bound(0.0, 1.0, 1), |longest_mm, passes| bound(longest_mm, 0.0, passes)))
+    }
+
+    /// The fixed point of [`Engine::solve`], for several targets side by side: the same bits.
+    #[inline]
+    fn commands_for(
+        &self,
+        targets_mm: &[[f64; 3]; LANES],
+        directions: &[[i8; 3]; LANES],
+        state: &Command,
+        everywhere: &Everywhere,
+    ) -> Option<[[f64; LANES]; 3]> {
+        let targets = targets_mm.map(Vector::from);
+        let (mut q, mut open) = (targets, [true; LANES]);
+        if self.base.is_rotary_outside(state) {
+            return None;
+        }
+        for _ in 0..FIXED_POINT_ROUNDS {
+            if !q.iter().all(|q| self.base.volume.contains(q)) {
+                return None;
+            }
+            let errors = self.base.errors_together(&q, directions, &state.tool_mm);
+            for lane in 0..LANES {
+                if !open[lane] {
+                    continue;
+                }
+                let at = Command { linear_mm: q[lane], direction: directions[lane], ..*state };
+                let error = errors[lane] + self.along_axes(&at);
+                let residual = (q[lane] - targets[lane]) + error;
+                // No component is longer than the whole: mostly that tells.
+                if residual.amax() <= TOLERANCE_MM && residual.norm() <= TOLERANCE_MM {
+                    open[lane] = false;
+                    continue;
+                }
+                q[lane] = targets[lane] - error;
+                // A step by the residual leaves at most `gradient` of it, which need not be evaluated.
+                open[lane] = everywhere.gradient * residual.amax() > PROVEN_MM
+                    || everywhere.gradient * residual.norm() > PROVEN_MM;
+            }
+            if open == [false; LANES] {
+                let inside = q.iter().all(|q| self.base.volume.contains(q));
+                return inside.then(|| [0, 1, 2].map(|axis| q.map(|q| q[axis])));
+            }
+        }
+        None
     }
 
     fn depends_on_direction(&self) -> bool {

@@ -6,7 +6,8 @@ mod machines;
 
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind, EffectTerm, MissingCondition, Shape};
 use machine_model::{
-    Chain, Command, Engine, Move, PathModel, Range, RigidBody, UnknownCondition, Vector, WithEffects,
+    Chain, Command, Engine, LANES, Move, PathModel, Range, RigidBody, RotaryAxis, UnknownCondition, Vector,
+    WithEffects,
 };
 use machines::{Random, TRAVEL_MM, command, machine, perfect};
 use units::math;
@@ -145,6 +146,52 @@ fn a_machine_with_all_effects_is_bounded_and_inverted() {
         let reached = model.predict(&Command { linear_mm: solution.linear_mm, ..target }).position_mm;
         let there = model.predict(&target);
         assert!((reached - (there.position_mm - there.error_mm)).norm() < 1e-9, "{reached}");
+    }
+}
+
+/// What is said of the whole volume holds for each stretch, and places solved together are those solved alone, bit for bit.
+#[test]
+fn what_holds_everywhere_holds_for_each_effect() {
+    let mut random = Random::new(19);
+    let kinds =
+        EffectKind::all().into_iter().filter(|kind| !kind.is_instrument() && !kind.depends_on_direction());
+    for kind in kinds {
+        for round in 0..24 {
+            let chain = CHAINS[round % 2];
+            let mut description = machine(round as u64, chain, round % 2 == 0, 1.0);
+            for axis in &mut description.linear {
+                (axis.errors_negative, axis.backlash_mm) = (None, 0.0);
+            }
+            description.rotary.iter_mut().for_each(|axis| *axis = RotaryAxis::perfect(axis.centre_mm));
+            let base = RigidBody::new(description).unwrap();
+            let model =
+                WithEffects::new(base.clone(), vec![term(kind, &mut random, chain, true)], KNOWN).unwrap();
+            let (samples, stretch) = stretch(&mut random, false);
+            let [alone, everywhere] = [base.everywhere(&stretch.state), model.everywhere(&stretch.state)];
+            let (alone, everywhere) = (alone.unwrap(), everywhere.unwrap());
+            let at = |q: &[f64; 3]| Command { linear_mm: (*q).into(), ..stretch.state };
+            let own = |q: &[f64; 3]| model.error_mm(&at(q)) - base.error_mm(&at(q));
+            let values: Vec<Vector> = samples.iter().map(own).collect();
+            let longest = stretch.speed_mm.into_iter().fold(0.0, f64::max);
+            let bow = everywhere.chord_bound_mm(longest) - alone.chord_bound_mm(longest);
+            // Infinite less infinite says nothing: long stretches.
+            assert!(bow.is_nan() || leaves_chord(&values) <= bow + 1e-12, "{kind}: {bow:e}");
+            let length = (Vector::from(samples[1]) - Vector::from(samples[0])).norm();
+            let steep = values.windows(2).map(|pair| (pair[1] - pair[0]).norm() / length).fold(0.0, f64::max);
+            let of_effect = everywhere.gradient - alone.gradient;
+            // More would be no help: what a command is rounded by is multiplied by it.
+            assert!(steep <= of_effect + 1e-9 && of_effect < 0.2, "{kind}: {steep:e} > {of_effect:e}");
+            let targets = [0, 300, 600, 1000].map(|k| samples[k]);
+            let directions = [stretch.state.direction; LANES];
+            let [x, y, z] = model.commands_for(&targets, &directions, &stretch.state, &everywhere).unwrap();
+            for (lane, target) in targets.iter().enumerate() {
+                let one = model.solve(&at(target)).unwrap().linear_mm;
+                assert_eq!(
+                    [x[lane], y[lane], z[lane]].map(f64::to_bits),
+                    [one.x, one.y, one.z].map(f64::to_bits)
+                );
+            }
+        }
     }
 }
 

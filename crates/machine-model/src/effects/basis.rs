@@ -202,7 +202,8 @@ impl EffectKind {
         geometry: &EffectGeometry,
     ) -> Result<Vector, MissingCondition> {
         let arising = self.arising_mm(index, shape, command, conditions, geometry)?;
-        Ok(if self.arises_along_linear_axes() { geometry.table_turn(command) * arising } else { arising })
+        let turns = self.arises_along_linear_axes() && geometry.has_table();
+        Ok(if turns { geometry.table_turn(command) * arising } else { arising })
     }
 
     /// What a linear axis, its drive or the spindle does, and what turns with the table for the workpiece; a table's
