@@ -33,8 +33,12 @@ class Curve:
 
 def stretches(motions):
     out, kind = [], None
+    # A hole that is written as moves may have one positioning move where its cycle has two.
+    merged = any(m.plane for m in motions)
     for n, m in enumerate(motions):
-        if m.kind == "rapid":
+        if m.kind == "rapid" and kind == "rapid" and merged:
+            out[-1][1].append(n)
+        elif m.kind == "rapid":
             out.append(("rapid", [n]))
         elif kind == "feed":
             out[-1][1].append(n)

@@ -12,6 +12,7 @@ import random
 
 import numpy as np
 
+import planes
 from machine import LOCATIONS, Machine
 
 CHAINS = {
@@ -22,6 +23,8 @@ CHAINS = {
     "nutating": ["[w b X Y Z C B t]", "[w C b X Y Z B t]"],
 }
 KINDS = ["indexed", "indexed-arcs", "cam", "cam-tcp", "long", "long-tcp", "rotary-only", "g93", "g93-tcp", "winding", "singular-tcp"]
+# Asked for by name: tilted working planes.
+PLANE_KINDS = ["plane", "plane-g53"]
 
 
 def smooth(rng, nodes, size, period):
@@ -171,10 +174,100 @@ def base(w, rng):
     return middle + [rng.uniform(-60, 60), rng.uniform(-60, 60), rng.uniform(20, 90)]
 
 
+def tilted(w, rng, kind):
+    """Cuts in tilted planes, in the planes' own coordinates: lines, arcs, holes; the angles programmed before, or by G53.1."""
+    names, spec = w.ideal.rotary, w.spec
+    zero, offset = [0.0] * len(names), np.array(spec["offset"])
+    length, w.length, vector, w.vector = w.length, 0.0, w.vector, np.zeros(3)
+    now = np.zeros(len(names))
+    dot = lambda v: f"{v:.3f}" if abs(v) > 5e-4 else "0."  # noqa: E731
+    fine = lambda v: f"{v:.9f}"  # noqa: E731
+    for _ in range(rng.choice([1, 2, 3])):
+        origin = np.round(base(w, rng) - offset, 3)
+        while True:
+            form = rng.choice([0, 0, 1, 2, 3])
+            blocks = define(form, origin, rng, dot, fine)
+            parts = {}
+            for words in blocks:
+                parts[int(words.get("Q", 0)) if form in (2, 3) else 0] = {k: float(v) for k, v in words.items()}
+            turn, _ = planes.plane(parts, 1.0)
+            if kind == "plane-g53":
+                try:
+                    rot = planes.by_rule(w.ideal, turn[:, 2], now, spec)
+                except ValueError:
+                    continue
+                break
+            fits = [s for s in planes.solutions(w.ideal, turn[:, 2]) if all(planes.turns(v, spec["rotary"][k]["travel"]) for v, k in zip(s, names))]
+            if fits and np.linalg.norm(np.cross(turn[:, 2], [0, 0, 1])) > 0.02:
+                rot = np.array([rng.choice(planes.turns(v, spec["rotary"][k]["travel"])) if kind == "plane" and rng.random() < 0.2 else planes.turns((v + 180) % 360 - 180, spec["rotary"][k]["travel"])[0]
+                                for v, k in zip(rng.choice(fits), names)])
+                break
+        w.last = {}
+        w.block("G0", origin + offset + [-60, -50, 220], zero if kind == "plane" else now, repeat=True)
+        if kind == "plane":
+            now = np.round(rot, 6)
+            w.lines.append("G0 " + " ".join(f"{k}{v:.6f}" for k, v in zip(names, now)))
+        w.lines += ["G68.2" + (f" P{form}" if form or rng.random() < 0.3 else "") + "".join(f" {k}{v}" for k, v in words.items()) for words in blocks]
+        if kind == "plane-g53":
+            w.lines.append("G53.1")
+            now = rot
+        cut(w, rng, dot)
+        w.lines += rng.choice([["G49", "G69"], ["G69", "G49"]])
+    w.lines += ["M5", "M30", "%"]
+    w.length, w.vector = length, vector
+
+
+def define(form, origin, rng, dot, fine):
+    """Words of the blocks that define a plane."""
+    x, y, z = ({"X": dot(origin[0]), "Y": dot(origin[1]), "Z": dot(origin[2])}[k] for k in "XYZ")
+    place = {"X": x, "Y": y, "Z": z}
+    some = lambda low, high: rng.choice([f"{rng.uniform(low, high):.6f}", f"{rng.randrange(int(low), int(high) + 1)}."])  # noqa: E731
+    if form == 0:
+        return [{**place, "I": some(-180, 180), "J": rng.choice([some(5, 60), some(-60, -5)]), "K": some(-180, 180)}]
+    if form == 1:
+        return [{"Q": rng.choice(["123", "132", "213", "231", "312", "321"]), **place, "I": some(-45, 45), "J": some(-45, 45), "K": some(-170, 170)}]
+    turn = planes.about("Z", rng.uniform(-180, 180)) @ planes.about("X", rng.uniform(5, 60)) @ planes.about("Z", rng.uniform(-180, 180))
+    if form == 2:
+        points = [origin, origin + rng.uniform(30, 90) * turn[:, 0], origin + rng.uniform(-30, 30) * turn[:, 0] + rng.uniform(30, 90) * turn[:, 1]]
+        blocks = [{"Q": str(q), **{k: dot(v) for k, v in zip("XYZ", p)}} for q, p in enumerate(points, 1)]
+        return ([{"Q": "0", "X": "0.", "Y": "0.", "Z": "0.", "R": "0."}] if rng.random() < 0.5 else []) + blocks
+    return [{"Q": "1", **place, **{k: fine(v) for k, v in zip("IJK", turn[:, 0])}}, {"Q": "2", **{k: fine(v) for k, v in zip("IJK", turn[:, 2])}}]
+
+
+def cut(w, rng, dot):
+    """Feeds in a plane's own coordinates."""
+    at = np.round([rng.uniform(-40, 40), rng.uniform(-40, 40), rng.uniform(-4, 1)], 3)
+    first = rng.choice([["G0 X{} Y{}", "G43 H1 Z{}"], ["G43 H1 G0 X{} Y{} Z{}"]])
+    text = "\n".join(first).format(dot(at[0]), dot(at[1]), "60.")
+    w.lines += text.split("\n") + ["G0 Z5.", f"G1 Z{dot(at[2])} F{rng.choice([200, 900])}."]
+    for _ in range(rng.choice([3, 6])):
+        if rng.random() < 0.45:
+            radius, a = round(rng.uniform(3, 40), 3), rng.uniform(0, 6.3)
+            centre = np.round(at[:2] + radius * np.array([math.cos(a), math.sin(a)]), 3)
+            begin, real = math.atan2(at[1] - centre[1], at[0] - centre[0]), math.hypot(at[0] - centre[0], at[1] - centre[1])
+            way, sweep = rng.choice([2, 3]), rng.uniform(0.3, 5)
+            turn = begin + (sweep if way == 3 else -sweep)
+            end = np.round(centre + real * np.array([math.cos(turn), math.sin(turn)]), 3)
+            w.lines.append(f"G{way} X{dot(end[0])} Y{dot(end[1])} I{dot(centre[0] - at[0])} J{dot(centre[1] - at[1])}")
+            at = np.array([end[0], end[1], at[2]])
+        else:
+            at = np.round(at + [rng.uniform(-60, 60), rng.uniform(-60, 60), rng.choice([0, 0, rng.uniform(-3, 3)])], 3)
+            w.lines.append(f"G1 X{dot(at[0])} Y{dot(at[1])} Z{dot(at[2])}")
+    w.lines.append("G0 Z40.")
+    if rng.random() < 0.6:
+        for n in range(rng.choice([1, 3])):
+            x, y = round(rng.uniform(-50, 50), 3), round(rng.uniform(-50, 50), 3)
+            w.lines.append((f"{rng.choice(['G98', 'G99'])} G81 " if n == 0 else "") + f"X{dot(x)} Y{dot(y)}" + (f" Z{dot(-rng.uniform(3, 25))} R2. F150." if n == 0 else ""))
+        w.lines += ["G80", "G0 Z60."]
+
+
 def program(rng, spec, kind):
     tcp = kind.endswith("tcp")
     w = Writer(spec, tcp)
     start(w)
+    if kind in PLANE_KINDS:
+        tilted(w, rng, kind)
+        return "\n".join(w.lines) + "\n"
     here, rot = base(w, rng), tilts(w, rng)
     if kind in ("indexed", "indexed-arcs"):
         first = True
@@ -338,6 +431,7 @@ def kinematics(spec):
     own = ['on = ["M428"]', 'off = ["M429"]'] if spec["control"] == "linuxcnc" else []
     own += ["at_start = true"] if spec.get("tcp_at_start") else []
     text = ", ".join(f"{k} = {v}" for k, v in centres.items())
+    own += [f'branch = "{spec["branch"]}"', f'turn = "{spec["turn"]}"'] if "branch" in spec else []
     return ["[kinematics]", 'straight = "tip"', f"centres_mm = {{ {text} }}"] + own
 
 
@@ -347,11 +441,17 @@ def pair(seed, number, has, chains=tuple(CHAINS), kinds=tuple(KINDS)):
     control = "linuxcnc"
     if kind.endswith("tcp"):
         control = rng.choice(["linuxcnc", "fanuc"] + (["sinumerik"] if chain.startswith("table-table") else []))
-    elif rng.random() < 0.3:
+    elif rng.random() < 0.3 or kind in PLANE_KINDS:
         control = "fanuc"
     spec = machine(rng, chain, control, has)
+    if kind in PLANE_KINDS:
+        for one in spec["axes"].values():
+            one.pop("backlash_um", None)  # no path is proven with play
+    if kind == "plane-g53":
+        tilt = [k for k in spec["rotary"] if spec["rotary"][k]["travel"][1] < 200][-1]
+        spec.update(branch=tilt + rng.choice("+-"), turn=rng.choice(["shortest", "principal"]))
     if control == "fanuc":
         spec["tcp_code"] = rng.choice(["G43.4", "G43.4", "G234"])
-    if kind.endswith("tcp") and rng.random() < 0.3:
+    if (kind.endswith("tcp") or kind in PLANE_KINDS) and rng.random() < 0.3:
         spec["control_centres"] = {k: [round(v + rng.uniform(-0.05, 0.05), 4) for v in one["centre"]] for k, one in spec["rotary"].items()}
     return chain, kind, spec, program(rng, spec, kind)

@@ -46,21 +46,43 @@ def deviation(spec, m, pieces):
     return worst
 
 
-def correct(text, spec, split=True):
-    motions, _ = read(text, spec)
-    by_line = {m.line: m for m in motions}
+def correct(text, spec, split=True, wrong=None):
+    """`wrong`: planes are misread on purpose."""
+    motions, _ = read(text, spec, wrong=wrong)
+    by_line = {m.line: [] for m in motions}
+    for m in motions:
+        by_line[m.line].append(m)
     rotary = Machine(spec, perfect=True).rotary
     equals = "=" if spec["control"] == "sinumerik" else ""
     out, before = [], "rapid"
     for number, raw in enumerate(text.splitlines(), 1):
-        m = by_line.get(number)
-        if m is None:
+        if number not in by_line:
             out.append(raw)
             continue
+        if len(by_line[number]) > 1:
+            # A hole: its moves.
+            f = re.search(r"F[\d.]+", raw)
+            for m in by_line[number]:
+                pieces = 1
+                while m.kind == "feed" and pieces < 4096 and deviation(spec, m, pieces) > spec["tolerance_um"] * 0.33e-3:
+                    pieces *= 2
+                places = solve(spec, m, np.linspace(0, 1, pieces + 1))[0]
+                for x in (places[1:] if m.kind == "feed" else places[-1:]):
+                    local = (x - m.plane[1]) @ m.plane[0]
+                    out.append(" ".join([f"G{1 if m.kind == 'feed' else 0}"] + [f"{c}{v:.3f}" for c, v in zip("XYZ", local)] + ([f.group(0)] if f and m.kind == "feed" else [])))
+            before = "rapid"
+            continue
+        m = by_line[number][0]
         offset = np.array(spec["offset"]) + ([0, 0, 0] if m.tcp or not spec["lengths"] else [0, 0, -m.tool[2]])
 
+        if m.plane and not m.named:
+            out.append(raw)  # G53.1
+            continue
+
         def words(x, rot, linear="XYZ", turning=rotary):
-            texts = [f"{c}{v:.3f}" for c, v in zip("XYZ", x - offset) if c in linear]
+            # In a plane: its own coordinates, and no rotary words.
+            linear_words, turning = ((x - m.plane[1]) @ m.plane[0], []) if m.plane else (x - offset, turning)
+            texts = [f"{c}{v:.3f}" for c, v in zip("XYZ", linear_words) if c in linear]
             return " ".join(texts + [f"{c}{equals}{v:.3f}" for c, v in zip(rotary, rot) if c in turning])
 
         rest = re.sub(r"(?<![A-Z])[XYZABCIJKR]=?-?[\d.]+", " ", raw)

@@ -16,6 +16,7 @@ import tempfile
 
 import numpy as np
 
+import planes
 from machine import Machine
 
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
@@ -33,14 +34,21 @@ class Motion:
     """One block's motion. `start`, `end` (3,): commands, or with `tcp` places of the tip in the workpiece; `rot0`, `rot1` (k,)
     degrees; `f` and `mode` the feed word in force (94 mm/min, 93 1/min, 95); `state` the process in force."""
 
-    def __init__(self, kind, line, start, end, rot0, rot1, tool, tcp, arc, f, mode, state, named):
+    def __init__(self, kind, line, start, end, rot0, rot1, tool, tcp, arc, f, mode, state, named, plane=None):
+        # With `plane` (rotation, zero) the places are those of the tip in the plane's own coordinates.
+        self.plane = plane
         self.kind, self.line, self.tcp, self.arc, self.f, self.mode, self.state = kind, line, tcp, arc, f, mode, state
         self.start, self.end = np.array(start, float), np.array(end, float)
         self.rot0, self.rot1 = np.array(rot0, float), np.array(rot1, float)
         self.tool, self.named = np.array(tool, float), named
 
     def at(self, u):
-        """Commands or tips (n, 3) and angles (n, k) at the shares u of the block."""
+        """Commands or tips in the workpiece (n, 3) and angles (n, k) at the shares u of the block."""
+        places, rot = self.in_own_frame(u)
+        return (places @ self.plane[0].T + self.plane[1] if self.plane else places), rot
+
+    def in_own_frame(self, u):
+        """The same in the coordinates of the program's words."""
         u = np.asarray(u, float)
         rot = self.rot0 + u[:, None] * (self.rot1 - self.rot0)
         if self.arc is None:
@@ -114,8 +122,10 @@ def nearest(machine, wanted, now, travel):
     return best[1]
 
 
-def read(text, spec, start=None):
-    """Motions and events [(number of motions before, text)] of a program on the machine `spec` (generate.py)."""
+def read(text, spec, start=None, wrong=None):
+    """Motions and events [(number of motions before, text)] of a program on the machine `spec` (generate.py).
+
+    `wrong`: a plane misread on purpose, for the self-test ("euler", "branch")."""
     control = Machine(spec, perfect=True, centres=spec.get("control_centres"))
     rotary, dialect = control.rotary, spec["control"]
     travel = [spec["rotary"][k]["travel"] for k in rotary]
@@ -125,6 +135,7 @@ def read(text, spec, start=None):
     rot, mode, plane, absolute, scale, length, tcp, vectors = np.zeros(len(rotary)), None, 17, True, 1.0, None, bool(spec.get("tcp_at_start")), False
     f, feed_mode, state = None, 94, {}
     motions, events = [], []
+    tilted, parts, cycle = None, {}, None
 
     def tool():
         return np.array([0, 0, -spec["lengths"][length]], float) if length else np.array(spec["tool"], float)
@@ -166,6 +177,7 @@ def read(text, spec, start=None):
             pairs.append((m.group(1), m.group(3), float(m.group(4) if m.group(3) else m.group(5))))
             rest = rest[m.end():]
         words, how, machine_frame = {}, {}, False
+        tilts, aligns, drills = None, False, None
         g_length = None
         for letter, manner, value in pairs:
             if letter == "G":
@@ -184,6 +196,13 @@ def read(text, spec, start=None):
                     g_length = value
                 elif value == 53:
                     machine_frame = True
+                elif value in (68.2, 53.1, 69) and dialect == "fanuc":
+                    tilts, aligns = value if value != 53.1 else tilts, aligns or value == 53.1
+                    events.append((len(motions), f"G{value:g}"))
+                elif value in (81, 82, 98, 99, 80):
+                    drills = value
+                    if value in (98, 99):
+                        state["return"] = value
                 elif value not in SILENT:
                     raise Unreadable(f"line {number}: G{value:g}")
                 else:
@@ -196,11 +215,29 @@ def read(text, spec, start=None):
                 events.append((len(motions), f"{letter}{value:g}"))
             elif letter == "F":
                 f = value * (1.0 if feed_mode == 93 else scale)
-            elif letter in ("N", "P", "Q", "L", "D"):
+            elif letter in ("N", "P", "Q", "L", "D") and tilts != 68.2:
                 if letter == "P" and "P" not in words:
                     events.append((len(motions), f"P{value:g}"))
             else:
                 words[letter], how[letter] = value, manner
+        if tilts == 68.2:
+            if tcp:
+                raise Unreadable(f"line {number}: a plane under TCP")
+            parts[int(words.get("Q", 0)) if int(words.get("P", 0)) in (2, 3) else 0] = dict(words)
+            found = planes.plane(parts, scale, wrong if wrong == "euler" else None)
+            if found:
+                turn, origin = found
+                tilted, parts, known = (turn, origin + offset), {}, [False] * 3
+            continue
+        if tilts == 69 and tilted:
+            tilted, known = None, [False] * 3
+        if aligns:
+            if not tilted:
+                raise Unreadable(f"line {number}: G53.1 without a plane")
+            turned = planes.by_rule(control, tilted[0][:, 2], rot, spec, opposite=wrong == "branch")
+            motions.append(Motion("rapid", number, here, here, rot, turned, tool(), False, None, f, feed_mode, dict(state), ""))
+            rot, known = turned, [False] * 3
+            continue
         if g_length is not None:
             events.append((len(motions), f"G{g_length:g} H{words.get('H', 0):g}"))
             if g_length == 49:
@@ -220,7 +257,32 @@ def read(text, spec, start=None):
         if not letters and not (mode in (2, 3) and any(c in words for c in "IJK")):
             continue
         end, turned = here.copy(), rot.copy()
-        s = np.zeros(3) if machine_frame else shift()
+        s = np.zeros(3) if machine_frame or tilted else shift()
+        if tilted and (machine_frame or any(c in words for c in rotary)):
+            raise Unreadable(f"line {number}: a rotary word or G53 in a plane")
+        if drills in (81, 82):
+            cycle = {"initial": here[2]}
+        elif drills == 80 or (mode is not None and any(a == "G" and v in (0, 1, 2, 3) for a, _, v in pairs)):
+            cycle = None
+        if cycle is not None:
+            if "R" in words:
+                cycle["R"] = words["R"] * scale + s[2]
+            if "Z" in words:
+                cycle["Z"] = words["Z"] * scale + s[2]
+            if not all(known) or not absolute:
+                raise Unreadable(f"line {number}: a hole from an unknown place")
+            top = here.copy()
+            for i in (0, 1):
+                if "XY"[i] in words:
+                    top[i] = words["XY"[i]] * scale + s[i]
+            top[2] = cycle["R"]
+            bottom, out = top.copy(), top.copy()
+            bottom[2] = cycle["Z"]
+            out[2] = max(cycle["initial"], cycle["R"]) if state.get("return", 98) == 98 else cycle["R"]
+            for kind, a, b in (("rapid", here, top), ("feed", top, bottom), ("rapid", bottom, out)):
+                motions.append(Motion(kind, number, a, b, rot, rot, tool(), tcp or tilted is not None, None, f, feed_mode, dict(state), "XYZ", tilted))
+            here = out
+            continue
         for i, c in enumerate("XYZ"):
             if c in words:
                 add = how[c] == "IC" or (not absolute and how[c] != "AC")
@@ -251,7 +313,7 @@ def read(text, spec, start=None):
         if mode and not before:
             raise Unreadable(f"line {number}: a feed from an unknown place")
         arc = arc_of(here, end, plane, mode == 2, words, scale, number) if mode in (2, 3) else None
-        motions.append(Motion("feed" if mode else "rapid", number, here, end, rot, turned, tool(), tcp, arc, f, feed_mode, dict(state), "".join(sorted(letters))))
+        motions.append(Motion("feed" if mode else "rapid", number, here, end, rot, turned, tool(), tcp or tilted is not None, arc, f, feed_mode, dict(state), "".join(sorted(letters)), tilted))
         here, rot = end, turned
     return motions, events
 

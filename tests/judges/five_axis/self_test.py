@@ -2,6 +2,7 @@
 
 import math
 import random
+import re
 import shutil
 import subprocess
 
@@ -12,6 +13,7 @@ import damages
 import generate
 import judge
 import mock
+import planes
 import reader
 from machine import Machine, about
 
@@ -116,6 +118,55 @@ def words():
     yield "A3 B3 C3", close(Machine(sin).place([[0, 0, 0]], m.rot1[None, :], [0, 0, 0])[1][0], np.array([1, 0, 1]) / math.sqrt(2)), 0, 1e-9
 
 
+def tilted():
+    """(name, found, expected, within): planes whose axes are known without the formulas."""
+    x, y, z = np.eye(3)
+    # P0: I turns X to Y, J tips Z towards -Y' about the new X, K turns in the plane.
+    yield "P0 I90 J90", close(planes.plane({0: {"I": 90, "J": 90}}, 1.0)[0], np.stack([y, z, x], axis=1)), 0, 1e-12
+    yield "P0 J90 K90", close(planes.plane({0: {"J": 90, "K": 90}}, 1.0)[0], np.stack([z, -x, -y], axis=1)), 0, 1e-12
+    yield "P0 by products", close(planes.plane({0: {"I": 20, "J": 30, "K": 40}}, 1.0)[0], rz(20) @ rx(30) @ rz(40)), 0, 1e-12
+    yield "P1 Q123", close(planes.plane({0: {"P": 1, "Q": 123, "I": 20, "J": 30, "K": 40}}, 1.0)[0], rz(40) @ ry(30) @ rx(20)), 0, 1e-12
+    yield "P1 Q312", close(planes.plane({0: {"P": 1, "Q": 312, "I": 20, "J": 30, "K": 40}}, 1.0)[0], ry(30) @ rx(20) @ rz(40)), 0, 1e-12
+    three = {1: {"P": 2, "X": 5}, 2: {"P": 2, "X": 5, "Y": 9}, 3: {"P": 2, "X": 5, "Y": 3, "Z": 4}}
+    yield "P2", close(planes.plane(three, 1.0)[0], np.stack([y, z, x], axis=1)), 0, 1e-12
+    yield "P2, zero", close(planes.plane(three, 1.0)[1], [5, 0, 0]), 0, 0
+    yield "P3", close(planes.plane({1: {"P": 3, "I": 0, "J": 2}, 2: {"P": 3, "I": 3}}, 1.0)[0], np.stack([y, z, x], axis=1)), 0, 1e-12
+    ac = plain()
+    ac["rotary"]["A"]["travel"] = [-110, 110]
+    ac.update(branch="A-", turn="principal")
+    machine = Machine(ac)
+    # [w C A ..]: a table that leans its part by A brings a normal in the YZ plane up.
+    for sign, a in (("-", -30), ("+", 30)):
+        ac["branch"] = "A" + sign
+        found = planes.by_rule(machine, rx(-30) @ z, [0, 0], ac)
+        yield f"angles of a plane, A{sign}", found[machine.rotary.index("A")], a, 1e-9
+        yield f"and they bring the tool there, A{sign}", close(machine.place([[0, 0, 0]], [found], [0, 0, 0])[1][0], rx(-30) @ z), 0, 1e-9
+    ac.update(branch="A+", turn="shortest")
+    near = planes.by_rule(machine, rx(-30) @ z, [700, 0], ac)
+    yield "the shortest way round", float(abs(near[machine.rotary.index("C")] - 700) <= 180), 1, 0
+
+
+def misread():
+    """(name, a judged output made with it): a wrong Euler order, the other branch, and a degree have to be rejected."""
+    for number in range(10):
+        kind = generate.PLANE_KINDS[number % 2]
+        chain, _, spec, text = generate.pair("self", number, NewKeys(), kinds=(kind,))
+        for wrong in (None, "euler", "degree") + (("branch",) if kind == "plane-g53" else ()):
+            try:
+                out = mock.correct(text, spec, wrong=wrong if wrong != "degree" else None)
+                if wrong == "degree":
+                    # The plane itself, or the angles that were turned to it.
+                    before = out
+                    pattern = r"(?m)^(G68\.2 [^\n]* [IJ])(-?[\d.]+)" if kind == "plane-g53" else r"(?m)^(G0 [ABC])(-?[\d.]+)"
+                    out = re.sub(pattern, lambda m: f"{m.group(1)}{float(m.group(2)) + 1:.6f}", out, count=1)
+                    if out == before or "P3" in before:
+                        continue
+                problems, found = judge.assess(spec, text, out, None)
+            except ValueError:
+                continue  # the other branch lies beyond travel
+            yield wrong, chain, kind, problems, found
+
+
 class NewKeys:
     """As if the command knew every key."""
 
@@ -150,7 +201,7 @@ def run(vpost=None):
         failures += not ok
         print(f"{'ok    ' if ok else 'FAILED'} {text}", flush=True)
 
-    for name, found, expected, within in list(forms()) + list(words()):
+    for name, found, expected, within in list(forms()) + list(words()) + list(tilted()):
         tell(abs(found - expected) <= within, f"{name}: {found:.6g}, expected {expected:.6g} within {within:g}")
     seen, missed, accepted, uncorrected = {}, [], 0, 0
     rng = random.Random(1)
@@ -173,6 +224,16 @@ def run(vpost=None):
             n[1] += found_bad or same
             if not found_bad and not same:
                 missed.append((name, number, chain, kind))
+    rejected = {}
+    for wrong, chain, kind, problems, found in misread():
+        if wrong is None:
+            tell(not problems, f"a right output, {chain} {kind}: {found.get('before_um', 0):.1f} um before, {found.get('um', 0):.3f} after {problems[:2] or ''}")
+        else:
+            n = rejected.setdefault(wrong, [0, 0])
+            n[0] += 1
+            n[1] += bool(problems)
+    for wrong, (n, hit) in rejected.items():
+        tell(n and hit == n, f"a plane misread, {wrong}: rejected {hit} of {n}")
     count = len(NUMBERS)
     tell(accepted == count, f"right outputs accepted: {accepted} of {count}")
     tell(uncorrected >= count - 2, f"programs left as they were rejected: {uncorrected} of {count}")
