@@ -1,7 +1,7 @@
 //! What a correction engine must answer.
 
 use nalgebra::Vector3;
-use toolpath::Kinematics;
+use toolpath::{Kinematics, TiltedPlane};
 
 use crate::{Everywhere, LANES};
 
@@ -356,6 +356,7 @@ impl<'m> Models<'m> {
         match kinematics {
             Kinematics::Axes => Some(self.axes),
             Kinematics::Tip => self.tip,
+            Kinematics::Plane(plane) => self.tip?.in_plane(&plane),
         }
     }
 }
@@ -421,6 +422,11 @@ pub trait PathModel: Engine {
     /// With the error added to `linear_mm` it is that of the machine as it is.
     fn tip_mm(&self, linear_mm: &Vector, _state: &Command) -> Vector {
         *linear_mm
+    }
+
+    /// The machine in the coordinates of a tilted working plane, where the control makes axis commands of them.
+    fn in_plane(&self, _plane: &TiltedPlane) -> Option<&dyn PathModel> {
+        None
     }
 
     /// Angle between the tool's real and its ideal direction, seen from the workpiece, rad.

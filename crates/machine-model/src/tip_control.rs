@@ -1,5 +1,10 @@
 //! Tool centre point control: the program says where the tip shall be, the control where the axes go. Equation (61).
 
+use std::sync::{Arc, OnceLock};
+
+use nalgebra::Matrix3;
+use toolpath::TiltedPlane;
+
 use crate::chord_bound::{Length, lies_inside};
 use crate::rigid_body::ideally_turned;
 use crate::solve::{inside, solve};
@@ -37,6 +42,13 @@ use crate::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct TipControl {
+    core: Arc<Core>,
+    planes: Planes,
+}
+
+/// What does not depend on the plane.
+#[derive(Debug)]
+struct Core {
     machine: RigidBody,
     /// The machine that the control believes in.
     control: RigidBody,
@@ -108,24 +120,29 @@ impl TipControl {
         let linear = real.linear.each_ref().map(|axis| LinearAxis::perfect(axis.travel_mm));
         let control =
             Description { chain: real.chain.clone(), linear, rotary, squareness: Squareness::default() };
-        Some(Self { machine: machine.clone(), control: RigidBody::new(control).ok()?, apart_mm })
+        let control = RigidBody::new(control).ok()?;
+        let core = Core { machine: machine.clone(), control, apart_mm };
+        Some(Self { core: Arc::new(core), planes: Planes::default() })
     }
 
     /// What the control tells the axes for a tip command.
     #[must_use]
     pub fn axis_command(&self, tip: &Command) -> Command {
-        Command { linear_mm: self.control.reach(&(tip.linear_mm + tip.tool_mm), tip), ..*tip }
+        Command { linear_mm: self.core.control.reach(&(tip.linear_mm + tip.tool_mm), tip), ..*tip }
     }
 
     /// The tip command at an axis command.
     #[must_use]
     pub fn tip_command(&self, axes: &Command) -> Command {
-        Command { linear_mm: self.control.nominal_position(&axes.linear_mm, axes) - axes.tool_mm, ..*axes }
+        Command {
+            linear_mm: self.core.control.nominal_position(&axes.linear_mm, axes) - axes.tool_mm,
+            ..*axes
+        }
     }
 
     /// How axes run while tip and rotary axes run evenly; `None` where they turn too far for one bound.
     fn turning(&self, stretch: &Move, turn: &Turn) -> Option<Move> {
-        let Description { chain, rotary, .. } = self.control.description();
+        let Description { chain, rotary, .. } = self.core.control.description();
         let rates = turn.commanded_rad[1] - turn.commanded_rad[0];
         let turning =
             || chain.axes().filter(|axis| !axis.is_linear()).map(|axis| rates[axis.direction()].abs());
@@ -161,7 +178,8 @@ impl TipControl {
             (tool, swung) = (centre + arm, stands * swung + rate.cross(&arm));
         }
         let [acceleration, jerk] = [2, 3].map(|order| seen.0[order] + swings.0[order]);
-        let with_tip = self.control.table_turn(&middle).transpose().abs() * Vector::from(stretch.speed_mm);
+        let with_tip =
+            self.core.control.table_turn(&middle).transpose().abs() * Vector::from(stretch.speed_mm);
         // In the middle, and as much as that may change.
         let (by_turning, unsure) = ((carried - swung).abs(), with_tip + Vector::repeat(0.5 * acceleration));
         let speed = by_turning + unsure;
@@ -184,10 +202,15 @@ impl TipControl {
 
     /// How axes run while the tip runs and the rotary axes stand.
     fn standing(&self, stretch: &Move) -> Move {
+        let turn = self.core.control.table_turn(&stretch.state).transpose();
+        Self::led(stretch, &turn, |middle| self.axis_command(middle).linear_mm)
+    }
+
+    /// How axes run that are a turn of what runs evenly, `axis_command` saying where.
+    fn led(stretch: &Move, turn: &Matrix3<f64>, axis_command: impl Fn(&Command) -> Vector) -> Move {
         let [low, high] = [|range: &Range| range.low, |range: &Range| range.high]
             .map(|end| Vector::from_iterator(stretch.range_mm.iter().map(end)));
-        let middle = self.axis_command(&Command { linear_mm: 0.5 * (low + high), ..stretch.state }).linear_mm;
-        let turn = self.control.table_turn(&stretch.state).transpose();
+        let middle = axis_command(&Command { linear_mm: 0.5 * (low + high), ..stretch.state });
         let size = turn.abs();
         let half = size * (0.5 * (high - low));
         let [speed, acceleration] =
@@ -205,7 +228,7 @@ impl TipControl {
 
 impl Engine for TipControl {
     fn id(&self) -> EngineId {
-        self.machine.id()
+        self.core.machine.id()
     }
 
     fn volume(&self) -> Volume {
@@ -213,13 +236,13 @@ impl Engine for TipControl {
     }
 
     fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
-        self.machine.rotary_inside(target)?;
+        self.core.machine.rotary_inside(target)?;
         let solution = solve(&target.linear_mm, &ANYWHERE, |tip| {
             self.error_mm(&Command { linear_mm: *tip, ..*target })
         })?;
         for tip in [target.linear_mm, solution.linear_mm] {
             let axes = self.axis_command(&Command { linear_mm: tip, ..*target });
-            inside(&axes.linear_mm, &self.machine.volume)?;
+            inside(&axes.linear_mm, &self.core.machine.volume)?;
         }
         Ok(solution)
     }
@@ -233,28 +256,28 @@ impl PathModel for TipControl {
     /// Real tip less the tip that was asked for, mm, in the frame of the workpiece.
     fn error_mm(&self, command: &Command) -> Vector {
         let axes = self.axis_command(command);
-        let own = self.machine.predict(&axes).error_mm;
-        if self.apart_mm == 0.0 {
+        let own = self.core.machine.predict(&axes).error_mm;
+        if self.core.apart_mm == 0.0 {
             // No more than that: what is zero stays zero to the last bit.
             return own;
         }
-        own + self.machine.nominal_position(&axes.linear_mm, &axes) - command.linear_mm - command.tool_mm
+        own + self.core.machine.nominal_position(&axes.linear_mm, &axes) - command.linear_mm - command.tool_mm
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
         let Some(turn) = &stretch.turn else {
             // What turns nothing changes no length, and with standing axes other centres are a shift.
-            return self.machine.chord_bound_mm(&self.standing(stretch));
+            return self.core.machine.chord_bound_mm(&self.standing(stretch));
         };
         // The tip asked for is the same wherever the rotary axes stand.
         let turn = Turn { programmed_rad: turn.commanded_rad, commanded_rad: turn.commanded_rad };
         let Some(axes) = self.turning(stretch, &turn) else { return f64::INFINITY };
-        if !lies_inside(&self.machine, &axes) {
+        if !lies_inside(&self.core.machine, &axes) {
             return f64::INFINITY;
         }
-        let (error, turned) = error_in_turn(&self.machine, &axes, &turn);
+        let (error, turned) = error_in_turn(&self.core.machine, &axes, &turn);
         let all = (turn.commanded_rad[1] - turn.commanded_rad[0]).abs().sum();
-        let apart = Length { second: 2.0 * self.apart_mm * all * all, ..Length::default() };
+        let apart = Length { second: 2.0 * self.core.apart_mm * all * all, ..Length::default() };
         error.turned(turned).plus(apart).leaves_chord_mm()
     }
 
@@ -267,6 +290,137 @@ impl PathModel for TipControl {
     }
 
     fn tilt_rad(&self, command: &Command) -> f64 {
-        self.machine.tilt_rad(&self.axis_command(command))
+        self.core.machine.tilt_rad(&self.axis_command(command))
+    }
+
+    fn in_plane(&self, plane: &TiltedPlane) -> Option<&dyn PathModel> {
+        Some(self.planes.of(&self.core, plane))
+    }
+}
+
+/// A machine in a tilted working plane (G68.2). Equation (63).
+///
+/// Places of the linear axes are coordinates of the plane here, the tool's length added along its Z, and errors those of the
+/// tip in the directions of the plane. The rotary axes stand.
+#[derive(Debug)]
+struct PlaneControl {
+    tip: TipControl,
+    plane: TiltedPlane,
+    /// From the plane's coordinates to the workpiece's.
+    turn: Matrix3<f64>,
+}
+
+impl PlaneControl {
+    fn new(core: &Arc<Core>, plane: &TiltedPlane) -> Self {
+        let tip = TipControl { core: Arc::clone(core), planes: Planes::default() };
+        Self { tip, plane: *plane, turn: Matrix3::from_fn(|row, column| plane.turn[row][column]) }
+    }
+
+    /// The tip command of a place in the plane.
+    fn tip_command(&self, place: &Command) -> Command {
+        let tip = Vector::from(self.plane.zero_mm) + self.turn * (place.linear_mm + place.tool_mm);
+        Command { linear_mm: tip - place.tool_mm, ..*place }
+    }
+
+    fn axis_command(&self, place: &Command) -> Command {
+        self.tip.axis_command(&self.tip_command(place))
+    }
+}
+
+impl Engine for PlaneControl {
+    fn id(&self) -> EngineId {
+        self.tip.id()
+    }
+
+    fn volume(&self) -> Volume {
+        ANYWHERE
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        let machine = &self.tip.core.machine;
+        machine.rotary_inside(target)?;
+        let solution = solve(&target.linear_mm, &ANYWHERE, |place| {
+            self.error_mm(&Command { linear_mm: *place, ..*target })
+        })?;
+        for place in [target.linear_mm, solution.linear_mm] {
+            let axes = self.axis_command(&Command { linear_mm: place, ..*target });
+            inside(&axes.linear_mm, &machine.volume)?;
+        }
+        Ok(solution)
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl PathModel for PlaneControl {
+    /// Real tip less the tip that was asked for, mm, in the directions of the plane.
+    fn error_mm(&self, command: &Command) -> Vector {
+        let error = self.tip.error_mm(&self.tip_command(command));
+        // What is zero stays zero to the last bit.
+        if error == Vector::zeros() { error } else { self.turn.tr_mul(&error) }
+    }
+
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        /// Sines of whole quarter turns are that near to nothing.
+        const NOTHING: f64 = 1e-15;
+        if stretch.turn.is_some() {
+            return f64::INFINITY;
+        }
+        let core = &self.tip.core;
+        let turn = core.control.table_turn(&stretch.state).tr_mul(&self.turn);
+        let turn = turn.map(|share| if share.abs() < NOTHING { 0.0 } else { share });
+        core.machine.chord_bound_mm(&TipControl::led(stretch, &turn, |at| self.axis_command(at).linear_mm))
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        linear_mm + state.tool_mm
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        self.tip.tilt_rad(&self.tip_command(command))
+    }
+}
+
+/// The planes that were asked for so far: a list that only grows, so that what it gives away stays.
+#[derive(Debug, Default)]
+struct Planes(OnceLock<Box<Listed>>);
+
+#[derive(Debug)]
+struct Listed {
+    plane: PlaneControl,
+    next: OnceLock<Box<Listed>>,
+}
+
+impl Clone for Planes {
+    /// They are worked out again.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Drop for Planes {
+    /// One after the other: a long list would be too deep to drop from within.
+    fn drop(&mut self) {
+        let mut next = self.0.take();
+        while let Some(mut listed) = next {
+            next = listed.next.take();
+        }
+    }
+}
+
+impl Planes {
+    fn of(&self, core: &Arc<Core>, plane: &TiltedPlane) -> &PlaneControl {
+        let mut place = &self.0;
+        loop {
+            let listed = place.get_or_init(|| {
+                Box::new(Listed { plane: PlaneControl::new(core, plane), next: OnceLock::new() })
+            });
+            if listed.plane.plane == *plane {
+                return &listed.plane;
+            }
+            place = &listed.next;
+        }
     }
 }

@@ -517,6 +517,12 @@ pub(crate) struct Kinematics {
     /// Axis → a point of it as the control has it, machine frame with all axes at 0; in a head: from the gauge point.
     #[schemars(with = "BTreeMap<String, Triple>")]
     pub(crate) centres_mm: BTreeMap<String, Spanned<Triple>>,
+    /// Which of two ways brings the tool to a tilted plane (G53.1): the axis that stands above or below 0 then, like "A+".
+    #[schemars(with = "Option<String>")]
+    pub(crate) branch: Option<Spanned<String>>,
+    /// Which of the angles that differ by whole turns: "shortest" from where the axis stands, or "principal", above -180 and
+    /// up to 180 degrees.
+    pub(crate) turn: Option<TurnName>,
     /// It is on when a program begins.
     #[serde(default)]
     pub(crate) at_start: bool,
@@ -528,6 +534,13 @@ pub(crate) struct Kinematics {
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub(crate) off: Vec<Spanned<String>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum TurnName {
+    Shortest,
+    Principal,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]

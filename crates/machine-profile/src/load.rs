@@ -9,6 +9,7 @@ use machine_model::{
     Tilt, Traverse, Vector,
 };
 use toml::Spanned;
+use toolpath::{TiltRule, WholeTurns};
 use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
@@ -250,8 +251,27 @@ impl Loader<'_> {
                 .help("name each M code once");
             self.refuse(both, diagnostic, "also under `off`");
         }
+        let branch = section.branch.as_ref().and_then(|written| {
+            let axis = |letter: char| axes.iter().find(|axis| axis.letter() == letter);
+            let mut letters = written.get_ref().chars();
+            match (letters.next().and_then(axis), letters.next(), letters.next()) {
+                (Some(axis), Some(sign @ ('+' | '-')), None) => Some((axis.direction(), sign == '+')),
+                _ => {
+                    let message = format!("`{}` is no branch", written.get_ref());
+                    let diagnostic = Diagnostic::error(VALUE, message)
+                        .help("name a rotary axis of the chain and its sign where the tool has been turned to a tilted plane, like \"A+\"");
+                    self.refuse(written, diagnostic, "this branch");
+                    None
+                }
+            }
+        });
+        let turns = section.turn.map(|turn| match turn {
+            format::TurnName::Shortest => WholeTurns::Shortest,
+            format::TurnName::Principal => WholeTurns::Principal,
+        });
         Some(Kinematics {
             centres_mm: centres_mm.map(Option::unwrap_or_default),
+            tilt_rule: TiltRule { branch, turns },
             at_start: section.at_start,
             on,
             off,

@@ -4,6 +4,7 @@ use machine_model::engines::{EngineInputs, ParametricTable};
 use machine_model::{
     Chain, Description, EngineId, Interpolation, RigidBody, TipControl, Traverse, Vector, Volume,
 };
+use toolpath::{RotaryChain, RotaryLink, TiltRule};
 
 use crate::tables::ErrorRows;
 
@@ -106,6 +107,8 @@ pub struct Kinematics {
     /// Of A, B, C: a point of the axis as the control has it, machine frame with all axes at 0, mm; in a head: from the
     /// gauge point.
     pub centres_mm: [[f64; 3]; 3],
+    /// How the control turns the tool to a tilted plane.
+    pub tilt_rule: TiltRule,
     /// It is on when a program begins.
     pub at_start: bool,
     /// Numbers of the machine's M codes that switch it on.
@@ -244,6 +247,23 @@ impl Profile {
             .filter(|axis| !axis.is_linear())
             .any(|axis| !self.description.rotary[axis.direction()].is_perfect());
         imperfect || (linear_errors && !self.chain().head().is_empty()) || self.kinematics.is_some()
+    }
+
+    /// The rotary axes from the workpiece to the tool, as far as directions go.
+    #[must_use]
+    pub fn rotary_chain(&self) -> RotaryChain {
+        let table = self.chain().table();
+        let links = self.chain().axes().filter(|axis| !axis.is_linear()).map(|axis| {
+            let rotary = &self.description.rotary[axis.direction()];
+            let direction = rotary.direction.unwrap_or_else(|| Vector::ith(axis.direction(), 1.0));
+            RotaryLink {
+                axis: axis.direction(),
+                direction: direction.into(),
+                carries_workpiece: table.contains(&axis),
+                travel_deg: [rotary.travel_rad.low, rotary.travel_rad.high].map(f64::to_degrees),
+            }
+        });
+        RotaryChain(links.collect())
     }
 
     /// The machine under tool centre point control; `None` where nothing is said of that, or no path can be proven: lost

@@ -209,6 +209,18 @@ impl Profile {
                 })
                 .collect();
             writeln!(out, "tip control  {}", centres.join(", "))?;
+            let rule = &kinematics.tilt_rule;
+            let branch = rule.branch.map(|(axis, positive)| {
+                format!("{} {} 0", toolpath::AXIS_NAMES[3 + axis], if positive { "above" } else { "below" })
+            });
+            let turns = rule.turns.map(|turns| match turns {
+                toolpath::WholeTurns::Shortest => "the shortest way".to_owned(),
+                toolpath::WholeTurns::Principal => "between -180 and 180 degrees".to_owned(),
+            });
+            let rule: Vec<String> = branch.into_iter().chain(turns).collect();
+            if !rule.is_empty() {
+                writeln!(out, "tilted plane {}", rule.join(", "))?;
+            }
         }
         Ok(())
     }

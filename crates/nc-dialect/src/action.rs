@@ -3,7 +3,7 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, Side, TipSwitch, TurningCycle};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 74] = [
+pub const ACTION_NAMES: [&str; 76] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -27,6 +27,8 @@ pub const ACTION_NAMES: [&str; 74] = [
     "tip-length-on",
     "tip-on",
     "tip-off",
+    "tilted-plane",
+    "align-tool",
     "work-offset",
     "drill",
     "bore",
@@ -105,6 +107,8 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "length-on-negative" => Action::LengthOnNegative,
         "length-off" => Action::LengthOff,
         "tip-length-on" => Action::TipLengthOn,
+        "tilted-plane" => Action::TiltedPlane,
+        "align-tool" => Action::AlignTool,
         "tip-on" => Action::Tip(TipSwitch::On),
         "tip-off" => Action::Tip(TipSwitch::Off),
         "work-offset" => Action::WorkOffset(code.to_string()),

@@ -184,6 +184,13 @@ fn note(action: &Action) -> String {
         }
         Action::PolarOff => "ends G16".to_owned(),
         Action::LengthFromWords => "the tool length is in the words".to_owned(),
+        Action::TiltedPlane => {
+            "by Euler angles, roll, pitch and yaw, three points or two vectors (P0 to P3); needs `[kinematics]`"
+                .to_owned()
+        }
+        Action::AlignTool => {
+            "the angles by the profile's `branch` and `turn`; X, Y and Z unknown afterwards".to_owned()
+        }
         Action::Pass { takes_words: true } => "its words are arguments, not positions".to_owned(),
         Action::Pass { takes_words: false } => String::new(),
         other => action_name(other).replace('-', " "),

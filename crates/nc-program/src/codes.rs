@@ -75,6 +75,12 @@ pub const LATHE: Code = Code(240);
 /// Tool centre point control whose centres nobody said, or what does not go together with it. Remedy: `[kinematics]` in the
 /// profile, or in the message.
 pub const TIP_CONTROL: Code = Code(230);
+/// A tilted working plane whose words, or what stands beside it, cannot be honoured as they stand, or of which the profile
+/// says too little. Remedy: in the message.
+pub const TILTED_PLANE: Code = Code(231);
+/// The rotary axes do not stand upright on a tilted plane, or where the control turns them is not certain. Remedy: in the
+/// message.
+pub const PLANE_ANGLES: Code = Code(232);
 /// Lengths with and without a decimal point, where a parameter of the control decides what the latter are. Remedy:
 /// `--decimal`.
 pub const MIXED_LENGTHS: Code = Code(241);

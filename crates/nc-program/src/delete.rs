@@ -145,10 +145,16 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
     .or_else(|| {
         pair(&with.kinematics, &without.kinematics, |v| {
             match v {
-                Kinematics::Axes => "no tool centre point control",
+                Kinematics::Axes => "neither tool centre point control nor a tilted plane",
                 Kinematics::Tip => "tool centre point control",
+                Kinematics::Plane(_) => "a tilted plane",
             }
             .to_owned()
+        })
+    })
+    .or_else(|| {
+        pair(&with.plane_begun, &without.plane_begun, |v| {
+            if v.is_some() { "the beginning of a tilted plane" } else { "none of it" }.to_owned()
         })
     })
     .or_else(|| pair(&with.transform, &without.transform, |v| v.name().to_owned()))

@@ -5,11 +5,13 @@
 
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, OffsetL20};
+use toolpath::{Frame, Kinematics};
 
 use crate::codes;
 use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
 use crate::settings::{Demand, Environment};
+use crate::tilted;
 use crate::transform::Transform;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY_LETTERS,
@@ -26,6 +28,10 @@ pub(crate) fn refresh(state: &mut Modal) {
     state.frame = state.work_offset.zero_mm.and_then(|zero| {
         let shifts = state.shifts;
         let shift = |i: usize| zero[i] + applied[i] + (shifts.local_mm[i] + shifts.preset_mm[i]);
+        if let Kinematics::Plane(_) = state.kinematics {
+            // Where the plane lies in the workpiece is part of it.
+            return Some(Frame::shift(applied));
+        }
         state.transform.frame([0, 1, 2].map(shift))
     });
 }
@@ -108,6 +114,8 @@ pub(crate) fn execute(
             unsettle(state, transform);
         }
         Action::MirrorOff => mirror_off(words, span, state)?,
+        Action::TiltedPlane => tilted::define(env, words, span, state)?,
+        Action::AlignTool => tilted::align(env, words, span, state)?,
         _ => {}
     }
     refresh(state);
@@ -176,7 +184,7 @@ fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<
     Ok(LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm())))
 }
 
-fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
+pub(crate) fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
     if state.distance == Distance::Incremental {
         return Err(
             refuse(words, span, "under G91", "added or set? controls differ").help("write G90 before it")

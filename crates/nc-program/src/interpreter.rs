@@ -17,6 +17,7 @@ use crate::naming;
 use crate::plain::Plain;
 use crate::settings::{self, Environment};
 use crate::setup::{AfterChange, Setup};
+use crate::tilted;
 use crate::tip;
 use crate::turning;
 use crate::words::{Letters, Outcome, Words};
@@ -124,6 +125,7 @@ impl<'d> Interpreter<'d> {
             compensation: Compensation::Off,
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
+            plane_begun: None,
             kinematics: if setup.tip_at_start { Kinematics::Tip } else { Kinematics::Axes },
             work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
             shifts: Shifts::default(),
@@ -257,11 +259,14 @@ fn run<'d>(
     state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
         || (state.feed_is_inverse_time && !words.has(Letters::of(b"F")));
     tip::check(words, &demand, before, state)?;
+    tilted::check(env, words, &demand, before, state)?;
     naming::disturb(env, words, &demand, before, state);
     moved.unnamed = state.named.map(Naming::lost);
     motion::execute(env, words, &demand, before, state, moved)?;
-    let nowhere = |axis: &Axis| matches!(axis, Axis::Unknown(Lost { why: Why::Kinematics, .. }));
-    let switched = before.kinematics != state.kinematics && state.axes.linear.iter().all(nowhere);
+    let nowhere =
+        |axis: &Axis| matches!(axis, Axis::Unknown(Lost { why: Why::Kinematics | Why::TiltedPlane, .. }));
+    let turned = before.kinematics != state.kinematics || before.axes.rotary != state.axes.rotary;
+    let switched = turned && state.axes.linear.iter().all(nowhere);
     if switched && moved.motions.is_empty() {
         // The axes stand, in coordinates that nobody knows.
         moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
@@ -273,7 +278,7 @@ fn run<'d>(
         miscellaneous(env, words, state, moved)?;
     }
     naming::name(words, &demand, before, state, moved);
-    Ok(())
+    tilted::check_motions(env, words, &demand, before, state, &moved.motions)
 }
 
 /// Behind M2, M30 or the closing `%` nothing is executed here, but on the control somebody may start it:

@@ -51,6 +51,7 @@ mod position;
 pub mod process;
 mod settings;
 mod setup;
+mod tilted;
 mod tip;
 mod tool_length;
 mod transform;

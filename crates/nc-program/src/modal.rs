@@ -254,6 +254,8 @@ pub enum Why {
     Units,
     /// G43.4, TRAORI and their like, rotary axes not at 0.
     Kinematics,
+    /// A tilted plane begins or ends, or rotary axes turn to it.
+    TiltedPlane,
 }
 
 /// Whether the program has itself named an axis in the frame in force (`crate::naming`).
@@ -418,8 +420,10 @@ pub struct Modal {
     pub return_level: ReturnLevel,
     /// G43 G44 G49.
     pub tool_length: ToolLength,
-    /// G43.4, TRAORI.
+    /// G43.4, TRAORI, G68.2.
     pub kinematics: Kinematics,
+    /// A tilted plane of several blocks that is not whole yet.
+    pub plane_begun: Option<crate::tilted::Begun>,
     /// G54–G59, G54.1.
     pub work_offset: WorkOffset,
     /// G52, G92.

@@ -10,6 +10,7 @@
 //! same block), its position is unknown.
 
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use toolpath::Kinematics;
 
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
 use crate::motion::Moved;
@@ -59,7 +60,8 @@ pub(crate) fn disturb(
         }
     }
     if before.kinematics != state.kinematics {
-        forget(words, state, ALL, Why::Kinematics);
+        let plane = [before, state].iter().any(|state| matches!(state.kinematics, Kinematics::Plane(_)));
+        forget(words, state, ALL, if plane { Why::TiltedPlane } else { Why::Kinematics });
     }
     transformed(words, before, state);
     length(env, words, demand, before, state);
@@ -169,6 +171,11 @@ fn length(
             state.axes.linear[i] = Axis::Unknown(Lost { why: Why::ToolLength, line: words.block.line });
         }
     }
+}
+
+/// No axis is named any more.
+pub(crate) fn forget_all(words: &Words<'_, '_, '_>, state: &mut Modal, why: Why) {
+    forget(words, state, ALL, why);
 }
 
 /// The axes are named no more.

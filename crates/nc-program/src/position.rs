@@ -261,6 +261,7 @@ impl Lost {
             Why::MachineWords => format!("G53 in line {line}"),
             Why::Frame => format!("the frame changed in line {line}"),
             Why::Kinematics => format!("tool centre point control was switched in line {line}"),
+            Why::TiltedPlane => format!("the tilted plane in line {line}"),
             Why::Units => format!("the unit changed in line {line}"),
         }
     }

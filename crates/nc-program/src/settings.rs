@@ -12,7 +12,7 @@ use crate::modal::{
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
 use crate::words::{LINEAR_LETTERS, Letters, Outcome, Words};
-use crate::{frames, tip, transform::Transform};
+use crate::{frames, tilted, tip, transform::Transform};
 
 /// What a program is read against.
 #[derive(Clone, Copy, Debug)]
@@ -167,6 +167,7 @@ pub(crate) fn apply<'d>(
     }
     tool_length::length(env, words, state, wanted.length)?;
     tip::switch(env, words, before, state)?;
+    tilted::end(words, before, state);
     if let Some(span) = wanted.compensation_off {
         tool_length::under_compensation_off(env, words, span, wanted.length.is_some(), state)?;
     }
@@ -372,6 +373,8 @@ fn set<'d>(
         | Action::LocalShift
         | Action::Preset
         | Action::PresetCancel
+        | Action::TiltedPlane
+        | Action::AlignTool
         | Action::RotationOn
         | Action::ScalingOn
         | Action::MirrorOn

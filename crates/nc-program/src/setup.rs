@@ -1,4 +1,4 @@
-use toolpath::AXIS_NAMES;
+use toolpath::{AXIS_NAMES, RotaryChain, TiltRule};
 
 /// Where a linear axis stands behind a tool change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,6 +47,10 @@ pub struct Setup {
     pub tool_change: [AfterChange; 3],
     /// What is known of tool centre point control.
     pub tip_control: TipControl,
+    /// Which way rotary axes turn the tool.
+    pub rotary_chain: RotaryChain,
+    /// By which rule the control turns the tool to a tilted plane.
+    pub tilt_rule: TiltRule,
     /// Tool centre point control is on when the program begins.
     pub tip_at_start: bool,
     /// X words of a lathe's program are diameters, or radii; `None`: not said.

@@ -72,6 +72,21 @@ pub(crate) fn switch(
     if kinematics == before.kinematics {
         return Ok(());
     }
+    if let Kinematics::Plane(_) = before.kinematics {
+        if kinematics == Kinematics::Axes {
+            // What is not on cannot be switched off.
+            return Ok(());
+        }
+        let message = format!("{} inside a tilted plane", words.text(span));
+        return Err(words
+            .refuse(
+                codes::TILTED_PLANE,
+                message,
+                span,
+                "is the tip then in the plane's coordinates, or in the workpiece's?",
+            )
+            .help("cancel the plane with G69 before it, or post the points of the plane without it"));
+    }
     state.kinematics = kinematics;
     if state.axes.rotary.iter().any(|axis| *axis != Axis::At(0.0)) {
         let lost = Lost { why: Why::Kinematics, line: words.block.line };
@@ -95,7 +110,7 @@ pub(crate) fn check(
     before: &Modal,
     state: &Modal,
 ) -> Outcome<()> {
-    if [before, state].iter().all(|state| state.kinematics == Kinematics::Axes) {
+    if [before, state].iter().all(|state| state.kinematics != Kinematics::Tip) {
         return Ok(());
     }
     let span = || {

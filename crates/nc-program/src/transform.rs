@@ -96,7 +96,7 @@ impl Transform {
 }
 
 /// Sine and cosine of degrees, exact at quarter turns.
-fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
+pub(crate) fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     let turns = angle_deg / 90.0;
     if turns == turns.round() {
         return match turns.rem_euclid(4.0) as u8 {

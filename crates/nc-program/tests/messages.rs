@@ -111,9 +111,9 @@ fn blocks() {
       help: if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`
     "#);
     insta::assert_snapshot!(message("fanuc", "G68.2 X1. Y1. Z1. I0 J0 K30.\n"), @r#"
-    error[VP0208]: G68.2 is refused: tilts the working plane
-      1: `G68.2` not understood
-      help: post without tilted planes
+    error[VP0231]: G68.2 is refused: it tilts the working plane
+      1: `G68.2` with which centres the control computes is not said
+      help: declare what the control computes with as `[kinematics]` in the profile, or post without tilted planes
     "#);
     insta::assert_snapshot!(message("fanuc", "G0 X0 Y0 Z0\nG68 X0 Y0 R30.\nG1 X5. F9\n"), @r#"
     error[VP0227]: the first motion after a rotation, scaling or mirror was switched must be absolute and whole

@@ -203,6 +203,10 @@ pub enum Action {
     LengthOff,
     /// G43.4: a tool length, and from here on the control moves the tool's tip.
     TipLengthOn,
+    /// G68.2: a tilted working plane by its words; X, Y and Z are its coordinates from here on, until G69.
+    TiltedPlane,
+    /// G53.1, G53.6: the rotary axes turn until the tool stands upright on the tilted plane.
+    AlignTool,
     /// TRAORI, M428 and TRAFOOF, M429: the control moves the tip, or the axes again.
     Tip(TipSwitch),
     /// G54–G59: the name in the profile.

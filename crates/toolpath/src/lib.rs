@@ -7,12 +7,14 @@
 mod frame;
 mod motion;
 mod plane;
+mod tilted;
 
 pub use frame::{Frame, Similarity};
 pub use motion::{
     Arc, Cycle, CycleKind, Division, Feed, FeedRate, Hole, Kinematics, Motion, Partial, Position, Shape,
 };
 pub use plane::Plane;
+pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns};
 
 /// Names of the linear and rotary axes, in the order of every array here.
 pub const AXIS_NAMES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];

@@ -1,6 +1,6 @@
 use units::decimal::Decimal;
 
-use crate::Plane;
+use crate::{Plane, TiltedPlane};
 
 /// Where the axes are commanded to be.
 ///
@@ -27,7 +27,7 @@ pub struct Position {
 ///
 /// assert_eq!(Kinematics::default(), Kinematics::Axes);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Kinematics {
     /// Commands of the axes.
     #[default]
@@ -35,6 +35,9 @@ pub enum Kinematics {
     /// Tip commands, of which the control makes those of the axes (G43.4, TRAORI): where the axes would stand with all rotary
     /// axes at 0 so that the tip is there in the frame of the workpiece.
     Tip,
+    /// Coordinates of a tilted working plane (G68.2), the tool's length added along its Z, while the rotary axes stand: the
+    /// control brings the tip to that place of the workpiece.
+    Plane(TiltedPlane),
 }
 
 /// A position of which some axes may not be known yet (start of program, after G28 or a tool change).

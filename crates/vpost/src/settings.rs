@@ -368,6 +368,8 @@ fn setup(shared: &Shared, profile: &Profile) -> Result<Setup, Failure> {
             machine_profile::AfterChange::At(place_mm) => AfterChange::At(place_mm),
         }),
         tip_control: nc_program::TipControl::default(),
+        rotary_chain: profile.rotary_chain(),
+        tilt_rule: profile.kinematics.as_ref().map(|kinematics| kinematics.tilt_rule).unwrap_or_default(),
         tip_at_start: profile.kinematics.as_ref().is_some_and(|kinematics| kinematics.at_start),
         diameters: profile.program.diameters,
         lengths_settled: false,

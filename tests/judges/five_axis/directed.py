@@ -31,6 +31,7 @@ def base(control):
 
     spec = generate.machine(random.Random("directed"), "table-table-ac", control, lambda key: False)
     spec["lengths"] = {"H1": 100.0}
+    spec.update(branch="A+", turn="shortest")
     for one in spec["axes"].values():
         one.pop("backlash_um", None)
     return spec

@@ -189,7 +189,7 @@ def tilted(w, rng, kind):
             blocks = define(form, origin, rng, dot, fine)
             parts = {}
             for words in blocks:
-                parts[int(words.get("Q", 0)) if form in (2, 3) else 0] = {k: float(v) for k, v in words.items()}
+                parts[int(words.get("Q", 0)) if form in (2, 3) else 0] = {"P": form, **{k: float(v) for k, v in words.items()}}
             turn, _ = planes.plane(parts, 1.0)
             if kind == "plane-g53":
                 try:

@@ -1,6 +1,6 @@
 %
 O0001
-(expect VP0208)
+(expect VP0231)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
 G68.2 X0. Y0. Z0. I0. J30. K0.

@@ -1,0 +1,337 @@
+//! Tilted working planes, and which way rotary axes turn the tool to them.
+
+use units::math;
+
+/// The coordinates of a tilted working plane (G68.2).
+///
+/// Its axes are the columns of `turn`, its zero is `zero_mm`, both in the frame of the workpiece, which turns with the table
+/// and is the machine's with all rotary axes at 0.
+///
+/// ```
+/// use toolpath::TiltedPlane;
+///
+/// // Tilted by a quarter turn about X: its Z lies along -Y.
+/// let turn = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+/// let plane = TiltedPlane { turn, zero_mm: [10.0, 20.0, 30.0] };
+/// assert_eq!(plane.normal(), [0.0, -1.0, 0.0]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TiltedPlane {
+    /// Rows of the rotation from the plane's coordinates to the workpiece's.
+    pub turn: [[f64; 3]; 3],
+    /// The plane's zero, mm.
+    pub zero_mm: [f64; 3],
+}
+
+impl TiltedPlane {
+    /// Its Z, a unit vector in the workpiece: where the tool points, from the tip up.
+    #[must_use]
+    pub fn normal(&self) -> [f64; 3] {
+        self.turn.map(|row| row[2])
+    }
+}
+
+/// A rotary axis as far as directions go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotaryLink {
+    /// A, B, C by index.
+    pub axis: usize,
+    /// Unit vector of the axis of rotation with all rotary axes at 0.
+    pub direction: [f64; 3],
+    /// It carries the workpiece; else the tool.
+    pub carries_workpiece: bool,
+    /// Lowest and highest command, degrees.
+    pub travel_deg: [f64; 2],
+}
+
+/// The rotary axes of a machine from the workpiece to the tool.
+///
+/// ```
+/// use toolpath::{RotaryChain, RotaryLink, TiltRule};
+///
+/// // A rotary table C on a tilting table A.
+/// let link = |axis: usize, carries_workpiece| {
+///     let direction = [0, 1, 2].map(|k| f64::from(u8::from(k == axis)));
+///     RotaryLink { axis, direction, carries_workpiece, travel_deg: [-110.0, 110.0] }
+/// };
+/// let table = RotaryChain(vec![link(2, true), link(0, true)]);
+/// let rule = TiltRule { branch: Some((0, true)), ..TiltRule::default() };
+/// // To point along -Y the table tilts by 90 degrees, or by -90 behind half a turn, which is beyond this travel.
+/// let angles = table.angles_for([0.0, -1.0, 0.0], &rule, [Some(0.0); 3]).unwrap();
+/// assert!((angles[0] - 90.0).abs() < 1e-12 && angles[2].abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RotaryChain(pub Vec<RotaryLink>);
+
+/// By which rule a control chooses among the angles that bring the tool to a plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TiltRule {
+    /// An axis by index, and whether its angle is above 0 then (else below); `None`: not said.
+    pub branch: Option<(usize, bool)>,
+    /// Which of the angles that differ by whole turns; `None`: not said.
+    pub turns: Option<WholeTurns>,
+}
+
+/// Which of several angles that differ by whole turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WholeTurns {
+    /// The one that is nearest to where the axis stands.
+    Shortest,
+    /// The one above -180 and up to 180 degrees.
+    Principal,
+}
+
+/// Why no angles are certain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoAngles {
+    /// The machine has not two rotary axes that turn the tool's direction.
+    NotTwoAxes,
+    /// No angles lead there, or none within travel.
+    OutOfReach,
+    /// Which of two ways is not said, or the rule does not tell them apart.
+    TwoWays,
+    /// The tool stands along this axis, which may stand anywhere, and the rule does not say where.
+    Free(usize),
+    /// Whole turns of this axis are not said.
+    Turns(usize),
+    /// Where this axis stands nobody knows, and the rule asks for it.
+    Unknown(usize),
+}
+
+/// Directions nearer than this are one, rad.
+const SAME_RAD: f64 = 1e-9;
+
+type Three = [f64; 3];
+
+fn dot(a: Three, b: Three) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Three, b: Three) -> Three {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `a + k b`
+fn plus(a: Three, k: f64, b: Three) -> Three {
+    [0, 1, 2].map(|i| a[i] + k * b[i])
+}
+
+/// Rodrigues: `v` turned about the unit vector `about`.
+fn turned(v: Three, about: Three, angle_deg: f64) -> Three {
+    let (sin, cos) = math::sin_cos(angle_deg.to_radians());
+    let along = dot(v, about) * (1.0 - cos);
+    let across = cross(about, v);
+    [0, 1, 2].map(|i| v[i] * cos + across[i] * sin + about[i] * along)
+}
+
+/// By how many degrees about `about` the one direction turns to the other; `None` where one lies along it.
+fn turn_deg(from: Three, to: Three, about: Three) -> Option<f64> {
+    let [from, to] = [from, to].map(|v| plus(v, -dot(v, about), about));
+    let is_along = |v: Three| dot(v, v) < SAME_RAD * SAME_RAD;
+    if is_along(from) || is_along(to) {
+        return None;
+    }
+    Some(math::atan2(dot(about, cross(from, to)), dot(from, to)).to_degrees())
+}
+
+const UP: Three = [0.0, 0.0, 1.0];
+
+impl RotaryLink {
+    /// By how much an angle of the axis turns the tool against the workpiece: a table does it backwards.
+    const fn sense(&self) -> f64 {
+        if self.carries_workpiece { -1.0 } else { 1.0 }
+    }
+
+    /// The angle of whole turns that the rule chooses, degrees.
+    fn choose(
+        &self,
+        angle_deg: f64,
+        rule: &TiltRule,
+        stands_deg: Option<f64>,
+    ) -> Result<Option<f64>, NoAngles> {
+        /// Angles of a search are not exact.
+        const SLACK_DEG: f64 = 1e-9;
+        let [low, high] = self.travel_deg;
+        let fits = |deg: f64| low - SLACK_DEG <= deg && deg <= high + SLACK_DEG;
+        let principal = if angle_deg <= -180.0 + SLACK_DEG { angle_deg + 360.0 } else { angle_deg };
+        let others = [principal - 360.0, principal + 360.0].into_iter().any(fits);
+        match rule.turns {
+            _ if !others => Ok(Some(principal).filter(|deg| fits(*deg))),
+            Some(WholeTurns::Principal) => Ok(Some(principal).filter(|deg| fits(*deg))),
+            Some(WholeTurns::Shortest) => {
+                let stands_deg = stands_deg.ok_or(NoAngles::Unknown(self.axis))?;
+                let turns = (stands_deg - principal) / 360.0;
+                let nearest = principal + 360.0 * turns.round();
+                if (turns - turns.floor() - 0.5).abs() < SLACK_DEG {
+                    // Half a turn this way or that.
+                    return Err(NoAngles::Turns(self.axis));
+                }
+                // Beyond travel the next one inwards.
+                let beyond = if nearest < low - SLACK_DEG { 360.0 } else { -360.0 };
+                Ok([nearest, nearest + beyond].into_iter().find(|deg| fits(*deg)))
+            }
+            None => Err(NoAngles::Turns(self.axis)),
+        }
+    }
+}
+
+impl RotaryChain {
+    /// The tool's direction in the workpiece on an ideal machine, a unit vector from the tip up: Z with all axes at 0.
+    #[must_use]
+    pub fn tool_direction(&self, rotary_deg: [f64; 3]) -> [f64; 3] {
+        self.0
+            .iter()
+            .rev()
+            .fold(UP, |tool, link| turned(tool, link.direction, link.sense() * rotary_deg[link.axis]))
+    }
+
+    /// A, B, C, degrees, that bring the tool to a direction in the workpiece; axes that the chain does not have at 0.
+    ///
+    /// With the axes' unit vectors a and b, from the workpiece on, the direction is `Rot(a, α) Rot(b, β) z`. The vector
+    /// `v = Rot(b, β) z` has `v·b = z·b` and `v·a = n·a`, and so lies in one of two places beside the plane of a and b
+    /// (Paden 1986, second subproblem).
+    ///
+    /// * `direction` – unit vector, workpiece
+    /// * `stand_deg` – where the axes stand, where known
+    ///
+    /// # Errors
+    /// [`NoAngles`] where not one pair is certain.
+    pub fn angles_for(
+        &self,
+        direction: [f64; 3],
+        rule: &TiltRule,
+        stand_deg: [Option<f64>; 3],
+    ) -> Result<[f64; 3], NoAngles> {
+        let [first, second] = self.0.as_slice() else { return Err(NoAngles::NotTwoAxes) };
+        let (a, b) = (first.direction, second.direction);
+        let normal = cross(a, b);
+        let (k, size) = (dot(a, b), dot(normal, normal));
+        if size < SAME_RAD || turn_deg(UP, UP, b).is_none() {
+            return Err(NoAngles::NotTwoAxes);
+        }
+        let (along_a, along_b) = (dot(direction, a), dot(UP, b));
+        let in_plane = [(along_a - k * along_b) / size, (along_b - k * along_a) / size];
+        let middle = plus([0, 1, 2].map(|i| in_plane[0] * a[i]), in_plane[1], b);
+        let beside = (1.0 - dot(middle, middle)) / size;
+        if beside < -SAME_RAD {
+            return Err(NoAngles::OutOfReach);
+        }
+        let beside = beside.max(0.0).sqrt();
+        // Nearer to each other than anybody turns, the two are one.
+        let sides: &[f64] = if beside < 1e-7 { &[0.0] } else { &[beside, -beside] };
+        let mut found: Option<[f64; 3]> = None;
+        for side in sides {
+            let between = plus(middle, *side, normal);
+            let Some(second_turn) = turn_deg(UP, between, b) else { return Err(NoAngles::Free(second.axis)) };
+            let second_deg = second.sense() * second_turn;
+            let on_branch = |axis: usize, deg: f64| match rule.branch {
+                Some((one, positive)) if one == axis => deg.abs() < 1e-7 || (deg > 0.0) == positive,
+                _ => true,
+            };
+            if !on_branch(second.axis, second_deg) {
+                continue;
+            }
+            let first_deg = match turn_deg(between, direction, a) {
+                Some(turn) => first.sense() * turn,
+                // It may stand anywhere: where it stands the way is shortest.
+                None => match (rule.turns, stand_deg[first.axis]) {
+                    (Some(WholeTurns::Shortest), Some(stands_deg)) => stands_deg,
+                    _ => return Err(NoAngles::Free(first.axis)),
+                },
+            };
+            if !on_branch(first.axis, first_deg) {
+                continue;
+            }
+            let chosen = [(first, first_deg), (second, second_deg)]
+                .map(|(link, deg)| link.choose(deg, rule, stand_deg[link.axis]));
+            let [Some(first_deg), Some(second_deg)] = [chosen[0]?, chosen[1]?] else { continue };
+            let mut angles = [0.0; 3];
+            (angles[first.axis], angles[second.axis]) = (first_deg, second_deg);
+            if found.replace(angles).is_some() {
+                return Err(NoAngles::TwoWays);
+            }
+        }
+        match (found, rule.branch) {
+            (Some(_), None) if sides.len() > 1 => Err(NoAngles::TwoWays),
+            (Some(angles), _) => Ok(angles),
+            (None, _) => Err(NoAngles::OutOfReach),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn link(axis: usize, direction: Three, carries_workpiece: bool, most_deg: f64) -> RotaryLink {
+        let size = dot(direction, direction).sqrt();
+        let direction = direction.map(|v| v / size);
+        RotaryLink { axis, direction, carries_workpiece, travel_deg: [-most_deg, most_deg] }
+    }
+
+    const X: Three = [1.0, 0.0, 0.0];
+    const Y: Three = [0.0, 1.0, 0.0];
+
+    #[test]
+    fn the_angles_bring_the_tool_there_on_the_branch_that_was_asked_for() {
+        let chains = [
+            vec![link(2, UP, true, 1000.0), link(0, X, true, 110.0)],
+            vec![link(2, UP, true, 1000.0), link(1, Y, true, 110.0)],
+            vec![link(2, UP, true, 1000.0), link(1, Y, false, 110.0)],
+            vec![link(2, UP, false, 1000.0), link(1, [0.0, 1.0, 1.0], false, 190.0)],
+            vec![link(0, X, false, 80.0), link(1, Y, false, 80.0)],
+        ];
+        for chain in chains {
+            let chain = RotaryChain(chain);
+            let tilting = chain.0[1].axis;
+            let mut met = 0;
+            for step in 0..200 {
+                let step = f64::from(step);
+                let mut wanted = [0.0; 3];
+                wanted[chain.0[0].axis] = (37.0 * step).rem_euclid(150.0) - 75.0;
+                wanted[tilting] = (23.0 * step).rem_euclid(150.0) - 75.0;
+                let direction = chain.tool_direction(wanted);
+                if wanted[tilting].abs() < 0.5 {
+                    continue;
+                }
+                for positive in [true, false] {
+                    let rule =
+                        TiltRule { branch: Some((tilting, positive)), turns: Some(WholeTurns::Principal) };
+                    let Ok(angles) = chain.angles_for(direction, &rule, [None; 3]) else { continue };
+                    met += 1;
+                    assert_eq!(angles[tilting] > 0.0, positive, "{chain:?} {wanted:?}");
+                    let there = chain.tool_direction(angles);
+                    assert!((0..3).all(|i| (there[i] - direction[i]).abs() < 1e-12), "{chain:?} {wanted:?}");
+                    if (wanted[tilting] > 0.0) == positive {
+                        assert!((0..3).all(|i| (angles[i] - wanted[i]).abs() < 1e-6), "{chain:?} {wanted:?}");
+                    }
+                }
+            }
+            assert!(met >= 190, "{chain:?}: {met}");
+        }
+    }
+
+    #[test]
+    fn what_the_rule_leaves_open_is_not_guessed() {
+        let chain = RotaryChain(vec![link(2, UP, true, 1000.0), link(0, X, true, 110.0)]);
+        let tilted = chain.tool_direction([30.0, 0.0, 40.0]);
+        let rule = TiltRule { branch: Some((0, true)), turns: Some(WholeTurns::Shortest) };
+        let ask = |direction, rule: TiltRule, stand| chain.angles_for(direction, &rule, stand);
+        assert_eq!(
+            ask(tilted, TiltRule { branch: None, turns: Some(WholeTurns::Principal) }, [None; 3]),
+            Err(NoAngles::TwoWays)
+        );
+        assert_eq!(ask(tilted, TiltRule { turns: None, ..rule }, [None; 3]), Err(NoAngles::Turns(2)));
+        assert_eq!(ask(tilted, rule, [None; 3]), Err(NoAngles::Unknown(2)));
+        assert_eq!(ask([0.0, 0.0, -1.0], rule, [Some(0.0); 3]), Err(NoAngles::OutOfReach));
+        assert_eq!(
+            ask(UP, TiltRule { turns: Some(WholeTurns::Principal), ..rule }, [Some(7.0); 3]),
+            Err(NoAngles::Free(2))
+        );
+        let near = ask(tilted, rule, [None, None, Some(700.0)]).unwrap();
+        assert!((near[2] - 760.0).abs() < 1e-9 && (near[0] - 30.0).abs() < 1e-9, "{near:?}");
+        assert_eq!(ask(UP, rule, [Some(0.0), None, Some(7.0)]), Ok([0.0, 0.0, 7.0]));
+        let one = RotaryChain(vec![link(0, X, true, 110.0)]);
+        assert_eq!(one.angles_for(UP, &rule, [Some(0.0); 3]), Err(NoAngles::NotTwoAxes));
+    }
+}
