@@ -241,3 +241,143 @@ fn without_a_model_it_is_refused() {
         );
     }
 }
+
+/// A cut in a tilted plane, whose X Y Z at the ends of its lines are these.
+const IN_PLANE: [[f64; 3]; 6] = [
+    [0.0, 0.0, 40.0],
+    [0.0, 0.0, 2.0],
+    [25.0, 4.0, 2.0],
+    [5.0, 30.0, 1.0],
+    [-15.0, 10.0, 1.0],
+    [-10.0, -5.0, 3.0],
+];
+
+/// The cut, an arc and holes among it; `turned` and `plane`: blocks that turn the table and define the plane.
+fn in_a_plane(turned: &str, plane: &str) -> String {
+    format!(
+        "G17 G21 G90 G94 G54\nG0 {turned}\n{plane}\nG0 X0. Y0.\nG43 H1 Z40.\nG1 Z2. F600.\nX25. Y4.\nX5. Y30. Z1.\n\
+         G2 X-15. Y10. I-20. J0.\nG1 X-10. Y-5. Z3.\nG0 Z60.\nG99 G81 X10. Y10. Z-8. R2. F100.\nX-12. Y18.\nG80\n\
+         G0 Z60.\nG49\nG69\nM30\n"
+    )
+}
+
+/// By Rx(30) about its zero, which stands at X20 Y10 Z5: in each of the four ways to say so.
+const PLANES: [&str; 4] = [
+    "G68.2 X20. Y10. Z5. I0. J30. K0.",
+    "G68.2 P1 Q123 X20. Y10. Z5. I30. J0. K0.",
+    "G68.2 P2 Q1 X20. Y10. Z5.\nG68.2 P2 Q2 X50. Y10. Z5.\nG68.2 P2 Q3 X20. Y18.660254 Z10.",
+    "G68.2 P3 Q1 X20. Y10. Z5. I1. J0. K0.\nG68.2 P3 Q2 I0. J-0.5 K0.866025404",
+];
+
+#[test]
+fn in_a_tilted_plane_the_tip_goes_where_the_program_says() {
+    for plane in PLANES {
+        let place = Place::new(&in_a_plane("A-30. C0.", plane));
+        let [from, to, points] = ["in.nc", "out.nc", "points.csv"].map(|name| place.path(name));
+        let ran = run(&[&from, "-m", PROFILE, "-o", &to]);
+        assert!(ran.status.success(), "{plane}: {}", messages(&ran));
+        let check = run(&["check", &from, &to, "-m", PROFILE]);
+        assert!(check.status.success(), "{plane}: {}", String::from_utf8_lossy(&check.stdout));
+        let unchanged = run(&["check", &from, &from, "-m", PROFILE]);
+        assert_eq!(unchanged.status.code(), Some(1), "uncorrected it is off: {plane}");
+
+        let made = std::fs::read_to_string(&to).expect("written");
+        let mut table = "x_mm,y_mm,z_mm,a_deg,c_deg,tool_x_mm,tool_y_mm,tool_z_mm\n".to_owned();
+        let (mut at, mut wanted) = ([0.0; 3], Vec::new());
+        let (sin, cos) = units::math::sin_cos(30f64.to_radians());
+        let in_workpiece = |[x, y, z]: [f64; 3]| {
+            let turned = [x, cos * y - sin * z, sin * y + cos * z];
+            [0, 1, 2].map(|i| turned[i] + [20.0, 10.0, 5.0][i] + ZERO_MM[i])
+        };
+        let cut =
+            made.lines().skip_while(|line| !line.starts_with("G43")).take_while(|line| *line != "G0 Z60.");
+        for line in cut.filter(|line| !line.contains("G0 Z") && !line.contains("G81")) {
+            for (value, letter) in at.iter_mut().zip(['X', 'Y', 'Z']) {
+                *value = word(line, letter).unwrap_or(*value);
+            }
+            let near = |place: &&[f64; 3]| (0..3).all(|i| (place[i] - at[i]).abs() < 0.2);
+            // The first block leaves X and Y to the next feed.
+            let Some(ends) = IN_PLANE.iter().skip(1).find(near) else { continue };
+            let [x, y, z] = in_workpiece(at);
+            let [x, y, z] = axis_command([x, y, z, -30.0, 0.0], LENGTH_MM, CONTROL_MM);
+            writeln!(table, "{x},{y},{z},-30,0,0,0,{}", -LENGTH_MM).expect("a string takes all");
+            wanted.push(in_workpiece(*ends));
+        }
+        assert!(wanted.len() >= IN_PLANE.len() - 1, "{plane}:\n{made}");
+        std::fs::write(&points, table).expect("writable");
+        let predicted = run(&["predict", &points, "-m", PROFILE]);
+        assert!(predicted.status.success(), "{}", messages(&predicted));
+        let rows = String::from_utf8(predicted.stdout).expect("text");
+        for (row, wanted) in rows.lines().skip(1).zip(wanted) {
+            let real: Vec<f64> =
+                row.split(',').skip(8).take(3).map(|cell| cell.parse().expect("a number")).collect();
+            let distance =
+                [0, 1, 2].map(|i| (real[i] - wanted[i]) * 1e3).iter().map(|v| v * v).sum::<f64>().sqrt();
+            // The tolerance, and half an output step in each direction: an end may lie within both.
+            assert!(distance < 1.9, "{plane}: {distance} um off at {wanted:?}");
+        }
+    }
+}
+
+/// The machine with a rule by which the control turns its table.
+fn with_rule(place: &Place, rule: &str) -> String {
+    let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
+    let tables = crate::common::root().join("tests/profiles");
+    let text = profile.replace("\"wavy_", &format!("\"{}/wavy_", tables.to_str().expect("a plain path")));
+    let path = place.path("machine.toml");
+    std::fs::write(&path, text.replace("[kinematics]", &format!("[kinematics]\n{rule}"))).expect("writable");
+    path
+}
+
+#[test]
+fn g53_1_turns_by_the_rule_of_the_profile_or_not_at_all() {
+    let text = in_a_plane("A0. C0.", &format!("{}\nG53.1", PLANES[0]));
+    let by_hand = in_a_plane("A-30. C0.", PLANES[0]);
+    let place = Place::new(&text);
+    let profile = with_rule(&place, "branch = \"A-\"\nturn = \"principal\"");
+    let ran = run(&[&place.path("in.nc"), "-m", &profile]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    std::fs::write(place.path("by_hand.nc"), by_hand).expect("writable");
+    let same = run(&[&place.path("by_hand.nc"), "-m", &profile]);
+    let cut = |out: &[u8]| {
+        let text = String::from_utf8_lossy(out).into_owned();
+        text.lines().skip_while(|line| !line.starts_with("G43")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(cut(&ran.stdout), cut(&same.stdout));
+    for (rule, says) in [("", "error[VP0232]"), ("turn = \"principal\"", "two pairs of angles")] {
+        let profile = with_rule(&place, rule);
+        let ran = run(&[&place.path("in.nc"), "-m", &profile]);
+        assert_eq!(ran.status.code(), Some(1), "{rule}");
+        assert!(messages(&ran).contains(says), "{rule}: {}", messages(&ran));
+    }
+}
+
+#[test]
+fn what_is_not_certain_of_a_tilted_plane_is_refused_by_name() {
+    let plane = PLANES[0];
+    for (blocks, says) in [
+        ("G0 A-29.\n{}\nG0 X0. Y0. Z50.".to_owned(), "do not stand the tool upright"),
+        ("{}\nG0 X0. Y0. Z50. A-20.".to_owned(), "a rotary axis turns inside a tilted plane"),
+        ("{}\nG43.4 H1".to_owned(), "G43.4 inside a tilted plane"),
+        ("G43.4 H1\n{}".to_owned(), "under tool centre point control"),
+        ("G43 H1 G0 Z90.\n{}".to_owned(), "with a tool length in force"),
+        ("{}\n{}".to_owned(), "inside a tilted plane"),
+        ("{}\nG52 X1. Y0. Z0.".to_owned(), "moves the frame"),
+        ("{}\nG28 Z0.".to_owned(), "moves axes of the machine"),
+        ("G53.1".to_owned(), "without a tilted plane"),
+        ("G68.2 P4 X0. Y0. Z0. I10. J0. K0.".to_owned(), "by projected angles"),
+        ("G68.2 P3 Q1 X0. Y0. Z0. I0. J0. K0.".to_owned(), "a vector of no length"),
+        ("G68.2 P3 Q1 X0. Y0. Z0. I1. J0. K0.\nG68.2 P3 Q2 I0.001 J0. K1.".to_owned(), "not at right angles"),
+        ("G68.2 P2 Q1 X0. Y0. Z0.\nG0 X1.".to_owned(), "is not whole"),
+    ] {
+        let place =
+            Place::new(&format!("G17 G21 G90 G94 G54\nG0 A-30. C0.\n{}\nM30\n", blocks.replace("{}", plane)));
+        let ran = run(&[&place.path("in.nc"), "-m", PROFILE]);
+        assert_eq!(ran.status.code(), Some(1), "{blocks}");
+        assert!(
+            messages(&ran).contains(says) && messages(&ran).contains("help:"),
+            "{blocks}: {}",
+            messages(&ran)
+        );
+    }
+}

@@ -298,7 +298,7 @@ impl PathModel for TipControl {
     }
 }
 
-/// A machine in a tilted working plane (G68.2). Equation (63).
+/// A machine in a tilted working plane (G68.2). Equation (77).
 ///
 /// Places of the linear axes are coordinates of the plane here, the tool's length added along its Z, and errors those of the
 /// tip in the directions of the plane. The rotary axes stand.
