@@ -1,7 +1,5 @@
 //! Where the page of messages is: above in a clone, inside the crate where it was published.
 
-#![expect(clippy::print_stdout, reason = "a build script speaks to cargo there")]
-
 fn main() {
     let inside = concat!(env!("CARGO_MANIFEST_DIR"), "/diagnostics.md");
     // Inside, a clone has a link for the packer's eyes; where links are not made it is a file with a name in it.
