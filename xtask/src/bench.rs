@@ -15,6 +15,7 @@ use nc_syntax::{Block, Reader};
 
 use crate::markdown::table;
 use measure::{Run, in_turn, own_cpu_s, run_anew};
+use programs::Spelling;
 
 /// Options of the benchmark.
 #[derive(Debug, Args)]
@@ -57,13 +58,21 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let small = made(folder, "dense-small.nc", options.small, programs::dense)?;
     let large = made(folder, "dense-large.nc", options.large, programs::dense)?;
     let mixed = made(folder, "mixed-small.nc", options.small, programs::mixed)?;
+    let spelt = |name: &str, spelling| {
+        made(folder, name, options.small, move |bytes, out| programs::surface(spelling, bytes, out))
+    };
+    let commented = spelt("commented-small.nc", Spelling::Commented)?;
+    let increments = spelt("increments-small.nc", Spelling::Increments)?;
+    let one_axis = spelt("one-axis-small.nc", Spelling::OneAxis)?;
+    let with_effect = with_effect(&options.profile, folder)?;
     let output = folder.join("out.nc");
-    let correct = |input: &Path, threads: usize| {
+    let correct_on = |profile: &Path, input: &Path, threads: usize| {
         let mut command = Command::new(&vpost);
-        command.arg(input).arg("-o").arg(&output).arg("-m").arg(&options.profile).args(["-d", "fanuc", "-q"]);
+        command.arg(input).arg("-o").arg(&output).arg("-m").arg(profile).args(["-d", "fanuc", "-q"]);
         command.env("RAYON_NUM_THREADS", threads.to_string());
         command
     };
+    let correct = |input: &Path, threads: usize| correct_on(&options.profile, input, threads);
     let mut copy = Command::new("cp");
     copy.arg(&small).arg(&output);
     let mut kinds = [
@@ -73,9 +82,13 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         ("mixed, 1 thread", &mixed, correct(&mixed, 1)),
         ("mixed, 2 threads", &mixed, correct(&mixed, 2)),
         ("dense, large, 2 threads", &large, correct(&large, 2)),
+        ("dense with `(c)`, 1 thread", &commented, correct(&commented, 1)),
+        ("dense under G91, 1 thread", &increments, correct(&increments, 1)),
+        ("one axis a line, 1 thread", &one_axis, correct(&one_axis, 1)),
+        ("dense, a machine with an effect, 1 thread", &small, correct_on(&with_effect, &small, 1)),
     ];
     let least = in_turn(options.repeat.max(1), |_| {
-        let mut runs = [Run::default(); 6];
+        let mut runs = [Run::default(); 10];
         for (run, (_, _, command)) in runs.iter_mut().zip(&mut kinds) {
             *run = run_anew(command, &output)?;
         }
@@ -84,7 +97,7 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
     let tokenizer = tokenizer(&small, options.repeat)?;
     let mut rows = Vec::new();
     // MB per second on the clock, and of processor time.
-    let mut speeds = [[0.0; 2]; 6];
+    let mut speeds = [[0.0; 2]; 10];
     for ((speeds, least), (what, path, _)) in speeds.iter_mut().zip(least).zip(&kinds) {
         let megabytes = path.metadata()?.len() as f64 / 1e6;
         *speeds = [least.wall_s, least.cpu_s].map(|s| megabytes / s);
@@ -99,7 +112,7 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
             format!("{:.0}", least.peak_mib),
         ]);
     }
-    let [_, one, two, mixed_one, _, large_two] = speeds;
+    let [_, one, two, mixed_one, _, large_two, others @ ..] = speeds;
     text += &format!("\nTokenizer alone (`nc_syntax::Reader`, one thread): {tokenizer:.0} MB/s\n\n");
     text +=
         &table(&["what", "MB", "s", "MB/s", "MB per CPU s", "of the tokenizer per CPU s", "peak MiB"], &rows);
@@ -111,7 +124,27 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
         mixed_one[0] / one[0] * 100.0,
         mixed_one[1] / one[1] * 100.0
     );
+    let [commented, increments, one_axis, effect] = others.map(|speed| speed[1] / one[1] * 100.0);
+    text += &format!(
+        "Per second of processor time, of dense: with comments {commented:.0} %, under G91 {increments:.0} %, one axis a line \
+         {one_axis:.0} %, with an effect {effect:.0} %.\n"
+    );
     Ok(text)
+}
+
+/// The profile with one effect beyond its tables; they are named by where they lie.
+fn with_effect(profile: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
+    let mut text: toml_edit::DocumentMut = std::fs::read_to_string(profile)?.parse()?;
+    let tables = std::fs::canonicalize(profile.parent().unwrap_or(Path::new(".")))?;
+    for (_, axis) in text["axis"].as_table_like_mut().context("axes")?.iter_mut() {
+        if let Some(table) = axis.get("errors").and_then(|errors| errors.as_str()) {
+            axis["errors"] = toml_edit::value(tables.join(table).display().to_string());
+        }
+    }
+    let path = folder.join("with-effect.toml");
+    let effect = "\n[[effect]]\nid = \"scale.X\"\nscale_um_per_m = 30.0\n";
+    std::fs::write(&path, text.to_string() + effect)?;
+    Ok(path)
 }
 
 /// A program on disk; one that is there with its size is used again.
@@ -119,7 +152,7 @@ fn made(
     folder: &Path,
     name: &str,
     megabytes: u64,
-    write: fn(u64, &mut BufWriter<std::fs::File>) -> std::io::Result<()>,
+    write: impl FnOnce(u64, &mut BufWriter<std::fs::File>) -> std::io::Result<()>,
 ) -> anyhow::Result<PathBuf> {
     let path = folder.join(name);
     let bytes = megabytes * 1_000_000;

@@ -35,11 +35,29 @@ impl Surface {
     }
 }
 
-/// Writes at least `bytes` of straight feed motion, three coordinates in a block.
-pub(crate) fn dense(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+/// How the blocks of a surface are written.
+#[derive(Clone, Copy)]
+pub(crate) enum Spelling {
+    /// `X1. Y2. Z3.`
+    Dense,
+    /// The same with a comment behind.
+    Commented,
+    /// The same under G91.
+    Increments,
+    /// One axis in each block, by turns.
+    OneAxis,
+}
+
+/// Writes at least `bytes` of straight feed motion.
+pub(crate) fn surface(spelling: Spelling, bytes: u64, out: &mut impl Write) -> io::Result<()> {
     out.write_all(OPENING.as_bytes())?;
-    dense_blocks(bytes, out)?;
+    surface_blocks(spelling, bytes, out)?;
     out.write_all(CLOSING.as_bytes())
+}
+
+/// The same, three coordinates in a block.
+pub(crate) fn dense(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+    surface(Spelling::Dense, bytes, out)
 }
 
 /// Many of [`dense`] as operations of one program: only the marks and the end of the program stand once.
@@ -49,24 +67,45 @@ pub(crate) fn dense_parts(parts: impl Iterator<Item = u64>, out: &mut impl Write
     out.write_all(marks.as_bytes())?;
     for bytes in parts {
         out.write_all(opening.as_bytes())?;
-        dense_blocks(bytes.saturating_sub((OPENING.len() + CLOSING.len()) as u64), out)?;
+        surface_blocks(Spelling::Dense, bytes.saturating_sub((OPENING.len() + CLOSING.len()) as u64), out)?;
         out.write_all(closing.as_bytes())?;
     }
     out.write_all(end.as_bytes())
 }
 
-fn dense_blocks(bytes: u64, out: &mut impl Write) -> io::Result<()> {
+fn surface_blocks(spelling: Spelling, bytes: u64, out: &mut impl Write) -> io::Result<()> {
     let mut written = 0;
     let mut surface = Surface { turned: 0.0, position: [0.0, HALF_MM[1]] };
     let [x, y, z] = surface.next();
     writeln!(out, "G1 X{x:.3} Y{y:.3} Z{z:.3} F1500.")?;
     let mut block = Vec::with_capacity(64);
+    if let Spelling::Increments = spelling {
+        writeln!(out, "G91")?;
+    }
+    let steps = |place: [f64; 3]| place.map(|mm| (mm * 1000.0).round());
+    let (mut stands, mut turn) = (steps([x, y, z]), 0);
     while written < bytes {
-        let [x, y, z] = surface.next();
+        let place @ [x, y, z] = surface.next();
         block.clear();
-        writeln!(block, "X{x:.3} Y{y:.3} Z{z:.3}")?;
+        match spelling {
+            Spelling::Dense => writeln!(block, "X{x:.3} Y{y:.3} Z{z:.3}")?,
+            Spelling::Commented => writeln!(block, "X{x:.3} Y{y:.3} Z{z:.3} (c)")?,
+            Spelling::Increments => {
+                let to = steps(place);
+                let [dx, dy, dz] = [0, 1, 2].map(|axis| (to[axis] - stands[axis]) / 1000.0);
+                stands = to;
+                writeln!(block, "X{dx:.3} Y{dy:.3} Z{dz:.3}")?;
+            }
+            Spelling::OneAxis => {
+                writeln!(block, "{}{:.3}", toolpath::AXIS_NAMES[turn], place[turn])?;
+                turn = (turn + 1) % 3;
+            }
+        }
         written += block.len() as u64;
         out.write_all(&block)?;
+    }
+    if let Spelling::Increments = spelling {
+        writeln!(out, "G90")?;
     }
     Ok(())
 }
