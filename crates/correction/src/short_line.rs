@@ -148,12 +148,12 @@ impl AxisRun {
     #[inline]
     fn round_increments(&mut self, lines: &ShortLines, block: &Block, axis: usize, names: [bool; LANES]) {
         let (offset, half) = (lines.offset_mm[axis], lines.half_step_mm[axis]);
-        for lane in 0..LANES {
+        for (lane, named) in names.into_iter().enumerate() {
             let standing = self.commanded[lane] - offset;
             let wanted = self.wanted[lane + 1] - offset;
             let by_own_word =
                 (self.commanded[lane] + (self.programmed[lane + 1] - self.programmed[lane])) - offset;
-            let stays = if names[lane] { by_own_word } else { standing };
+            let stays = if named { by_own_word } else { standing };
             let exact = block.steps(axis, wanted - standing);
             let steps = nearest_whole(exact);
             let keeps = (wanted - stays).abs() <= half;

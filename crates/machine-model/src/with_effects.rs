@@ -266,15 +266,15 @@ impl PathModel for WithEffects {
                 let at = Command { linear_mm: q[lane], direction: directions[lane], ..*state };
                 let error = errors[lane] + self.along_axes(&at);
                 let residual = (q[lane] - targets[lane]) + error;
-                // No component is longer than the whole: mostly that tells.
-                if residual.amax() <= TOLERANCE_MM && residual.norm() <= TOLERANCE_MM {
+                let squared = residual.norm_squared();
+                // A root is asked for only where it may decide.
+                if squared <= 2.0 * TOLERANCE_MM * TOLERANCE_MM && residual.norm() <= TOLERANCE_MM {
                     open[lane] = false;
                     continue;
                 }
                 q[lane] = targets[lane] - error;
                 // A step by the residual leaves at most `gradient` of it, which need not be evaluated.
-                open[lane] = everywhere.gradient * residual.amax() > PROVEN_MM
-                    || everywhere.gradient * residual.norm() > PROVEN_MM;
+                open[lane] = everywhere.gradient * everywhere.gradient * squared > PROVEN_MM * PROVEN_MM;
             }
             if open == [false; LANES] {
                 let inside = q.iter().all(|q| self.base.volume.contains(q));

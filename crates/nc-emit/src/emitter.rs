@@ -208,18 +208,20 @@ impl<'d> Emitter<'d> {
         let content = line.content();
         let mut done = 0;
         let mut missing = [0, 1, 2].map(|axis| if names[axis] { None } else { counts[axis] });
+        // Mostly there is none.
+        let inserts = missing != [None; 3];
         let mut left = names.iter().filter(|named| **named).count();
         for word in line.words() {
             let letter @ b'X'..=b'Z' = word.letter() else { continue };
             let axis = usize::from(letter - b'X');
             left -= 1;
-            if missing[..axis] != [None; 3][..axis] {
+            if inserts && missing[..axis] != [None; 3][..axis] {
                 // In front of the first word that comes behind it in the order of words.
                 let start = word.span().start as usize;
                 out.extend_from_slice(&content[done..start]);
                 done = start;
-                for before in 0..axis {
-                    style.put_axis(before, missing[before].take(), decimals, Place::Before, out);
+                for (before, counts) in missing[..axis].iter_mut().enumerate() {
+                    style.put_axis(before, counts.take(), decimals, Place::Before, out);
                 }
             }
             let (replaced, place) = (word.number(), word.number_span());
@@ -231,12 +233,12 @@ impl<'d> Emitter<'d> {
                 style.write_in_place(word, counts, decimals[axis], out);
                 done = place.end as usize;
             }
-            if left == 0 && missing != [None; 3] {
+            if inserts && left == 0 {
                 // Behind the last one.
                 out.extend_from_slice(&content[done..place.end as usize]);
                 done = place.end as usize;
-                for behind in 0..3 {
-                    style.put_axis(behind, missing[behind].take(), decimals, Place::After, out);
+                for (behind, counts) in missing.iter_mut().enumerate() {
+                    style.put_axis(behind, counts.take(), decimals, Place::After, out);
                 }
             }
         }
