@@ -89,7 +89,7 @@ fn refuse(words: &Words<'_, '_, '_>, span: Span, message: String, label: &str) -
 /// G68.2.
 ///
 /// * P0, or none – Euler angles: I about Z, J about the new X, K about the new Z
-/// * P1 – I, J, K about the workpiece's X, Y, Z (roll, pitch, yaw), Q naming their order
+/// * P1 – with Q123 one of I, J, K about the workpiece's X, Y or Z (roll, pitch, yaw); of several at once controls differ
 /// * P2 – Q1, Q2, Q3: the plane's zero, a point on its +X, one on the side of its +Y
 /// * P3 – Q1, Q2: its zero and the direction of its X, the direction of its Z
 pub(crate) fn define(
@@ -221,21 +221,24 @@ fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> 
         let [i, j, k] = angles;
         return Ok(product(product(about(2, i), about(0, j)), about(2, k)));
     }
-    let axes = order.map(|order| [order / 100, order / 10 % 10, order % 10]);
-    match axes {
-        Some(axes) if [1, 2, 3].iter().all(|axis| axes.contains(axis)) && order < Some(1000) => {
-            Ok(axes.into_iter().fold(about(0, 0.0), |turn, axis| {
-                let axis = axis as usize - 1;
-                product(about(axis, angles[axis]), turn)
-            }))
-        }
-        _ => {
-            let message = format!("{} P1 without the order of its angles", words.text(span));
-            let at = if words.has(Q) { words.span(Q) } else { span };
-            Err(refuse(words, at, message, "1, 2 and 3 were expected, for X, Y and Z")
-                .help("write Q123 to turn about X first, then Y, then Z"))
-        }
+    if order != Some(123) {
+        let message = format!("{} P1 without Q123", words.text(span));
+        let at = if words.has(Q) { words.span(Q) } else { span };
+        return Err(refuse(words, at, message, "whether I, J, K then change places, controls differ").help(
+            "write Q123, and one angle: I about X, J about Y or K about Z; or the plane by Euler angles (P0)",
+        ));
     }
+    if angles.iter().filter(|angle| **angle != 0.0).count() > 1 {
+        let message = format!("{} P1 with more than one angle", words.text(span));
+        return Err(refuse(
+            words,
+            words.span(CENTRE_LETTERS),
+            message,
+            "about axes that stand, or that turn? controls differ",
+        )
+        .help("write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z"));
+    }
+    Ok([0, 1, 2].into_iter().fold(about(0, 0.0), |turn, axis| product(about(axis, angles[axis]), turn)))
 }
 
 /// P2 and P3: a block of it; the plane where it is the last.

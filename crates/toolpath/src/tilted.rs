@@ -56,8 +56,8 @@ pub struct RotaryLink {
 /// };
 /// let table = RotaryChain(vec![link(2, true), link(0, true)]);
 /// let rule = TiltRule { branch: Some((0, true)), ..TiltRule::default() };
-/// // To point along -Y the table tilts by 90 degrees, or by -90 behind half a turn, which is beyond this travel.
-/// let angles = table.angles_for([0.0, -1.0, 0.0], &rule, [Some(0.0); 3]).unwrap();
+/// // To point along +Y the table tilts by 90 degrees, or by -90 behind half a turn, which is beyond this travel.
+/// let angles = table.angles_for([0.0, 1.0, 0.0], &rule, [Some(0.0); 3]).unwrap();
 /// assert!((angles[0] - 90.0).abs() < 1e-12 && angles[2].abs() < 1e-12);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
