@@ -314,3 +314,25 @@ fn no_difference_is_left_uncounted() {
     assert_eq!((outcome["feed_motions_out"].as_u64(), findings.len()), (Some(30), 21), "{outcome:#}");
     assert_eq!(findings[20], "and 10 more of the path");
 }
+
+/// The last motion leads nowhere and has other words than the one before: found by fuzzing.
+#[test]
+fn motions_that_lead_nowhere_are_there_in_their_own_process() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    for (dialect, program) in [
+        ("linuxcnc", "G17 G21 G40\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX10. Y10.\nH10. Q10. Z50.\nM2\n"),
+        (
+            "centroid",
+            "G17 G21 G40 G49 G54 G80 G90\nG0 X10. Y10. Z60.\nG98 G83 X20. Y40. R52. Z60.\nG1 Z50. F200.\nG42 D40.\nY40.\nG99 X20.\nG80\nM30\n",
+        ),
+    ] {
+        let (input, out) = (path("in.nc"), path("out.nc"));
+        std::fs::write(&input, program).expect("writable");
+        let options = ["-q", "-m", "machine-profiles/generic_vmc.toml", "--tolerance", "4", "-d", dialect];
+        let corrected = run(&[&[input.as_str(), "-o", &out], &options[..]].concat());
+        assert!(corrected.status.success(), "{}", messages(&corrected));
+        let checked = run(&[&["check", &input, &out], &options[..]].concat());
+        assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    }
+}

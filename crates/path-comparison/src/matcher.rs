@@ -127,7 +127,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             self.note(0, distance_mm);
         }
         self.time = if begins == Begins::Anywhere { Time::UNKNOWN } else { Time::default() };
-        let mut stands = false;
+        // The process of a piece of no length that was made last.
+        let mut stood: Option<Process> = None;
         loop {
             let frontier = self.alignment.frontier();
             match self.commanded.feed(0).map(|feed| feed.process) {
@@ -146,14 +147,16 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                     }
                 }
             }
-            // Where a piece of no length has stood, the next reaches what it did, and what has come ahead since.
-            let moves = self.commanded.feed(0).is_some_and(|piece| piece.reach_mm > 0.0);
+            // Where a piece of no length has stood, the next in the same process reaches what it did, and what has come
+            // ahead since.
+            let piece = self.commanded.feed(0).map(|piece| (piece.reach_mm > 0.0, piece.process));
+            let standing = piece.filter(|(moves, _)| !moves).map(|(_, process)| process);
             let all_asked = self.alignment.wanted.feed(frontier).is_none_or(|feed| feed.left.asked);
-            if (moves || !stands || !all_asked) && !self.piece() {
+            if (standing.is_none() || standing != stood || !all_asked) && !self.piece() {
                 self.part(frontier);
                 return;
             }
-            stands = !moves;
+            stood = standing;
             self.commanded.pop();
             for _ in 0..self.alignment.passed() {
                 self.drop_wanted();
