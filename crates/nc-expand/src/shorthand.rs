@@ -453,7 +453,7 @@ impl<'d> Writer<'d> {
             return Err(refuse(span, "a radius below zero"));
         }
         self.state.polar = Some([Some(radius), Some(angle)]);
-        let (sin, cos) = sin_cos_deg(angle);
+        let (sin, cos) = math::sin_cos_deg(angle);
         let point = [radius * cos, radius * sin];
         self.state.at = at;
         (self.state.at[plane[0]], self.state.at[plane[1]]) =
@@ -563,17 +563,6 @@ impl Shape {
         let reach = corner.size / math::sin(0.5 * inside) / math::hypot(half[0], half[1]);
         // Coming along -u and leaving along v.
         Some(Self { from: along(u, cut), to: along(v, cut), centre: along(half, reach), left: cross < 0.0 })
-    }
-}
-
-/// Sine and cosine of degrees, exact at quarter turns.
-fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
-    match angle_deg.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => math::sin_cos(angle.to_radians()),
     }
 }
 

@@ -24,6 +24,30 @@ pub enum TipControl {
     Declared,
 }
 
+impl TipControl {
+    /// Why what the control computes cannot be followed, and the way out; `None` where it can.
+    ///
+    /// * `path` – what cannot be proven: "no path under it"
+    /// * `without` – what to post without
+    pub(crate) fn unknown(self, path: &str, without: &str) -> Option<(String, String)> {
+        match self {
+            Self::Undeclared => Some((
+                "with which centres the control computes is not said".to_owned(),
+                format!(
+                    "declare what the control computes with as `[kinematics]` in the profile, or post without {without}"
+                ),
+            )),
+            Self::Unproven => Some((
+                format!(
+                    "with lost motion of linear axes, with `[[effect]]`, and with engines other than `rigid-body`, {path} can be proven"
+                ),
+                format!("post without {without}"),
+            )),
+            Self::Declared => None,
+        }
+    }
+}
+
 /// What the program cannot say of itself: the profile's and the command line's part, plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {

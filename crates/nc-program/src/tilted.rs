@@ -8,7 +8,7 @@ use diagnostic::Diagnostic;
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use smallvec::SmallVec;
-use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane};
+use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane, unit};
 
 use crate::codes;
 use crate::frames::absolute;
@@ -16,8 +16,6 @@ use crate::modal::{Axis, Lost, Modal, ToolLength, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
-use crate::setup::TipControl;
-use crate::transform::sin_cos_deg;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, Refusal, Words,
 };
@@ -25,10 +23,6 @@ use crate::words::{
 /// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the two
 /// a control adds a length of 200 mm along, its end is within a micrometre.
 const UPRIGHT_RAD: f64 = 5e-6;
-/// Two vectors are at right angles within this, rad: which of them a control turns until they are is not told.
-const SQUARE_RAD: f64 = 1e-6;
-/// Points nearer to each other, or to one line, define no plane, mm.
-const LEAST_MM: f64 = 0.1;
 
 const P: Letters = Letters::of(b"P");
 const Q: Letters = Letters::of(b"Q");
@@ -49,39 +43,6 @@ pub struct Begun {
     directions: [Option<Three>; 4],
 }
 
-fn cross(a: Three, b: Three) -> Three {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn size(v: Three) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
-}
-
-fn minus(a: Three, b: Three) -> Three {
-    [0, 1, 2].map(|i| a[i] - b[i])
-}
-
-/// The turn whose columns are X, `z × x` and Z; both unit vectors at right angles.
-fn by_columns(x: Three, z: Three) -> Turn {
-    let y = cross(z, x);
-    [0, 1, 2].map(|row| [x[row], y[row], z[row]])
-}
-
-/// The turn about X, Y or Z by index.
-fn about(axis: usize, angle_deg: f64) -> Turn {
-    let (sin, cos) = sin_cos_deg(angle_deg);
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let mut turn = [[0.0; 3]; 3];
-    turn[axis][axis] = 1.0;
-    (turn[u][u], turn[u][v]) = (cos, -sin);
-    (turn[v][u], turn[v][v]) = (sin, cos);
-    turn
-}
-
-fn product(a: Turn, b: Turn) -> Turn {
-    a.map(|row| [0, 1, 2].map(|column| (0..3).map(|k| row[k] * b[k][column]).sum()))
-}
-
 fn refuse(words: &Words<'_, '_, '_>, span: Span, message: String, label: &str) -> Refusal {
     words.refuse(codes::TILTED_PLANE, message, span, label)
 }
@@ -99,20 +60,10 @@ pub(crate) fn define(
     state: &mut Modal,
 ) -> Outcome<()> {
     let code = words.text(span);
-    let unknown = match env.setup.tip_control {
-        TipControl::Undeclared => Some((
-            "with which centres the control computes is not said",
-            "declare what the control computes with as `[kinematics]` in the profile, or post without tilted planes",
-        )),
-        TipControl::Unproven => Some((
-            "with lost motion of linear axes, with `[[effect]]`, and with engines other than `rigid-body`, no path in it can be proven",
-            "post without tilted planes",
-        )),
-        TipControl::Declared => None,
-    };
+    let unknown = env.setup.tip_control.unknown("no path in it", "tilted planes");
     if let Some((label, help)) = unknown {
         let message = format!("{code} is refused: it tilts the working plane");
-        return Err(refuse(words, span, message, label).help(help));
+        return Err(refuse(words, span, message, &label).help(help));
     }
     match state.kinematics {
         Kinematics::Axes => {}
@@ -218,8 +169,7 @@ fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> 
                 "write the plane by I about Z, J about the new X and K about the new Z, and remove Q",
             ));
         }
-        let [i, j, k] = angles;
-        return Ok(product(product(about(2, i), about(0, j)), about(2, k)));
+        return Ok(TiltedPlane::turn_by_euler(angles));
     }
     if order != Some(123) {
         let message = format!("{} P1 without Q123", words.text(span));
@@ -228,7 +178,9 @@ fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> 
             "write Q123, and one angle: I about X, J about Y or K about Z; or the plane by Euler angles (P0)",
         ));
     }
-    if angles.iter().filter(|angle| **angle != 0.0).count() > 1 {
+    let mut turns = (0..3).filter(|axis| angles[*axis] != 0.0);
+    let axis = turns.next().unwrap_or(0);
+    if turns.next().is_some() {
         let message = format!("{} P1 with more than one angle", words.text(span));
         return Err(refuse(
             words,
@@ -238,7 +190,7 @@ fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> 
         )
         .help("write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z"));
     }
-    Ok([0, 1, 2].into_iter().fold(about(0, 0.0), |turn, axis| product(about(axis, angles[axis]), turn)))
+    Ok(TiltedPlane::turn_about(axis, angles[axis]))
 }
 
 /// P2 and P3: a block of it; the plane where it is the last.
@@ -288,42 +240,32 @@ fn by_blocks(
         begun.points[place] = Some(at);
     }
     if form == 3 {
-        let direction = three(words);
-        let length = size(direction);
-        if length == 0.0 {
+        let Some(direction) = unit(three(words)) else {
             let message = format!("{code} P3 Q{q} with a vector of no length");
             return Err(
                 refuse(words, span, message, "no direction").help("write I, J and K of the direction")
             );
-        }
-        begun.directions[place] = Some(direction.map(|v| v / length));
+        };
+        begun.directions[place] = Some(direction);
     }
     let plane = match (form, begun.points, begun.directions) {
         (2, [_, Some(zero), Some(on_x), Some(beside)], _) => {
-            let (x, other) = (minus(on_x, zero), minus(beside, zero));
-            let z = cross(x, other);
-            // The height of the third point over the line of the others.
-            if size(x) < LEAST_MM || size(z) < LEAST_MM * size(x) {
+            let Some(turn) = TiltedPlane::turn_by_points([zero, on_x, beside]) else {
                 let message = "three points of a tilted plane lie on one line".to_owned();
                 return Err(refuse(words, span, message, "no plane, or any")
                     .help("write three points that span the plane"));
-            }
-            let [x, z] = [x, z].map(|v| v.map(|part| part / size(v)));
-            Some((zero, by_columns(x, z)))
+            };
+            Some((zero, turn))
         }
         (3, [_, Some(zero), ..], [_, Some(x), Some(z), _]) => {
-            let lean: f64 = (0..3).map(|i| x[i] * z[i]).sum();
-            if lean.abs() > SQUARE_RAD {
+            let turn = TiltedPlane::turn_by_directions(x, z).map_err(|lean| {
                 let message = "the two vectors of a tilted plane are not at right angles".to_owned();
                 let label =
                     format!("by {:.4} degrees: which of the two stays is not certain", lean.to_degrees());
-                return Err(refuse(words, span, message, &label)
-                    .help("write the vectors with more decimals, or the plane by angles or points"));
-            }
-            // What is left of the angle is shared out to neither: X stays.
-            let z = minus(z, x.map(|v| v * lean));
-            let z = z.map(|v| v / size(z));
-            Some((zero, by_columns(x, z)))
+                refuse(words, span, message, &label)
+                    .help("write the vectors with more decimals, or the plane by angles or points")
+            })?;
+            Some((zero, turn))
         }
         _ => None,
     };
@@ -481,7 +423,7 @@ pub(crate) fn check_motions(
     require_rotary(words, &state.axes)?;
     let stands =
         env.setup.rotary_chain.tool_direction(state.axes.rotary.map(|axis| axis.known().unwrap_or(0.0)));
-    let off_rad = 2.0 * units::math::asin((0.5 * size(minus(stands, plane.normal()))).min(1.0));
+    let off_rad = plane.off_normal_rad(stands);
     if off_rad > UPRIGHT_RAD {
         let message = "the rotary axes do not stand the tool upright on the tilted plane";
         let label = format!("it leans by {} degrees", angle(off_rad));

@@ -7,7 +7,6 @@ use toolpath::Kinematics;
 use crate::codes;
 use crate::modal::{Axis, Compensation, Lost, Modal, Why};
 use crate::settings::{Demand, Environment};
-use crate::setup::TipControl;
 use crate::words::{Letters, Outcome, Words};
 
 /// What the codes of a block, whose tool length is in `state` already, say of the kinematics in force from here on.
@@ -51,17 +50,7 @@ pub(crate) fn switch(
     state: &mut Modal,
 ) -> Outcome<()> {
     let Some((kinematics, span)) = wanted(env, words, before) else { return Ok(()) };
-    let unknown = match env.setup.tip_control {
-        TipControl::Undeclared => Some((
-            "with which centres the control computes is not said",
-            "declare what the control computes with as `[kinematics]` in the profile, or post without tool centre point control",
-        )),
-        TipControl::Unproven => Some((
-            "with lost motion of linear axes, with `[[effect]]`, and with engines other than `rigid-body`, no path under it can be proven",
-            "post without tool centre point control",
-        )),
-        TipControl::Declared => None,
-    };
+    let unknown = env.setup.tip_control.unknown("no path under it", "tool centre point control");
     if let (Kinematics::Tip, Some((label, help))) = (kinematics, unknown) {
         let message = format!(
             "{} is refused: it moves the axes so that the tool's tip follows the path (tool centre point)",

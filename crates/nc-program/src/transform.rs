@@ -72,7 +72,7 @@ impl Transform {
             Self::None => return Some(Frame::shift(shift_mm)),
             Self::Rotation { plane, centre_mm, angle_deg } => {
                 let [u, v, _] = plane.axes();
-                let (sin, cos) = sin_cos_deg(angle_deg);
+                let (sin, cos) = math::sin_cos_deg(angle_deg);
                 (matrix[u][u], matrix[u][v]) = (cos, -sin);
                 (matrix[v][u], matrix[v][v]) = (sin, cos);
                 (centre[u], centre[v]) = (centre_mm[0], centre_mm[1]);
@@ -93,20 +93,6 @@ impl Transform {
         let moved = |r: usize| (0..3).map(|c| matrix[r][c] * centre[c]).sum::<f64>();
         Frame::affine(matrix, [0, 1, 2].map(|r| shift_mm[r] + (centre[r] - moved(r))))
     }
-}
-
-/// Sine and cosine of degrees, exact at quarter turns.
-pub(crate) fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
-    let turns = angle_deg / 90.0;
-    if turns == turns.round() {
-        return match turns.rem_euclid(4.0) as u8 {
-            0 => (0.0, 1.0),
-            1 => (1.0, 0.0),
-            2 => (0.0, -1.0),
-            _ => (-1.0, 0.0),
-        };
-    }
-    math::sin_cos(angle_deg.to_radians())
 }
 
 #[cfg(test)]
@@ -140,7 +126,7 @@ mod tests {
             let transform = Transform::Rotation { plane, centre_mm: [0.0; 2], angle_deg: 90.0 };
             assert_eq!(transform.frame([0.0; 3]).unwrap().to_machine(from), to);
         }
-        assert_eq!(sin_cos_deg(-90.0), (-1.0, 0.0));
-        assert_eq!(sin_cos_deg(540.0), (0.0, -1.0));
+        assert_eq!(math::sin_cos_deg(-90.0), (-1.0, 0.0));
+        assert_eq!(math::sin_cos_deg(540.0), (0.0, -1.0));
     }
 }

@@ -14,7 +14,7 @@ pub use motion::{
     Arc, Cycle, CycleKind, Division, Feed, FeedRate, Hole, Kinematics, Motion, Partial, Position, Shape,
 };
 pub use plane::Plane;
-pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns};
+pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};
 
 /// Names of the linear and rotary axes, in the order of every array here.
 pub const AXIS_NAMES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];

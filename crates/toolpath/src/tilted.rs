@@ -29,6 +29,69 @@ impl TiltedPlane {
     pub fn normal(&self) -> [f64; 3] {
         self.turn.map(|row| row[2])
     }
+
+    /// The angle between its Z and a direction, a unit vector of the workpiece, rad: exact to the last bits also where it is
+    /// small.
+    #[must_use]
+    pub fn off_normal_rad(&self, direction: [f64; 3]) -> f64 {
+        2.0 * math::asin((0.5 * size(plus(direction, -1.0, self.normal()))).min(1.0))
+    }
+
+    /// The turn of Euler angles, degrees: about Z, about the new X, about the new Z.
+    #[must_use]
+    pub fn turn_by_euler([first, second, third]: [f64; 3]) -> [[f64; 3]; 3] {
+        let turn = product(Self::turn_about(2, first), Self::turn_about(0, second));
+        product(turn, Self::turn_about(2, third))
+    }
+
+    /// The turn about X, Y or Z by index, degrees.
+    #[must_use]
+    pub fn turn_about(axis: usize, angle_deg: f64) -> [[f64; 3]; 3] {
+        let (sin, cos) = math::sin_cos_deg(angle_deg);
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut turn = [[0.0; 3]; 3];
+        turn[axis][axis] = 1.0;
+        (turn[u][u], turn[u][v]) = (cos, -sin);
+        (turn[v][u], turn[v][v]) = (sin, cos);
+        turn
+    }
+
+    /// The turn of three points, mm: the plane's zero, one on its +X, one on the side of its +Y. `None` where two of them,
+    /// or the third and the line of the others, are nearer than 0.1 mm.
+    #[must_use]
+    pub fn turn_by_points([zero, on_x, beside]: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+        const LEAST_MM: f64 = 0.1;
+        let (x, other) = (plus(on_x, -1.0, zero), plus(beside, -1.0, zero));
+        let z = cross(x, other);
+        let spans = size(x) >= LEAST_MM && size(z) >= LEAST_MM * size(x);
+        spans.then(|| by_columns(x.map(|v| v / size(x)), z.map(|v| v / size(z))))
+    }
+
+    /// The turn of the directions of X and Z, unit vectors ([`unit`]); what they lack of a right angle Z gives.
+    ///
+    /// # Errors
+    /// The angle that they lack, rad, where it is above a microradian: which of the two stays, controls differ.
+    pub fn turn_by_directions(x: [f64; 3], z: [f64; 3]) -> Result<[[f64; 3]; 3], f64> {
+        const SQUARE_RAD: f64 = 1e-6;
+        let lean = dot(x, z);
+        if lean.abs() > SQUARE_RAD {
+            return Err(lean);
+        }
+        let z = plus(z, -lean, x);
+        Ok(by_columns(x, z.map(|v| v / size(z))))
+    }
+}
+
+/// The direction of a vector; `None` of one without length.
+///
+/// ```
+/// assert_eq!(toolpath::unit([0.0, 0.0, -2.0]), Some([0.0, 0.0, -1.0]));
+/// assert_eq!(toolpath::unit([0.0; 3]), None);
+/// ```
+#[must_use]
+pub fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+    let length = size(v);
+    (length != 0.0).then(|| v.map(|part| part / length))
 }
 
 /// A rotary axis as far as directions go.
@@ -109,6 +172,20 @@ fn dot(a: Three, b: Three) -> f64 {
 
 fn cross(a: Three, b: Three) -> Three {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn size(v: Three) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// The turn whose columns are X, `z × x` and Z; both unit vectors at right angles.
+fn by_columns(x: Three, z: Three) -> [Three; 3] {
+    let y = cross(z, x);
+    [0, 1, 2].map(|row| [x[row], y[row], z[row]])
+}
+
+fn product(a: [Three; 3], b: [Three; 3]) -> [Three; 3] {
+    a.map(|row| [0, 1, 2].map(|column| (0..3).map(|k| row[k] * b[k][column]).sum()))
 }
 
 /// `a + k b`

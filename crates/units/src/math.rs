@@ -19,6 +19,20 @@ pub fn cos(rad: f64) -> f64 {
 pub fn sin_cos(rad: f64) -> (f64, f64) {
     libm::sincos(rad)
 }
+/// Sine and cosine of an angle in degrees, exact at quarter turns.
+#[must_use]
+pub fn sin_cos_deg(deg: f64) -> (f64, f64) {
+    let turns = deg / 90.0;
+    if turns == turns.round() {
+        return match turns.rem_euclid(4.0) as u8 {
+            0 => (0.0, 1.0),
+            1 => (1.0, 0.0),
+            2 => (0.0, -1.0),
+            _ => (-1.0, 0.0),
+        };
+    }
+    sin_cos(deg.to_radians())
+}
 /// Tangent of an angle in radians.
 #[must_use]
 pub fn tan(rad: f64) -> f64 {
