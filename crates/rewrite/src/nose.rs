@@ -43,7 +43,7 @@ fn beside_mm(model: &dyn PathModel, nose_mm: f64, tool_mm: [f64; 3], feed: &Feed
     difference(feed.start.linear_mm).max(difference(feed.end.linear_mm))
 }
 
-/// What the nose takes of the tolerance under compensation, mm; `None` where no nose is led.
+/// What the nose takes of the tolerance under compensation, mm; nothing where none is led.
 ///
 /// # Errors
 /// An inner arc that the nose does not fit into, and a nose that touches where another correction is needed.
@@ -53,9 +53,9 @@ pub(crate) fn reserved_mm(
     motion: &Motion,
     block: &Block<'_>,
     context: &Context,
-) -> Result<Option<f64>, Vec<Diagnostic>> {
-    let (Some(side), Motion::Feed(feed)) = (context.compensation, motion) else { return Ok(None) };
-    let Some(nose_mm) = nose_mm(job, modal) else { return Ok(None) };
+) -> Result<f64, Vec<Diagnostic>> {
+    let (Some(side), Motion::Feed(feed)) = (context.compensation, motion) else { return Ok(0.0) };
+    let Some(nose_mm) = nose_mm(job, modal) else { return Ok(0.0) };
     let refuse = |message: String, label: &str, help: &str| {
         Err(vec![Diagnostic::error(NOSE, message).at(block.file_range(), label).help(help)])
     };
@@ -84,5 +84,5 @@ pub(crate) fn reserved_mm(
             "let the CAM write the tip's path, G40 in force, or accept more with `--tolerance`",
         );
     }
-    Ok(Some(beside_mm))
+    Ok(beside_mm)
 }

@@ -207,7 +207,7 @@ impl Pass<'_> {
         let mut untouched = true;
         for motion in motions {
             let modal = self.state.interpreter.modal();
-            info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?.unwrap_or_default();
+            info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?;
             let mut corrected = self
                 .state
                 .corrector
@@ -434,8 +434,10 @@ impl Pass<'_> {
             if let Some(apart_mm) = radii_apart_mm(motion).filter(|apart_mm| *apart_mm > SPIRAL_MM) {
                 notices.spirals.see(&span, line, apart_mm);
             }
-            let unknown_tool = nose_mm(self.job, self.state.interpreter.modal()).is_none();
-            if unknown_tool && context.compensation.is_some() && matches!(motion, Motion::Feed(_)) {
+            if context.compensation.is_some()
+                && matches!(motion, Motion::Feed(_))
+                && nose_mm(self.job, self.state.interpreter.modal()).is_none()
+            {
                 notices.compensated.see(&span, line, 0.0);
             }
         }
