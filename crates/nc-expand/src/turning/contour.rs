@@ -306,13 +306,11 @@ impl Writer<'_, '_> {
                                 | Action::Pass { takes_words: false }
                         )
                     );
-                    // Compensation and all that is refused is refused by its own message, where it is executed.
-                    let own = matches!(action, None | Some(Action::Refuse { .. } | Action::Compensation(_)));
-                    if !fits && !own {
-                        return refuse(item.span, "lines and arcs were expected");
-                    }
-                    if own {
+                    if matches!(action, None | Some(Action::Refuse { .. } | Action::Compensation(_))) {
                         return refuse(item.span, "lines and arcs were expected, G40 in force");
+                    }
+                    if !fits {
+                        return refuse(item.span, "lines and arcs were expected");
                     }
                 }
                 ItemKind::Word {
