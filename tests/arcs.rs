@@ -105,3 +105,20 @@ fn arcs_written_in_hundredths_satisfy_their_dialect() {
         assert!(again.status.success(), "{dialect}: {}", messages(&again));
     }
 }
+
+/// The ends of half a turn and its centre lie on one grid, and its radii may differ by a step: that is no reason to refuse it
+/// where a control offsets it.
+#[test]
+fn half_a_turn_under_compensation_stays_one_block() {
+    let place = Place::new();
+    let program = "G21 G17 G40 G90 G54\nG0 X50 Y50 Z30\nG1 Z0 F200\nG41 D1\nG3 X70 Y50 Z-1 I10 J0\nG3 I-20\nG3 X50 Y50 Z1 I-10 J0\nG40\nG0 Z30\nM2\n";
+    let program = place.write("part.ngc", program);
+    let out = place.write("out.ngc", "");
+    let options = ["-q", "-m", "tests/profiles/linuxcnc_samples.toml", "-d", "linuxcnc"];
+    let ran = run(&[&[program.as_str(), "-o", &out], &options[..]].concat());
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let made = std::fs::read_to_string(&out).expect("written");
+    assert_eq!(made.lines().filter(|line| line.starts_with("G3")).count(), 3, "{made}");
+    let checked = run(&[&["check", &program, &out], &options[..]].concat());
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+}

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use machine_model::Vector;
+use toolpath::Division;
 
 use crate::centre::{PLACES, Search, in_plane};
 use crate::corrector::{CorrectionError, Corrector, Follow};
@@ -114,7 +115,6 @@ impl<'m> Corrector<'m> {
             to,
             corrected,
             own_words: follow.alone,
-            division: follow.whole.division,
             farthest_mm: if sieved.is_some() { limit_mm + BEYOND_DOUBT_MM } else { f64::INFINITY },
         };
         let mut candidates = search.candidates();
@@ -126,18 +126,25 @@ impl<'m> Corrector<'m> {
                 in_step: follow.whole.in_step,
                 begun: self.begun(follow, part),
             };
+            // A control that offsets the circle does so by one of its radii: what they differ by, beyond what was programmed,
+            // may stand off the path at the other end.
+            let aside_mm = match follow.whole.division {
+                Division::One => (curve.radii_apart_mm() - part.radii_apart_mm()).max(0.0),
+                Division::Any | Division::OneBehindLines => 0.0,
+            };
+            let limit_mm = limit_mm - aside_mm;
             let verdict =
                 pair.verdict_by(&follow.machine, sieved.as_ref(), follow.enclosed.as_ref(), limit_mm);
             match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
                 Verdict::Within(bound) => {
                     let kind = PieceKind::Arc { clockwise, centre: candidate.words };
                     let piece = Piece::new(kind, axes, follow.share(part));
-                    follow.finish(piece, bound, (wanted - nominal_end).norm());
+                    follow.finish(piece, bound + aside_mm, (wanted - nominal_end).norm());
                     self.gone_along(&follow.machine.state, &curve);
                     self.note_end(&follow.machine.state, nominal_end, wanted);
                     return Ok(Tried::Done);
                 }
-                Verdict::Beyond { distance_mm, .. } => nearest = nearest.min(distance_mm),
+                Verdict::Beyond { distance_mm, .. } => nearest = nearest.min(distance_mm + aside_mm),
             }
         }
         self.standing = before;

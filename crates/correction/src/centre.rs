@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use machine_model::Vector;
 use smallvec::SmallVec;
-use toolpath::{Division, Plane, Similarity};
+use toolpath::{Plane, Similarity};
 
 use crate::Centre;
 use crate::curve::{Curve, SAME_PLACE_MM};
@@ -80,8 +80,6 @@ pub(crate) struct Search<'a> {
     pub(crate) corrected: [Vector; 3],
     /// The block's own words may stay.
     pub(crate) own_words: bool,
-    /// In how many blocks it may be.
-    pub(crate) division: Division,
     /// A circle that misses one of `corrected` by more is not tried, mm.
     pub(crate) farthest_mm: f64,
 }
@@ -181,7 +179,7 @@ impl Search<'_> {
     /// The centres worth trying.
     pub(crate) fn candidates(&self) -> Candidates {
         let mut found = Candidates(SmallVec::new());
-        let Curve::Arc { axes: [u, v, _], centre, radius, .. } = *self.part else { return found };
+        let Curve::Arc { axes: [u, v, _], centre, .. } = *self.part else { return found };
         let block = &*self.block.of_centres();
         let has_centre = [u, v].map(|axis| block.letters.contains(b"IJK"[axis]));
         let by_radius = !has_centre.contains(&true) && (block.letters.contains(b'R') || !block.centre_words);
@@ -189,13 +187,8 @@ impl Search<'_> {
         let step = scale * block.step_mm(u).max(block.step_mm(v));
         // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
         // words may bring more of their own.
-        let programmed = (radius[1] - radius[0]).abs();
-        let room = match self.division {
-            // The control offsets the circle, by one of its radii: what they differ by is off the path at its other end.
-            Division::One => 0.75 * step,
-            _ if step < FINE_STEP_MM => FINE_ROOM_MM,
-            _ => 2.0 * step,
-        };
+        let programmed = self.part.radii_apart_mm();
+        let room = if step < FINE_STEP_MM { FINE_ROOM_MM } else { 2.0 * step };
         let allowed = (room + programmed).min((scale * block.arc_radius_tolerance_mm).max(programmed));
         let fitted = self.fitted();
         let near = self.near(fitted);
@@ -412,7 +405,6 @@ mod tests {
                 to: at(1.0),
                 corrected: PLACES.map(at),
                 own_words: false,
-                division: Division::Any,
                 farthest_mm: 0.0018,
             };
             let least = search.near(search.fitted()).least_missed_mm(0.002);
@@ -439,7 +431,7 @@ mod tests {
             let corrected = [place(1), place(2), place(3)];
             let block = block([0.0; 3]);
             let search = Search {
-                part: &part, block: &block, from: place(0), to: place(4), corrected, own_words: false, division: Division::Any, farthest_mm: 1.0,
+                part: &part, block: &block, from: place(0), to: place(4), corrected, own_words: false, farthest_mm: 1.0,
             };
             let centre = [20.0 + by[0], -30.0 + by[1]];
             let r = |k: usize| length([place(k).x - centre[0], place(k).y - centre[1]]);

@@ -63,6 +63,14 @@ fn turn(from: f64, to: f64, clockwise: bool) -> f64 {
 }
 
 impl Curve {
+    /// By how much an arc's radii differ at its ends, mm; nothing of what is no arc.
+    pub(crate) fn radii_apart_mm(&self) -> f64 {
+        match self {
+            Self::Arc { radius, .. } => (radius[1] - radius[0]).abs(),
+            Self::Line(..) | Self::Turn { .. } => 0.0,
+        }
+    }
+
     /// The geometry of a motion between two axis commands.
     #[must_use]
     pub fn new(start: Vector, end: Vector, shape: &Shape) -> Self {
