@@ -92,6 +92,20 @@ fn axis_command([x, y, z, a, c]: [f64; 5], length_mm: f64, [about_a, about_c]: [
     [turned[0], about_a[1] + cos * u - sin * v, about_a[2] + sin * u + cos * v + length_mm]
 }
 
+/// The machine brings the tip of each row of points to its place, within `allowed_um`.
+fn tips_are_there(points: &str, wanted: &[[f64; 3]], allowed_um: f64, what: &str) {
+    let predicted = run(&["predict", points, "-m", PROFILE]);
+    assert!(predicted.status.success(), "{}", messages(&predicted));
+    let rows = String::from_utf8(predicted.stdout).expect("text");
+    for (row, wanted) in rows.lines().skip(1).zip(wanted) {
+        let real: Vec<f64> =
+            row.split(',').skip(8).take(3).map(|cell| cell.parse().expect("a number")).collect();
+        let off_um = [0, 1, 2].map(|i| (real[i] - wanted[i]) * 1e3);
+        let distance = off_um.iter().map(|v| v * v).sum::<f64>().sqrt();
+        assert!(distance < allowed_um, "{what}: {distance} um off at {wanted:?}");
+    }
+}
+
 #[test]
 fn the_tip_goes_where_the_program_says() {
     for name in ["fanuc", "haas", "linuxcnc", "sinumerik"] {
@@ -125,17 +139,8 @@ fn the_tip_goes_where_the_program_says() {
         }
         assert_eq!(wanted.len(), PLACES.len(), "{name}:\n{made}");
         std::fs::write(&points, table).expect("writable");
-        let predicted = run(&["predict", &points, "-m", PROFILE]);
-        assert!(predicted.status.success(), "{}", messages(&predicted));
-        let rows = String::from_utf8(predicted.stdout).expect("text");
-        for (row, wanted) in rows.lines().skip(1).zip(wanted) {
-            let real: Vec<f64> =
-                row.split(',').skip(8).take(3).map(|cell| cell.parse().expect("a number")).collect();
-            let off_um = [0, 1, 2].map(|i| (real[i] - wanted[i]) * 1e3);
-            // Half an output step in each direction.
-            let distance = off_um.iter().map(|v| v * v).sum::<f64>().sqrt();
-            assert!(distance < 0.9, "{name}: {distance} um off at {wanted:?}");
-        }
+        // Half an output step in each direction.
+        tips_are_there(&points, &wanted, 0.9, name);
     }
 }
 
@@ -305,17 +310,8 @@ fn in_a_tilted_plane_the_tip_goes_where_the_program_says() {
         }
         assert!(wanted.len() >= IN_PLANE.len() - 1, "{plane}:\n{made}");
         std::fs::write(&points, table).expect("writable");
-        let predicted = run(&["predict", &points, "-m", PROFILE]);
-        assert!(predicted.status.success(), "{}", messages(&predicted));
-        let rows = String::from_utf8(predicted.stdout).expect("text");
-        for (row, wanted) in rows.lines().skip(1).zip(wanted) {
-            let real: Vec<f64> =
-                row.split(',').skip(8).take(3).map(|cell| cell.parse().expect("a number")).collect();
-            let distance =
-                [0, 1, 2].map(|i| (real[i] - wanted[i]) * 1e3).iter().map(|v| v * v).sum::<f64>().sqrt();
-            // The tolerance, and half an output step in each direction: an end may lie within both.
-            assert!(distance < 1.9, "{plane}: {distance} um off at {wanted:?}");
-        }
+        // The tolerance, and half an output step in each direction: an end may lie within both.
+        tips_are_there(&points, &wanted, 1.9, plane);
     }
 }
 
