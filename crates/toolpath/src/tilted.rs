@@ -67,7 +67,7 @@ impl TiltedPlane {
         spans.then(|| by_columns(x.map(|v| v / size(x)), z.map(|v| v / size(z))))
     }
 
-    /// The turn of the directions of X and Z, unit vectors ([`unit`]); what they lack of a right angle Z gives.
+    /// The turn of the directions of X and Z, unit vectors ([`unit()`]); what they lack of a right angle Z gives.
     ///
     /// # Errors
     /// The angle that they lack, rad, where it is above a microradian: which of the two stays, controls differ.
