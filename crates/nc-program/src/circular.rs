@@ -10,7 +10,8 @@ use crate::modal::{ArcCentres, Modal, Turn, Units};
 use crate::motion::{Motions, arc_while_turning, division, feed_rate};
 use crate::position::{end, require_frame, require_known};
 use crate::settings::Environment;
-use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Letters, Outcome, Words};
+use crate::words::{ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, Outcome, Words};
+use nc_syntax::Letters;
 
 /// G2 and G3.
 pub(crate) fn circular(

@@ -10,7 +10,8 @@ use crate::modal::{Axes, Axis, CycleState, Distance, FeedMode, Level, Modal, Ret
 use crate::motion::{Motions, own_feed, rate};
 use crate::position::{end, increment_base, require_frame, require_known};
 use crate::settings::Environment;
-use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
+use crate::words::{AXIS_LETTERS, CENTRE_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
+use nc_syntax::Letters;
 
 /// Levels that differ by less are the same.
 const SAME_LEVEL_MM: f64 = 1e-6;

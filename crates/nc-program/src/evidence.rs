@@ -15,7 +15,8 @@ use smallvec::SmallVec;
 
 use crate::codes;
 use crate::setup::Setup;
-use crate::words::{Letters, is_motion};
+use crate::words::is_motion;
+use nc_syntax::Letters;
 
 /// No more codes are named in one message.
 const MOST_NAMED: usize = 8;

@@ -14,9 +14,10 @@ use crate::settings::{Demand, Environment};
 use crate::tilted;
 use crate::transform::Transform;
 use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY_LETTERS,
-    Refusal, SECONDARY_LETTERS, Words,
+    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, Refusal,
+    SECONDARY_LETTERS, Words,
 };
+use nc_syntax::Letters;
 
 const P: Letters = Letters::of(b"P");
 const R: Letters = Letters::of(b"R");

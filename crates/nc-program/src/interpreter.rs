@@ -20,7 +20,8 @@ use crate::setup::{AfterChange, Setup};
 use crate::tilted;
 use crate::tip;
 use crate::turning;
-use crate::words::{Letters, Outcome, Words};
+use crate::words::{Outcome, Words};
+use nc_syntax::Letters;
 
 /// What a block means.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,9 +16,10 @@ use crate::tip;
 use crate::tool_length;
 use crate::turning;
 use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY, ROTARY_LETTERS,
-    SECONDARY_LETTERS, Words,
+    ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY, ROTARY_LETTERS, SECONDARY_LETTERS,
+    Words,
 };
+use nc_syntax::Letters;
 
 /// Nearly always none or one.
 pub(crate) type Motions = SmallVec<[Motion; 1]>;

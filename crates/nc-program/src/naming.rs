@@ -15,7 +15,8 @@ use toolpath::Kinematics;
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
 use crate::motion::Moved;
 use crate::settings::{Demand, Environment, Owner};
-use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Words};
+use crate::words::{AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Words};
+use nc_syntax::Letters;
 
 /// Axes by index.
 type Set = [bool; 3];

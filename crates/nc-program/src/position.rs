@@ -7,8 +7,9 @@ use toolpath::{AXIS_NAMES, Frame, Position};
 
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, Units, Why};
 use crate::settings::{Environment, missing_offset};
-use crate::words::{AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY, ROTARY_LETTERS, Words};
+use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::{codes, frames};
+use nc_syntax::Letters;
 
 /// From program coordinates to axis commands, mm: refused where the work offset in force is not given.
 #[inline]

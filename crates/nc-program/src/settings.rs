@@ -11,8 +11,9 @@ use crate::modal::{
 };
 use crate::setup::Setup;
 use crate::tool_length::{self, Length};
-use crate::words::{LINEAR_LETTERS, Letters, Outcome, Words};
+use crate::words::{LINEAR_LETTERS, Outcome, Words};
 use crate::{frames, tilted, tip, transform::Transform};
+use nc_syntax::Letters;
 
 /// What a program is read against.
 #[derive(Clone, Copy, Debug)]

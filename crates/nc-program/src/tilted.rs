@@ -17,8 +17,9 @@ use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
 use crate::words::{
-    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, Refusal, Words,
+    ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, Refusal, Words,
 };
+use nc_syntax::Letters;
 
 /// The tool stands upright on a plane where its direction is within this of the plane's normal, rad: whichever of the two
 /// a control adds a length of 200 mm along, its end is within a micrometre.

@@ -7,7 +7,8 @@ use toolpath::Kinematics;
 use crate::codes;
 use crate::modal::{Axis, Compensation, Lost, Modal, Why};
 use crate::settings::{Demand, Environment};
-use crate::words::{Letters, Outcome, Words};
+use crate::words::{Outcome, Words};
+use nc_syntax::Letters;
 
 /// What the codes of a block, whose tool length is in `state` already, say of the kinematics in force from here on.
 fn wanted(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &Modal) -> Option<(Kinematics, Span)> {

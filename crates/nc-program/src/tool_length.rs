@@ -8,9 +8,8 @@ use crate::frames;
 use crate::modal::{Modal, ToolLength, Units};
 use crate::motion::compensated;
 use crate::settings::{Demand, Environment};
-use crate::words::{
-    ARC_LETTERS, LINEAR, LINEAR_LETTERS, Letters, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
-};
+use crate::words::{ARC_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words};
+use nc_syntax::Letters;
 
 /// How the tool length is asked to change.
 #[derive(Clone, Copy)]

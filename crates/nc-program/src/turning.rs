@@ -6,7 +6,8 @@ use toolpath::{Motion, Plane, Shape};
 use crate::codes;
 use crate::modal::{Distance, Modal, MotionMode, XWords};
 use crate::settings::{Demand, Environment, Owner};
-use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Letters, Outcome, ROTARY_LETTERS, Words};
+use crate::words::{ARC_LETTERS, AXIS_LETTERS, LINEAR, Outcome, ROTARY_LETTERS, Words};
+use nc_syntax::Letters;
 
 /// The code that keeps the cutting speed constant, on every control.
 const CONSTANT_SPEED: GCode = GCode(960);

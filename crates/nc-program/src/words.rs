@@ -4,71 +4,13 @@ use std::ops::Range;
 
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
-use nc_syntax::{Block, Dialect, Invalid, ItemKind, Number, Span, Value};
+use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
 
 use crate::codes;
 
 /// A refusal on its way out; boxed, so that the way of success stays small.
 pub(crate) type Outcome<T> = Result<T, Box<Diagnostic>>;
-
-/// Letters as bits: `A` is bit 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Letters(u32);
-
-impl Letters {
-    pub(crate) const NONE: Self = Self(0);
-
-    pub(crate) const fn of(letters: &[u8]) -> Self {
-        let (mut bits, mut at) = (0, 0);
-        while at < letters.len() {
-            bits |= 1 << (letters[at] - b'A');
-            at += 1;
-        }
-        Self(bits)
-    }
-    /// Linear axes by index.
-    pub(crate) fn of_axes(axes: [bool; 3]) -> Self {
-        let mut all = Self::NONE;
-        for (letter, is_in) in LINEAR.iter().zip(axes) {
-            if is_in {
-                all = all.or(Self::of(&[*letter]));
-            }
-        }
-        all
-    }
-    /// As text: `X, Z`.
-    pub(crate) fn names(self) -> String {
-        let names: Vec<String> = (b'A'..=b'Z')
-            .filter(|letter| self.any(Self::of(&[*letter])))
-            .map(|letter| (letter as char).to_string())
-            .collect();
-        names.join(", ")
-    }
-    pub(crate) const fn any(self, other: Self) -> bool {
-        self.0 & other.0 != 0
-    }
-    pub(crate) const fn and(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-    pub(crate) const fn or(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-    pub(crate) const fn without(self, other: Self) -> Self {
-        Self(self.0 & !other.0)
-    }
-    /// The alphabetically first letter; `Z` where there is none.
-    pub(crate) const fn first(self) -> u8 {
-        let at = self.0.trailing_zeros();
-        if at < 26 { b'A' + at as u8 } else { b'Z' }
-    }
-    pub(crate) const fn count(self) -> u32 {
-        self.0.count_ones()
-    }
-    pub(crate) const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-}
 
 /// X, Y, Z and their index.
 pub(crate) const LINEAR: [u8; 3] = *b"XYZ";
@@ -273,7 +215,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     pub(crate) fn span(&self, letters: Letters) -> Span {
         let mut span: Option<Span> = None;
         for (index, at) in self.at.iter().enumerate() {
-            if *at != 0 && letters.0 >> index & 1 == 1 {
+            if *at != 0 && letters.contains(b'A' + index as u8) {
                 let here = self.block.items[*at as usize - 1].span;
                 span = Some(
                     span.map_or(here, |s| Span { start: s.start.min(here.start), end: s.end.max(here.end) }),

@@ -13,6 +13,7 @@ mod content;
 pub mod dialect;
 mod envelope;
 mod invalid;
+mod letters;
 mod lexer;
 mod number;
 mod plain;
@@ -23,5 +24,6 @@ pub use block::{Block, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, Number, Sign, S
 pub use content::looks_like_program;
 pub use dialect::Dialect;
 pub use envelope::{Envelope, EnvelopeFinder};
+pub use letters::Letters;
 pub use plain::{PlainLine, PlainWord};
 pub use reader::{Place, Reader, line_ending, line_ends};
