@@ -3,12 +3,12 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use correction::{Block as Info, Corrector, Letters, Options, Outside};
+use correction::{Block as Info, Corrector, Options, Outside, Stated};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use machine_model::{Command, EngineId, Vector};
 use nc_program::{Interpreter, Setup};
 use nc_syntax::{Block, PlainLine, Reader};
-use toolpath::{Division, Feed, FeedRate, Frame, Motion, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 use units::decimal::{Spelling, write};
 
 const POINTS: usize = 4096;
@@ -79,27 +79,7 @@ fn hot_path(c: &mut Criterion) {
         minimum_segment_mm: 0.0,
         orientation_rad: 5e-5,
     };
-    let info = Info {
-        frame: Frame::default(),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
-        decimals: [3; 3],
-        incremental: [false; 3],
-        diameters: false,
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
-        arc_centres_absolute: false,
-        letters: Letters::axes([true; 3]),
-        tool_mm: [0.0; 3],
-        centre_words: true,
-        arc_radius_tolerance_mm: 0.02,
-        peck_clearance_mm: 0.25,
-        chip_retreat_mm: 0.5,
-        reserved_mm: 0.0,
-    };
+    let info = Info { stated: Stated { axes: [true; 3], ..Stated::default() }, ..Info::default() };
     let at = |linear_mm: [f64; 3]| Position { linear_mm, rotary_deg: [0.0; 3] };
     let feeds: Vec<Motion> = points
         .windows(2)

@@ -8,10 +8,10 @@ use machine_model::{Command, Vector};
 use smallvec::SmallVec;
 use toolpath::Division;
 
-use crate::corrector::{Corrected, CorrectionError, Corrector, Wording};
+use crate::corrector::{Corrected, CorrectionError, Corrector, Freedom};
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::deviation::Machine;
-use crate::grid::{AxisWord, Block};
+use crate::grid::{Block, Goal};
 use crate::play::{heading, moved};
 use crate::{Piece, PieceKind};
 
@@ -339,20 +339,20 @@ impl<'m> Corrector<'m> {
             return Ok(false);
         }
         let before = self.standing;
-        let axes = self.go(block, &start, &wanted, &Wording::of(block.named));
+        let axes = self.go(block, &start, &wanted, &Freedom::of(block.named));
         let ways =
             (0..3).map(|i| before[i].zip(self.standing[i]).map_or(0.0, |(from, to)| (to - from).powi(2)));
         let way_mm = ways.sum::<f64>().sqrt();
         let share = if length_mm > 0.0 { way_mm / length_mm } else { 1.0 };
         self.gone(&machine.state);
-        let written = axes.iter().any(|word| *word != AxisWord::Omit) && before != self.standing;
+        let written = axes.iter().any(|word| *word != Goal::Stays) && before != self.standing;
         if written {
-            let reframed = (0..3).find(|i| block.reframed[*i] && block.has_axis(*i));
+            let reframed = (0..3).find(|i| block.reframed[*i] && block.stated.axes[*i]);
             if let Some(axis) = reframed.filter(|_| corrected.pieces.is_empty()) {
                 return Err(CorrectionError::Unnamed { axis, distance_um: way_mm * 1e3 });
             }
             // No rotary axis turns on it, whatever the block's words say.
-            let rotary = machine.turns.then_some([AxisWord::Omit; 3]);
+            let rotary = machine.turns.then_some([Goal::Stays; 3]);
             let share = share.max(LEAST_SHARE);
             corrected.pieces.push(Piece { kind: PieceKind::Line, axes, rotary, share });
             corrected.correction.approach = true;

@@ -9,7 +9,7 @@ use toolpath::{Plane, Similarity};
 
 use crate::Centre;
 use crate::curve::{Curve, SAME_PLACE_MM};
-use crate::grid::{AxisWord, Block};
+use crate::grid::{Block, Goal};
 
 /// Output steps below are finer than any arc has to be round, mm.
 const FINE_STEP_MM: f64 = 0.000_9;
@@ -33,7 +33,7 @@ impl Candidate {
         let Curve::Arc { axes, sweep, .. } = *search.part else { return None };
         let mut curve = Curve::from_centre(search.from, search.to, axes, self.centre, sweep < 0.0);
         let Curve::Arc { sweep: turned, .. } = &mut curve else { return None };
-        if search.own_words && search.block.letters.contains(b'P') {
+        if search.own_words && search.block.stated.turns {
             // The block's own P counts the whole turns before the last one; it never makes one of a
             // last turn that came out as nothing.
             *turned += sweep.signum() * whole_turns(sweep) * TAU;
@@ -55,8 +55,8 @@ fn whole_turns(sweep: f64) -> f64 {
 /// The block's own words serve.
 fn is_kept(words: &Centre) -> bool {
     match words {
-        Centre::Offsets(words) => words.iter().all(|word| !matches!(word, AxisWord::Write(_))),
-        Centre::Radius(word) => *word == AxisWord::Keep,
+        Centre::Offsets(words) => words.iter().all(|word| !matches!(word, Goal::Steps(_))),
+        Centre::Radius(word) => *word == Goal::AsStated,
     }
 }
 
@@ -181,8 +181,8 @@ impl Search<'_> {
         let mut found = Candidates(SmallVec::new());
         let Curve::Arc { axes: [u, v, _], centre, .. } = *self.part else { return found };
         let block = &*self.block.of_centres();
-        let has_centre = [u, v].map(|axis| block.letters.contains(b"IJK"[axis]));
-        let by_radius = !has_centre.contains(&true) && (block.letters.contains(b'R') || !block.centre_words);
+        let has_centre = [u, v].map(|axis| block.stated.centre[axis]);
+        let by_radius = !has_centre.contains(&true) && (block.stated.radius || !block.centre_words);
         let scale = in_plane(self.part, block).map_or(1.0, |map| map.scale);
         let step = scale * block.step_mm(u).max(block.step_mm(v));
         // Two rounded ends and a rounded centre differ by up to two steps in radius; the programmed
@@ -203,7 +203,7 @@ impl Search<'_> {
             }
         };
         if self.own_words && !by_radius {
-            let kept = has_centre.map(|has| if has { AxisWord::Keep } else { AxisWord::Omit });
+            let kept = has_centre.map(|has| if has { Goal::AsStated } else { Goal::Stays });
             // Relative centre words are measured from where the axes really stand.
             let start = self.part.at(0.0);
             let own = if block.arc_centres_absolute {
@@ -274,7 +274,7 @@ impl Search<'_> {
                     // A missing centre word is zero in every dialect, but two missing ones are no arc.
                     let needless =
                         chosen[i] == 0 && !has_centre[i] && !block.arc_centres_absolute && chosen[1 - i] != 0;
-                    if needless { AxisWord::Omit } else { AxisWord::Write(chosen[i]) }
+                    if needless { Goal::Stays } else { Goal::Steps(chosen[i]) }
                 });
                 let centre =
                     [0, 1].map(|i| nearest[[u, v][i]] + steps[0][i] * du as f64 + steps[1][i] * dv as f64);
@@ -310,15 +310,15 @@ impl Search<'_> {
         let (ru, rv) = (from[u] - fitted[0], from[v] - fitted[1]);
         let counts = block.to_counts(u, (ru * ru + rv * rv).sqrt() / scale);
         if self.own_words
-            && block.letters.contains(b'R')
+            && block.stated.radius
             && let Some(centre) = centre_of(radius[0])
         {
-            push(Centre::Radius(AxisWord::Keep), centre);
+            push(Centre::Radius(Goal::AsStated), centre);
         }
         for d in [0, 1, -1] {
             if let Some(centre) = centre_of(block.from_counts(u, counts + d) * scale) {
                 let signed = if major { -(counts + d) } else { counts + d };
-                push(Centre::Radius(AxisWord::Write(signed)), centre);
+                push(Centre::Radius(Goal::Steps(signed)), centre);
             }
         }
     }

@@ -9,7 +9,7 @@ use toolpath::{Division, Feed, Kinematics, Motion, Partial, Shape};
 use crate::approach::Whole;
 use crate::curve::Curve;
 use crate::deviation::{Enclosed, Machine, Solved};
-use crate::grid::{AxisWord, Block};
+use crate::grid::{Block, Goal};
 use crate::play::heading;
 use crate::short_line::Run;
 use crate::turning::{Turned, Turning};
@@ -187,7 +187,7 @@ pub struct Corrector<'m> {
 }
 
 /// Which axes a block of output may have words for, and how.
-pub(crate) struct Wording {
+pub(crate) struct Freedom {
     /// Those that may have one; the others stay where they stand.
     may: [bool; 3],
     /// Those that stay where they stand all the same.
@@ -196,7 +196,7 @@ pub(crate) struct Wording {
     may_keep: bool,
 }
 
-impl Wording {
+impl Freedom {
     /// New words for axes.
     pub(crate) fn of(may: [bool; 3]) -> Self {
         Self { may, hold: [false; 3], may_keep: false }
@@ -332,7 +332,9 @@ impl<'m> Corrector<'m> {
             Motion::Uncorrected { end } => {
                 for axis in 0..3 {
                     // An axis that the block does not name stays where the output has brought it.
-                    if end.linear_mm[axis].is_none() || block.has_axis(axis) || self.standing[axis].is_none()
+                    if end.linear_mm[axis].is_none()
+                        || block.stated.axes[axis]
+                        || self.standing[axis].is_none()
                     {
                         self.standing[axis] = end.linear_mm[axis];
                         self.direction[axis] = 0;
@@ -463,7 +465,7 @@ impl<'m> Corrector<'m> {
             for i in 0..3 {
                 // An axis that the block does not name stays where the output has brought it; in a turned frame every word
                 // moves several axes.
-                let moves = block.has_axis(i) || !block.frame.is_shift();
+                let moves = block.stated.axes[i] || !block.frame.is_shift();
                 if moves || end.linear_mm[i].is_none() || stood[i].is_none() {
                     let step = end.linear_mm[i].zip(start.linear_mm[i]).map(|(end, start)| end - start);
                     self.standing[i] = match (block.incremental[i], stood[i], step) {
@@ -496,7 +498,7 @@ impl<'m> Corrector<'m> {
             };
             // Positioning moves what the block names and nothing else: the other axes take their correction from the
             // next feed.
-            let axes = self.go(block, &own_end, &wanted, &Wording::of(block.own_axes()).keeping(true));
+            let axes = self.go(block, &own_end, &wanted, &Freedom::of(block.stated.axes).keeping(true));
             // An axis comes from where the output sends it, and where it does not from where it came before.
             let Some(against) = self.against(&state, before, self.standing, block) else {
                 break (state, wanted, axes);
@@ -522,19 +524,19 @@ impl<'m> Corrector<'m> {
         block: &Block,
         nominal: &Vector,
         wanted: &Vector,
-        wording: &Wording,
-    ) -> [AxisWord; 3] {
+        freedom: &Freedom,
+    ) -> [Goal; 3] {
         let standing = self.standing_program(block);
         let wanted = block.program(wanted);
         let nominal = block.program(nominal);
-        let mut words = [AxisWord::Omit; 3];
+        let mut words = [Goal::Stays; 3];
         let mut reached = [0.0; 3];
         for i in 0..3 {
-            let own = block.has_axis(i) && wording.may_keep;
+            let own = block.stated.axes[i] && freedom.may_keep;
             (words[i], reached[i]) = match standing[i] {
-                _ if !wording.may[i] => (AxisWord::Omit, standing[i].unwrap_or(nominal[i])),
-                Some(stands) if wording.hold[i] && own => block.write(i, stands, standing[i]),
-                Some(stands) if wording.hold[i] => (AxisWord::Omit, stands),
+                _ if !freedom.may[i] => (Goal::Stays, standing[i].unwrap_or(nominal[i])),
+                Some(stands) if freedom.hold[i] && own => block.write(i, stands, standing[i]),
+                Some(stands) if freedom.hold[i] => (Goal::Stays, stands),
                 // Under G91 the block's own word adds to where the output stands, not to where the program
                 // believes to be: the caller gives the nominal end relative to that.
                 _ => block.choose(i, wanted[i], own.then_some(nominal[i]), standing[i]),
@@ -589,7 +591,7 @@ impl<'m> Corrector<'m> {
         if matches!(feed.shape, Shape::Line)
             && feed.start.rotary_deg == feed.end.rotary_deg
             && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
-            && let names = block.own_axes()
+            && let names = block.stated.axes
             && let ends_mm = [feed.end.linear_mm; LANES]
             && let run =
                 (Run { start_mm: feed.start.linear_mm, ends_mm: &ends_mm, names: [names; LANES], count: 1 })
@@ -695,7 +697,7 @@ impl<'m> Corrector<'m> {
     /// A line to where the axes stand, with a word for each axis that the block names, or for the first that may have one.
     fn standstill(&self, block: &Block) -> Result<Piece, CorrectionError> {
         let standing = self.standing_program(block);
-        let mut named = block.own_axes();
+        let mut named = block.stated.axes;
         if named == [false; 3] {
             let Some(first) = block.named.iter().position(|named| *named) else {
                 return Err(CorrectionError::Unnamed { axis: 0, distance_um: 0.0 });
@@ -704,7 +706,7 @@ impl<'m> Corrector<'m> {
         }
         let axes = [0, 1, 2].map(|i| match standing[i] {
             Some(mm) if named[i] => block.write(i, mm, standing[i]).0,
-            _ => AxisWord::Omit,
+            _ => Goal::Stays,
         });
         Ok(Piece::new(PieceKind::Line, axes, 1.0))
     }
@@ -771,7 +773,7 @@ impl<'m> Corrector<'m> {
 
     /// An axis that the block names first: where on its way it is at a place in between, no block has said.
     fn guessed_own(&self, block: &Block) -> Option<usize> {
-        (0..3).find(|axis| !block.incremental[*axis] && block.has_axis(*axis) && !block.named[*axis])
+        (0..3).find(|axis| !block.incremental[*axis] && block.stated.axes[*axis] && !block.named[*axis])
     }
 
     /// Why a part that is off its path must not be split.
@@ -836,8 +838,8 @@ impl Follow<'_, '_> {
     }
 
     /// The words of a piece: the block's own may stay where it stands for the block.
-    pub(crate) fn wording(&self, hold: [bool; 3]) -> Wording {
-        Wording::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
+    pub(crate) fn freedom(&self, hold: [bool; 3]) -> Freedom {
+        Freedom::of(self.block.may_have_words()).keeping(self.alone).holding(hold)
     }
 
     pub(crate) fn share(&self, part: &Curve) -> f64 {
@@ -846,6 +848,6 @@ impl Follow<'_, '_> {
 }
 
 fn one(piece: Piece, correction: Correction) -> Corrected {
-    let untouched = piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit));
+    let untouched = piece.axes.iter().all(|word| matches!(word, Goal::AsStated | Goal::Stays));
     Corrected::block(piece, untouched, correction)
 }

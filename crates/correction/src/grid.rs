@@ -1,44 +1,33 @@
 //! Whole output steps: the one place where numbers are rounded.
 
 use machine_model::Vector;
-use toolpath::{Frame, Kinematics};
+use toolpath::{Frame, Kinematics, PeckRetreats};
 use units::decimal::round;
 
-/// Which letters a block holds, one bit each.
+/// What a block itself states: these may stay as they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Letters(u32);
-
-impl Letters {
-    /// Adds an upper-case letter.
-    pub fn insert(&mut self, letter: u8) {
-        debug_assert!(letter.is_ascii_uppercase());
-        self.0 |= 1 << (letter - b'A');
-    }
-
-    /// Those of X, Y, Z that are named.
-    #[must_use]
-    pub fn axes(names: [bool; 3]) -> Self {
-        let mut letters = Self::default();
-        AXES.iter().zip(names).filter(|(_, named)| *named).for_each(|(letter, _)| letters.insert(*letter));
-        letters
-    }
-
-    /// True where the block holds the letter.
-    #[must_use]
-    pub fn contains(self, letter: u8) -> bool {
-        letter.is_ascii_uppercase() && self.0 & (1 << (letter - b'A')) != 0
-    }
+pub struct Stated {
+    /// Where X, Y, Z go.
+    pub axes: [bool; 3],
+    /// Where A, B, C turn to.
+    pub rotary: [bool; 3],
+    /// The centre of an arc, along X, Y, Z.
+    pub centre: [bool; 3],
+    /// The radius of an arc, or the level at which a cycle begins to feed.
+    pub radius: bool,
+    /// How many turns an arc makes.
+    pub turns: bool,
 }
 
-/// What is written for one word.
+/// Where one axis goes; also a centre, a radius, a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AxisWord {
-    /// Nothing; a word that stood there goes.
-    Omit,
-    /// What stood there stays.
-    Keep,
-    /// This many output steps.
-    Write(i64),
+pub enum Goal {
+    /// Nowhere: it stays where it stands.
+    Stays,
+    /// To where the block itself states.
+    AsStated,
+    /// To this many output steps.
+    Steps(i64),
 }
 
 /// What correction must know of the block a motion came from.
@@ -63,8 +52,8 @@ pub struct Block {
     pub incremental: [bool; 3],
     /// G90.1.
     pub arc_centres_absolute: bool,
-    /// Words of the block.
-    pub letters: Letters,
+    /// What the block itself states.
+    pub stated: Stated,
     /// Axes that stand in the words of a block together or not at all: the frame was just turned, scaled or mirrored,
     /// and controls differ in where a left-out axis then stands.
     pub whole: [bool; 3],
@@ -80,15 +69,39 @@ pub struct Block {
     pub centre_words: bool,
     /// Largest difference of an arc's two radii that the control takes, mm.
     pub arc_radius_tolerance_mm: f64,
-    /// A G83 peck written as moves resumes feeding this far above the last depth, mm.
-    pub peck_clearance_mm: f64,
-    /// Retreat of a G73 peck written as moves, mm.
-    pub chip_retreat_mm: f64,
+    /// How far a peck that is written as moves goes back.
+    pub retreats: PeckRetreats,
     /// What of the tolerance something else takes, mm: a tool that touches beside the tip which is corrected.
     pub reserved_mm: f64,
 }
 
-const AXES: [u8; 3] = *b"XYZ";
+impl Default for Block {
+    /// Absolute words in millimetres of three decimals that count from the machine's zero, all axes named, no tool; nothing
+    /// stated.
+    fn default() -> Self {
+        Self {
+            frame: Frame::default(),
+            kinematics: Kinematics::Axes,
+            unit_mm: 1.0,
+            diameters: false,
+            decimals: [3; 3],
+            rotary_decimals: [3; 3],
+            rotary_step: [1; 3],
+            incremental: [false; 3],
+            arc_centres_absolute: false,
+            stated: Stated::default(),
+            whole: [false; 3],
+            named: [true; 3],
+            reframed: [false; 3],
+            tool_mm: [0.0; 3],
+            centre_words: true,
+            arc_radius_tolerance_mm: 0.02,
+            retreats: PeckRetreats { clearance_mm: 0.5, chip_mm: 0.5 },
+            reserved_mm: 0.0,
+        }
+    }
+}
+
 /// Exact in an f64.
 const POWERS_OF_TEN: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
 /// One over each, rounded as a division would.
@@ -159,7 +172,7 @@ impl Block {
         wanted_mm: f64,
         programmed_mm: Option<f64>,
         standing_mm: Option<f64>,
-    ) -> (AxisWord, f64) {
+    ) -> (Goal, f64) {
         self.choose_within(axis, self.half_step_mm(axis), wanted_mm, programmed_mm, standing_mm)
     }
 
@@ -178,28 +191,28 @@ impl Block {
         wanted_mm: f64,
         programmed_mm: Option<f64>,
         standing_mm: Option<f64>,
-    ) -> (AxisWord, f64) {
+    ) -> (Goal, f64) {
         if let Some(programmed) = programmed_mm
             && (wanted_mm - programmed).abs() <= half
         {
-            return (AxisWord::Keep, programmed);
+            return (Goal::AsStated, programmed);
         }
         // A word that stands in the block is rewritten even where the axis need not move: a motion
         // block without any axis word would be another kind of block.
         if let (Some(standing), None) = (standing_mm, programmed_mm)
             && (wanted_mm - standing).abs() <= half
         {
-            return (AxisWord::Omit, standing);
+            return (Goal::Stays, standing);
         }
         self.write(axis, wanted_mm, standing_mm)
     }
 
     /// The word that brings an axis nearest to `wanted_mm`.
     #[inline]
-    pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (AxisWord, f64) {
+    pub fn write(&self, axis: usize, wanted_mm: f64, standing_mm: Option<f64>) -> (Goal, f64) {
         let origin = if self.incremental[axis] { standing_mm.unwrap_or(0.0) } else { 0.0 };
         let counts = round(self.steps(axis, wanted_mm - origin));
-        (AxisWord::Write(counts), origin + self.from_counts(axis, counts))
+        (Goal::Steps(counts), origin + self.from_counts(axis, counts))
     }
 
     /// A length as a number of output steps.
@@ -215,10 +228,10 @@ impl Block {
     }
 
     /// Adds words for the axes that must not be left out beside others; `reached`: where the words bring the axes.
-    pub fn complete(&self, words: &mut [AxisWord; 3], reached: &mut [f64; 3], standing_mm: [Option<f64>; 3]) {
+    pub fn complete(&self, words: &mut [Goal; 3], reached: &mut [f64; 3], standing_mm: [Option<f64>; 3]) {
         let open = |i: &usize| self.whole[*i];
-        if (0..3).filter(open).any(|i| words[i] != AxisWord::Omit) {
-            for i in (0..3).filter(open).filter(|i| words[*i] == AxisWord::Omit).collect::<Vec<_>>() {
+        if (0..3).filter(open).any(|i| words[i] != Goal::Stays) {
+            for i in (0..3).filter(open).filter(|i| words[*i] == Goal::Stays).collect::<Vec<_>>() {
                 (words[i], reached[i]) = self.write(i, reached[i], standing_mm[i]);
             }
         }
@@ -253,22 +266,10 @@ impl Block {
         }
     }
 
-    /// True where the block has a word for the axis.
-    #[inline]
-    pub fn has_axis(&self, axis: usize) -> bool {
-        self.letters.contains(AXES[axis])
-    }
-
-    /// Axes that the block itself has words for.
-    #[must_use]
-    pub fn own_axes(&self) -> [bool; 3] {
-        [0, 1, 2].map(|axis| self.has_axis(axis))
-    }
-
     /// Axes that may have a word in what stands for a feed block: its own, and those that the program has named.
     #[must_use]
     pub fn may_have_words(&self) -> [bool; 3] {
-        [0, 1, 2].map(|axis| self.named[axis] || self.has_axis(axis))
+        [0, 1, 2].map(|axis| self.named[axis] || self.stated.axes[axis])
     }
 
     /// Program coordinates of an axis command.

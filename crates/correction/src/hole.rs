@@ -2,13 +2,13 @@
 
 use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, Division, Hole};
+use toolpath::{CycleKind, Division, Hole, HoleMove, MOST_PECKS, whole_pecks};
 
 use crate::approach::Whole;
-use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, MOST_TURNS, Wording};
+use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, Freedom, MOST_TURNS};
 use crate::curve::Curve;
 use crate::deviation::{Begun, Machine, Pair, Verdict};
-use crate::grid::{AxisWord, Block, Letters};
+use crate::grid::{Block, Goal, Stated};
 use crate::play::heading;
 use crate::{Piece, PieceKind};
 
@@ -79,36 +79,16 @@ impl Kept {
     }
 }
 
-/// More pecks than this in one hole are a mistake, and would be millions of blocks: a metre deep in steps of a tenth.
-const MOST_PECKS: f64 = 10_000.0;
-
 /// A place on a hole's line, axis command.
 fn on_hole(hole: &Hole, mm: f64) -> Vector {
-    let mut place = Vector::from(hole.at_r.linear_mm);
-    place[hole.plane.axes()[2]] = mm;
-    place
-}
-
-/// The level at which a hole written as moves is come to, axis command, mm.
-///
-/// A start below R rises first, as the cycle does. Under G98 one below the initial level (after a hole
-/// under G99) rises to that: LinuxCNC goes across at it, and where a control would not, higher is clear too.
-fn above(hole: &Hole) -> f64 {
-    let normal = hole.plane.axes()[2];
-    let (start, least) = (hole.start.linear_mm[normal], after(hole));
-    if hole.bottom_mm < hole.at_r.linear_mm[normal] { start.max(least) } else { start.min(least) }
-}
-
-/// The level to which it is left, axis command, mm.
-fn after(hole: &Hole) -> f64 {
-    if hole.cycle.return_to_initial { hole.initial_mm } else { hole.at_r.linear_mm[hole.plane.axes()[2]] }
+    hole.at(mm).linear_mm.into()
 }
 
 /// What its moves ask the model for, should it be written as moves: where they lead, and where one level comes twice, as it
 /// mostly does, the middle of the drilled line.
 fn places(hole: &Hole) -> [Vector; LANES] {
     let r_mm = hole.at_r.linear_mm[hole.plane.axes()[2]];
-    let (above, after) = (above(hole), after(hole));
+    let (above, after) = (hole.above_mm(), hole.end().linear_mm[hole.plane.axes()[2]]);
     let [r, bottom, above_r, behind] = [r_mm, hole.bottom_mm, above, after].map(|mm| on_hole(hole, mm));
     let middle = Curve::Line(r, bottom).at(0.5);
     if after == r_mm || after == above {
@@ -279,15 +259,15 @@ impl<'m> Corrector<'m> {
         let step = at_r - Vector::from(hole.start.linear_mm);
         let own = block.program(&block.own_end(&standing, &step, &at_r));
         let is_incremental = block.incremental[normal];
-        let mut axes = [AxisWord::Omit; 3];
+        let mut axes = [Goal::Stays; 3];
         let mut reached = block.program(&standing);
         let may = block.may_have_words();
         for i in [first, second].into_iter().filter(|i| may[*i]) {
-            let programmed = block.has_axis(i).then_some(own[i]);
+            let programmed = block.stated.axes[i].then_some(own[i]);
             (axes[i], reached[i]) = block.choose(i, middle[i], programmed, standing_program[i]);
         }
         block.complete(&mut axes, &mut reached, standing_program);
-        axes[normal] = AxisWord::Omit;
+        axes[normal] = Goal::Stays;
         // Along the hole: R from the initial level and the bottom from R under G91.
         let level = |mm: f64| block.program(&on_hole(hole, mm))[normal];
         let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
@@ -305,7 +285,7 @@ impl<'m> Corrector<'m> {
         };
         let absolute = Block { incremental: [false; 3], ..block.clone() };
         let own_r = r_own - own_r_origin;
-        let r_told = block.letters.contains(b'R').then_some(own_r);
+        let r_told = block.stated.radius.then_some(own_r);
         let (mut r, mut r_value) =
             absolute.choose(normal, r_wanted - r_origin, r_told, remembered(own_r, |m| m.r));
         // Where the tool stands at R and the series began higher (G98 behind G99), LinuxCNC crosses at that height,
@@ -319,7 +299,7 @@ impl<'m> Corrector<'m> {
         {
             (r, r_value) = absolute.write(normal, stands - r_origin, None);
         }
-        let b_told = block.has_axis(normal);
+        let b_told = block.stated.axes[normal];
         let choose_bottom = |r_value: f64| {
             let (origin, own_origin) = if is_incremental { (r_origin + r_value, r_own) } else { (0.0, 0.0) };
             let own = b_own - own_origin;
@@ -329,23 +309,23 @@ impl<'m> Corrector<'m> {
             (word, value, origin)
         };
         let (mut b, mut b_value, mut b_origin) = choose_bottom(r_value);
-        let written = |word: AxisWord| matches!(word, AxisWord::Write(_));
-        if is_incremental && written(b) && r == AxisWord::Omit {
+        let written = |word: Goal| matches!(word, Goal::Steps(_));
+        if is_incremental && written(b) && r == Goal::Stays {
             // Under G91 controls differ in what a remembered R means beside a new bottom: both are said.
             (r, r_value) = absolute.write(normal, r_wanted - r_origin, None);
             (b, b_value, b_origin) = choose_bottom(r_value);
         }
-        if is_incremental && written(r) && b == AxisWord::Omit {
+        if is_incremental && written(r) && b == Goal::Stays {
             (b, b_value) = absolute.write(normal, b_wanted - b_origin, None);
         }
         let r_reached = r_origin + r_value;
         axes[normal] = b;
-        if axes.iter().all(|word| *word == AxisWord::Omit) && block.letters == Letters::default() {
+        if axes.iter().all(|word| *word == Goal::Stays) && block.stated == Stated::default() {
             // A repetition at the same place, which has no block of its own yet: only an axis word drills it.
             (axes[first], reached[first]) = block.write(first, reached[first], standing_program[first]);
         }
         let untouched =
-            [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, AxisWord::Keep | AxisWord::Omit));
+            [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, Goal::AsStated | Goal::Stays));
         let as_programmed = last.is_none_or(|last| last.as_programmed) && !written(r) && !written(b);
         self.remembered = Some(Remembered {
             bottom: b_value,
@@ -391,114 +371,84 @@ impl<'m> Corrector<'m> {
         corrected: &mut Corrected,
     ) -> Result<(), CorrectionError> {
         let normal = hole.plane.axes()[2];
-        let place = |mm: f64| on_hole(hole, mm);
-        let (r_mm, bottom_mm) = (hole.at_r.linear_mm[normal], hole.bottom_mm);
-        let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
+        let pecks = hole.pecks().unwrap_or(1.0);
+        if pecks > MOST_PECKS {
+            return Err(CorrectionError::TooManyPecks { pecks });
+        }
         let may = block.may_have_words();
         // On the way to the next feed, even back, an axis is where it will be on that feed; else where it goes.
         let drills = machine.state;
         let mut leaves = drills;
         leaves.direction[normal] = -drills.direction[normal];
-        let rapid = |corrector: &mut Self,
-                     along: &Command,
-                     to: Vector,
-                     may: [bool; 3],
-                     corrected: &mut Corrected|
-         -> Result<(), CorrectionError> {
-            let before = corrector.standing;
-            let mut turns = 0;
-            let (state, wanted, axes) = loop {
-                let state = corrector.drilling(along, normal);
-                let wanted = corrector.solve(&state, to)?;
-                let axes = corrector.go(block, &to, &wanted, &Wording::of(may));
-                let mut reached = corrector.standing;
-                reached[normal] = None;
-                turns += 1;
-                match corrector.against(&state, before, reached, block) {
-                    Some(against) if turns < MOST_TURNS => {
-                        corrector.turn(against);
-                        corrector.standing = before;
-                    }
-                    _ => break (state, wanted, axes),
+        let words = (block, normal, may);
+        let mut at = Vector::from(hole.start.linear_mm);
+        for step in hole.moves(whole_pecks(pecks), block.retreats) {
+            let to = step.end().map_or(at, |to| to.linear_mm.into());
+            match step {
+                HoleMove::Rise { .. } if to == at => {}
+                // It leaves the axes of the plane where they are: their words say where the hole is.
+                HoleMove::Rise { .. } => {
+                    self.position((block, normal, block.named), &leaves, to, corrected)?
                 }
-            };
-            if axes.iter().any(|word| *word != AxisWord::Omit) {
-                corrected.pieces.push(Piece::new(PieceKind::Rapid, axes, 0.0));
-            }
-            corrector.gone(&state);
-            corrector.note_end(&state, to, wanted);
-            Ok(())
-        };
-        let feed = |corrector: &mut Self,
-                    from: f64,
-                    to: f64,
-                    corrected: &mut Corrected|
-         -> Result<(), CorrectionError> {
-            let part = Curve::Line(place(from), place(to));
-            let machine = Machine { state: corrector.drilling(&machine.state, normal), ..machine.clone() };
-            corrector.over_the_hole(
-                &machine.state,
-                corrector.standing_or(&place(from)),
-                (from != to).then_some(normal),
-            );
-            let whole = along(place(from), (bottom_mm - r_mm).abs());
-            let mut follow = Follow { foreseen: true, ..follow(machine, block, whole, corrected) };
-            corrector.follow_line(&mut follow, &part)
-        };
-        let start = Vector::from(hole.start.linear_mm);
-        let above = above(hole);
-        if above != start[normal] {
-            let mut rise = start;
-            rise[normal] = above;
-            // It leaves the axes of the plane where they are: their words say where the hole is.
-            rapid(self, &leaves, rise, block.named, corrected)?;
-        }
-        rapid(self, &drills, place(above), may, corrected)?;
-        rapid(self, &drills, place(r_mm), may, corrected)?;
-        match (hole.cycle.kind, hole.cycle.peck_mm) {
-            (CycleKind::PeckFull | CycleKind::PeckChip, Some(peck)) if peck > 0.0 => {
-                let pecks = (bottom_mm - r_mm).abs() / peck;
-                if pecks > MOST_PECKS {
-                    return Err(CorrectionError::TooManyPecks { pecks });
+                HoleMove::Position { .. } => self.position(words, &drills, to, corrected)?,
+                HoleMove::Leave { .. } => self.position(words, &leaves, to, corrected)?,
+                HoleMove::Dwell => {
+                    corrected.pieces.push(Piece::new(PieceKind::Dwell, [Goal::Stays; 3], 0.0));
                 }
-                let mut depth = r_mm;
-                let mut from = r_mm;
-                while (bottom_mm - depth) * down > 1e-9 {
-                    let next = if (bottom_mm - depth) * down <= peck + 1e-9 {
-                        bottom_mm
-                    } else {
-                        depth + down * peck
-                    };
-                    feed(self, from, next, corrected)?;
-                    depth = next;
-                    if depth == bottom_mm {
-                        break;
-                    }
-                    if hole.cycle.kind == CycleKind::PeckFull {
-                        rapid(self, &drills, place(r_mm), may, corrected)?;
-                        from = depth - down * block.peck_clearance_mm.min((depth - r_mm).abs());
-                    } else {
-                        from = depth - down * block.chip_retreat_mm.min((depth - r_mm).abs());
-                    }
-                    rapid(self, &drills, place(from), may, corrected)?;
+                HoleMove::FeedIn { .. } => {
+                    let state = self.drilling(&machine.state, normal);
+                    self.over_the_hole(&state, self.standing_or(&at), (at != to).then_some(normal));
+                    let machine = Machine { state, ..machine.clone() };
+                    let whole = along(at, (hole.bottom_mm - hole.at_r.linear_mm[normal]).abs());
+                    let mut follow = Follow { foreseen: true, ..follow(machine, block, whole, corrected) };
+                    self.follow_line(&mut follow, &Curve::Line(at, to))?;
+                }
+                HoleMove::FeedOut { .. } => {
+                    // Out again is a reversal like any other.
+                    self.turn_towards(&at, &to);
+                    let state = Command { direction: self.direction, ..machine.state };
+                    let mut machine = Machine { state, ..machine.clone() };
+                    let out = Curve::Line(at, to);
+                    let whole = along(at, out.length_mm());
+                    self.approach(&mut machine, &out, block, &whole, corrected)?;
+                    self.follow_line(&mut follow(machine, block, whole, corrected), &out)?;
                 }
             }
-            _ => feed(self, r_mm, bottom_mm, corrected)?,
+            at = to;
         }
-        if hole.cycle.dwell.is_some() {
-            corrected.pieces.push(Piece::new(PieceKind::Dwell, [AxisWord::Omit; 3], 0.0));
+        Ok(())
+    }
+
+    /// A positioning move of a cycle; along the drilling axis (`normal`) the axes go as `along` says.
+    fn position(
+        &mut self,
+        (block, normal, may): (&Block, usize, [bool; 3]),
+        along: &Command,
+        to: Vector,
+        corrected: &mut Corrected,
+    ) -> Result<(), CorrectionError> {
+        let before = self.standing;
+        let mut turns = 0;
+        let (state, wanted, axes) = loop {
+            let state = self.drilling(along, normal);
+            let wanted = self.solve(&state, to)?;
+            let axes = self.go(block, &to, &wanted, &Freedom::of(may));
+            let mut reached = self.standing;
+            reached[normal] = None;
+            turns += 1;
+            match self.against(&state, before, reached, block) {
+                Some(against) if turns < MOST_TURNS => {
+                    self.turn(against);
+                    self.standing = before;
+                }
+                _ => break (state, wanted, axes),
+            }
+        };
+        if axes.iter().any(|goal| *goal != Goal::Stays) {
+            corrected.pieces.push(Piece::new(PieceKind::Rapid, axes, 0.0));
         }
-        if hole.cycle.kind == CycleKind::Bore {
-            // Out again is a reversal like any other.
-            let out = Curve::Line(place(bottom_mm), place(r_mm));
-            self.turn_towards(&out.at(0.0), &out.at(1.0));
-            let mut machine =
-                Machine { state: Command { direction: self.direction, ..machine.state }, ..machine.clone() };
-            let whole = along(out.at(0.0), out.length_mm());
-            self.approach(&mut machine, &out, block, &whole, corrected)?;
-            self.follow_line(&mut follow(machine, block, whole, corrected), &out)?;
-        }
-        rapid(self, &leaves, place(after(hole)), may, corrected)?;
+        self.gone(&state);
+        self.note_end(&state, to, wanted);
         Ok(())
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! In: a motion in axis commands and what the block it came from may write. Out: pieces whose end
 //! points are whole output steps, such that the *whole path* of the real machine stays within
-//! tolerance of the path programmed. Knows no text: a word is a letter and a count of steps.
+//! tolerance of the path programmed. Knows no text and no letter: where an axis goes is a place on the grid of output
+//! steps ([`Goal`]); which words say so is written elsewhere.
 //!
 //! The promise is proven, not sampled: between two places where the deviation is computed, the model
 //! bounds how far it can leave the chord ([`machine_model::PathModel::chord_bound_mm`]); a stretch that
@@ -26,7 +27,7 @@ mod turning;
 
 pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
 pub use curve::Curve;
-pub use grid::{AxisWord, Block, Letters};
+pub use grid::{Block, Goal, Stated};
 pub use short_line::{Run, ShortLines, ShortRun};
 pub use turning::Turned;
 
@@ -35,11 +36,11 @@ pub use turning::Turned;
 pub struct Piece {
     /// What the block does.
     pub kind: PieceKind,
-    /// X, Y, Z words. In a [`PieceKind::Cycle`] the normal axis' word is the bottom of the hole.
-    pub axes: [AxisWord; 3],
-    /// A, B, C words where rotary axes turn on the motion's way, in steps of [`Block::rotary_decimals`]; `None` where those of
+    /// Where X, Y, Z go. In a [`PieceKind::Cycle`] the normal axis' goal is the bottom of the hole.
+    pub axes: [Goal; 3],
+    /// Where A, B, C turn to, where they do so on the motion's way, in steps of [`Block::rotary_decimals`]; `None` where those of
     /// the block stay with its first piece.
-    pub rotary: Option<[AxisWord; 3]>,
+    pub rotary: Option<[Goal; 3]>,
     /// Share of the motion's length: what inverse-time feed is divided by.
     pub share: f64,
 }
@@ -47,7 +48,7 @@ pub struct Piece {
 impl Piece {
     /// One whose block turns no rotary axis.
     #[must_use]
-    pub const fn new(kind: PieceKind, axes: [AxisWord; 3], share: f64) -> Self {
+    pub const fn new(kind: PieceKind, axes: [Goal; 3], share: f64) -> Self {
         Self { kind, axes, rotary: None, share }
     }
 }
@@ -68,8 +69,8 @@ pub enum PieceKind {
     },
     /// A drilling cycle left to the control.
     Cycle {
-        /// The R word.
-        r: AxisWord,
+        /// Where it begins to feed.
+        r: Goal,
     },
     /// G4 with the cycle's P.
     Dwell,
@@ -78,8 +79,8 @@ pub enum PieceKind {
 /// How an arc's centre is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Centre {
-    /// The two centre words of the plane, in the order of `Plane::axes`.
-    Offsets([AxisWord; 2]),
-    /// The R word.
-    Radius(AxisWord),
+    /// From the start, or as the block states centres, in the order of `Plane::axes`.
+    Offsets([Goal; 2]),
+    /// By its radius; negative for the long way round.
+    Radius(Goal),
 }

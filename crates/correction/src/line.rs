@@ -5,7 +5,7 @@ use machine_model::{Command, Vector};
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
-use crate::grid::AxisWord;
+use crate::grid::Goal;
 use crate::play::{Creep, Tried};
 use crate::{Centre, Piece, PieceKind};
 
@@ -61,7 +61,7 @@ impl<'m> Corrector<'m> {
         let before = self.standing;
         let from: Vector = before.map(|v| v.unwrap_or(f64::NAN)).into();
         let own_end = follow.own_end(part, &from);
-        let axes = self.go(follow.block, &own_end, &wanted, &follow.wording(creep.held()));
+        let axes = self.go(follow.block, &own_end, &wanted, &follow.freedom(creep.held()));
         if !matches!(creep, Creep::Counted)
             && let Some(against) = self.against(&at_end.state, before, self.standing, follow.block)
         {
@@ -128,18 +128,18 @@ impl Follow<'_, '_> {
         let figures = &mut self.corrected.correction;
         figures.after_mm = figures.after_mm.max(bound_mm);
         figures.largest_mm = figures.largest_mm.max(correction_mm);
-        let still = piece.axes.iter().all(|word| *word == AxisWord::Omit) && piece.rotary.is_none();
+        let still = piece.axes.iter().all(|word| *word == Goal::Stays) && piece.rotary.is_none();
         let same_centre = match piece.kind {
             PieceKind::Arc { centre: Centre::Offsets(words), .. } => {
-                words.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit))
+                words.iter().all(|word| matches!(word, Goal::AsStated | Goal::Stays))
             }
-            PieceKind::Arc { centre: Centre::Radius(word), .. } => word == AxisWord::Keep,
+            PieceKind::Arc { centre: Centre::Radius(word), .. } => word == Goal::AsStated,
             _ => true,
         };
         let untouched = self.alone
             && same_centre
-            && piece.axes.iter().all(|word| matches!(word, AxisWord::Keep | AxisWord::Omit))
-            && piece.rotary.is_none_or(|words| words.iter().all(|word| !matches!(word, AxisWord::Write(_))));
+            && piece.axes.iter().all(|word| matches!(word, Goal::AsStated | Goal::Stays))
+            && piece.rotary.is_none_or(|words| words.iter().all(|word| !matches!(word, Goal::Steps(_))));
         if untouched || (still && !matches!(piece.kind, PieceKind::Arc { .. })) {
             return;
         }

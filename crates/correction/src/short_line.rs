@@ -14,7 +14,7 @@ use units::decimal::nearest_whole;
 
 use crate::corrector::{Correction, Corrector};
 use crate::curve::Curve;
-use crate::grid::{AxisWord, Block};
+use crate::grid::{Block, Goal};
 use crate::play::heading;
 
 /// Room for the rounding of the few additions here, mm.
@@ -88,11 +88,11 @@ pub struct ShortRun {
 
 impl ShortRun {
     /// The words of a line that has some for these axes.
-    pub(crate) fn words(&self, line: usize, names: [bool; 3]) -> [AxisWord; 3] {
+    pub(crate) fn words(&self, line: usize, names: [bool; 3]) -> [Goal; 3] {
         from_fn(|i| match (self.counts[line][i], names[i]) {
-            (Some(counts), _) => AxisWord::Write(counts),
-            (None, true) => AxisWord::Keep,
-            (None, false) => AxisWord::Omit,
+            (Some(counts), _) => Goal::Steps(counts),
+            (None, true) => Goal::AsStated,
+            (None, false) => Goal::Stays,
         })
     }
 }
@@ -198,7 +198,7 @@ fn turned(mut direction: [i8; 3], start_mm: &[f64; 3], end_mm: &[f64; 3]) -> [i8
 }
 
 impl Corrector<'_> {
-    /// What short lines need that are like `block` but for their letters; `None` where there are none.
+    /// What short lines need that are like `block` but for what they state; `None` where there are none.
     #[inline]
     pub fn short_lines(&mut self, block: &Block, rotary_deg: [f64; 3]) -> Option<ShortLines> {
         self.heed(block, rotary_deg);

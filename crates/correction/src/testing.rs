@@ -34,24 +34,9 @@ pub(crate) fn machine(monotone: bool) -> RigidBody {
 /// A block in millimetres with steps of 1 µm and without words.
 pub(crate) fn block(tool_mm: [f64; 3]) -> Block {
     Block {
-        frame: Default::default(),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
-        diameters: false,
-        decimals: [3; 3],
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
-        incremental: [false; 3],
-        arc_centres_absolute: false,
-        letters: Default::default(),
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
         tool_mm,
-        centre_words: true,
         arc_radius_tolerance_mm: 0.01,
-        peck_clearance_mm: 0.0,
-        chip_retreat_mm: 0.0,
-        reserved_mm: 0.0,
+        retreats: toolpath::PeckRetreats { clearance_mm: 0.0, chip_mm: 0.0 },
+        ..Block::default()
     }
 }

@@ -9,7 +9,7 @@ use toolpath::Feed;
 
 use crate::corrector::{CorrectionError, Corrector, Follow};
 use crate::curve::Curve;
-use crate::grid::{AxisWord, Block};
+use crate::grid::{Block, Goal};
 
 /// So far rotary axes turn at most between places where the error before correction is asked for, rad.
 const BEFORE_RAD: f64 = 0.05;
@@ -46,7 +46,7 @@ impl Turning {
 
 /// Words for the rotary axes at the end of a part, and where they then stand.
 pub(crate) struct RotaryWords {
-    pub(crate) words: [AxisWord; 3],
+    pub(crate) words: [Goal; 3],
     pub(crate) end_rad: Vector,
     pub(crate) turning: Turning,
 }
@@ -74,13 +74,13 @@ impl Follow<'_, '_> {
         let (mut turning, programmed_rad) = (self.turning?, part.rotary_rad(1.0)?);
         let whole_end = Vector::from(turning.end_deg.map(f64::to_radians));
         let (block, first) = (self.block, self.corrected.pieces.is_empty());
-        let (mut words, mut end_rad) = ([AxisWord::Omit; 3], programmed_rad);
+        let (mut words, mut end_rad) = ([Goal::Stays; 3], programmed_rad);
         for axis in 0..3 {
-            let own = block.letters.contains(b"ABC"[axis]);
+            let own = block.stated.rotary[axis];
             let (from, to) = (turning.start_deg[axis], turning.end_deg[axis]);
             if from == to {
                 if own && first {
-                    words[axis] = AxisWord::Keep;
+                    words[axis] = Goal::AsStated;
                 }
                 continue;
             }
@@ -88,10 +88,8 @@ impl Follow<'_, '_> {
             let before = turning.written[axis];
             if programmed_rad == whole_end {
                 words[axis] = match before.filter(|_| block.rotary_increments()) {
-                    Some(before) => {
-                        AxisWord::Write(units::decimal::round((to - origin) * per_degree) - before)
-                    }
-                    None => AxisWord::Keep,
+                    Some(before) => Goal::Steps(units::decimal::round((to - origin) * per_degree) - before),
+                    None => Goal::AsStated,
                 };
                 continue;
             }
@@ -100,7 +98,7 @@ impl Follow<'_, '_> {
             let counts = units::decimal::round(steps) * step;
             if before != Some(counts) {
                 let since = if block.rotary_increments() { before.unwrap_or(0) } else { 0 };
-                words[axis] = AxisWord::Write(counts - since);
+                words[axis] = Goal::Steps(counts - since);
             }
             turning.written[axis] = Some(counts);
             end_rad[axis] = (origin + counts as f64 / per_degree).to_radians();

@@ -1,9 +1,9 @@
 //! An engine that jumps between cells: no path across the jump is called corrected.
 
-use correction::{Block, CorrectionError, Corrector, Letters, Options, Outside};
+use correction::{Block, CorrectionError, Corrector, Options, Outside, Stated};
 use machine_model::engines::TangentialInterval;
 use machine_model::{Engine, Traverse, Vector};
-use toolpath::{Division, Feed, FeedRate, Frame, Motion, Partial, Position, Shape};
+use toolpath::{Division, Feed, FeedRate, Motion, Partial, Position, Shape};
 
 /// Straight axes but for Y, which turns by 1 mrad at 100 mm: the interval method, which extrapolates
 /// the second line back to the origin, jumps there.
@@ -36,29 +36,8 @@ fn position(p: Vector) -> Position {
 
 fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
     let engine = engine();
-    let mut letters = Letters::default();
-    b"XYZ".iter().for_each(|letter| letters.insert(*letter));
-    let block = Block {
-        frame: Frame::shift([0.0; 3]),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
-        diameters: false,
-        decimals: [3; 3],
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
-        incremental: [false; 3],
-        arc_centres_absolute: false,
-        letters,
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
-        tool_mm: [0.0; 3],
-        centre_words: true,
-        arc_radius_tolerance_mm: 0.02,
-        peck_clearance_mm: 0.5,
-        chip_retreat_mm: 0.5,
-        reserved_mm: 0.0,
-    };
+    let stated = Stated { axes: [true; 3], ..Stated::default() };
+    let block = Block { stated, ..Block::default() };
     let options = Options {
         tolerance_mm: 1e-3,
         outside: Outside::Refuse,

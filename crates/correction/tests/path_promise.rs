@@ -4,7 +4,7 @@
 mod control;
 
 use control::{ALLOWED_MM, OPTIONS, begin, block, distance, feed, position, tried};
-use correction::{AxisWord, CorrectionError, Corrector, Curve, Options, PieceKind};
+use correction::{CorrectionError, Corrector, Curve, Goal, Options, PieceKind};
 use machine_model::{
     AxisTables, Chain, Command, Description, Engine, EngineId, Interpolation, LinearAxis, Move, PathModel,
     Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
@@ -367,8 +367,8 @@ fn a_hole_under_g98_goes_across_at_the_initial_level() {
     let [first, second, ..] = corrected.pieces.as_slice() else { panic!("{:?}", corrected.pieces) };
     assert_eq!((first.kind, second.kind), (PieceKind::Rapid, PieceKind::Rapid));
     // 30 mm in a frame shifted by 5.5.
-    assert_eq!(first.axes[2], AxisWord::Write(24_500), "up first: {first:?}");
-    assert!(matches!(second.axes, [AxisWord::Write(_), _, AxisWord::Omit]), "across: {second:?}");
+    assert_eq!(first.axes[2], Goal::Steps(24_500), "up first: {first:?}");
+    assert!(matches!(second.axes, [Goal::Steps(_), _, Goal::Stays]), "across: {second:?}");
 }
 
 /// An upright machine keeps the cycle and moves it.
@@ -383,9 +383,9 @@ fn an_upright_hole_stays_a_cycle() {
     let corrected =
         corrector.correct(&hole(CycleKind::PeckFull, start, top, -18.0), &block("XYZRQ", false)).unwrap();
     let [piece] = corrected.pieces.as_slice() else { panic!("{:?}", corrected.pieces) };
-    assert!(matches!(piece.kind, PieceKind::Cycle { r: AxisWord::Keep }));
+    assert!(matches!(piece.kind, PieceKind::Cycle { r: Goal::AsStated }));
     // 40 mm in a frame shifted by 10: 30 programmed, 40/1.001 - 10 needed.
-    assert_eq!(piece.axes, [AxisWord::Write(29_960), AxisWord::Keep, AxisWord::Keep]);
+    assert_eq!(piece.axes, [Goal::Steps(29_960), Goal::AsStated, Goal::AsStated]);
 }
 
 /// A full turn of a helix on a machine that leans ends micrometres beside its start. One block would leave it

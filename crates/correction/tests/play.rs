@@ -3,7 +3,7 @@
 
 mod control;
 
-use control::{ALLOWED_MM, Control, OPTIONS, Ran, block, distance, letters, position, tried};
+use control::{ALLOWED_MM, Control, OPTIONS, Ran, block, distance, position, stated, tried};
 use correction::{CorrectionError, Corrector, Curve};
 use machine_model::{
     AxisTables, Chain, Command, Description, Interpolation, LinearAxis, PathModel, Range, RigidBody,
@@ -274,7 +274,7 @@ fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
         if text.is_empty() {
             continue;
         }
-        block.letters = letters(&if turned.is_some() { "XYZ".to_owned() } else { text + "IJ" });
+        block.stated = stated(&if turned.is_some() { "XYZ".to_owned() } else { text + "IJ" });
         let wanted = Curve::new(start, at, &shape);
         match tried(&mut corrector, &mut control, start, at, shape, &block) {
             Err(error) => {

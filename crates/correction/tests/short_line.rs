@@ -1,6 +1,6 @@
 //! The short way to correct a short line says what the long way says, word for word and figure for figure.
 
-use correction::{AxisWord, Block, Corrector, Letters, Options, Outside, Run};
+use correction::{Block, Corrector, Goal, Options, Outside, Run, Stated};
 use machine_model::{
     AxisTables, Chain, Command, Description, Engine, EngineId, Everywhere, Interpolation, LANES, LinearAxis,
     Move, PathModel, Range, RigidBody, RotaryAxis, Solution, SolveError, Squareness, Table, Vector, Volume,
@@ -66,24 +66,9 @@ fn machine(values: &[f64], backlash_mm: f64, interpolation: Interpolation) -> Ri
 fn block() -> Block {
     Block {
         frame: Frame::shift([60.0, 60.0, 60.0]),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
-        diameters: false,
-        decimals: [3; 3],
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
-        incremental: [false; 3],
-        arc_centres_absolute: false,
-        letters: Letters::axes([true; 3]),
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
+        stated: Stated { axes: [true; 3], ..Stated::default() },
         tool_mm: [1.0, -2.0, -40.0],
-        centre_words: true,
-        arc_radius_tolerance_mm: 0.02,
-        peck_clearance_mm: 0.5,
-        chip_retreat_mm: 0.5,
-        reserved_mm: 0.0,
+        ..Block::default()
     }
 }
 
@@ -148,7 +133,7 @@ proptest! {
             prop_assert!(count <= group.len());
             let mut alone = if count > 0 { alone } else { short.clone() };
             for (lane, (from, to, names)) in group[..count.max(1)].iter().enumerate() {
-                block.letters = Letters::axes(*names);
+                block.stated.axes = *names;
                 let feed = Feed {
                     start: at(*from),
                     end: at(*to),
@@ -165,8 +150,8 @@ proptest! {
                 let pairs = [(a.correction.before_mm, b.correction.before_mm), (a.correction.after_mm, b.correction.after_mm)];
                 prop_assert!(pairs.iter().all(|(rough, own)| rough >= &(own - 1e-9)), "{:?}", pairs);
                 let Some(found) = found.as_ref().filter(|found| lane < found.count) else { continue };
-                let words = b.pieces.first().map_or([AxisWord::Omit; 3], |piece| piece.axes);
-                let counts = words.map(|word| if let AxisWord::Write(counts) = word { Some(counts) } else { None });
+                let words = b.pieces.first().map_or([Goal::Stays; 3], |piece| piece.axes);
+                let counts = words.map(|word| if let Goal::Steps(counts) = word { Some(counts) } else { None });
                 prop_assert_eq!(counts, found.counts[lane]);
                 let own = short.correction_of(found, lane);
                 prop_assert_eq!(own, a.correction);

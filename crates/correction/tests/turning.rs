@@ -5,7 +5,7 @@
 mod control;
 
 use control::{ALLOWED_MM, OPTIONS, block};
-use correction::{AxisWord, Block, CorrectionError, Corrector, Options, Piece};
+use correction::{Block, CorrectionError, Corrector, Goal, Options, Piece};
 use machine_model::{
     AxisTables, Chain, Command, Description, Interpolation, LinearAxis, PathModel, Range, RigidBody,
     RotaryAxis, Squareness, Table, Vector,
@@ -48,18 +48,18 @@ fn run(at: &Position, piece: &Piece, block: &Block, own: &Position) -> Position 
     let standing = block.frame.to_program(at.linear_mm);
     let own_mm = block.frame.to_program(own.linear_mm);
     let program = [0, 1, 2].map(|i| match piece.axes[i] {
-        AxisWord::Omit => standing[i],
-        AxisWord::Keep => own_mm[i],
-        AxisWord::Write(counts) if block.incremental[i] => standing[i] + counts as f64 * 1e-3,
-        AxisWord::Write(counts) => counts as f64 * 1e-3,
+        Goal::Stays => standing[i],
+        Goal::AsStated => own_mm[i],
+        Goal::Steps(counts) if block.incremental[i] => standing[i] + counts as f64 * 1e-3,
+        Goal::Steps(counts) => counts as f64 * 1e-3,
     });
     to.linear_mm = block.frame.to_machine(program);
     for (i, word) in piece.rotary.into_iter().flatten().enumerate() {
         to.rotary_deg[i] = match word {
-            AxisWord::Omit => at.rotary_deg[i],
-            AxisWord::Keep => own.rotary_deg[i],
-            AxisWord::Write(counts) if block.incremental[i] => at.rotary_deg[i] + counts as f64 * 1e-3,
-            AxisWord::Write(counts) => counts as f64 * 1e-3,
+            Goal::Stays => at.rotary_deg[i],
+            Goal::AsStated => own.rotary_deg[i],
+            Goal::Steps(counts) if block.incremental[i] => at.rotary_deg[i] + counts as f64 * 1e-3,
+            Goal::Steps(counts) => counts as f64 * 1e-3,
         };
     }
     to
@@ -93,10 +93,10 @@ impl Case<'_> {
         let (shape, rate, division) = (Shape::Line, FeedRate::InverseTime(1.0), Division::Any);
         let feed = Feed { start: self.start, end: self.end, shape, rate, division };
         let corrected = corrector.correct(&Motion::Feed(feed), &self.block)?;
-        let own_words = [0, 1, 2]
-            .map(|i| if self.block.letters.contains(b"XYZ"[i]) { AxisWord::Keep } else { AxisWord::Omit });
+        let own_words =
+            [0, 1, 2].map(|i| if self.block.stated.axes[i] { Goal::AsStated } else { Goal::Stays });
         let untouched = Piece {
-            rotary: Some([AxisWord::Keep; 3]),
+            rotary: Some([Goal::AsStated; 3]),
             ..Piece::new(correction::PieceKind::Line, own_words, 1.0)
         };
         let all = if corrected.pieces.is_empty() { vec![untouched] } else { corrected.pieces.to_vec() };

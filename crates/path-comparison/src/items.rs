@@ -6,11 +6,13 @@ use std::rc::Rc;
 
 use machine_model::{Command, Models, PathModel, Play, Vector, turned_by_mm};
 use smallvec::SmallVec;
-use toolpath::{CycleKind, FeedRate, Hole, Kinematics, Motion, Partial, Position};
+use toolpath::{
+    CycleKind, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats, whole_pecks,
+};
 
 use crate::stretch::{LEVER_MM, Place, Span, Stretch};
 use crate::way::Way;
-use crate::{Act, Pecks, Step};
+use crate::{Act, Step};
 
 /// Largest distance between places that the model is asked for, mm.
 const SAMPLE_MM: f64 = 0.5;
@@ -25,8 +27,6 @@ const TURN_RAD: f64 = 0.01;
 const MOST_SAMPLES: f64 = 100_000.0;
 /// So near to where an axis turns it is asked for on either side, mm: above what counts as the same place.
 const TURN_MM: f64 = 1e-8;
-/// A hole of more pecks is compared as one.
-const MOST_PECKS: f64 = 10_000.0;
 
 /// What must be the same for two motions to go on together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -233,7 +233,7 @@ pub(crate) type Counted = Rc<RefCell<VecDeque<(Vector, u32)>>>;
 pub(crate) struct Items<'m, I> {
     steps: I,
     role: Role,
-    pecks: Pecks,
+    retreats: PeckRetreats,
     model: &'m dyn PathModel,
     models: Models<'m>,
     /// Of which of them `model` is one.
@@ -270,13 +270,19 @@ impl Common {
 }
 
 impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
-    pub(crate) fn new(models: Models<'m>, steps: I, role: Role, pecks: Pecks, counted: Counted) -> Self {
+    pub(crate) fn new(
+        models: Models<'m>,
+        steps: I,
+        role: Role,
+        retreats: PeckRetreats,
+        counted: Counted,
+    ) -> Self {
         let model = models.axes;
         let play = model.depends_on_direction().then(Play::unknown);
         Self {
             steps,
             role,
-            pecks,
+            retreats,
             model,
             models,
             kinematics: Kinematics::Axes,
@@ -557,90 +563,66 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         const KEPT: usize = 64;
         /// Holes that are nearer are one, mm.
         const ONE_HOLE_MM: f64 = 1.0;
-        let counted = (depth - 1e-9).ceil().max(1.0);
+        let counted = whole_pecks(depth);
         let at = Vector::from(hole.at_r.linear_mm);
         let mut known = self.counted.borrow_mut();
         if self.role == Role::Wanted {
-            known.push_back((at, counted as u32));
+            known.push_back((at, counted));
             if known.len() > KEPT {
                 known.pop_front();
             }
-            return counted as u32;
+            return counted;
         }
         let here = known.iter().rposition(|(known, _)| (known - at).norm() < ONE_HOLE_MM);
         let programmed = here.map(|k| known[k].1).filter(|count| {
             let count = f64::from(*count);
             depth - unsure <= count && count - 1.0 <= depth + unsure
         });
-        programmed.unwrap_or(counted as u32)
+        programmed.unwrap_or(counted)
     }
 
     /// A cycle, move by move.
     fn hole(&mut self, common: &Common, hole: &Hole) {
-        let normal = hole.plane.axes()[2];
-        let on_hole = |mm: f64| {
-            let mut place = hole.at_r;
-            place.linear_mm[normal] = mm;
-            place
-        };
-        let (r_mm, bottom_mm, start_mm) =
-            (hole.at_r.linear_mm[normal], hole.bottom_mm, hole.start.linear_mm[normal]);
-        let down = if bottom_mm < r_mm { -1.0 } else { 1.0 };
-        let after_mm = hole.end().linear_mm[normal];
-        // Up first where it starts lower, then across, then down to R.
-        let above_mm = if down < 0.0 { start_mm.max(after_mm) } else { start_mm.min(after_mm) };
-        let mut rise = hole.start;
-        rise.linear_mm[normal] = above_mm;
-        let mut at = hole.start;
         // All moves of a cycle are made with the correction of its hole.
-        let ends = [hole.at_r, on_hole(bottom_mm)].into_iter().filter(|_| self.role == Role::Commanded);
+        let ends = [hole.at_r, hole.at(hole.bottom_mm)].into_iter().filter(|_| self.role == Role::Commanded);
         let errors_mm = ends.map(|place| {
             let rotary_rad = Vector::from(place.rotary_deg.map(f64::to_radians));
             self.error_mm(&common.command(Vector::from(place.linear_mm), rotary_rad)).norm()
         });
         let hole_error_mm = errors_mm.fold(0.0, f64::max);
-        let rapid = |items: &mut Self, at: &mut Position, to: Position| {
-            items.positioning(common, (*at).into(), to.into(), Kind::OfCycle);
-            if let Some(Item::Position(made)) = items.ready.back_mut() {
-                made.error_mm = made.error_mm.max(hole_error_mm);
+        // A hole of more pecks is compared as one.
+        let count = match hole.pecks().zip(hole.cycle.peck_mm) {
+            Some((pecks, peck_mm)) if pecks < MOST_PECKS => {
+                self.pecks_of(hole, pecks, 8.0 * common.limit_mm / peck_mm)
             }
-            *at = to;
+            _ => 1,
         };
-        for place in [rise, on_hole(above_mm), hole.at_r] {
-            rapid(self, &mut at, place);
-        }
-        let feed = |items: &mut Self, at: &mut Position, to: Position, airy: [bool; 2]| {
-            items.feeding(common, Way::line(*at, to), hole.rate, airy);
-            *at = to;
-        };
-        let peck_mm = match hole.cycle.kind {
-            CycleKind::PeckFull | CycleKind::PeckChip => hole.cycle.peck_mm,
-            CycleKind::Drill | CycleKind::Bore | CycleKind::Synchronised => None,
-        };
-        let depth_mm = (bottom_mm - r_mm).abs();
-        if let Some(peck_mm) = peck_mm.filter(|peck_mm| depth_mm < MOST_PECKS * peck_mm) {
-            let mut done_mm = 0.0;
-            for _ in 1..self.pecks_of(hole, depth_mm / peck_mm, 8.0 * common.limit_mm / peck_mm) {
-                done_mm += peck_mm;
-                feed(self, &mut at, on_hole(r_mm + down * done_mm), [true, false]);
-                let back_mm = if hole.cycle.kind == CycleKind::PeckFull {
-                    rapid(self, &mut at, hole.at_r);
-                    self.pecks.clearance_mm
-                } else {
-                    self.pecks.retreat_mm
-                };
-                rapid(self, &mut at, on_hole(r_mm + down * (done_mm - back_mm.min(done_mm))));
+        let mut at = hole.start;
+        for step in hole.moves(count, self.retreats) {
+            let to = step.end().unwrap_or(at);
+            match step {
+                HoleMove::FeedIn { .. } => {
+                    self.feeding(common, Way::line(at, to), hole.rate, [true, false]);
+                }
+                HoleMove::FeedOut { .. } => {
+                    self.feeding(common, Way::line(at, to), hole.rate, [false, true]);
+                }
+                HoleMove::Rise { .. } | HoleMove::Position { .. } | HoleMove::Leave { .. } => {
+                    self.positioning(common, at.into(), to.into(), Kind::OfCycle);
+                    if let Some(Item::Position(made)) = self.ready.back_mut() {
+                        made.error_mm = made.error_mm.max(hole_error_mm);
+                    }
+                }
+                HoleMove::Dwell => {
+                    if let Some(number) = common.dwell.filter(|_| hole.cycle.kind != CycleKind::Synchronised)
+                    {
+                        let process = Process::of_number(common.process.number);
+                        self.ready.push_back(Item::Deed(Deed { number, line: common.line, process }));
+                    }
+                }
             }
+            at = to;
         }
-        feed(self, &mut at, on_hole(bottom_mm), [true, false]);
-        if let Some(number) = common.dwell.filter(|_| hole.cycle.kind != CycleKind::Synchronised) {
-            let process = Process::of_number(common.process.number);
-            self.ready.push_back(Item::Deed(Deed { number, line: common.line, process }));
-        }
-        if hole.cycle.kind == CycleKind::Bore {
-            feed(self, &mut at, hole.at_r, [false, true]);
-        }
-        rapid(self, &mut at, hole.end());
     }
 }
 

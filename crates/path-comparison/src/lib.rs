@@ -25,7 +25,7 @@ mod stretch;
 mod way;
 
 use machine_model::Models;
-use toolpath::{Kinematics, Motion};
+use toolpath::{Kinematics, Motion, PeckRetreats};
 
 pub use stretch::LEVER_MM;
 pub use way::Way;
@@ -64,15 +64,6 @@ pub enum Act {
     },
     /// Something is done at its place between two motions: deeds of both programs with one number are one deed.
     Deed(u32),
-}
-
-/// How a control makes moves of pecks, mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pecks {
-    /// Distance above the last depth where a peck begins to feed again.
-    pub clearance_mm: f64,
-    /// Retreat that breaks the chip.
-    pub retreat_mm: f64,
 }
 
 /// A distance and where it is largest.
@@ -185,8 +176,8 @@ pub fn compare(
     models: Models<'_>,
     wanted: impl Iterator<Item = Step>,
     commanded: impl Iterator<Item = Step>,
-    pecks: Pecks,
+    retreats: PeckRetreats,
     traces: Traces,
 ) -> Comparison {
-    matcher::Matcher::new(models, wanted, commanded, pecks, traces).compare()
+    matcher::Matcher::new(models, wanted, commanded, retreats, traces).compare()
 }

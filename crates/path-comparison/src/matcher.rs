@@ -1,13 +1,14 @@
 //! Item by item through both programs; where they part, on from where they meet again.
 
 use machine_model::Models;
+use toolpath::PeckRetreats;
 
 use crate::alignment::{Alignment, Begins, Processes, Reached};
 use crate::difference::{self, Found};
 use crate::items::{Counted, Feeding, Item, Items, Process, Role, ends_alike};
 use crate::stretch::{Place, Stretch};
 use crate::way::Way;
-use crate::{Comparison, Mismatch, Pecks, Step, Trace, Traces, What};
+use crate::{Comparison, Mismatch, Step, Trace, Traces, What};
 
 /// So many differences are kept; a program that is off in one place may be off in thousands.
 const MOST_MISMATCHES: usize = 20;
@@ -48,12 +49,18 @@ impl Time {
 }
 
 impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
-    pub(crate) fn new(models: Models<'m>, wanted: W, commanded: C, pecks: Pecks, traces: Traces) -> Self {
+    pub(crate) fn new(
+        models: Models<'m>,
+        wanted: W,
+        commanded: C,
+        retreats: PeckRetreats,
+        traces: Traces,
+    ) -> Self {
         let counted = Counted::default();
-        let wanted = Items::new(models, wanted, Role::Wanted, pecks, counted.clone());
+        let wanted = Items::new(models, wanted, Role::Wanted, retreats, counted.clone());
         Self {
             alignment: Alignment::new(wanted),
-            commanded: Items::new(models, commanded, Role::Commanded, pecks, counted),
+            commanded: Items::new(models, commanded, Role::Commanded, retreats, counted),
             traces,
             begins: Begins::AtStart,
             time: Time::default(),

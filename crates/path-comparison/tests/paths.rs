@@ -3,7 +3,7 @@
 use machine_model::{
     Chain, Description, LinearAxis, Models, Range, RigidBody, RotaryAxis, Squareness, Vector,
 };
-use path_comparison::{Act, Comparison, Pecks, Step, Traces, compare};
+use path_comparison::{Act, Comparison, Step, Traces, compare};
 use proptest::prelude::*;
 use toolpath::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Plane, Position, Shape};
 
@@ -41,12 +41,12 @@ fn step(feed: Feed, line: usize) -> Step {
 fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {
     let steps =
         |feeds: &[Feed]| -> Vec<Step> { feeds.iter().enumerate().map(|(k, f)| step(*f, k + 1)).collect() };
-    let pecks = Pecks { clearance_mm: 0.25, retreat_mm: 0.5 };
+    let retreats = toolpath::PeckRetreats { clearance_mm: 0.25, chip_mm: 0.5 };
     compare(
         Models { axes: &straight(), tip: None },
         steps(wanted).into_iter(),
         steps(made).into_iter(),
-        pecks,
+        retreats,
         Traces::Kept,
     )
 }

@@ -7,9 +7,10 @@ use std::cell::RefCell;
 
 use diagnostic::Diagnostic;
 use nc_expand::Expanded;
-use path_comparison::{Comparison, Pecks, Traces, compare};
+use path_comparison::{Comparison, Traces, compare};
 
 use crate::job::Job;
+use crate::words::retreats;
 use reading::{Numbers, Optional, Program};
 
 /// How the corrected program compares with the posted one.
@@ -36,15 +37,12 @@ pub struct Unreadable {
 /// # Errors
 /// [`Unreadable`] of the first program that cannot be read to its end.
 pub fn check(job: &Job<'_>, programs: [&Expanded<'_>; 2], traces: Traces) -> Result<Checked, Unreadable> {
-    let pecks = Pecks {
-        clearance_mm: job.dialect.output.peck_clearance_mm,
-        retreat_mm: job.dialect.output.chip_retreat_mm,
-    };
+    let retreats = retreats(job.dialect);
     let compared = |optional: Optional, traces: Traces| {
         let numbers = RefCell::new(Numbers::default());
         let mut steps = programs.map(|text| Program::new(text, job, optional, &numbers));
         let [w, c] = &mut steps;
-        let comparison = compare(job.models, &mut *w, &mut *c, pecks, traces);
+        let comparison = compare(job.models, &mut *w, &mut *c, retreats, traces);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.
         for (program, steps) in steps.iter_mut().enumerate() {
             steps.by_ref().for_each(drop);

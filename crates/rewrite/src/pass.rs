@@ -1,10 +1,10 @@
 //! One block after the other: what flows through a program, and what is done with each block.
 
-use correction::{Correction, Corrector, Letters};
+use correction::{Correction, Corrector};
 use diagnostic::Diagnostic;
 use nc_emit::{BlockNumbers, Emitter};
 use nc_program::{Context, Evidence, Interpreter, Questions};
-use nc_syntax::{Block, Reader};
+use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
@@ -13,7 +13,7 @@ use crate::guards::Guarded;
 use crate::job::{Figures, Job};
 use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{Notices, hole_skipped, refusal};
-use crate::words::{Editing, MotionCodes, Original, letters};
+use crate::words::{Editing, MotionCodes, Original, letters, retreats, stated};
 
 /// What flows from block to block: all that the blocks before have to do with those that follow.
 #[derive(Clone)]
@@ -348,7 +348,7 @@ impl Pass<'_> {
                 .map_err(|error| refusal(&error, motion, block, context))?;
             // The block has said where the holes that follow are, in the plane.
             for axis in &context.plane.axes()[..2] {
-                named[*axis] |= info.has_axis(*axis);
+                named[*axis] |= info.stated.axes[*axis];
             }
             corrections.push(corrected.correction);
             let editing = self.editing(context, letters, motion);
@@ -475,15 +475,14 @@ pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correc
         rotary_step: job.rotary_steps.map(|(_, steps)| i64::from(steps)),
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,
-        letters,
+        stated: stated(letters),
         whole: context.whole,
         named: context.unnamed.map(|lost| lost.is_none()),
         reframed: [false; 3],
         tool_mm: context.tool_mm,
         centre_words: output.centre_words,
         arc_radius_tolerance_mm: output.arc_radius_tolerance_mm,
-        peck_clearance_mm: output.peck_clearance_mm,
-        chip_retreat_mm: output.chip_retreat_mm,
+        retreats: retreats(job.dialect),
         reserved_mm: 0.0,
     }
 }

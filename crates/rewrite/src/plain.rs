@@ -3,11 +3,11 @@
 //! What is written is what [`Pass::block`] would write. Lines are corrected side by side, since one alone would mostly
 //! wait for itself, as many as are proven that way; the next one goes the long way.
 
-use correction::{Letters, Run, ShortLines, ShortRun};
+use correction::{Run, ShortLines, ShortRun};
 use diagnostic::Diagnostic;
 use machine_model::LANES;
 use nc_program::PlainEnd;
-use nc_syntax::{Block, PlainLine, Reader};
+use nc_syntax::{Block, Letters, PlainLine, Reader};
 use toolpath::Motion;
 
 use crate::pass::{Pass, info};

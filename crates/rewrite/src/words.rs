@@ -1,11 +1,11 @@
 //! Between the wings: corrected pieces become edits of words.
 
-use correction::{AxisWord, Centre, Letters, PieceKind};
+use correction::{Centre, Goal, PieceKind, Stated};
 use nc_emit::{Piece, WordEdit, WordEdits};
 use nc_program::Context;
-use nc_syntax::Block;
 use nc_syntax::dialect::{Action, Dialect, GCode};
-use toolpath::{Feed, Motion, Shape};
+use nc_syntax::{Block, Letters};
+use toolpath::{Feed, Motion, PeckRetreats, Shape};
 use units::decimal::Decimal;
 
 /// The dialect's own codes for the motions that correction writes.
@@ -36,16 +36,26 @@ impl MotionCodes {
 
 /// The letters of a block's words; those of the axes also where U or W stands for them.
 pub(crate) fn letters(block: &Block<'_>, context: &Context) -> Letters {
-    let mut letters = Letters::default();
-    for word in block.words() {
-        if word.letter.is_ascii_uppercase() {
-            letters.insert(word.letter);
-        }
+    let own = block.words().filter(|word| word.letter.is_ascii_uppercase());
+    own.fold(Letters::of_axes(context.by_increment), |letters, word| letters.or(Letters::of(&[word.letter])))
+}
+
+/// What these letters state.
+pub(crate) fn stated(letters: Letters) -> Stated {
+    let each = |names: &[u8; 3]| names.map(|letter| letters.contains(letter));
+    Stated {
+        axes: each(b"XYZ"),
+        rotary: each(b"ABC"),
+        centre: each(b"IJK"),
+        radius: letters.contains(b'R'),
+        turns: letters.contains(b'P'),
     }
-    for axis in (0..3).filter(|axis| context.by_increment[*axis]) {
-        letters.insert(b"XYZ"[axis]);
-    }
-    letters
+}
+
+/// How the control's pecks go back.
+pub(crate) fn retreats(dialect: &Dialect) -> PeckRetreats {
+    let output = &dialect.output;
+    PeckRetreats { clearance_mm: output.peck_clearance_mm, chip_mm: output.chip_retreat_mm }
 }
 
 /// What a block made the axes do, as far as its words have a meaning of their own.
@@ -91,12 +101,12 @@ impl Editing<'_> {
     /// else stands for the block.
     pub(crate) fn edit(&self, piece: &correction::Piece, first: bool, only: bool) -> Piece {
         let mut edited = Piece { motion: None, words: WordEdits::new() };
-        let mut push = |letter: u8, word: AxisWord, decimals: u8| {
+        let mut push = |letter: u8, word: Goal, decimals: u8| {
             let edit = match word {
-                AxisWord::Omit if first && self.letters.contains(letter) => WordEdit::Remove,
-                AxisWord::Omit => return,
-                AxisWord::Keep => WordEdit::Keep,
-                AxisWord::Write(counts) => WordEdit::Write { counts, decimals },
+                Goal::Stays if first && self.letters.contains(letter) => WordEdit::Remove,
+                Goal::Stays => return,
+                Goal::AsStated => WordEdit::Keep,
+                Goal::Steps(counts) => WordEdit::Write { counts, decimals },
             };
             edited.words.push((letter, edit));
         };
@@ -118,7 +128,7 @@ impl Editing<'_> {
                     Original::Arc => b"IJKRP",
                     Original::Cycle => b"IJKRQPL",
                 };
-                own.iter().for_each(|letter| push(*letter, AxisWord::Omit, 0));
+                own.iter().for_each(|letter| push(*letter, Goal::Stays, 0));
                 match piece.kind {
                     PieceKind::Rapid => Some(self.codes.rapid),
                     _ if self.context.thread => self.context.motion_code,
@@ -130,13 +140,13 @@ impl Editing<'_> {
                     Centre::Offsets(offsets) => {
                         push(b"IJK"[u], offsets[0], self.decimals[u]);
                         push(b"IJK"[v], offsets[1], self.decimals[v]);
-                        push(b'R', AxisWord::Omit, 0);
+                        push(b'R', Goal::Stays, 0);
                     }
                     Centre::Radius(radius) => push(b'R', radius, self.decimals[u]),
                 }
                 if !only {
                     // P counts whole turns, which the pieces now make themselves.
-                    push(b'P', AxisWord::Omit, 0);
+                    push(b'P', Goal::Stays, 0);
                 }
                 Some(if clockwise { self.codes.clockwise } else { self.codes.counter_clockwise })
             }
@@ -145,9 +155,9 @@ impl Editing<'_> {
                 self.context.motion_code
             }
             PieceKind::Dwell => {
-                push(b'G', AxisWord::Write(i64::from(self.codes.dwell.0 / 10)), 0);
+                push(b'G', Goal::Steps(i64::from(self.codes.dwell.0 / 10)), 0);
                 if let Some(p) = self.dwell {
-                    push(b'P', AxisWord::Write(p.mantissa), p.decimals);
+                    push(b'P', Goal::Steps(p.mantissa), p.decimals);
                 }
                 None
             }

@@ -5,14 +5,14 @@
 //! work offset and tool length. No text, no matrices, no machine.
 
 mod frame;
+mod hole;
 mod motion;
 mod plane;
 mod tilted;
 
 pub use frame::{Frame, Similarity};
-pub use motion::{
-    Arc, Cycle, CycleKind, Division, Feed, FeedRate, Hole, Kinematics, Motion, Partial, Position, Shape,
-};
+pub use hole::{Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, whole_pecks};
+pub use motion::{Arc, Division, Feed, FeedRate, Kinematics, Motion, Partial, Position, Shape};
 pub use plane::Plane;
 pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};
 

@@ -1,6 +1,4 @@
-use units::decimal::Decimal;
-
-use crate::{Plane, TiltedPlane};
+use crate::{Hole, Plane, TiltedPlane};
 
 /// Where the axes are commanded to be.
 ///
@@ -204,108 +202,6 @@ pub enum Division {
     OneBehindLines,
     /// One and none besides: the control offsets block by block (G41, G42), and a line of micrometres would be offset too.
     One,
-}
-
-/// What a drilling cycle does at the bottom and on the way back; what `correction` may rewrite as moves.
-///
-/// ```
-/// use toolpath::CycleKind;
-///
-/// // Which cycles can be written as moves.
-/// let as_moves = |kind: CycleKind| kind != CycleKind::Synchronised;
-/// assert!(as_moves(CycleKind::PeckFull) && !as_moves(CycleKind::Synchronised));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CycleKind {
-    /// G81, G82: feed in, dwell of `dwell` (the P word as written) if any, rapid out.
-    Drill,
-    /// G85, G89: feed in, dwell if any, feed out.
-    Bore,
-    /// G83: pecks of `peck_mm`, out to R each time.
-    PeckFull,
-    /// G73: pecks of `peck_mm`, a short retreat each time.
-    PeckChip,
-    /// G74, G76, G84, G86, G87, G88: bound to the spindle, cannot be written as moves.
-    Synchronised,
-}
-
-/// A drilling cycle as it stands when a hole is made.
-///
-/// ```
-/// use toolpath::{Cycle, CycleKind};
-///
-/// // G99 G83 … Q4.: how many pecks a hole of 15 mm takes.
-/// let cycle = Cycle { kind: CycleKind::PeckFull, peck_mm: Some(4.0), dwell: None, return_to_initial: false };
-/// assert_eq!(cycle.peck_mm.map(|peck_mm| (15.0 / peck_mm).ceil()), Some(4.0));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cycle {
-    /// What it does.
-    pub kind: CycleKind,
-    /// Peck depth Q, mm, positive.
-    pub peck_mm: Option<f64>,
-    /// Dwell at the bottom, P as written; none where it is zero.
-    pub dwell: Option<Decimal>,
-    /// G98: back to the initial level; G99: back to R.
-    pub return_to_initial: bool,
-}
-
-/// One hole of a drilling cycle, along the plane's normal axis.
-///
-/// ```
-/// use toolpath::{Cycle, CycleKind, FeedRate, Hole, Plane, Position};
-///
-/// // G98 G81 X50 Y20 Z-8 R2 from Z30, then the same under G99.
-/// let at = |z: f64| Position { linear_mm: [50.0, 20.0, z], ..Position::default() };
-/// let cycle = Cycle { kind: CycleKind::Drill, peck_mm: None, dwell: None, return_to_initial: true };
-/// let hole = Hole {
-///     plane: Plane::Xy,
-///     start: at(30.0),
-///     at_r: at(2.0),
-///     bottom_mm: -8.0,
-///     first: true,
-///     began_mm: 30.0,
-///     initial_mm: 30.0,
-///     cycle,
-///     rate: FeedRate::PerMinute,
-/// };
-/// assert_eq!(hole.end(), at(30.0));
-/// assert_eq!(Hole { cycle: Cycle { return_to_initial: false, ..cycle }, ..hole }.end(), at(2.0));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hole {
-    /// Working plane; the hole runs along its normal.
-    pub plane: Plane,
-    /// Where the axes are before the hole.
-    pub start: Position,
-    /// Position of the hole at R level.
-    pub at_r: Position,
-    /// Command of the normal axis at the bottom, mm.
-    pub bottom_mm: f64,
-    /// It begins a series of holes.
-    pub first: bool,
-    /// Command of the normal axis where the series of holes began, mm: R counts from there under G91.
-    pub began_mm: f64,
-    /// Command of the normal axis at the level G98 returns to, mm: where the series began, or R where that is higher.
-    pub initial_mm: f64,
-    /// The cycle's parameters.
-    pub cycle: Cycle,
-    /// How F is meant.
-    pub rate: FeedRate,
-}
-
-impl Hole {
-    /// Where the axes are after the hole, as programmed.
-    #[must_use]
-    pub fn end(&self) -> Position {
-        let mut end = self.at_r;
-        let normal = self.plane.axes()[2];
-        if self.cycle.return_to_initial {
-            // A cycle never ends below R: controls take the higher of the two.
-            end.linear_mm[normal] = self.initial_mm;
-        }
-        end
-    }
 }
 
 /// What one block, or one turn of a repeated block, makes the axes do.

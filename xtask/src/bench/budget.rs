@@ -138,28 +138,11 @@ fn positions(text: &[u8], job: &Job<'_>) -> Vec<toolpath::Feed> {
 
 fn correct_moves(feeds: &[toolpath::Feed], job: &Job<'_>) {
     let mut corrector = Corrector::new(job.models.axes, Options { ..job.options });
-    let mut letters = correction::Letters::default();
-    b"XYZ".iter().for_each(|letter| letters.insert(*letter));
     let block = correction::Block {
-        frame: toolpath::Frame::default(),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
         decimals: job.decimals_mm,
-        incremental: [false; 3],
-        diameters: false,
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
-        arc_centres_absolute: false,
-        letters,
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
+        stated: correction::Stated { axes: [true; 3], ..correction::Stated::default() },
         tool_mm: [0.0, 0.0, -120.0],
-        centre_words: true,
-        arc_radius_tolerance_mm: 0.02,
-        peck_clearance_mm: 0.25,
-        chip_retreat_mm: 0.5,
-        reserved_mm: 0.0,
+        ..correction::Block::default()
     };
     // The first lines bring the axes to where short lines start.
     let (first, rest) = feeds.split_at(feeds.len().min(2));

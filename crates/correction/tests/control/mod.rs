@@ -3,39 +3,30 @@
 #![allow(dead_code, clippy::expect_used, reason = "shared by test files that use different parts")]
 
 use correction::{
-    AxisWord, Block, Centre, Corrected, CorrectionError, Corrector, Curve, Letters, Options, Outside, Piece,
-    PieceKind,
+    Block, Centre, Corrected, CorrectionError, Corrector, Curve, Goal, Options, Outside, Piece, PieceKind,
+    Stated,
 };
 use machine_model::Vector;
 use toolpath::{Division, Feed, FeedRate, Frame, Motion, Partial, Plane, Position, Shape};
 
-pub(crate) fn letters(text: &str) -> Letters {
-    let mut letters = Letters::default();
-    text.bytes().for_each(|letter| letters.insert(letter));
-    letters
+/// What a block with words of these letters states.
+pub(crate) fn stated(text: &str) -> Stated {
+    let each = |names: [char; 3]| names.map(|letter| text.contains(letter));
+    Stated {
+        axes: each(['X', 'Y', 'Z']),
+        rotary: each(['A', 'B', 'C']),
+        centre: each(['I', 'J', 'K']),
+        radius: text.contains('R'),
+        turns: text.contains('P'),
+    }
 }
 
 pub(crate) fn block(text: &str, incremental: bool) -> Block {
     Block {
         frame: Frame::shift([10.0, -20.0, 5.5]),
-        kinematics: toolpath::Kinematics::Axes,
-        unit_mm: 1.0,
-        diameters: false,
-        decimals: [3; 3],
-        rotary_decimals: [3; 3],
-        rotary_step: [1; 3],
         incremental: [incremental; 3],
-        arc_centres_absolute: false,
-        letters: letters(text),
-        whole: [false; 3],
-        named: [true; 3],
-        reframed: [false; 3],
-        tool_mm: [0.0; 3],
-        centre_words: true,
-        arc_radius_tolerance_mm: 0.02,
-        peck_clearance_mm: 0.5,
-        chip_retreat_mm: 0.5,
-        reserved_mm: 0.0,
+        stated: stated(text),
+        ..Block::default()
     }
 }
 
@@ -60,11 +51,11 @@ impl Control {
     ) -> Option<Curve> {
         let standing = block.frame.to_program(self.at.into());
         let own = block.frame.to_program((*own_end).into());
-        let value = |axis: usize, word: AxisWord| match word {
-            AxisWord::Omit => standing[axis],
-            AxisWord::Keep => own[axis],
-            AxisWord::Write(counts) if block.incremental[axis] => standing[axis] + counts as f64 * 1e-3,
-            AxisWord::Write(counts) => counts as f64 * 1e-3,
+        let value = |axis: usize, word: Goal| match word {
+            Goal::Stays => standing[axis],
+            Goal::AsStated => own[axis],
+            Goal::Steps(counts) if block.incremental[axis] => standing[axis] + counts as f64 * 1e-3,
+            Goal::Steps(counts) => counts as f64 * 1e-3,
         };
         let end: Vector = block.frame.to_machine([0, 1, 2].map(|i| value(i, piece.axes[i]))).into();
         let start = std::mem::replace(&mut self.at, end);
@@ -73,10 +64,10 @@ impl Control {
             PieceKind::Arc { clockwise, centre: Centre::Offsets(words) } => {
                 let [u, v, n] = plane.axes();
                 let own = own_centre.unwrap_or([f64::NAN; 2]);
-                let offset = |k: usize, word: AxisWord| match word {
-                    AxisWord::Omit => 0.0,
-                    AxisWord::Keep => own[k],
-                    AxisWord::Write(counts) => counts as f64 * 1e-3,
+                let offset = |k: usize, word: Goal| match word {
+                    Goal::Stays => 0.0,
+                    Goal::AsStated => own[k],
+                    Goal::Steps(counts) => counts as f64 * 1e-3,
                 };
                 let centre = [start[u] + offset(0, words[0]), start[v] + offset(1, words[1])];
                 let angle = |p: &Vector| units::math::atan2(p[v] - centre[1], p[u] - centre[0]);
@@ -199,11 +190,10 @@ pub(crate) fn tried(
             Shape::Line => PieceKind::Line,
             Shape::Arc(arc) => PieceKind::Arc {
                 clockwise: arc.sweep_rad < 0.0,
-                centre: Centre::Offsets([AxisWord::Keep; 2]),
+                centre: Centre::Offsets([Goal::AsStated; 2]),
             },
         },
-        axes: [0, 1, 2]
-            .map(|i| if block.letters.contains(b"XYZ"[i]) { AxisWord::Keep } else { AxisWord::Omit }),
+        axes: [0, 1, 2].map(|i| if block.stated.axes[i] { Goal::AsStated } else { Goal::Stays }),
         rotary: None,
         share: 1.0,
     }];
