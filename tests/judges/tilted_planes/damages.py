@@ -1,0 +1,80 @@
+"""Damages to an output that `vpost check` has to find. A damage without harm, by this judge, is not asked for."""
+
+import re
+
+import generate
+
+
+def shifted(line, letter, by, decimals=4):
+    return re.sub(r"(?<![A-Z])%s(-?[\d.]+)" % letter, lambda f: letter + generate.number(float(f.group(1)) + by, decimals), line, count=1)
+
+
+def number_of(line):
+    found = re.match(r"N(\d+) ", line)
+    return int(found.group(1)) if found else None
+
+
+def all_of(rng, m, text_in, text_out):
+    lines_in, lines = text_in.split("\n"), text_out.split("\n")
+    blocks = {number_of(x): x for x in lines_in}
+    inch = "G20" in text_in
+    out = []
+
+    def add(name, k, line):
+        if line != lines[k]:
+            out.append((name, "\n".join(lines[:k] + [line] + lines[k + 1 :])))
+
+    # Words of a feed: pieces begin with X, Y or Z, or with their G.
+    feeds = [k for k, x in enumerate(lines) if re.match(r"N\d+ (G0?[123] )?[XYZ]", x)]
+    feeds = [k for k in feeds if number_of(lines[k]) not in blocks or "G0 " not in blocks[number_of(lines[k])]]
+    for name in ("20 um", "-20 um"):
+        if feeds:
+            k = rng.choice(feeds)
+            letter = rng.choice(re.findall(r"[XYZ]", lines[k]))
+            add(name, k, shifted(lines[k], letter, (0.0008 if inch else 0.02) * (1 if name[0] == "2" else -1)))
+    # The correction of one block left out: its own words again, and none of its pieces.
+    changed = [k for k, x in enumerate(lines) if number_of(x) in blocks and blocks[number_of(x)] != x and re.search("[XYZ]", x) and k in feeds]
+    if changed:
+        k = rng.choice(changed)
+        end = k + 1
+        while end < len(lines) and number_of(lines[end]) is not None and number_of(lines[end]) not in blocks:
+            end += 1
+        out.append(("left out", "\n".join(lines[:k] + [blocks[number_of(lines[k])]] + lines[end:])))
+    rotary = [k for k, x in enumerate(lines) if re.match(r"N\d+ G0 [ABC]", x)]
+    if rotary:
+        k = rng.choice(rotary)
+        letter = rng.choice(re.findall(r"[ABC]", lines[k].split(" ", 1)[1]))
+        add("0.01 degree", k, shifted(lines[k], letter, rng.choice((0.01, -0.01)), 6))
+    # The other branch, where both angles stand in one block.
+    both = [k for k in rotary if all(a in lines[k] for a in m.rotary)]
+    if both:
+        k = rng.choice(both)
+        theta = {a: float(re.search(r"%s(-?[\d.]+)" % a, lines[k]).group(1)) for a in m.rotary}
+        pairs = [p for p in m.angles(m.direction(theta)) if None not in p.values()]
+        other = [p for p in pairs if any(abs((p[a] - theta[a] + 180) % 360 - 180) > 1 for a in p)]
+        if other:
+            add("other branch", k, "N%d G0 " % number_of(lines[k]) + " ".join("%s%s" % (a, generate.number(v, 6)) for a, v in other[0].items()))
+    plane = [k for k, x in enumerate(lines) if "G68.2" in x and "X" in x]
+    if plane:
+        k = rng.choice(plane)
+        add("plane 20 um", k, shifted(lines[k], rng.choice("XYZ"), 0.0008 if inch else 0.02, 6))
+    turned = [k for k, x in enumerate(lines) if re.search(r"G68\.2 (P0 )?X.*I.*J", x)]
+    if turned:
+        k = rng.choice(turned)
+        add("plane turned 0.02 degrees", k, shifted(lines[k], "K", 0.02, 6))
+    aligned = [k for k, x in enumerate(lines) if re.search(r"G53\.[16]$", x)]
+    if aligned:
+        k = rng.choice(aligned)
+        out.append(("G53.1 gone", "\n".join(lines[:k] + lines[k + 1 :])))
+    tool = [k for k, x in enumerate(lines) if "G43 H" in x]
+    if tool:
+        k = rng.choice(tool)
+        add("other length", k, lines[k].replace("H1", "H9").replace("H2", "H1").replace("H9", "H2"))
+    fed = [k for k in feeds if "F" in lines[k]]
+    if fed:
+        k = rng.choice(fed)
+        add("feed", k, re.sub(r"F([\d.]+)", lambda f: "F" + generate.number(float(f.group(1)) / 2, 3), lines[k]))
+    off = [k for k, x in enumerate(lines) if x.endswith("G69")]
+    if off:
+        out.append(("G69 gone", "\n".join(lines[: off[0]] + lines[off[0] + 1 :])))
+    return out

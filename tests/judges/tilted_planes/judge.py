@@ -1,0 +1,342 @@
+#!/usr/bin/env python3
+"""Judge of tilted working planes: where the tip really goes in the workpiece, with the output, on a crooked machine.
+
+    judge.py --vpost target/release/vpost --count 300 [--seed 1] [--kind hh] [--damage 0.5] [--refusals] [--keep DIR]
+    judge.py --vpost target/release/vpost --self-test
+
+Exit status 1 where something is found. What is asked stands in README.md.
+"""
+
+import argparse
+import collections
+import json
+import math
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import damages
+import generate
+import machine
+import reader
+import refusals
+
+WHOLE = {68.2, 53.1, 53.6, 69.0, 53.0, 28.0, 4.0, 10.0, 49.0, 80.0}
+
+
+def run(vpost, *words):
+    done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+def code_of(stderr):
+    found = re.search(r"error\[(VP\d+)\]", stderr)
+    return found.group(1) if found else "none"
+
+
+def limit_mm(spec, inch):
+    """Tolerance, and half an output step of each of X, Y and Z."""
+    steps = [0.00254 if inch else spec["axes"][k]["resolution"] for k in "XYZ"]
+    return spec["tolerance"] * 1e-3 + 0.5 * math.hypot(*steps)
+
+
+def in_frame(m, motion, u):
+    """Where the real tip is, in the coordinates of the motion's frame, for words u (n, 3) of it."""
+    lift = np.array([0.0, 0.0, motion.tool])
+    if motion.plane is None:
+        real = m.tip(u + motion.offset + lift, motion.theta, motion.tool)
+        # The same place in axis commands of the ideal machine, whose centres are those of the profile.
+        true = machine.Machine({**m.spec, "control_centres": {k: m.spec["rotary"][k]["centre"] for k in m.rotary}})
+        return true.command(real, motion.theta, motion.tool) - motion.offset - lift
+    zero, turn = motion.plane
+    q = m.command(motion.offset + zero + u @ turn.T, motion.theta, motion.tool)
+    return (m.tip(q, motion.theta, motion.tool) - motion.offset - zero) @ turn
+
+
+def groups(blocks, numbers):
+    """Blocks of the output under the block of the input that they come from; what stands before the first is left out."""
+    out, now = collections.OrderedDict(), None
+    for number, words, motions in blocks:
+        if number in numbers:
+            if number in out:
+                raise reader.Unreadable("N%d twice" % number)
+            now = out.setdefault(number, [])
+        if now is not None:
+            now.append((words, motions))
+    return out
+
+
+def process(words):
+    codes = {v for k, v in words if k == "G"}
+    if codes & WHOLE:
+        return [(k, v) for k, v in words if k != "N"]
+    return [(k, v) for k, v in words if k not in "NXYZIJKRFABC" and not (k == "G" and v in (0, 1, 2, 3))]
+
+
+def same_frame(a, b):
+    """The output's motion lies in the input's plane, with its angles (half a step of a rotary word apart) and its tool."""
+    if (a.plane is None) != (b.plane is None) or a.tool != b.tool or not np.array_equal(a.offset, b.offset):
+        return False
+    return a.plane is None or (np.array_equal(a.plane[0], b.plane[0]) and np.array_equal(a.plane[1], b.plane[1]))
+
+
+
+def compare(m, text_in, text_out, start=None):
+    """[(what, block, text)] and the largest share of the limit used."""
+    try:
+        return compared(m, text_in, text_out, start)
+    except reader.Unreadable as why:
+        return [("unreadable", 0, str(why))], 0.0
+
+
+def compared(m, text_in, text_out, start):
+    found, worst = [], 0.0
+    try:
+        blocks_in = reader.read(text_in, m, start)
+    except reader.Unreadable as why:
+        return [("judge", 0, "input: %s" % why)], 0.0
+    try:
+        blocks_out = reader.read(text_out, m, start)
+        numbers = {n for n, _, _ in blocks_in if n is not None}
+        groups_out = groups(blocks_out, numbers)
+    except (reader.Unreadable, KeyError, TypeError) as why:
+        return [("unreadable", 0, str(why))], 0.0
+    if list(groups_out) != [n for n, _, _ in blocks_in]:
+        return [("structure", 0, "other blocks, or in another order")], 0.0
+    limit = limit_mm(m.spec, bool(re.search(r"\bG20\b", text_in)))
+    stood = None  # where the tool really stands, in words of the output; and whether a rapid of some axes brought it there
+    partial = False
+    for number, words, ideal in blocks_in:
+        parts = groups_out[number]
+        made = [x for _, motions in parts for x in motions]
+        was, now = process(words), [x for w, _ in parts for x in process(w)]
+        hole = any(x.kind == "rapid" for x in ideal) and any(x.kind != "rapid" for x in ideal)
+        if hole and not any(k == "G" and v in (81, 83) for w, _ in parts for k, v in w):
+            # Written as moves: the pecks are judged below, by depth.
+            was = [(k, v) for k, v in was if (k, v) not in (("G", 81), ("G", 83)) and k != "Q"]
+        if (set(was) != set(now)) if hole else (was != now):
+            found.append(("process", number, "%s became %s" % (was, now)))
+        turned_in = [(k, v) for k, v in words if k in "ABC"]
+        turned_out = [(k, v) for w, _ in parts for k, v in w if k in "ABC"]
+        if len(turned_in) != len(turned_out) or any(a != c or abs(b - d) > 0.0005 + 1e-9 for (a, b), (c, d) in zip(turned_in, turned_out)):
+            found.append(("rotary", number, "%s became %s" % (turned_in, turned_out)))
+        if not ideal:
+            if made:
+                found.append(("structure", number, "motion where there was none"))
+            continue
+        if not made:
+            found.append(("structure", number, "no motion left"))
+            continue
+        if any(not same_frame(ideal[0], x) for x in made):
+            # Another plane in the output: its places are seen from the plane of the input.
+            made = [seen_from(m, ideal[0], x) for x in made]
+        feeds_in = [x for x in ideal if x.kind != "rapid"]
+        feeds_out = [x for x in made if x.kind != "rapid"]
+        if not feeds_in:
+            if feeds_out:
+                found.append(("structure", number, "a rapid became a feed"))
+                continue
+            last, aim = made[-1], ideal[-1]
+            if not np.isnan(last.u1).any() and not np.isnan(aim.u1).any():
+                off = np.abs(real(m, ideal[-1], last, last.u1[None])[0] - aim.u1)
+                named = max(off["XYZ".index(k)] for k in aim.named)
+                worst = max(worst, named / limit)
+                if named > limit:
+                    found.append(("rapid", number, "%.2f um, limit %.2f" % (named * 1e3, limit * 1e3)))
+            partial = len(aim.named) < 3
+            continue
+        if not feeds_out:
+            found.append(("structure", number, "a feed became a rapid"))
+            continue
+        if not hole and len(feeds_out) != len(made):
+            found.append(("structure", number, "a rapid inside a feed"))
+        for x in feeds_out:
+            if feeds_in[0].feed is None or abs((x.feed or 0.0) - feeds_in[0].feed) > 1e-6:
+                found.append(("feed", number, "%s became %s" % (feeds_in[0].feed, x.feed)))
+                break
+        one = feeds_in[0]
+        total, done, reached = sum(max(x.length(), 1e-9) for x in feeds_out), 0.0, 0.0
+        off_start = None
+        for x in feeds_out:
+            if hole and done:
+                # A peck begins where the ones before have been, however the control came there.
+                s0 = one.nearest(real(m, one, x, x.u0[None]), np.zeros(1))[1][0]
+                if s0 > reached + limit / one.length():
+                    found.append(("path", number, "a rapid inside the material"))
+                    break
+                reached = s0
+            n = int(min(400, max(16, x.length() / 0.7)))
+            s = np.linspace(0, 1, n + 1)
+            u = real(m, one, x, x.at(s))
+            d, at = one.nearest(u, (done + s * x.length()) / total)
+            if off_start is None:
+                off_start = d[0]
+            allowed = np.full(len(d), limit)
+            if off_start > limit and partial and not hole:
+                allowed = allowed + off_start * (1 - at)
+            if hole and one.peck and "cycle" not in x.__dict__ and (at[-1] - at[0]) * one.length() > one.peck + 0.5:
+                found.append(("path", number, "a peck of %.3f mm" % ((at[-1] - at[0]) * one.length())))
+                break
+            share = float(np.max(d / allowed))
+            worst = max(worst, share)
+            if share > 1:
+                k = int(np.argmax(d / allowed))
+                found.append(("path", number, "%.2f um off, limit %.2f, at %.0f %% of the block" % (d[k] * 1e3, limit * 1e3, at[k] * 100)))
+                break
+            if np.any(at < reached - 2 * limit / max(one.length(), limit) - 1e-3):
+                found.append(("path", number, "goes back"))
+                break
+            reached = max(reached, float(np.max(at)))
+            done += x.length()
+        else:
+            end = np.linalg.norm(real(m, one, feeds_out[-1], feeds_out[-1].u1[None])[0] - one.u1)
+            begin = np.linalg.norm(real(m, one, feeds_out[0], feeds_out[0].u0[None])[0] - one.u0)
+            worst = max(worst, end / limit)
+            if end > limit or (begin > limit and not partial):
+                found.append(("path", number, "end %.2f um, start %.2f um off, limit %.2f" % (end * 1e3, begin * 1e3, limit * 1e3)))
+        if not hole:
+            partial = False
+        else:
+            aim, last = ideal[-1].u1, made[-1].u1
+            off = np.linalg.norm(real(m, one, made[-1], last[None])[0] - aim)
+            # Behind a hole the tool stands at another height than the hole's middle was corrected for.
+            if off > limit + 0.05:
+                found.append(("rapid", number, "%.2f um behind the hole" % (off * 1e3)))
+            partial = True
+    return found, worst
+
+
+def real(m, inp, motion, u):
+    """Real places in the coordinates of the input's frame, for words u of a motion of the output."""
+    here = in_frame(m, motion, u)
+    if motion.__dict__.get("into") is None:
+        return here
+    r, shift = motion.into
+    return here @ r.T + shift
+
+
+def seen_from(m, inp, motion):
+    if inp.plane is None or motion.plane is None:
+        raise reader.Unreadable("axis words for a plane, or the other way round")
+    zero, turn = inp.plane
+    zero2, turn2 = motion.plane
+    motion.into = (turn.T @ turn2, turn.T @ (zero2 + motion.offset - zero - inp.offset))
+    return motion
+
+
+class Judge:
+    def __init__(self, options):
+        self.o = options
+        self.tally = collections.Counter()
+        self.refused = collections.Counter()
+        self.reasons = {}
+        self.found = []
+        self.worst = collections.defaultdict(float)
+
+    def report(self, name, n, folder, text):
+        self.found.append((name, n, text))
+        self.tally["found " + name] += 1
+        print("%-14s %5s  %s" % (name, n, text), flush=True)
+        if self.o.keep:
+            keep = pathlib.Path(self.o.keep) / ("%s-%s" % (n, name))
+            keep.mkdir(parents=True, exist_ok=True)
+            for f in folder.iterdir():
+                (keep / f.name).write_bytes(f.read_bytes())
+            with open(keep / "found.txt", "a") as f:
+                f.write(text + "\n")
+
+    def one(self, n, folder):
+        spec, text, align = generate.case(self.o.seed, n, self.o.kind)
+        m = machine.Machine(spec)
+        profile = generate.write_profile(spec, folder)
+        source, target = folder / "in.nc", folder / "out.nc"
+        source.write_text(text)
+        (folder / "spec.json").write_text(json.dumps(spec))
+        self.tally["programs"] += 1
+        self.tally["chain " + spec["kind"]] += 1
+        self.tally["angles " + align] += 1
+        status, output, errors = run(self.o.vpost, "correct", source, "-m", profile)
+        if status:
+            self.refused[code_of(errors)] += 1
+            self.reasons.setdefault(code_of(errors), (n, errors.strip().splitlines()[:3]))
+            self.tally["refused"] += 1
+            if status == 2 or spec["state"] == "perfect":
+                self.report("profile" if status == 2 else "perfect", n, folder, errors.strip().replace("\n", " | ")[:300])
+            return
+        target.write_text(output)
+        if spec["state"] == "perfect":
+            self.tally["perfect"] += 1
+            if output != text:
+                self.report("perfect", n, folder, "not the same bytes")
+        found, worst = compare(m, text, output)
+        self.worst[spec["kind"]] = max(self.worst[spec["kind"]], worst)
+        for what, block, why in found[:3]:
+            self.report(what, n, folder, "N%s %s (%s, %s)" % (block, why, spec["kind"], align))
+        before = max([0.0] + [float(re.search(r"([\d.]+) um", w).group(1)) for k, _, w in compare(m, text, text)[0] if k == "path" and " um" in w])
+        self.worst["um before"] = max(self.worst["um before"], before)
+        status, _, errors = run(self.o.vpost, "check", source, target, "-m", profile)
+        self.tally["checked"] += 1
+        if (status != 0) != bool(found):
+            self.report("check-blind" if found else "check-alarm", n, folder, errors.strip().replace("\n", " | ")[:300])
+        if found or spec["state"] == "perfect":
+            return
+        rng = random.Random("damage %d-%d" % (self.o.seed, n))
+        if rng.random() > self.o.damage:
+            return
+        for name, bad in damages.all_of(rng, m, text, output):
+            found, _ = compare(m, text, bad)
+            if not found:
+                self.tally["damage without harm: " + name] += 1
+                continue
+            (folder / "bad.nc").write_text(bad)
+            status, _, errors = run(self.o.vpost, "check", source, folder / "bad.nc", "-m", profile)
+            self.tally["damage: " + name] += 1
+            if status == 0:
+                self.report("damage-missed", n, folder, "%s: %s" % (name, found[0]))
+            (folder / "bad.nc").unlink()
+
+    def all(self):
+        for n in range(self.o.first, self.o.first + self.o.count):
+            with tempfile.TemporaryDirectory() as folder:
+                try:
+                    self.one(n, pathlib.Path(folder))
+                except subprocess.TimeoutExpired:
+                    self.report("slow", n, pathlib.Path(folder), "120 s")
+        if self.o.refusals:
+            refusals.all_of(self)
+        for key in sorted(self.tally):
+            print("%-40s %d" % (key, self.tally[key]))
+        for key, count in sorted(self.refused.items()):
+            print("refused %s: %d, first %s: %s" % (key, count, self.reasons[key][0], " | ".join(self.reasons[key][1])))
+        for key in sorted(self.worst):
+            print("largest %-32s %.3f" % (key if key == "um before" else "share of the limit, " + key, self.worst[key]))
+        return 1 if self.found else 0
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("--vpost", required=True, type=pathlib.Path)
+    p.add_argument("--count", type=int, default=200)
+    p.add_argument("--first", type=int, default=0)
+    p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--kind", choices=list(generate.CHAINS))
+    p.add_argument("--damage", type=float, default=0.5, help="share of the programs whose outputs are damaged")
+    p.add_argument("--refusals", action="store_true")
+    p.add_argument("--say", action="store_true", help="print the message of every refusal")
+    p.add_argument("--keep")
+    p.add_argument("--self-test", action="store_true")
+    options = p.parse_args()
+    if options.self_test:
+        import self_test
+
+        sys.exit(self_test.main(options.vpost))
+    sys.exit(Judge(options).all())
+
+
+if __name__ == "__main__":
+    main()
