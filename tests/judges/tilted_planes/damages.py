@@ -54,14 +54,22 @@ def all_of(rng, m, text_in, text_out):
         other = [p for p in pairs if any(abs((p[a] - theta[a] + 180) % 360 - 180) > 1 for a in p)]
         if other:
             add("other branch", k, "N%d G0 " % number_of(lines[k]) + " ".join("%s%s" % (a, generate.number(v, 6)) for a, v in other[0].items()))
-    plane = [k for k, x in enumerate(lines) if "G68.2" in x and "X" in x]
-    if plane:
-        k = rng.choice(plane)
-        add("plane 20 um", k, shifted(lines[k], rng.choice("XYZ"), 0.0008 if inch else 0.02, 6))
-    turned = [k for k, x in enumerate(lines) if re.search(r"G68\.2 (P0 )?X.*I.*J", x)]
+    # The zero and the turn of each way of writing a plane: a check may know some of them only.
+    for kind, mark in (("P0", r"G68\.2 (P0 )?X"), ("P1", r"G68\.2 P1 "), ("P2", r"G68\.2 P2 Q1"), ("P3", r"G68\.2 P3 Q1")):
+        plane = [k for k, x in enumerate(lines) if re.search(mark, x)]
+        if plane:
+            k = rng.choice(plane)
+            add("zero of %s 20 um" % kind, k, shifted(lines[k], rng.choice("XYZ"), 0.0008 if inch else 0.02, 6))
+    for kind, mark, letters, by in (("P2", r"G68\.2 P2 Q[23]", "XYZ", 0.05), ("P3", r"G68\.2 P3 Q[12]", "IJK", 0.0)):
+        plane = [k for k, x in enumerate(lines) if re.search(mark, x)]
+        if plane:
+            k = rng.choice(plane)
+            size = by / (25.4 if inch else 1) or 1e-3 * max(abs(float(x)) for x in re.findall(r"[IJK](-?[\d.]+)", lines[k]))
+            add("%s turned a little" % kind, k, shifted(lines[k], rng.choice(letters), size, 6))
+    turned = [k for k, x in enumerate(lines) if re.search(r"G68\.2 (P0 )?X.*I.*J.*K", x)]
     if turned:
         k = rng.choice(turned)
-        add("plane turned 0.02 degrees", k, shifted(lines[k], "K", 0.02, 6))
+        add("P0 turned about its Z", k, shifted(lines[k], "K", 0.02, 6))
     aligned = [k for k, x in enumerate(lines) if re.search(r"G53\.[16]$", x)]
     if aligned:
         k = rng.choice(aligned)

@@ -204,6 +204,14 @@ def holes(w, rng):
     w.block("G80")
 
 
+def angle_words(rng, angles):
+    """I, J and K; now and then without those that are 0, where one is left."""
+    words = [(k, number(v, 6)) for k, v in zip("IJK", angles)]
+    if rng.random() < 0.3:
+        words = [x for x in words if x[1] != "0."] or words
+    return " ".join(k + v for k, v in words)
+
+
 def plane_words(w, rng, zero, turn):
     """Blocks of G68.2 for a plane, and the plane that these rounded words say."""
     kind = rng.choice((0, 0, 0, 2, 3))
@@ -212,10 +220,11 @@ def plane_words(w, rng, zero, turn):
         k = single[0]
         a, b = [(1, 2), (2, 0), (0, 1)][k]
         angle = math.degrees(math.atan2(turn[b, a], turn[a, a]))
-        w.block("G68.2 P1 Q123 %s %s" % (w.place("XYZ", zero), " ".join("%s%s" % (x, number(angle if n == k else 0, 6)) for n, x in enumerate("IJK"))))
+        words = angle_words(rng, [angle if n == k else 0.0 for n in range(3)])
+        w.block("G68.2 P1 Q123 %s %s" % (w.place("XYZ", zero), words))
     elif kind == 0:
         text = "G68.2 %s%s" % (rng.choice(("", "P0 ")), w.place("XYZ", zero))
-        w.block(text + " " + " ".join("%s%s" % (k, number(v, 6)) for k, v in zip("IJK", planes.angles_of(turn))))
+        w.block(text + " " + angle_words(rng, planes.angles_of(turn)))
     elif kind == 2:
         # Points far enough apart that their decimals turn the plane by less than a microradian.
         far = 60.0
@@ -233,7 +242,7 @@ def make_program(rng, spec):
     """A program and how its planes get their angles; sets `branch` and `turn` of the profile."""
     m = machine.Machine(spec)
     w = Writer(rng, rng.random() < 0.12)
-    align = rng.choice(("written", "written", "G53.1", "G53.6"))
+    align = rng.choice(("written", "written", "G53.1", "G53.6", "mixed"))
     tilting = [k for k in m.rotary if k != "C"]
     letter = tilting[-1]
     if align != "written":
@@ -256,6 +265,7 @@ def make_program(rng, spec):
         w.block("G49")
     for n in range(rng.randint(1, 3)):
         steps = rng.choice((0, 3, 3, 4))
+        way = align if align != "mixed" else rng.choice(("written", "G53.1", "G53.6"))
         for _ in range(200):
             theta = {}
             for k in m.rotary:
@@ -263,7 +273,7 @@ def make_program(rng, spec):
                 theta[k] = round(rng.uniform(low, high), steps)
                 if rng.random() < 0.12:
                     theta[k] = 0.0
-            if align == "written":
+            if way == "written":
                 break
             got = m.aligned(m.direction(theta), stands)
             if got is not None and all(abs(stands[k] - got[k]) < 178 for k in got) and abs(got[letter]) > 0.5:
@@ -279,15 +289,15 @@ def make_program(rng, spec):
             turn = planes.by_angles(i, j, rng.choice((0, 0, 90, 30, -17.5)))
             turn = planes.by_axes(turn[:, 0], z=normal)
         zero = [round(rng.uniform(-40, 40), rng.choice((0, 3))) for _ in range(3)]
-        if align == "written":
+        if way == "written":
             # As any way of writing the same place: one block, or one axis after the other.
             words = ["%s%s" % (k, number(v, 4)) for k, v in theta.items()]
             for text in [" ".join(words)] if rng.random() < 0.7 else words:
                 w.block("G0 " + text)
         plane_words(w, rng, zero, turn)
-        if align != "written":
-            w.block(align)
-            stands = theta
+        if way != "written":
+            w.block(way)
+        stands = theta
         tool = rng.random() < 0.92
         if tool:
             hand = rng.choice((1, 2))

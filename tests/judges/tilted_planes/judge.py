@@ -85,7 +85,6 @@ def same_frame(a, b):
     return a.plane is None or (np.array_equal(a.plane[0], b.plane[0]) and np.array_equal(a.plane[1], b.plane[1]))
 
 
-
 def compare(m, text_in, text_out, start=None):
     """[(what, block, text)] and the largest share of the limit used."""
     try:
@@ -141,6 +140,8 @@ def compared(m, text_in, text_out, start):
             if feeds_out:
                 found.append(("structure", number, "a rapid became a feed"))
                 continue
+            if [k for k, _ in words if k in "XYZ"] != [k for w, _ in parts for k, _ in w if k in "XYZ"]:
+                found.append(("process", number, "a rapid moves other axes"))
             last, aim = made[-1], ideal[-1]
             if not np.isnan(last.u1).any() and not np.isnan(aim.u1).any():
                 off = np.abs(real(m, ideal[-1], last, last.u1[None])[0] - aim.u1)
@@ -297,7 +298,7 @@ class Judge:
             status, _, errors = run(self.o.vpost, "check", source, folder / "bad.nc", "-m", profile)
             self.tally["damage: " + name] += 1
             if status == 0:
-                self.report("damage-missed", n, folder, "%s: %s" % (name, found[0]))
+                self.report("damage-missed", n, folder, "%s (%s)" % (name, found[0][0]))
             (folder / "bad.nc").unlink()
 
     def all(self):

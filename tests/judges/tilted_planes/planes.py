@@ -4,7 +4,7 @@ By docs/reference.md and docs/dialects.md, which agree with the public descripti
 (B-64484EN, "Tilted working plane indexing": Euler angles Z, new X, new Z; roll, pitch and yaw; three points; two vectors),
 Mazak's programming of inclined planes (G68.2 P1 Q123: I about X, J about Y, K about Z, their order by Q), and the G68.2 of
 LinuxCNC's tilted work plane by D. Mueller (order 313; X by points 1 and 2, Z = X x (point 3 - point 1)). The last differs
-in one thing: its P3 begins with Q0 and counts the first vector from the zero; FANUC's begins with Q1, and a vector is one.
+in one thing from the others: its P3 begins with Q0 and counts the first vector from the zero; FANUC's begins with Q1, and a vector is one.
 """
 
 import math
@@ -51,12 +51,18 @@ def frame(blocks, unit):
     def vector(words):
         return np.array([words[k] for k in "IJK"])
 
+    def angles(words):
+        # One left out is 0, as in LinuxCNC's; where all are, nothing says where the plane lies.
+        if not set("IJK") & set(words):
+            raise Incomplete("no angle")
+        return [words.get(k, 0.0) for k in "IJK"]
+
     kind = int(blocks[0].get("P", 0))
     try:
         if kind == 0:
-            return place(blocks[0]), by_angles(*vector(blocks[0]))
+            return place(blocks[0]), by_angles(*angles(blocks[0]))
         if kind == 1:
-            given = [(n, blocks[0][k]) for n, k in enumerate("IJK") if blocks[0].get(k, 0.0) != 0.0]
+            given = [(n, v) for n, v in enumerate(angles(blocks[0])) if v != 0.0]
             if len(given) > 1:
                 raise Incomplete("several angles")
             return place(blocks[0]), about(*given[0]) if given else np.eye(3)
