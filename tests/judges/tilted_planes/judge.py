@@ -28,6 +28,8 @@ import refusals
 
 WHOLE = {68.2, 53.1, 53.6, 69.0, 53.0, 28.0, 4.0, 10.0, 49.0, 80.0}
 
+UPRIGHT = 5e-6  # rad; VP0232
+
 
 def run(vpost, *words):
     done = subprocess.run([str(vpost), *map(str, words)], capture_output=True, text=True, timeout=120)
@@ -78,8 +80,16 @@ def process(words):
     return [(k, v) for k, v in words if k not in "NXYZIJKRFABC" and not (k == "G" and v in (0, 1, 2, 3))]
 
 
+def leaning(m, motion):
+    """Angle between the tool and the normal of the plane that its motion is in, rad: pi where it points the other way."""
+    if motion.plane is None or None in motion.theta.values():
+        return 0.0
+    tool, normal = m.direction(motion.theta), motion.plane[1][:, 2]
+    return float(np.linalg.norm(np.cross(tool, normal))) if tool @ normal > 0 else math.pi
+
+
 def same_frame(a, b):
-    """The output's motion lies in the input's plane, with its angles (half a step of a rotary word apart) and its tool."""
+    """The output's motion lies in the input's plane, with its tool and work offset."""
     if (a.plane is None) != (b.plane is None) or a.tool != b.tool or not np.array_equal(a.offset, b.offset):
         return False
     return a.plane is None or (np.array_equal(a.plane[0], b.plane[0]) and np.array_equal(a.plane[1], b.plane[1]))
@@ -134,6 +144,9 @@ def compared(m, text_in, text_out, start):
         if any(not same_frame(ideal[0], x) for x in made):
             # Another plane in the output: its places are seen from the plane of the input.
             made = [seen_from(m, ideal[0], x) for x in made]
+        lean = max(leaning(m, x) for x in made)
+        if lean > UPRIGHT:
+            found.append(("upright", number, "the tool leans by %.1f urad" % (lean * 1e6)))
         feeds_in = [x for x in ideal if x.kind != "rapid"]
         feeds_out = [x for x in made if x.kind != "rapid"]
         if not feeds_in:

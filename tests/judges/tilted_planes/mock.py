@@ -1,8 +1,8 @@
-"""A corrector of this judge's own, slow and plain: outputs known to be right, and wrong ones by a wrong belief.
+"""A corrector of this judge's own, slow and plain: outputs known to be right, and wrong ones where the self-test misleads it.
 
 Every feed becomes lines between places at which the crooked machine, solved with machine.py, has the tip where the program
-says, as many as keep it there within a third of the tolerance. Cycles become their moves. `believes` changes what the
-corrector takes the machine and the program for; the judge keeps its own.
+says, as many as keep it there within a third of the tolerance. Cycles become their moves. The self-test changes what this
+corrector takes machine and program for; the judge keeps its own.
 """
 
 import math
@@ -56,8 +56,8 @@ class Output:
         return " ".join(out)
 
 
-def correct(text, m, believes=None):
-    """The output for a program on the machine m. `believes`: called with each motion that is read, to change it."""
+def correct(text, m):
+    """The output for a program on the machine m."""
     blocks = iter(reader.read(text, m))
     out = Output(m.spec)
     for line in text.splitlines():
@@ -73,9 +73,6 @@ def correct(text, m, believes=None):
         if not motions or np.isnan(motions[-1].u1).any():
             out.lines.append(line)  # no motion, or a rapid whose place nobody knows
             continue
-        for x in motions:
-            if believes:
-                believes(x)
         rest = re.sub(r"(?<![A-Z])[XYZABCIJKRQF]-?[\d.]+|(?<![A-Z])G0?[0123](?![\d.])|G8[13]", " ", line)
         turned = "".join(re.findall(r"[ABC]-?[\d.]+", line))
         fed = "".join(re.findall(r"F[\d.]+", line))
