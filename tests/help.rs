@@ -126,6 +126,60 @@ fn every_message_is_explained() {
     assert!(messages(&unknown).contains("there is no message `VP9999`"));
 }
 
+/// The entries of a page of messages: number, and what is written up to the next heading.
+fn entries(page: &str) -> Vec<(&str, &str)> {
+    let parts = page.split("\n### ").skip(1);
+    parts.map(|part| (&part[..6], part.split("\n## ").next().unwrap_or(part))).collect()
+}
+
+/// Three Latin words in a row that are not in backquotes.
+fn latin_sentence(text: &str) -> Option<String> {
+    let prose: Vec<&str> = text.split('`').step_by(2).collect();
+    let words: Vec<String> = prose.join(" | ").split_whitespace().map(str::to_owned).collect();
+    let latin = |word: &String| {
+        let word = word.trim_matches(|c: char| c.is_ascii_punctuation() && c != '|');
+        word.len() > 1 && word.chars().all(|c| c.is_ascii_lowercase())
+    };
+    words.windows(3).find(|three| three.iter().all(latin)).map(|three| three.join(" "))
+}
+
+#[test]
+fn messages_are_explained_in_russian() {
+    let root = crate::common::root();
+    let [english, russian] = ["docs/diagnostics.md", "docs/diagnostics.ru.md"]
+        .map(|page| std::fs::read_to_string(root.join(page)).expect("readable"));
+    let translated = entries(&russian);
+    assert!(translated.len() >= 16, "{}", translated.len());
+    // In the order of the English page, each once; the others are told in English.
+    let codes: Vec<&str> = translated.iter().map(|(code, _)| *code).collect();
+    let known: Vec<&str> =
+        entries(&english).iter().map(|(code, _)| *code).filter(|code| codes.contains(code)).collect();
+    assert_eq!(codes, known);
+    for (code, entry) in &translated {
+        let cyrillic = entry.chars().filter(|c| ('а'..='я').contains(c)).count();
+        assert!(cyrillic > 40, "{code}: {entry}");
+        assert_eq!(latin_sentence(entry), None, "{code}");
+        let ran = run(&["explain", code, "--lang", "ru"]);
+        assert_eq!(String::from_utf8_lossy(&ran.stdout).trim_end(), entry.trim_end());
+    }
+    assert_eq!(latin_sentence("Это `a b c` и the file is тут").as_deref(), Some("the file is"));
+    let whole = |arguments: &[&str], locale: &str| {
+        let mut command = crate::common::vpost();
+        command.env_remove("LC_MESSAGES").env_remove("LANG").env("LC_ALL", locale);
+        String::from_utf8(command.args(arguments).output().expect("it starts").stdout).expect("text")
+    };
+    assert!(whole(&["explain", "VP0509"], "ru_RU.UTF-8").contains("люфта"));
+    assert!(whole(&["explain", "VP0509"], "POSIX").contains("play"));
+    assert!(whole(&["explain", "VP0509", "--lang", "en"], "ru_RU.UTF-8").contains("play"));
+    let wrong = run(&["explain", "VP0509", "--lang", "russian"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(
+        messages(&wrong).contains("VP0002") && messages(&wrong).contains("`--lang ru`"),
+        "{}",
+        messages(&wrong)
+    );
+}
+
 #[test]
 fn every_command_has_a_manual_page() {
     let folder = tempfile::tempdir().expect("a temporary folder");

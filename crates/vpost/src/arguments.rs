@@ -7,6 +7,7 @@ use machine_model::EngineId;
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
 
+use crate::language::Language;
 use crate::values::{Conditions, Given, Point3, ToolLength, Unread, WorkOffset};
 
 /// Options of every job.
@@ -154,6 +155,11 @@ pub struct MessageOptions {
     /// Colours: auto, always, never.
     #[arg(long, value_enum, default_value_t = Color::Auto, global = true, hide_possible_values = true, help_heading = "Messages")]
     pub color: Color,
+    /// Language: en, ru; default: the locale's.
+    ///
+    /// Of `vpost explain`; LC_ALL, LC_MESSAGES, LANG say it otherwise.
+    #[arg(id = "lang", long = "lang", value_name = "LANG", global = true, help_heading = "Messages")]
+    pub language: Option<Given<Language>>,
 }
 
 /// Feed motion outside the calibrated volume.

@@ -3,10 +3,14 @@
 use clap::Args;
 
 use crate::file;
+use crate::language::Language;
 use crate::message::Failure;
 
 /// `docs/diagnostics.md`: an entry for each number.
 const PAGE: &str = include_str!(env!("DIAGNOSTICS_PAGE"));
+
+/// `docs/diagnostics.ru.md`: the same in Russian, for the numbers that it has.
+const PAGE_RU: &str = include_str!(env!("DIAGNOSTICS_PAGE_RU"));
 
 /// `vpost explain`
 #[derive(Debug, Args)]
@@ -17,10 +21,10 @@ pub struct Explain {
 }
 
 /// Prints the entry of a message.
-pub(crate) fn run(arguments: &Explain) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure> {
     let code = &arguments.code;
     let digits = code.strip_prefix("VP").or_else(|| code.strip_prefix("vp")).unwrap_or(code);
-    let entry = digits.parse::<u16>().ok().and_then(|number| entry(PAGE, number));
+    let entry = digits.parse::<u16>().ok().and_then(|number| entry_in(language, number));
     let Some(entry) = entry else {
         return Err(Failure::option(
             format!("there is no message `{code}`"),
@@ -28,6 +32,14 @@ pub(crate) fn run(arguments: &Explain) -> Result<(), Failure> {
         ));
     };
     file::print(format!("{entry}\n").as_bytes())
+}
+
+/// The entry of a number, whole in one language: in English where the Russian page has none.
+fn entry_in(language: Language, number: u16) -> Option<String> {
+    match language {
+        Language::English => entry(PAGE, number),
+        Language::Russian => entry(PAGE_RU, number).or_else(|| entry(PAGE, number)),
+    }
 }
 
 /// The part of a page under the heading of a number, without the example that causes the message.

@@ -20,6 +20,7 @@ mod file;
 mod grammar;
 mod growing;
 mod interrupt;
+pub mod language;
 pub mod manual;
 pub mod map;
 mod message;
@@ -46,6 +47,7 @@ use arguments::Color;
 use command_line::{Arguments, Command};
 use exit_status::{DONE, REFUSED, TRY_AGAIN, USAGE};
 use interrupt::Interrupt;
+use language::Language;
 use message::{Failure, Messages};
 
 /// Runs the command and says how it ended.
@@ -72,6 +74,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     // From here on: opening a named pipe waits, too.
     let interrupt = Interrupt::listen();
     let messages = Messages::new(arguments.shared.messages.color, arguments.shared.messages.quiet);
+    let language = Language::chosen(arguments.shared.messages.language.as_deref().copied());
     let result = match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),
@@ -84,7 +87,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Budget(a)) => budget::run(a, &arguments.shared, &messages),
         Some(Command::Profile(a)) => profile_command::run(a, &messages),
         Some(Command::Grammar(a)) => grammar::run(a, &messages),
-        Some(Command::Explain(a)) => explain::run(a),
+        Some(Command::Explain(a)) => explain::run(a, language),
         Some(Command::Completions(a)) => manual::print_completions(a),
         Some(Command::Man(a)) => manual::run(a),
         None => correct::run(&arguments.correct, &arguments.shared, &messages),
