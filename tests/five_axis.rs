@@ -315,6 +315,30 @@ fn in_a_tilted_plane_the_tip_goes_where_the_program_says() {
     }
 }
 
+#[test]
+fn a_plane_that_lies_elsewhere_is_found_whichever_of_its_blocks_says_so() {
+    let elsewhere = [
+        (PLANES[0], "X20. Y10. Z5.", "X20.02 Y10. Z5."),
+        (PLANES[1], "Z5.", "Z5.02"),
+        (PLANES[2], "Q1 X20. Y10.", "Q1 X20.02 Y10."),
+        (PLANES[2], "X50. Y10.", "X50. Y10.1"),
+        (PLANES[2], "Y18.660254 Z10.", "Y18.660254 Z10.1"),
+        (PLANES[3], "Z5.", "Z5.02"),
+        (PLANES[3], "I1. J0. K0.", "I0. J0.866025404 K0.5"),
+    ];
+    for (plane, right, wrong) in elsewhere {
+        let text = in_a_plane("A-30. C0.", plane);
+        let place = Place::new(&text);
+        let [from, to] = ["in.nc", "out.nc"].map(|name| place.path(name));
+        assert!(run(&[&from, "-m", PROFILE, "-o", &to]).status.success(), "{plane}");
+        let made = std::fs::read_to_string(&to).expect("written");
+        assert!(made.contains(right), "{right}:\n{made}");
+        std::fs::write(&to, made.replacen(right, wrong, 1)).expect("writable");
+        let check = run(&["check", &from, &to, "-m", PROFILE]);
+        assert_eq!(check.status.code(), Some(1), "{wrong}: {}", String::from_utf8_lossy(&check.stdout));
+    }
+}
+
 /// The machine with a rule by which the control turns its table.
 fn with_rule(place: &Place, rule: &str) -> String {
     let profile = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");

@@ -11,7 +11,7 @@ use std::fmt;
 use nc_syntax::dialect::{Action, CodeEntry, CycleCode, Dialect, GCode};
 use nc_syntax::{Block, ItemKind, Word};
 use smallvec::SmallVec;
-use toolpath::Motion;
+use toolpath::{Kinematics, Motion};
 use units::decimal::Decimal;
 
 use crate::interpreter::Step;
@@ -109,6 +109,31 @@ impl Said {
     }
 }
 
+/// A tilted plane in whole nanometres and thousandths of a microradian: zero, direction of its X, of its Z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Tilted([[i64; 3]; 3]);
+
+impl Tilted {
+    fn of(kinematics: &Kinematics) -> Option<Self> {
+        let Kinematics::Plane(plane) = kinematics else { return None };
+        let whole = |parts: [f64; 3], steps: f64| parts.map(|part| (part * steps).round() as i64);
+        let column = |k: usize| whole([0, 1, 2].map(|row| plane.turn[row][k]), 1e9);
+        Some(Self([whole(plane.zero_mm, 1e6), column(0), column(2)]))
+    }
+}
+
+impl fmt::Display for Tilted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self([zero, x, z]) = self;
+        let places = |parts: &[i64; 3], steps: f64| parts.map(|part| part as f64 / steps);
+        let ([x0, y0, z0], x, z) = (places(zero, 1e6), places(x, 1e9), places(z, 1e9));
+        write!(
+            f,
+            "a tilted plane with its zero at X{x0} Y{y0} Z{z0}, its X along {x:?} and its Z along {z:?}"
+        )
+    }
+}
+
 /// A setting that a block makes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting(Kind);
@@ -136,6 +161,8 @@ pub struct Process {
     modes: SmallVec<[Mode; 12]>,
     /// What is bound to the spindle, while it moves: a cycle that drills, a thread.
     cycle: Option<Mode>,
+    /// The working plane that X, Y and Z are coordinates of, however many blocks have said it.
+    tilted: Option<Tilted>,
 }
 
 impl Process {
@@ -161,6 +188,12 @@ impl Process {
             }
             Kind::Mode(mode) => self.set_mode(mode),
         }
+    }
+
+    /// What X, Y and Z are from here on; true where that is something else than before.
+    pub fn move_by(&mut self, kinematics: &Kinematics) -> bool {
+        let before = std::mem::replace(&mut self.tilted, Tilted::of(kinematics));
+        before != self.tilted
     }
 
     fn set_mode(&mut self, mode: Mode) {
@@ -201,6 +234,7 @@ impl Process {
         }
         let mut pairs =
             vec![[&self.cycle, &other.cycle].map(|cycle| text(cycle.as_ref(), "no cycle of the spindle"))];
+        pairs.push([self, other].map(|p| text(p.tilted.as_ref(), "no tilted plane")));
         for (at, letter) in LETTERS.iter().enumerate() {
             let none = format!("no {}", *letter as char);
             pairs.push([self, other].map(|p| text(p.words[at].as_ref(), &none)));
@@ -321,6 +355,8 @@ fn arguments(row: &CodeEntry, block: &Block<'_>, step: &Step) -> Arguments {
             _ => b"",
         },
         Action::MachineCoordinates => b"",
+        // Its words stand in several blocks, and add up to the plane.
+        Action::TiltedPlane => b"",
         _ => b"ABCIJKLPQRUVWXYZ",
     };
     let mut found: Arguments = block

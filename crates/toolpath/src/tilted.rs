@@ -70,9 +70,10 @@ impl TiltedPlane {
     /// The turn of the directions of X and Z, unit vectors ([`unit()`]); what they lack of a right angle Z gives.
     ///
     /// # Errors
-    /// The angle that they lack, rad, where it is above a microradian: which of the two stays, controls differ.
+    /// The angle that they lack, rad, where it is above two microradians, as much as vectors of six decimals may lack: which
+    /// of the two stays, controls differ.
     pub fn turn_by_directions(x: [f64; 3], z: [f64; 3]) -> Result<[[f64; 3]; 3], f64> {
-        const SQUARE_RAD: f64 = 1e-6;
+        const SQUARE_RAD: f64 = 2e-6;
         let lean = dot(x, z);
         if lean.abs() > SQUARE_RAD {
             return Err(lean);
@@ -348,6 +349,15 @@ mod tests {
 
     const X: Three = [1.0, 0.0, 0.0];
     const Y: Three = [0.0, 1.0, 0.0];
+
+    #[test]
+    fn vectors_of_six_decimals_are_at_right_angles() {
+        let unit = |v| unit(v).expect("a direction");
+        let (x, z) = ([0.122216, -0.500205, -0.857239], [-0.518475, -0.76867, 0.374607]);
+        assert!(TiltedPlane::turn_by_directions(unit(x), unit(z)).is_ok());
+        let lean = TiltedPlane::turn_by_directions(unit(x), unit([-0.518475, -0.76868, 0.374607]));
+        assert!(lean.is_err_and(|lean| (lean.abs() - 5e-6).abs() < 2e-6), "{lean:?}");
+    }
 
     #[test]
     fn the_angles_bring_the_tool_there_on_the_branch_that_was_asked_for() {

@@ -143,6 +143,9 @@ impl<'a, 'n> Program<'a, 'n> {
         let line = self.expanded.source_line(block.line).1;
         let limit_mm = self.job.options.tolerance_mm + rounding_mm(self.job, context);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
+        if self.process.move_by(&context.kinematics) {
+            self.process_number = None;
+        }
         for motion in motions {
             let (process, dwell) = match motion {
                 Motion::Hole(hole) => {
