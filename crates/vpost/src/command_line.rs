@@ -10,8 +10,6 @@ use crate::diagnose::Diagnose;
 use crate::explain::Explain;
 use crate::manual::Manual;
 use crate::map::Map;
-use crate::message::Failure;
-use crate::values::Unread;
 
 /// Rewrites NC programs so that a measured machine goes where the program says.
 #[derive(Debug, Parser)]
@@ -184,25 +182,4 @@ impl Arguments {
         }
         clap::FromArgMatches::from_arg_matches(&matches)
     }
-}
-
-/// A value that an option cannot take, said as all failures are; `None` where the command line is wrong otherwise.
-pub(crate) fn unread(error: &clap::Error) -> Option<Failure> {
-    let text = |kind| match error.get(kind)? {
-        clap::error::ContextValue::String(text) => Some(text.as_str()),
-        _ => None,
-    };
-    if error.kind() != clap::error::ErrorKind::ValueValidation {
-        return None;
-    }
-    // `--work-offset <G54=X,Y,Z>`
-    let option = text(clap::error::ContextKind::InvalidArg)?.split(' ').next()?;
-    let given = text(clap::error::ContextKind::InvalidValue)?;
-    let why = std::error::Error::source(error)?;
-    Some(match why.downcast_ref::<Unread>() {
-        Some(unread) => Failure::option(unread.message(option, given), unread.help(option)),
-        None => {
-            Failure::option(format!("`{option} {given}`: {why}"), "see `--help` for what the option takes")
-        }
-    })
 }

@@ -12,9 +12,9 @@ use crate::file;
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
-use crate::settings::Settings;
 use crate::summary::Summary;
-pub(crate) use program::{Growing, Input, Program, program};
+pub(crate) use jobs::correct::Program;
+pub(crate) use program::{Growing, Input, program};
 
 /// `vpost IN.nc -m PROFILE`
 pub(crate) fn run(
@@ -23,7 +23,7 @@ pub(crate) fn run(
     messages: &Messages,
 ) -> Result<(), Failure> {
     let path = arguments.input.as_deref().unwrap_or(Path::new("-"));
-    let settings = Settings::load(shared, messages)?;
+    let settings = crate::settings::load(shared, messages)?;
     Roles::default()
         .reads("the program", path)
         .reads_all("read by the profile", &settings.files)

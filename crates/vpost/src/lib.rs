@@ -8,14 +8,11 @@ pub mod budget;
 pub mod calibrate;
 mod check;
 pub mod command_line;
-mod conditions;
 mod correct;
 pub mod diagnose;
 mod exit_status;
-mod expand;
 pub mod explain;
 pub mod export;
-mod figures;
 mod file;
 mod grammar;
 mod growing;
@@ -24,24 +21,23 @@ pub mod language;
 pub mod manual;
 pub mod map;
 mod message;
-mod points;
 mod predict;
-mod profile;
 mod profile_command;
 mod roles;
 pub mod session;
 mod settings;
 mod solve;
 mod source;
-mod summary;
 mod terminal;
 mod to_disk;
 mod turned;
-pub mod values;
 
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
+
+pub use jobs::values;
+use jobs::{conditions, expand, figures, points, profile, summary};
 
 use arguments::Color;
 use command_line::{Arguments, Command};
@@ -55,7 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::read(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            if let Some(failure) = command_line::unread(&error) {
+            if let Some(failure) = jobs::options::unread(&error) {
                 Messages::new(Color::Auto, false).failure(&failure);
                 return ExitCode::from(USAGE);
             }

@@ -9,7 +9,7 @@ use crate::arguments::Color;
 use crate::command_line::Arguments;
 use crate::message::{Failure, Messages};
 use crate::settings::Settings;
-use crate::{check, diagnose, expand};
+use jobs::{check, diagnose, expand};
 
 /// Options, profile and dialect of a command line, read once.
 pub struct Session {
@@ -31,7 +31,7 @@ impl Session {
         let line = ["vpost"].iter().chain(options).chain(&["-"]).map(std::ffi::OsString::from);
         let arguments = Arguments::read(line).map_err(|error| Refusal(error.to_string()))?;
         let messages = Messages::new(Color::Never, true);
-        match Settings::load(&arguments.shared, &messages) {
+        match Settings::load(&arguments.shared.job) {
             Ok(mut settings) => {
                 settings.flow.limits = limits;
                 Ok(Self { settings, messages })

@@ -1,21 +1,19 @@
 //! Inverse: what to command so that the tool reaches points.
 
-use diagnostic::Diagnostic;
-use machine_model::{Command, EngineId};
+use jobs::figures::fixed;
+use jobs::points::{self, DIRECTION_COLUMNS, direction_fields};
+use jobs::solve::Solver;
+use machine_model::Command;
 
 use crate::arguments::{Shared, Solve};
-use crate::figures::fixed;
 use crate::message::{Failure, Messages};
-use crate::points::{self, DIRECTION_COLUMNS, direction_fields};
 use crate::settings::{machine, setup_tool};
-use crate::{conditions, file, profile};
-use rewrite::OUTSIDE;
+use crate::{file, profile};
 
 /// `vpost solve POINTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
-    let profile = profile::load_mill(machine(shared)?)?.profile;
-    let id = shared.job.engine().unwrap_or(profile.correction.engine);
-    let engine = conditions::engine(&profile, id, shared)?;
+    let profile = profile::load_mill(machine(&shared.job)?)?.profile;
+    let solver = Solver::new(&profile, &shared.job)?;
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
     let points = points::read(&name, &bytes, setup_tool(&profile), &profile)?;
@@ -28,16 +26,12 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
         }
     }
     out.push_str(",iterations,residual_um");
-    let turns = id == EngineId::RigidBody && profile.chain().has_rotary();
-    out.push_str(if turns { DIRECTION_COLUMNS } else { "" });
+    out.push_str(if solver.turns { DIRECTION_COLUMNS } else { "" });
     out.push('\n');
     for (row, (fields, command)) in points.rows.iter().enumerate() {
-        let solution = engine.solve(command).map_err(|error| {
-            let diagnostic =
-                Diagnostic::error(OUTSIDE, format!("point {} cannot be reached: {error}", row + 1))
-                    .help("leave the point out, or choose another engine with `--engine`");
-            Failure::refused(&name, &bytes, vec![diagnostic])
-        })?;
+        let solution = solver
+            .solve(row, command)
+            .map_err(|diagnostic| Failure::refused(&name, &bytes, vec![diagnostic]))?;
         out.push_str(&fields.join(","));
         for value in solution.linear_mm.iter() {
             out.push(',');
@@ -48,7 +42,7 @@ pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<()
             out.push_str(&fixed(command.rotary_rad[axis].to_degrees(), 9));
         }
         out.push_str(&format!(",{},{}", solution.iterations, fixed(solution.residual_mm * 1e3, 9)));
-        if turns {
+        if solver.turns {
             let command = Command { linear_mm: solution.linear_mm, ..*command };
             out.push_str(&direction_fields(profile.rigid_body_without_effects(), &command));
         }

@@ -78,8 +78,8 @@ struct Turned {
 
 /// `vpost predict --lathe PROGRAM -m PROFILE`
 pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let settings = Settings::load(shared, messages)?;
-    let lathe = settings.profile.lathe(&conditions(shared)?).map_err(|error| failure(&error))?;
+    let settings = crate::settings::load(shared, messages)?;
+    let lathe = settings.profile.lathe(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let Some(lathe) = lathe else {
         return Err(Failure::option(
             format!("{} is no lathe: its chain is {}", settings.profile_name, settings.profile.chain()),

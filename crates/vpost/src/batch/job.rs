@@ -24,7 +24,7 @@ pub(crate) struct Job {
 impl Job {
     /// Reads profile and dialect and refuses what no program could be corrected with.
     pub(crate) fn load(shared: &Shared, messages: &Messages) -> Result<Self, Failure> {
-        let settings = Settings::load(shared, messages)?;
+        let settings = crate::settings::load(shared, messages)?;
         settings.path_model()?;
         let hash = hash(&settings, shared)?;
         Ok(Self { settings, hash })
@@ -83,7 +83,7 @@ fn hash(settings: &Settings, shared: &Shared) -> Result<Hash, Failure> {
     put("options", format!("{:?}", settings.options).as_bytes());
     put("values", format!("{:?}", settings.flow.presets()).as_bytes());
     put("strict", &[u8::from(settings.strict)]);
-    put("conditions", format!("{:?}", conditions(shared)?).as_bytes());
+    put("conditions", format!("{:?}", conditions(&shared.job)?).as_bytes());
     put("guards", &[u8::from(shared.job.guard)]);
     Ok(hasher.finalize())
 }

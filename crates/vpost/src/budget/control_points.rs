@@ -10,10 +10,10 @@ use super::arguments::Budget;
 use crate::arguments::{Outside, Shared};
 use crate::figures::{printable, triple};
 use crate::file;
-use crate::map::options::{grid, rotary, tool};
 use crate::message::{Failure, Messages, OPTION, Report};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
+use jobs::map::{grid, rotary, tool};
 
 /// Most control points: with forty deviations they fill a quarter of a gigabyte.
 const MOST: usize = 250_000;
@@ -33,7 +33,7 @@ pub(super) fn read(
     machine: &Machine,
     messages: &Messages,
 ) -> Result<ControlPoints, Failure> {
-    let tool_mm = tool(arguments.tool_vector.as_ref(), shared, profile)?;
+    let tool_mm = tool(arguments.tool_vector.as_ref(), &shared.job, profile)?;
     match &arguments.points {
         Some(path) => {
             let (name, bytes) = (file::name(path), file::read(path)?);

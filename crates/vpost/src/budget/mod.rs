@@ -26,7 +26,7 @@ const OUT_OF_REACH: Code = Code(918);
 
 /// `vpost budget -m PROFILE`
 pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let path = machine(shared)?;
+    let path = machine(&shared.job)?;
     let profile::Loaded { profile, files, .. } = profile::load_mill(path)?;
     Roles::default()
         .reads_all("the control points", &arguments.points)
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
         ));
     }
     let target_mm = arguments.target.map(target_mm).transpose()?;
-    let model = profile.machine(&conditions(shared)?).map_err(|error| failure(&error))?;
+    let model = profile.machine(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let machine = Machine::new(model);
     if machine.deviations().is_empty() {
         let message =

@@ -112,7 +112,7 @@ impl Session {
             Some(base) => base.effect_terms(false).map_err(|error| conditions::failure(&error))?,
             None => Vec::new(),
         };
-        let conditions = conditions::conditions(shared)?;
+        let conditions = conditions::conditions(&shared.job)?;
         let has_base = base.is_some();
         Ok(Self {
             description,

@@ -167,7 +167,7 @@ impl Base {
         target: &Target,
         shared: &Shared,
     ) -> Result<Vec<WithEffects>, Failure> {
-        let given = conditions::conditions(shared)?;
+        let given = conditions::conditions(&shared.job)?;
         let each = temperatures_c.iter().map(|read_c| {
             let mut own = given;
             if let Some(measured_c) = target.temperature.or(*read_c) {

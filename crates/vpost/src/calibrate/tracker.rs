@@ -100,7 +100,7 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     } else {
         None
     };
-    let said = conditions(shared)?;
+    let said = conditions(&shared.job)?;
     let given_mm = arguments.u_um.map(|u| u * 1e-3);
     let (mut traverses, mut points, mut sheets, mut temperatures) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());

@@ -61,7 +61,7 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
         temperatures: Vec::new(),
         runs: Vec::new(),
     };
-    let said = conditions(shared)?;
+    let said = conditions(&shared.job)?;
     let mut known = BTreeMap::new();
     for path in &arguments.files {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;

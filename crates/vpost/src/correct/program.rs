@@ -5,10 +5,9 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use diagnostic::{Diagnostic, Severity};
-use rewrite::{Digest, Figures, Large, LargeEnd, Manner, Part};
+use jobs::correct::{self, Program};
+use rewrite::{Large, LargeEnd, Manner, Part};
 
-use crate::expand::{self, Lookup};
 use crate::file;
 use crate::message::{Failure, Report, Source};
 use crate::settings::Settings;
@@ -45,21 +44,6 @@ pub(crate) trait Growing: Write + Send {
     fn clear(&mut self) -> io::Result<()>;
 }
 
-/// A program that was corrected.
-#[derive(Debug)]
-pub(crate) struct Program {
-    pub(crate) name: String,
-    pub(crate) input: Digest,
-    pub(crate) output: Digest,
-    /// The output is not the input.
-    pub(crate) changed: bool,
-    pub(crate) figures: Figures,
-    /// What is to be said.
-    pub(crate) warnings: Vec<Report>,
-    /// Subprograms that were looked for.
-    pub(crate) lookups: Vec<Lookup>,
-}
-
 /// Corrects one program; `out` is empty, and of no use after an error.
 ///
 /// `progress` is told the share that is done, 0 to 1, and may end the work. A large program takes some megabytes
@@ -76,21 +60,9 @@ pub(crate) fn program(
 ) -> Result<Program, Failure> {
     let program = whatever_is_doubtful(input, settings, manner, out, progress)?;
     if settings.strict {
-        refuse_doubts(&program.warnings)?;
+        correct::refuse_doubts(&program.warnings)?;
     }
     Ok(program)
-}
-
-/// Refuses a program for the warnings that it is doubtful.
-fn refuse_doubts(warnings: &[Report]) -> Result<(), Failure> {
-    let doubts = |report: &Report| {
-        let doubtful = report.diagnostics.iter().filter(|warning| warning.severity == Severity::Doubt);
-        let diagnostics: Vec<Diagnostic> =
-            doubtful.map(|doubt| Diagnostic { severity: Severity::Error, ..doubt.clone() }).collect();
-        (!diagnostics.is_empty()).then(|| Report { source: report.source.clone(), diagnostics })
-    };
-    let doubts: Vec<Report> = warnings.iter().filter_map(doubts).collect();
-    if doubts.is_empty() { Ok(()) } else { Err(Failure::Refused(doubts)) }
 }
 
 fn whatever_is_doubtful(
@@ -194,18 +166,9 @@ fn in_memory(
     out: &mut impl Growing,
     progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
 ) -> Result<Program, Failure> {
-    let expand::Done { corrected, warnings, lookups } =
-        expand::correct(text, name, settings, manner.force, progress)?;
-    out.write_all(&corrected.text).map_err(|error| unwritten(&error))?;
-    Ok(Program {
-        name: name.to_owned(),
-        input: Digest::of(text, manner.hashes),
-        output: Digest::of(&corrected.text, manner.hashes),
-        changed: corrected.text != text,
-        figures: corrected.figures,
-        warnings,
-        lookups,
-    })
+    let (text, program) = correct::in_memory(text, name, settings, manner, progress)?;
+    out.write_all(&text).map_err(|error| unwritten(&error))?;
+    Ok(program)
 }
 
 /// A program on disk.

@@ -3,16 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gap_diagnosis::Options;
+use jobs::diagnose::{Books, Diagnosed, File, Measured, Model, of_one_machine};
 use machine_model::EngineId;
-use machine_model::effects::EffectKind;
 
-use super::change::{self, Change};
-use super::model::Model;
 use super::plan::{self, Form};
-use super::read::{Books, Measured, of_one_machine, read};
-use super::report::{Facts, File, Report};
-use super::{json, summary, written};
+use super::report::{Facts, Report};
+use super::{summary, written};
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
@@ -56,7 +52,7 @@ pub struct Diagnose {
 
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let model = Model::load(shared)?;
+    let model = Model::load(&shared.job)?;
     let Some(measurements) = &arguments.measurements else {
         return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
     };
@@ -69,31 +65,19 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         .writes("--write-profile", arguments.write_profile.as_deref())
         .are_apart()?;
     let books = if arguments.as_written { Books::AsWritten } else { Books::Checked };
-    let read = |path: &Path| read(path, &model, &arguments.ignore_column, books);
+    let read = |path: &Path| {
+        let bytes = file::read(path)?;
+        jobs::diagnose::read(&file::name(path), &bytes, &model, &arguments.ignore_column, books)
+    };
     let measured = read(measurements)?;
     let unseen = arguments.holdout.as_deref();
     let holdout = unseen.map(read).transpose()?;
     if let (Some(path), Some(held)) = (unseen, &holdout) {
-        of_one_machine(path, &measured, held)?;
+        of_one_machine(&file::name(path), &measured, held)?;
     }
-    let without = arguments
-        .without
-        .iter()
-        .map(|id| id.parse::<EffectKind>())
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
-    let steps = model.profile.resolution_mm.iter().map(|step| 1e3 * step);
-    let options = Options {
-        without,
-        seed: arguments.seed,
-        volume: Some(model.profile.volume()),
-        resolution_um: steps.fold(f64::INFINITY, f64::min),
-    };
     let unseen = holdout.as_ref().map(|h| &h.data);
-    let diagnosis = gap_diagnosis::diagnose(&measured.data, unseen, &options);
-    let changes: Vec<Vec<Change>> =
-        diagnosis.causes.iter().map(|cause| change::of(cause, &model.profile)).collect();
-    let json = json::text(&diagnosis, &changes);
+    let Diagnosed { diagnosis, changes, json } =
+        jobs::diagnose::diagnose(&model, &measured, holdout.as_ref(), arguments.seed, &arguments.without)?;
     if let Some(path) = &arguments.json {
         file::write(path, json.as_bytes())?;
     }
@@ -110,7 +94,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         file::write(path, page.html().as_bytes())?;
     }
     if let Some(path) = &arguments.write_profile {
-        written::write(path, machine(shared)?, &diagnosis)?;
+        written::write(path, machine(&shared.job)?, &diagnosis)?;
         messages.note(&format!("{} holds the profile with the causes as effects", file::name(path)));
     }
     file::print(summary::text(&diagnosis, &changes).as_bytes())
@@ -137,7 +121,7 @@ fn facts(
         chain: model.profile.chain().to_string(),
         calibrated,
         profile: File {
-            name: file::name(machine(shared)?),
+            name: file::name(machine(&shared.job)?),
             hash: model.hash.to_string(),
             comments: Vec::new(),
         },

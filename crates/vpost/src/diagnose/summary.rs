@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use gap_diagnosis::{Diagnosis, Verdict};
 
-use super::change::Change;
+use jobs::diagnose::change::Change;
 
 /// The text.
 pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {

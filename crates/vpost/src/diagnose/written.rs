@@ -7,9 +7,9 @@ use gap_diagnosis::{Diagnosis, Verdict};
 use machine_model::effects::EffectKind;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
-use super::json::{number, round};
 use crate::file;
 use crate::message::Failure;
+use jobs::diagnose::json::{number, round};
 
 /// The profile is no TOML any more: someone changed it meanwhile.
 const UNREADABLE: Code = Code(301);

@@ -12,19 +12,18 @@ mod text;
 
 pub use arguments::Map;
 
-use diagnostic::Diagnostic;
-use machine_model::{Engine, EngineId, PathModel, Range, Volume};
+use jobs::map::model;
+use machine_model::{EngineId, Range, Volume};
 
-use crate::arguments::{Outside, Shared};
-use crate::message::{Failure, Messages, Report};
-use crate::predict::POINT_OUTSIDE;
+use crate::arguments::Shared;
+use crate::message::{Failure, Messages};
 use crate::roles::Roles;
 use crate::settings::machine;
 use crate::{conditions, file, profile};
 
 /// `vpost map -m PROFILE`
 pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let loaded = profile::load_mill(machine(shared)?)?;
+    let loaded = profile::load_mill(machine(&shared.job)?)?;
     let profile = loaded.profile;
     Roles::default()
         .reads_all("read by the profile", &loaded.files)
@@ -33,7 +32,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
-    let conditions = conditions::conditions(shared)?;
+    let conditions = conditions::conditions(&shared.job)?;
     let id = shared.job.engine().unwrap_or(EngineId::RigidBody);
     let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
@@ -51,7 +50,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         file::write(path, &json::bytes(&study))?;
     }
     if let Some(path) = &arguments.html {
-        let facts = facts(arguments, shared, &profile, machine(shared)?, &loaded.hash);
+        let facts = facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash);
         let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
         file::write(path, page::html(&study, &facts, &json).as_bytes())?;
     }
@@ -80,15 +79,6 @@ fn facts(
     }
 }
 
-fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
-    engine.path_model().ok_or_else(|| {
-        Failure::option(
-            format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
-            "leave `--engine` out, or take one of the engines without `-published`",
-        )
-    })
-}
-
 /// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.
 pub(crate) fn outside(
     boxes_mm: impl IntoIterator<Item = [Range; 3]>,
@@ -96,28 +86,8 @@ pub(crate) fn outside(
     shared: &Shared,
     messages: &Messages,
 ) -> Result<(), Failure> {
-    for ranges in boxes_mm {
-        for (axis, range) in ranges.iter().enumerate() {
-            let known = volume.0[axis];
-            if known.contains(range.low) && known.contains(range.high) {
-                continue;
-            }
-            let message = format!(
-                "{} from {} to {} mm reaches outside the calibrated volume, {} to {} mm",
-                ['X', 'Y', 'Z'][axis],
-                range.low,
-                range.high,
-                known.low,
-                known.high
-            );
-            if shared.job.outside != Some(Outside::Clamp) {
-                let help = "stay inside, or take the nearest point's error with `--outside clamp`";
-                return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
-            }
-            let help = "the nodes outside have the error of the volume's nearest point";
-            let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
-            messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
-        }
+    for warning in jobs::map::outside(boxes_mm, volume, &shared.job)? {
+        messages.report(&warning);
     }
     Ok(())
 }

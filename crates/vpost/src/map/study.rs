@@ -4,6 +4,7 @@ use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
 use error_map::{Block, ErrorMap, Grid, Nodes, Plane, Statistics};
+use jobs::map::evaluated;
 use machine_model::{EngineId, PathModel, Range, Vector};
 use machine_profile::Profile;
 use rayon::prelude::*;
@@ -130,13 +131,6 @@ impl Study {
             map,
         })
     }
-}
-
-/// The map of a grid, on all cores; each node is computed by itself, so their number changes nothing.
-fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
-    let errors = (0..grid.len()).into_par_iter().with_min_len(256).map(|i| error_mm(&grid.place_mm(i)));
-    let errors = errors.collect();
-    ErrorMap::new(grid, errors)
 }
 
 fn parts(

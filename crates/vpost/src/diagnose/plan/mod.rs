@@ -10,11 +10,10 @@ use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Command, Vector};
 
-use super::model::Model;
 use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages};
-use crate::settings::Settings;
+use jobs::diagnose::Model;
 
 use lines::{Line, lines};
 
@@ -32,7 +31,7 @@ pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messa
     let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
     let text = match form {
         Form::Points => points(&plan),
-        Form::Program => program::text(&plan, &Settings::load(shared, messages)?)?,
+        Form::Program => program::text(&plan, &crate::settings::load(shared, messages)?)?,
     };
     file::print(text.as_bytes())?;
     let found = confounding(&design(&plan, &model.geometry));

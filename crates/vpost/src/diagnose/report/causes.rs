@@ -6,7 +6,7 @@ use report::chart::{Bar, Matrix, Range, matrix, ranges, waterfall as waterfall_c
 use report::page::{figure, table};
 use report::text::{number, percent, shown};
 
-use crate::diagnose::change::Change;
+use jobs::diagnose::change::Change;
 
 /// RMS of the gap as the causes are added.
 pub(super) fn waterfall(d: &Diagnosis) -> Markup {

@@ -1,15 +1,6 @@
 //! What a page is about: files, options and machine.
 
-/// A file that was read.
-#[derive(Debug, Clone)]
-pub(in crate::diagnose) struct File {
-    /// As it was given.
-    pub name: String,
-    /// BLAKE3 of its bytes.
-    pub hash: String,
-    /// Its comment lines.
-    pub comments: Vec<String>,
-}
+use jobs::diagnose::File;
 
 /// Files, options and machine.
 #[derive(Debug, Clone)]

@@ -8,5 +8,5 @@ mod provenance;
 mod rows;
 mod unseen;
 
-pub(super) use facts::{Facts, File};
+pub(super) use facts::Facts;
 pub(super) use page::Report;

@@ -8,7 +8,7 @@ use report::text::{number, shown};
 use super::facts::Facts;
 use super::rows::Rows;
 use super::{causes, pictures, provenance, unseen};
-use crate::diagnose::change::Change;
+use jobs::diagnose::change::Change;
 
 /// What a page is made of.
 pub(in crate::diagnose) struct Report<'a> {

@@ -5,7 +5,9 @@ use maud::{Markup, html};
 use report::page::table;
 use report::text::{number, shown};
 
-use super::facts::{Facts, File};
+use jobs::diagnose::File;
+
+use super::facts::Facts;
 
 /// Most comment lines shown, and most runs.
 const MOST: usize = 60;

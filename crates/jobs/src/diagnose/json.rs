@@ -26,7 +26,8 @@ struct Document<'a> {
 }
 
 /// The file's text.
-pub(super) fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
+#[must_use]
+pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let document = Document {
         schema: "vpost.diagnosis/1",
         verdict: d.verdict.name(),
@@ -135,7 +136,8 @@ fn cause(c: &Cause, changes: &[Change]) -> Value {
 }
 
 /// Six significant digits: more would only be rounding noise, and differ where a library does.
-pub(super) fn round(value: f64) -> f64 {
+#[must_use]
+pub fn round(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return if value.is_finite() { 0.0 } else { f64::MAX.copysign(value) };
     }
@@ -143,7 +145,8 @@ pub(super) fn round(value: f64) -> f64 {
 }
 
 /// A number as TOML writes it, six significant digits.
-pub(super) fn number(value: f64) -> String {
+#[must_use]
+pub fn number(value: f64) -> String {
     let text = format!("{}", round(value));
     if text.contains(['.', 'e']) { text } else { format!("{text}.0") }
 }

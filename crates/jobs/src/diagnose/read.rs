@@ -1,27 +1,36 @@
 //! A measurement file with its predictions.
 
-use std::path::Path;
-
 use gap_diagnosis::{Measurements, Row};
 use machine_profile::Profile;
 
 use super::books;
 use super::measurements;
 use super::model::{Model, geometry};
-use super::report::File;
-use crate::file;
 use crate::message::Failure;
 use crate::settings::setup_tool;
 
 /// A measurement file with its predictions, and what a report says of the file.
-pub(super) struct Measured {
-    pub(super) data: Measurements,
-    pub(super) file: File,
+pub struct Measured {
+    /// Rows with their predictions.
+    pub data: Measurements,
+    /// Where they stand.
+    pub file: File,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone)]
+pub struct File {
+    /// As it was given.
+    pub name: String,
+    /// BLAKE3 of its bytes.
+    pub hash: String,
+    /// Its comment lines.
+    pub comments: Vec<String>,
 }
 
 /// Whether rows that fit better with a sign flipped or two columns swapped are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Books {
+pub enum Books {
     /// They are.
     Checked,
     /// The columns are taken as they are named.
@@ -29,7 +38,10 @@ pub(super) enum Books {
 }
 
 /// Refuses a hold-out whose rows move what the measurements hold still: a rotary axis, or nothing that they move.
-pub(super) fn of_one_machine(path: &Path, measured: &Measured, held: &Measured) -> Result<(), Failure> {
+///
+/// # Errors
+/// The axis.
+pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Result<(), Failure> {
     /// An angle that is the same, rad.
     const SAME_RAD: f64 = 1e-6;
     let turns = |data: &Measurements, axis: usize| {
@@ -39,7 +51,7 @@ pub(super) fn of_one_machine(path: &Path, measured: &Measured, held: &Measured) 
     };
     let refuse = |message: String| {
         Failure::option(
-            format!("the hold-out {}: {message}", file::name(path)),
+            format!("the hold-out {name}: {message}"),
             "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
         )
     };
@@ -67,18 +79,28 @@ pub(super) fn of_one_machine(path: &Path, measured: &Measured, held: &Measured) 
 }
 
 /// Reads measurements, and leaves it at that.
-pub(crate) fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
+///
+/// # Errors
+/// What is wrong with the table.
+pub fn readable(bytes: &[u8], profile: &Profile) -> Result<(), Failure> {
     let (data, sheet) =
         measurements::read("measurements", bytes, setup_tool(profile), &[], &geometry(profile))?;
     measurements::commands_and_frames(&sheet, &data, profile)
 }
 
 /// Reads a file and predicts its rows; columns in `ignore` are passed over.
-pub(super) fn read(path: &Path, model: &Model, ignore: &[String], books: Books) -> Result<Measured, Failure> {
-    let bytes = file::read(path)?;
+///
+/// # Errors
+/// What is wrong with the table; what an effect of the profile depends on and the table does not say.
+pub fn read(
+    name: &str,
+    bytes: &[u8],
+    model: &Model,
+    ignore: &[String],
+    books: Books,
+) -> Result<Measured, Failure> {
     let tool_mm = setup_tool(&model.profile);
-    let name = file::name(path);
-    let (mut data, sheet) = measurements::read(&name, &bytes, tool_mm, ignore, &model.geometry)?;
+    let (mut data, sheet) = measurements::read(name, bytes, tool_mm, ignore, &model.geometry)?;
     measurements::commands_and_frames(&sheet, &data, &model.profile)?;
     let rigid = model.profile.rigid_body_without_effects();
     let predict = |row: &mut Row| -> Result<(), Failure> {
@@ -108,7 +130,7 @@ pub(super) fn read(path: &Path, model: &Model, ignore: &[String], books: Books) 
     }
     in_order_of_time(&mut data);
     let comments = sheet.comments().to_vec();
-    let file = File { name, hash: blake3::hash(&bytes).to_string(), comments };
+    let file = File { name: name.to_owned(), hash: blake3::hash(bytes).to_string(), comments };
     Ok(Measured { data, file })
 }
 

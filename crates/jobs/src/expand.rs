@@ -10,8 +10,8 @@ use nc_program::{Evidence, Finding};
 use rewrite::{Corrected, Job};
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::Shared;
 use crate::message::{Failure, Report, Source};
+use crate::options::JobOptions;
 use crate::settings::Settings;
 
 /// A subprogram's file is no larger.
@@ -19,7 +19,7 @@ const LARGEST_FILE: u64 = 64 << 20;
 
 /// What `--set` and `--include` say.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Flow {
+pub struct Flow {
     presets: Vec<Preset>,
     folders: Vec<PathBuf>,
     /// Where work ends that would not.
@@ -28,8 +28,11 @@ pub(crate) struct Flow {
 
 impl Flow {
     /// Reads the options.
-    pub(crate) fn load(shared: &Shared) -> Result<Self, Failure> {
-        for folder in &shared.job.include {
+    ///
+    /// # Errors
+    /// A folder that is none.
+    pub fn load(options: &JobOptions) -> Result<Self, Failure> {
+        for folder in &options.include {
             if !folder.is_dir() {
                 return Err(Failure::option(
                     format!("`--include {}` is no folder", folder.display()),
@@ -37,12 +40,13 @@ impl Flow {
                 ));
             }
         }
-        let presets = shared.job.set.iter().map(|given| (**given).clone()).collect();
-        Ok(Self { presets, folders: shared.job.include.clone(), limits: Limits::default() })
+        let presets = options.set.iter().map(|given| (**given).clone()).collect();
+        Ok(Self { presets, folders: options.include.clone(), limits: Limits::default() })
     }
 
     /// Values of variables.
-    pub(crate) fn presets(&self) -> &[Preset] {
+    #[must_use]
+    pub fn presets(&self) -> &[Preset] {
         &self.presets
     }
 
@@ -72,7 +76,10 @@ impl Flow {
 }
 
 /// A text's plain program.
-pub(crate) fn expanded<'a>(text: &'a [u8], name: &str, settings: &Settings) -> Result<Expanded<'a>, Failure> {
+///
+/// # Errors
+/// What cannot be executed.
+pub fn expanded<'a>(text: &'a [u8], name: &str, settings: &Settings) -> Result<Expanded<'a>, Failure> {
     expanded_with(text, name, settings, &|file| settings.flow.read(file))
 }
 
@@ -91,7 +98,8 @@ fn expanded_with<'a>(
 }
 
 /// Diagnostics about a plain program as reports about the files it was made from.
-pub(crate) fn reports(
+#[must_use]
+pub fn reports(
     expanded: &Expanded<'_>,
     name: &str,
     text: &[u8],
@@ -106,8 +114,10 @@ pub(crate) fn reports(
 
 /// A corrected program and what is to be said about it.
 #[derive(Debug)]
-pub(crate) struct Done {
+pub struct Done {
+    /// The program and its figures.
     pub corrected: Corrected,
+    /// By the file they are about.
     pub warnings: Vec<Report>,
     /// Subprograms that were looked for.
     pub lookups: Vec<Lookup>,
@@ -115,8 +125,10 @@ pub(crate) struct Done {
 
 /// A subprogram's file that was looked for: its name, and the hash of what was there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Lookup {
+pub struct Lookup {
+    /// Of the file.
     pub name: String,
+    /// Of its bytes, where it was there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blake3: Option<String>,
 }
@@ -128,7 +140,8 @@ impl Lookup {
     }
 
     /// True where the same lookup finds the same today.
-    pub(crate) fn holds(&self, flow: &Flow) -> bool {
+    #[must_use]
+    pub fn holds(&self, flow: &Flow) -> bool {
         *self == Self::of(&self.name, &flow.read(&self.name))
     }
 }
@@ -136,7 +149,10 @@ impl Lookup {
 /// Expands and corrects a program; what needs no correction comes out byte for byte, flow and all.
 ///
 /// `progress` is told the share that is done, 0 to 1, and may end the work.
-pub(crate) fn correct(
+///
+/// # Errors
+/// What is wrong with the program, or what `progress` said.
+pub fn correct(
     text: &[u8],
     name: &str,
     settings: &Settings,
@@ -273,9 +289,6 @@ impl From<Vec<Diagnostic>> for PipelineEnd {
 mod tests {
 
     use super::*;
-    use crate::arguments::Color;
-    use crate::command_line::Arguments;
-    use crate::message::Messages;
 
     #[test]
     fn the_short_way_is_the_long_way() {
@@ -283,9 +296,12 @@ mod tests {
         let profile = root.join("machine-profiles/stan_s500.toml");
         let (mut short, mut long, mut warned) = (0, 0, 0);
         for dialect in ["linuxcnc", "fanuc"] {
-            let line = ["vpost", "-m", profile.to_str().unwrap(), "-d", dialect, "-"];
-            let shared = Arguments::read(line.map(std::ffi::OsString::from)).unwrap().shared;
-            let settings = Settings::load(&shared, &Messages::new(Color::Never, true)).unwrap();
+            let options = JobOptions {
+                machine: Some(profile.clone()),
+                dialect: Some(dialect.to_owned()),
+                ..JobOptions::default()
+            };
+            let settings = Settings::load(&options).unwrap();
             let samples = root.join("samples").read_dir().unwrap().map(|entry| entry.unwrap().path());
             let mut programs: Vec<(String, Vec<u8>)> = samples
                 .filter(|path| path.is_file() && path.to_string_lossy().contains(dialect))

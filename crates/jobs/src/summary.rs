@@ -9,7 +9,7 @@ use crate::settings::Settings;
 
 /// The JSON of `--summary`.
 #[derive(Debug, Serialize)]
-pub(crate) struct Summary<'a> {
+pub struct Summary<'a> {
     schema: &'static str,
     version: &'static str,
     input: File<'a>,
@@ -64,7 +64,8 @@ struct Warning {
 }
 
 /// Micrometres with three decimals: nanometres are below everything that is promised.
-pub(crate) fn um(mm: f64) -> f64 {
+#[must_use]
+pub fn um(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e3
 }
 
@@ -74,7 +75,9 @@ fn tilt(figures: &Figures) -> Option<(f64, u64)> {
 }
 
 impl<'a> Summary<'a> {
-    pub(crate) fn new(settings: &'a Settings, program: &'a Program) -> Self {
+    /// What is said of a program.
+    #[must_use]
+    pub fn new(settings: &'a Settings, program: &'a Program) -> Self {
         let Program { name, input, output, changed, figures, .. } = program;
         let hex = |digest: &Digest| digest.hash.map_or_else(String::new, |hash| hash.to_hex().to_string());
         Self {
@@ -116,14 +119,16 @@ impl<'a> Summary<'a> {
     }
 
     /// The JSON text, one trailing line end.
-    pub(crate) fn json(&self) -> Vec<u8> {
+    #[must_use]
+    pub fn json(&self) -> Vec<u8> {
         let mut text = serde_json::to_vec_pretty(self).expect("plain values always serialise");
         text.push(b'\n');
         text
     }
 
     /// The same in one line for people.
-    pub(crate) fn line(figures: &Figures) -> String {
+    #[must_use]
+    pub fn line(figures: &Figures) -> String {
         let tilt = tilt(figures).map_or_else(String::new, |(rad, line)| {
             format!("; tool leans by {:.1} urad (line {line})", rad * 1e6)
         });

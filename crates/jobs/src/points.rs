@@ -2,17 +2,18 @@
 
 use machine_model::Command;
 use machine_profile::Profile;
-pub(crate) use measurement_files::Points;
-pub(crate) use measurement_files::codes::POINTS;
+pub use measurement_files::Points;
+pub use measurement_files::codes::POINTS;
 
 use crate::figures::fixed;
 use crate::message::Failure;
 
 /// Columns of the tool's direction, for machines that turn it or the workpiece.
-pub(crate) const DIRECTION_COLUMNS: &str = ",tool_i,tool_j,tool_k,tilt_urad";
+pub const DIRECTION_COLUMNS: &str = ",tool_i,tool_j,tool_k,tilt_urad";
 
 /// The tool's real direction as the workpiece sees it, from the tip up, and its angle from the ideal one, µrad.
-pub(crate) fn direction_fields(machine: &machine_model::RigidBody, command: &Command) -> String {
+#[must_use]
+pub fn direction_fields(machine: &machine_model::RigidBody, command: &Command) -> String {
     let [_, real] = machine.directions(command);
     let tilt_urad = machine_model::PathModel::tilt_rad(machine, command) * 1e6;
     let [i, j, k] = [real.x, real.y, real.z].map(|v| fixed(v, 9));
@@ -20,11 +21,9 @@ pub(crate) fn direction_fields(machine: &machine_model::RigidBody, command: &Com
 }
 
 /// Reads points for a machine; `tool_mm`: the tool of rows without one.
-pub(crate) fn read(
-    name: &str,
-    bytes: &[u8],
-    tool_mm: [f64; 3],
-    profile: &Profile,
-) -> Result<Points, Failure> {
+///
+/// # Errors
+/// What is wrong with the table.
+pub fn read(name: &str, bytes: &[u8], tool_mm: [f64; 3], profile: &Profile) -> Result<Points, Failure> {
     Ok(Points::read(name, bytes, tool_mm, profile.has_rotary(), &profile.chain().to_string())?)
 }

@@ -6,27 +6,35 @@ use machine_model::effects::{EffectGeometry, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
 
-use crate::arguments::Shared;
 use crate::message::Failure;
+use crate::options::JobOptions;
 use crate::profile;
 use crate::settings::machine;
 
 /// What predicts the rows: engine or tables, with the profile's effects.
-pub(super) struct Model {
-    pub(super) profile: Profile,
+pub struct Model {
+    /// The machine.
+    pub profile: Profile,
     /// Of the profile and its tables.
-    pub(super) hash: blake3::Hash,
+    pub hash: blake3::Hash,
     /// The profile and its tables.
-    pub(super) files: Vec<PathBuf>,
-    pub(super) engine: Option<Box<dyn machine_model::Engine>>,
-    pub(super) effects: Vec<EffectTerm>,
-    pub(super) geometry: EffectGeometry,
+    pub files: Vec<PathBuf>,
+    /// Where it is not the tables of the profile.
+    pub engine: Option<Box<dyn machine_model::Engine>>,
+    /// The profile's.
+    pub effects: Vec<EffectTerm>,
+    /// Where they act.
+    pub geometry: EffectGeometry,
 }
 
 impl Model {
-    pub(super) fn load(shared: &Shared) -> Result<Self, Failure> {
-        let profile::Loaded { profile, hash, files } = profile::load_mill(machine(shared)?)?;
-        let built = shared.job.engine().map(|id| build(id, profile.engine_inputs_without_effects()));
+    /// Reads the profile, and what the options say of the engine.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn load(options: &JobOptions) -> Result<Self, Failure> {
+        let profile::Loaded { profile, hash, files } = profile::load_mill(machine(options)?)?;
+        let built = options.engine().map(|id| build(id, profile.engine_inputs_without_effects()));
         let engine = built.transpose().map_err(|error| {
             Failure::option(error.to_string(), "use an engine the profile has the tables for")
         })?;
@@ -42,6 +50,7 @@ impl Model {
     }
 }
 
+/// Where effects of a profile act.
 pub(super) fn geometry(profile: &Profile) -> EffectGeometry {
     let mut geometry = EffectGeometry::from_chain(profile.chain());
     for (to, from) in geometry.rotary_centre_mm.iter_mut().zip(&profile.description.rotary) {

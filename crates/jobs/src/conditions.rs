@@ -5,22 +5,25 @@ use machine_model::effects::Conditions;
 use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
 
-use crate::arguments::Shared;
-use crate::message::{Failure, Messages, OPTION, Report};
+use crate::message::{Failure, OPTION, Report};
+use crate::options::JobOptions;
 use crate::values::Condition;
 
 /// An effect depends on a condition that nobody gave.
-pub(crate) const UNKNOWN_CONDITION: Code = Code(401);
+pub const UNKNOWN_CONDITION: Code = Code(401);
 /// The engine cannot take the profile's effects into account.
-pub(crate) const ENGINE_WITHOUT_EFFECTS: Code = Code(402);
+pub const ENGINE_WITHOUT_EFFECTS: Code = Code(402);
 
 /// Warning: another temperature than that of the calibration.
 const OTHER_TEMPERATURE: Code = Code(1111);
 
 /// The conditions of the command line; later ones fill in, none may stand there twice.
-pub(crate) fn conditions(shared: &Shared) -> Result<Conditions, Failure> {
+///
+/// # Errors
+/// The one that does.
+pub fn conditions(options: &JobOptions) -> Result<Conditions, Failure> {
     let mut found = Conditions::default();
-    for given in &shared.job.at {
+    for given in &options.at {
         for (condition, value) in &given.0 {
             // One temperature for all axes beside one of an axis says two things of that axis.
             let places: Vec<&mut Option<f64>> = match condition {
@@ -43,17 +46,21 @@ pub(crate) fn conditions(shared: &Shared) -> Result<Conditions, Failure> {
     Ok(found)
 }
 
-/// Warns where the machine is warmer or colder than it was calibrated, and no effect of the profile says what that does: steel
+/// A warning where the machine is warmer or colder than it was calibrated, and no effect of the profile says what that does: steel
 /// (11.5 µm/m/K) over the longest edge of the calibrated volume, where that exceeds the tolerance.
-pub(crate) fn warn_of_temperature(
+///
+/// # Errors
+/// A condition that is given twice.
+pub fn temperature(
     profile: &Profile,
-    shared: &Shared,
+    options: &JobOptions,
     tolerance_um: f64,
-    messages: &Messages,
-) -> Result<(), Failure> {
+) -> Result<Option<Report>, Failure> {
     const STEEL_UM_PER_M_K: f64 = 11.5;
-    let Some(calibrated_c) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) else { return Ok(()) };
-    let temperatures = conditions(shared)?.temp_c;
+    let Some(calibrated_c) = profile.calibrated.as_ref().and_then(|c| c.temperature_c) else {
+        return Ok(None);
+    };
+    let temperatures = conditions(options)?.temp_c;
     let mut worst: Option<(char, f64, f64)> = None;
     for (axis, temperature) in temperatures.iter().enumerate() {
         let letter = ['X', 'Y', 'Z'][axis];
@@ -66,25 +73,28 @@ pub(crate) fn warn_of_temperature(
             worst = Some((letter, temperature, um));
         }
     }
-    if let Some((letter, temperature, um)) = worst {
+    Ok(worst.map(|(letter, temperature, um)| {
         let message = format!(
             "the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}"
         );
         let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(format!(
             "calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect"
         ));
-        messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
-    }
-    Ok(())
+        Report { source: None, diagnostics: vec![diagnostic] }
+    }))
 }
 
 /// The engine of a name or of the profile, with the profile's effects under the conditions of the command line.
-pub(crate) fn engine(profile: &Profile, id: EngineId, shared: &Shared) -> Result<Box<dyn Engine>, Failure> {
-    profile.engine(id, &conditions(shared)?).map_err(|error| failure(&error))
+///
+/// # Errors
+/// The profile lacks what the engine takes, or the options a condition.
+pub fn engine(profile: &Profile, id: EngineId, options: &JobOptions) -> Result<Box<dyn Engine>, Failure> {
+    profile.engine(id, &conditions(options)?).map_err(|error| failure(&error))
 }
 
 /// What to say, and what to type.
-pub(crate) fn failure(error: &EngineError) -> Failure {
+#[must_use]
+pub fn failure(error: &EngineError) -> Failure {
     let (code, help) = match error {
         EngineError::Build(_) => (OPTION, "see `vpost profile show` for what the profile gives".to_owned()),
         EngineError::Effect(_) => (UNKNOWN_CONDITION, "correct the profile's [[effect]]".to_owned()),

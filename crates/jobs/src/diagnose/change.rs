@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// One number of the machine that a cause changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Change {
+pub struct Change {
     /// Its name for people: `EC0Y`, `play of Y`, or a coefficient of the effect.
     name: String,
     /// What the profile says now; `null` where its tables hold it, as a curve.
@@ -20,7 +20,8 @@ pub(super) struct Change {
 
 impl Change {
     /// `EC0Y 85.0 → 148.0 µrad`, or `play of Y +11.2 µm` where no one number of the profile holds it.
-    pub(super) fn text(&self) -> String {
+    #[must_use]
+    pub fn text(&self) -> String {
         match self.from {
             Some(from) => format!("{} {from:.1} → {:.1} {}", self.name, from + self.by, self.unit),
             None => format!("{} {:+.1} {}", self.name, self.by, self.unit),
@@ -31,7 +32,8 @@ impl Change {
 /// What a cause changes in a profile: the profile's own key where it has one for it, else the effect's coefficients.
 ///
 /// Nothing for faults of the instrument, which are none of the machine.
-pub(super) fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
+#[must_use]
+pub fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
     let kind = cause.term.kind();
     if kind.is_instrument() {
         return Vec::new();

@@ -3,7 +3,8 @@
 use machine_model::Vector;
 
 /// A number with fixed decimals, never a negative zero.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     if text.starts_with('-') && text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
         text[1..].to_owned()
@@ -13,31 +14,37 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// Micrometres with two decimals.
-pub(crate) fn um(mm: f64) -> String {
+#[must_use]
+pub fn um(mm: f64) -> String {
     fixed(mm * 1e3, 2)
 }
 
 /// Three numbers, apart by blanks.
-pub(crate) fn triple(v: &Vector, decimals: usize) -> String {
+#[must_use]
+pub fn triple(v: &Vector, decimals: usize) -> String {
     [v.x, v.y, v.z].map(|value| fixed(value, decimals)).join(" ")
 }
 
 /// A name on one line: control characters could act on a terminal.
-pub(crate) fn printable(name: &str) -> String {
+#[must_use]
+pub fn printable(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// Millimetres to a nanometre, for JSON.
-pub(crate) fn millimetres(v: &Vector) -> [f64; 3] {
+#[must_use]
+pub fn millimetres(v: &Vector) -> [f64; 3] {
     [v.x, v.y, v.z].map(|value| round(value, 6))
 }
 
 /// Micrometres, to a tenth of a nanometre.
-pub(crate) fn rounded_um(mm: f64) -> f64 {
+#[must_use]
+pub fn rounded_um(mm: f64) -> f64 {
     round(mm * 1e3, 4)
 }
 
 /// Decimals beyond the last that means something would only be rounding noise. Never a negative zero.
-pub(crate) fn round(value: f64, decimals: usize) -> f64 {
+#[must_use]
+pub fn round(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse::<f64>().unwrap_or(value) + 0.0
 }

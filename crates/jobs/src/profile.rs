@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use diagnostic::{Code, Diagnostic};
 use machine_profile::{Profile, ProfileError};
 
-use crate::file;
+use crate::lines;
 use crate::message::{Failure, Report, Source, file_diagnostic};
 
 /// A profile and the bytes it was made from.
-pub(crate) struct Loaded {
+pub struct Loaded {
+    /// The machine.
     pub profile: Profile,
     /// Hash of the profile and of every table it names, in the order they were read.
     pub hash: blake3::Hash,
@@ -18,23 +19,29 @@ pub(crate) struct Loaded {
 }
 
 /// Reads the profile of a mill: what a command that knows points of space takes.
-pub(crate) fn load_mill(path: &Path) -> Result<Loaded, Failure> {
+///
+/// # Errors
+/// What is wrong with it; it is a lathe's.
+pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
     let loaded = load(path)?;
     match &loaded.profile.lathe {
         None => Ok(loaded),
         Some(lathe) => Err(Failure::option(
-            format!("{} is the profile of a lathe, {}", file::name(path), lathe.chain),
+            format!("{} is the profile of a lathe, {}", lines::name(path), lathe.chain),
             "of lathes `vpost correct`, `batch`, `check` and `predict --lathe PROGRAM` know",
         )),
     }
 }
 
 /// Reads a profile and the tables it names; everything wrong with them is one failure.
-pub(crate) fn load(path: &Path) -> Result<Loaded, Failure> {
+///
+/// # Errors
+/// That.
+pub fn load(path: &Path) -> Result<Loaded, Failure> {
     let bytes = std::fs::read(path)
-        .map_err(|error| Failure::usage(file_diagnostic(&file::name(path), "read", &error)))?;
+        .map_err(|error| Failure::usage(file_diagnostic(&lines::name(path), "read", &error)))?;
     let source = |name: &str, bytes: &[u8]| Some(Source::whole(name, bytes));
-    let name = file::name(path);
+    let name = lines::name(path);
     let Ok(text) = std::str::from_utf8(&bytes) else {
         let at = std::str::from_utf8(&bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
         let diagnostic = Diagnostic::error(Code(301), "a profile is UTF-8 text")

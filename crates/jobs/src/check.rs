@@ -1,0 +1,141 @@
+//! The closed loop: two programs through the machine model, what they make of the part compared.
+
+use nc_expand::Expanded;
+use path_comparison::{Comparison, Traces};
+use rewrite::Checked;
+use serde::Serialize;
+
+use crate::expand;
+use crate::message::Failure;
+use crate::settings::Settings;
+
+/// The JSON of `vpost check --json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    /// `vpost.check/1`
+    pub schema: &'static str,
+    /// No finding.
+    pub passed: bool,
+    /// That was asked for.
+    pub tolerance_um: f64,
+    /// Tolerance and rounding of the output.
+    pub limit_um: f64,
+    /// Of the program as posted.
+    pub feed_motions_in: usize,
+    /// Of the corrected one.
+    pub feed_motions_out: usize,
+    /// That the correction put in.
+    pub approach_moves: usize,
+    /// How far the tool is off the path at most, by the program as posted.
+    pub deviation_before_um: f64,
+    /// Where.
+    pub deviation_before_line: u64,
+    /// The same by the corrected program.
+    pub deviation_after_um: f64,
+    /// Where.
+    pub deviation_after_line: u64,
+    /// What is wrong.
+    pub findings: Vec<String>,
+}
+
+impl Outcome {
+    /// What a comparison says.
+    #[must_use]
+    pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<String>) -> Self {
+        let um = |mm: f64| (mm * 1e6).round() / 1e3;
+        Self {
+            schema: "vpost.check/1",
+            passed: findings.is_empty(),
+            tolerance_um: um(settings.options.tolerance_mm),
+            limit_um: um(limit_mm(settings, comparison)),
+            feed_motions_in: comparison.wanted,
+            feed_motions_out: comparison.commanded,
+            approach_moves: comparison.approaches,
+            deviation_before_um: um(comparison.before.largest_mm),
+            deviation_before_line: comparison.before.line,
+            deviation_after_um: um(comparison.after.largest_mm),
+            deviation_after_line: comparison.after.line,
+            findings,
+        }
+    }
+
+    /// The JSON text, one trailing line end.
+    #[must_use]
+    pub fn json(&self) -> Vec<u8> {
+        let mut text = serde_json::to_vec_pretty(self).expect("plain values always serialise");
+        text.push(b'\n');
+        text
+    }
+
+    /// The same for people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{} feed motions in, {} out\nbefore: the tool is up to {:8.3} um off its path (line {})\nafter:  the tool is up to {:8.3} um off its path (line {}), allowed are {:.3} um\n",
+            self.feed_motions_in,
+            self.feed_motions_out,
+            self.deviation_before_um,
+            self.deviation_before_line,
+            self.deviation_after_um,
+            self.deviation_after_line,
+            self.limit_um,
+        );
+        for finding in &self.findings {
+            text.push_str("- ");
+            text.push_str(finding);
+            text.push('\n');
+        }
+        text.push_str(if self.passed { "passed\n" } else { "FAILED\n" });
+        text
+    }
+}
+
+/// What the corrected path may be off, mm. A program that feeds nowhere has no limit of its own.
+#[must_use]
+pub fn limit_mm(settings: &Settings, comparison: &Comparison) -> f64 {
+    comparison.limit_mm.max(settings.options.tolerance_mm)
+}
+
+/// What is wrong with a corrected program; programs with the names they have in messages.
+///
+/// # Errors
+/// The messages of a program that cannot be read.
+pub fn findings_between(
+    posted: (&str, &[u8]),
+    corrected: (&str, &[u8]),
+    settings: &Settings,
+) -> Result<Vec<String>, Failure> {
+    Ok(closed(posted, corrected, settings, Traces::Forgotten)?.findings)
+}
+
+/// Both programs through the model.
+///
+/// # Errors
+/// The messages of a program that cannot be read.
+pub fn closed(
+    posted: (&str, &[u8]),
+    corrected: (&str, &[u8]),
+    settings: &Settings,
+    traces: Traces,
+) -> Result<Checked, Failure> {
+    // What is refused is not compared either: its motions would be read as the correction would not read them.
+    let questions = settings.questions();
+    nc_program::Evidence::of(posted.1, &questions)
+        .refusal(&questions)
+        .map_err(|finding| Failure::refused(posted.0, posted.1, vec![finding.0]))?;
+    // What the output asks the control for moves nothing, and holds on the machine of the profile.
+    let unguarded = nc_emit::without_guards(corrected.1);
+    let corrected = (corrected.0, unguarded.as_deref().unwrap_or(corrected.1));
+    let programs = [posted, corrected].map(|(name, text)| -> Result<_, Failure> {
+        nc_syntax::looks_like_program(text)
+            .map_err(|diagnostic| Failure::refused(name, text, vec![diagnostic]))?;
+        Ok((name, text, expand::expanded(text, name, settings)?))
+    });
+    let [wanted, commanded] = programs;
+    let (wanted, commanded): ((_, _, Expanded<'_>), (_, _, Expanded<'_>)) = (wanted?, commanded?);
+    let job = settings.job(true, "")?;
+    rewrite::check(&job, [&wanted.2, &commanded.2], traces).map_err(|unreadable| {
+        let (name, text, expanded) = [&wanted, &commanded][unreadable.program];
+        Failure::Refused(expand::reports(expanded, name, text, unreadable.diagnostics))
+    })
+}

@@ -1,0 +1,24 @@
+//! Jobs: profile, dialect and options in, answers and messages out.
+//!
+//! What the command and the Python package share. A job reads the profile that it is given, the tables and the grammar
+//! that the profile names, and the folders of subprograms; programs, points and measurements come as bytes, and nothing
+//! is written or printed: messages are values that [`message::Wording`] makes text of.
+
+pub mod check;
+pub mod conditions;
+pub mod correct;
+pub mod diagnose;
+pub mod expand;
+pub mod figures;
+pub mod lines;
+pub mod map;
+pub mod message;
+pub mod options;
+pub mod points;
+pub mod predict;
+pub mod profile;
+pub mod settings;
+pub mod shown;
+pub mod solve;
+pub mod summary;
+pub mod values;

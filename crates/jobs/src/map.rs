@@ -1,0 +1,137 @@
+//! The error over the volume: where it is asked for, and what it is there.
+
+use diagnostic::Diagnostic;
+use error_map::{ErrorMap, Grid, Nodes};
+use machine_model::{Command, Engine, PathModel, Range, Vector, Volume};
+use machine_profile::Profile;
+use rayon::prelude::*;
+
+use crate::message::{Failure, Report};
+use crate::options::{JobOptions, Outside};
+use crate::predict::POINT_OUTSIDE;
+use crate::values::{Given, Lattice, Rotary, ToolVector};
+
+/// The engine as a model of paths, which says errors.
+///
+/// # Errors
+/// It only solves.
+pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
+    engine.path_model().ok_or_else(|| {
+        Failure::option(
+            format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
+            "leave `--engine` out, or take one of the engines without `-published`",
+        )
+    })
+}
+
+/// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.
+///
+/// # Errors
+/// The first that reaches outside.
+pub fn outside(
+    boxes_mm: impl IntoIterator<Item = [Range; 3]>,
+    volume: Volume,
+    options: &JobOptions,
+) -> Result<Vec<Report>, Failure> {
+    let mut warnings = Vec::new();
+    for ranges in boxes_mm {
+        for (axis, range) in ranges.iter().enumerate() {
+            let known = volume.0[axis];
+            if known.contains(range.low) && known.contains(range.high) {
+                continue;
+            }
+            let message = format!(
+                "{} from {} to {} mm reaches outside the calibrated volume, {} to {} mm",
+                ['X', 'Y', 'Z'][axis],
+                range.low,
+                range.high,
+                known.low,
+                known.high
+            );
+            if options.outside != Some(Outside::Clamp) {
+                let help = "stay inside, or take the nearest point's error with `--outside clamp`";
+                return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
+            }
+            let help = "the nodes outside have the error of the volume's nearest point";
+            let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
+            warnings.push(Report { source: None, diagnostics: vec![diagnostic] });
+        }
+    }
+    Ok(warnings)
+}
+
+/// The map of a grid, on all cores; each node is computed by itself, so their number changes nothing.
+#[must_use]
+pub fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> ErrorMap {
+    let errors = (0..grid.len()).into_par_iter().with_min_len(256).map(|i| error_mm(&grid.place_mm(i)));
+    let errors = errors.collect();
+    ErrorMap::new(grid, errors)
+}
+
+/// Nodes over the volume, or where they were said to be.
+///
+/// # Errors
+/// Nodes that cannot be.
+pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
+    let refuse = |why: String| {
+        Failure::option(
+            format!("`--grid {given}`: {why}"),
+            "write numbers of nodes as in `--grid 22x22x21`, or from:to:step in mm as in `--grid 40:880:40,30:450:20,5:505:25`",
+        )
+    };
+    let axis = |k: usize| match **given {
+        Lattice::Counts(counts) => Nodes::over(volume.0[k], counts[k]),
+        Lattice::Stepped(axes) => Nodes::stepped(axes[k][0], axes[k][1], axes[k][2]),
+    };
+    let nodes = [0, 1, 2].map(|k| axis(k).map_err(|error| refuse(error.to_string())));
+    let [x, y, z] = nodes;
+    Grid::new([x?, y?, z?]).map_err(|error| refuse(error.to_string()))
+}
+
+/// An H number stands for minus its length vector, as under G43.
+///
+/// # Errors
+/// Nobody gave that number a length.
+pub fn tool(
+    given: Option<&Given<ToolVector>>,
+    options: &JobOptions,
+    profile: &Profile,
+) -> Result<Vector, Failure> {
+    match given.map(|given| **given) {
+        None => Ok(Vector::from(profile.default_tool_mm)),
+        Some(ToolVector::Vector(mm)) => Ok(Vector::from(mm)),
+        Some(ToolVector::Length(number)) => crate::settings::tools(options, profile)
+            .iter()
+            .find(|(known, _)| *known == number)
+            .map(|(_, length)| -Vector::from(*length))
+            .ok_or_else(|| {
+                Failure::option(
+                    format!("`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}"),
+                    format!("add `--tool H{number}=120`"),
+                )
+            }),
+    }
+}
+
+/// Where the rotary axes stand, rad; those that are not named stand at 0.
+///
+/// # Errors
+/// An axis that the machine has not, an angle outside its travel.
+pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector, Failure> {
+    let Some(given) = given else { return Ok(Vector::zeros()) };
+    for (axis, angle) in given.0.iter().enumerate() {
+        if angle.is_some() && !profile.has_rotary()[axis] {
+            return Err(Failure::option(
+                format!("`--rotary {given}`: the profile's chain has no such axis"),
+                format!("the chain is {}", profile.chain()),
+            ));
+        }
+    }
+    let rotary_rad = Vector::from(given.0.map(|angle| angle.unwrap_or(0.0).to_radians()));
+    let turned =
+        Command { linear_mm: Vector::zeros(), rotary_rad, tool_mm: Vector::zeros(), direction: [0; 3] };
+    profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
+        Failure::option(format!("`--rotary {given}`: {error}"), "give angles inside its travel and its table")
+    })?;
+    Ok(rotary_rad)
+}

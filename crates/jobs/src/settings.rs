@@ -1,0 +1,440 @@
+//! What the profile and the command line say together.
+
+use std::path::{Path, PathBuf};
+
+use correction::{Options, Outside};
+use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
+use machine_profile::{BareLengths, Profile, TurningRules};
+use nc_program::{AfterChange, Questions, Setup};
+use nc_syntax::Dialect;
+use nc_syntax::dialect::{MCode, Macros, PointFree, TipSwitch, TurningParameters};
+use rewrite::{Guards, Job};
+
+use crate::expand::Flow;
+use crate::message::{Failure, Report, Source};
+use crate::options::{self, JobOptions};
+use crate::{conditions, lines, profile};
+
+/// Everything a job on a program needs.
+pub struct Settings {
+    /// The machine.
+    pub profile: Profile,
+    /// The name of its file in messages.
+    pub profile_name: String,
+    /// Of the profile and its tables.
+    pub profile_hash: blake3::Hash,
+    /// Profile, tables, and the dialect's where it is a file.
+    pub files: Vec<PathBuf>,
+    /// Of the control, with what the profile says of it.
+    pub dialect: Dialect,
+    /// What the machine knows before a program begins.
+    pub setup: Setup,
+    /// What corrects.
+    pub engine: Box<dyn Engine>,
+    /// The machine under tool centre point control.
+    tip: Option<TipControl>,
+    /// What correction keeps to.
+    pub options: Options,
+    /// What programs with flow are given.
+    pub flow: Flow,
+    /// Doubtful programs are refused.
+    pub strict: bool,
+    /// `--guard`
+    guards: Guards,
+    /// What is to be said before any program is read.
+    pub warnings: Vec<Report>,
+}
+
+impl Settings {
+    /// Reads profile and dialect, builds the engine, applies the options.
+    ///
+    /// # Errors
+    /// What is wrong with profile, dialect or options.
+    pub fn load(options: &JobOptions) -> Result<Self, Failure> {
+        let path = machine(options)?;
+        let loaded = profile::load(path)?;
+        let profile = loaded.profile;
+        let engine_id = options.engine().unwrap_or(profile.correction.engine);
+        let engine = conditions::engine(&profile, engine_id, options)?;
+        let mut dialect = turning_dialect(dialect(options, &profile)?, &profile)?;
+        let mut files = loaded.files;
+        let tables = options.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
+        files.extend(tables.map(PathBuf::from));
+        let mut setup = setup(options, &profile)?;
+        setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
+        declare_harmless(&profile, &mut dialect)?;
+        declare_switches(&profile, &mut dialect);
+        declare_cycles(&profile, &mut dialect);
+        let tip = profile.tip_control().filter(|_| engine_id == EngineId::RigidBody);
+        setup.tip_control = match (&profile.kinematics, &tip) {
+            (None, _) => nc_program::TipControl::Undeclared,
+            (Some(_), None) => nc_program::TipControl::Unproven,
+            (Some(_), Some(_)) => nc_program::TipControl::Declared,
+        };
+        if let Some(mm) = profile.program.arc_tolerance_mm {
+            dialect.output.arc_radius_tolerance_mm = mm;
+        }
+        let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
+        if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
+            return Err(Failure::option(
+                format!("a tolerance of {tolerance_um} um cannot be kept"),
+                "give micrometres above zero: `--tolerance 1`",
+            ));
+        }
+        let warning = conditions::temperature(&profile, options, tolerance_um)?;
+        let outside = match (options.outside, profile.correction.outside) {
+            (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
+            (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
+        };
+        let limits = Options {
+            tolerance_mm: tolerance_um * 1e-3,
+            outside,
+            minimum_segment_mm: profile.correction.minimum_segment_mm,
+            orientation_rad: profile.correction.orientation_urad * 1e-6,
+        };
+        let guards = guards(options, &dialect)?;
+        let profile_name = lines::name(path);
+        let flow = Flow::load(options)?;
+        Ok(Self {
+            profile,
+            profile_name,
+            profile_hash: loaded.hash,
+            files,
+            dialect,
+            setup,
+            engine,
+            tip,
+            options: limits,
+            flow,
+            strict: options.strict,
+            guards,
+            warnings: warning.into_iter().collect(),
+        })
+    }
+
+    /// What is asked of a whole program.
+    #[must_use]
+    pub fn questions(&self) -> Questions<'_> {
+        Questions::new(&self.dialect, &self.setup)
+    }
+
+    /// The engine as a model of paths; the published variants are none.
+    ///
+    /// # Errors
+    /// What to use instead of those.
+    pub fn path_model(&self) -> Result<&dyn machine_model::PathModel, Failure> {
+        self.engine.path_model().ok_or_else(|| {
+            let name = self.engine.id().name();
+            Failure::option(
+                format!("engine `{name}` reproduces a publication and corrects no programs"),
+                format!(
+                    "use `--engine {}`, or `vpost solve` for single points",
+                    name.trim_end_matches("-published")
+                ),
+            )
+        })
+    }
+
+    /// Decimals that write the profile's resolution exactly, or finer.
+    #[must_use]
+    pub fn decimals_mm(&self) -> [u8; 3] {
+        const MOST: u8 = 6;
+        self.profile.resolution_mm.map(|step| decimal_steps(step).0.min(MOST))
+    }
+
+    /// What the comment in the output says after its marker.
+    #[must_use]
+    pub fn provenance(&self) -> String {
+        format!("{} FOR {} ENGINE {}", env!("CARGO_PKG_VERSION"), self.profile.name, self.engine.id().name())
+    }
+
+    /// The job of correcting a program.
+    ///
+    /// # Errors
+    /// The engine corrects no programs.
+    pub fn job<'a>(&'a self, force: bool, provenance: &'a str) -> Result<Job<'a>, Failure> {
+        Ok(Job {
+            dialect: &self.dialect,
+            setup: &self.setup,
+            models: Models {
+                axes: self.path_model()?,
+                tip: self.tip.as_ref().map(|tip| -> &dyn PathModel { tip }),
+            },
+            options: self.options,
+            decimals_mm: self.decimals_mm(),
+            rotary_steps: self.profile.resolution_deg.map(decimal_steps),
+            force,
+            provenance,
+            guards: self.guards,
+        })
+    }
+}
+
+/// `--guard`: the output asks the control for what it was corrected for, where it can be asked.
+fn guards(options: &JobOptions, dialect: &Dialect) -> Result<Guards, Failure> {
+    if !options.guard {
+        return Ok(Guards::None);
+    }
+    // Whether a lathe keeps X as a diameter its parameters say.
+    if dialect.flow.macros == Macros::None || dialect.turning.is_some() {
+        return Err(Failure::option(
+            format!("no way is known to ask dialect {} for its work offsets", dialect.name),
+            "correct without `--guard`, and compare the offsets by hand",
+        ));
+    }
+    Ok(Guards::Put)
+}
+
+/// A lathe's dialect for a lathe and a mill's for a mill; of its G-code systems that of the profile.
+fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failure> {
+    let name = &dialect.name;
+    let Some(turning) = &dialect.turning else {
+        return match &profile.lathe {
+            None => Ok(dialect),
+            Some(lathe) => Err(Failure::option(
+                format!("dialect {name} is of mills, and {} is a lathe", lathe.chain),
+                format!("use a dialect of lathes: {}", lathe_dialects()),
+            )),
+        };
+    };
+    let Some(lathe) = &profile.lathe else {
+        return Err(Failure::option(
+            format!("dialect {name} is of lathes, and {} has no spindle", profile.chain()),
+            "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+        ));
+    };
+    if turning.systems.is_empty() {
+        return Ok(dialect);
+    }
+    let systems: Vec<&str> = turning.systems.iter().map(|system| system.name.as_str()).collect();
+    let Some(system) = &profile.program.g_code_system else {
+        return Err(Failure::option(
+            format!("which G-code system? the profile of {} does not say", lathe.chain),
+            format!("write `g_code_system = \"A\"` under `[program]`, one of: {}", systems.join(", ")),
+        ));
+    };
+    dialect.in_system(system).ok_or_else(|| {
+        Failure::option(
+            format!("dialect {name} has no G-code system {system}"),
+            format!("one of: {}", systems.join(", ")),
+        )
+    })
+}
+
+/// Puts into a lathe's dialect what the profile says of its words and cycles.
+fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
+    let Some(turning) = &mut dialect.turning else { return };
+    let TurningRules { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm } =
+        profile.program.turning;
+    turning.diameters = profile.program.diameters;
+    turning.cycles =
+        TurningParameters { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm };
+}
+
+/// Their names.
+fn lathe_dialects() -> String {
+    let of_lathes = |name: &&str| nc_dialect::builtin(name).is_some_and(|dialect| dialect.turning.is_some());
+    nc_dialect::builtin_names().into_iter().filter(of_lathes).collect::<Vec<_>>().join(", ")
+}
+
+/// A step as decimals and how many of their steps; what no seven decimals say is rounded to the next finer one that they do.
+fn decimal_steps(step: f64) -> (u8, u32) {
+    const MOST: u8 = 7;
+    let scaled = |decimals: u8| step * f64::from(10u32.pow(u32::from(decimals)));
+    let whole = |decimals: &u8| {
+        let steps = scaled(*decimals);
+        steps > 0.5 && (steps - steps.round()).abs() <= 1e-9 * steps
+    };
+    match (0..=MOST).find(whole) {
+        Some(decimals) => (decimals, scaled(decimals).round() as u32),
+        None => (MOST, (scaled(MOST).floor() as u32).max(1)),
+    }
+}
+
+/// Puts into the dialect what command line or profile say of lengths without a point; true where one of them does.
+fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect) -> Result<bool, Failure> {
+    let said = options.decimal.map(|decimal| match decimal {
+        options::Decimal::Increments => BareLengths::Increments,
+        options::Decimal::Millimetres => BareLengths::Millimetres,
+    });
+    let point_free = &mut dialect.numbers.point_free;
+    match said.or(profile.program.bare_lengths) {
+        None => return Ok(false),
+        Some(BareLengths::Millimetres) => *point_free = PointFree::Unit,
+        Some(BareLengths::Increments) if *point_free == PointFree::Unit => {
+            return Err(Failure::option(
+                format!(
+                    "dialect {} reads a length without a point as Z10 = Z10., not as increments",
+                    dialect.name
+                ),
+                "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+            ));
+        }
+        Some(BareLengths::Increments) => {}
+    }
+    Ok(true)
+}
+
+/// Puts the M codes that the profile calls harmless into the dialect, beside those that its table has.
+fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Failure> {
+    for &number in &profile.program.harmless_m_codes {
+        let harmless = MCode::harmless(number);
+        match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
+            Err(at) => dialect.m_codes.insert(at, harmless),
+            Ok(at) if dialect.m_codes[at].switches.is_some() => dialect.m_codes[at] = harmless,
+            Ok(at) => {
+                let row = &dialect.m_codes[at];
+                let acts = row.ends_program || row.refuse.is_some() || row.loses_position != [false; 3];
+                if acts {
+                    return Err(Failure::option(
+                        format!(
+                            "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
+                            dialect.name
+                        ),
+                        format!(
+                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`"
+                        ),
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Puts the M codes by which the machine switches tool centre point control into the dialect.
+fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
+    let Some(kinematics) = &profile.kinematics else { return };
+    let codes = |numbers: &[u16], switch: TipSwitch| {
+        numbers.iter().map(|number| (*number, switch)).collect::<Vec<_>>()
+    };
+    for (number, switch) in
+        [codes(&kinematics.on, TipSwitch::On), codes(&kinematics.off, TipSwitch::Off)].concat()
+    {
+        let row = MCode { tip: Some(switch), ..MCode::harmless(number) };
+        match dialect.m_codes.binary_search_by_key(&number, |row| row.number) {
+            Err(at) => dialect.m_codes.insert(at, row),
+            Ok(at) => dialect.m_codes[at] = row,
+        }
+    }
+}
+
+/// The profile's path, which every job needs.
+///
+/// # Errors
+/// None was given.
+pub fn machine(options: &JobOptions) -> Result<&Path, Failure> {
+    options.machine.as_deref().ok_or_else(|| {
+        Failure::option(
+            "which machine? no profile was given",
+            "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
+        )
+    })
+}
+
+/// The tool vector of points that give none.
+#[must_use]
+pub fn setup_tool(profile: &Profile) -> [f64; 3] {
+    profile.default_tool_mm
+}
+
+fn dialect(options: &JobOptions, profile: &Profile) -> Result<Dialect, Failure> {
+    let Some(name) = options.dialect.as_deref().or(profile.control.as_deref()) else {
+        return Err(Failure::option(
+            "which dialect? neither the profile's `control` nor `--dialect` says",
+            format!("add `--dialect D`, one of: {}", nc_dialect::builtin_names().join(", ")),
+        ));
+    };
+    load_dialect(name)
+}
+
+/// A shipped dialect by name, or a grammar file by path.
+///
+/// # Errors
+/// There is none of that name; what is wrong with the file.
+pub fn load_dialect(name: &str) -> Result<Dialect, Failure> {
+    if let Some(dialect) = nc_dialect::builtin(name) {
+        return Ok(dialect.clone());
+    }
+    if !name.ends_with(".toml") {
+        return Err(Failure::option(
+            format!("there is no dialect `{name}`"),
+            format!(
+                "one of: {}; or the path of a grammar file ending in .toml",
+                nc_dialect::builtin_names().join(", ")
+            ),
+        ));
+    }
+    let bytes = std::fs::read(name)
+        .map_err(|error| Failure::usage(crate::message::file_diagnostic(name, "read", &error)))?;
+    let stem = Path::new(name)
+        .file_stem()
+        .map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    parse_dialect(&stem, name, &bytes)
+}
+
+fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, Failure> {
+    let text = String::from_utf8_lossy(bytes);
+    nc_dialect::load(stem, &text).map_err(|diagnostics| {
+        let source = Some(Source::whole(file_name, text.as_bytes()));
+        Failure::Usage(vec![Report { source, diagnostics }])
+    })
+}
+
+fn setup(options: &JobOptions, profile: &Profile) -> Result<Setup, Failure> {
+    let mut setup = Setup {
+        work_offsets: profile.work_offsets.clone(),
+        tools: tools(options, profile),
+        noses_mm: noses_mm(profile),
+        default_tool_mm: profile.default_tool_mm,
+        has_rotary: profile.has_rotary(),
+        rotary_matters: profile.rotary_matters(),
+        start_mm: None,
+        tool_change: profile.program.tool_change.map(|change| match change {
+            machine_profile::AfterChange::Unknown => AfterChange::Unknown,
+            machine_profile::AfterChange::Stays => AfterChange::Stays,
+            machine_profile::AfterChange::At(place_mm) => AfterChange::At(place_mm),
+        }),
+        tip_control: nc_program::TipControl::default(),
+        rotary_chain: profile.rotary_chain(),
+        tilt_rule: profile.kinematics.as_ref().map(|kinematics| kinematics.tilt_rule).unwrap_or_default(),
+        tip_at_start: profile.kinematics.as_ref().is_some_and(|kinematics| kinematics.at_start),
+        diameters: profile.program.diameters,
+        lengths_settled: false,
+    };
+    for given in &options.work_offset {
+        match setup.work_offsets.iter_mut().find(|(known, _)| *known == given.name) {
+            Some(entry) => entry.1 = given.zero_mm,
+            None => setup.work_offsets.push((given.name.clone(), given.zero_mm)),
+        }
+    }
+    if let Some(start) = &options.start_at {
+        if setup.tip_at_start {
+            return Err(Failure::option(
+                "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
+                "leave it out: the first rapid that names X, Y and Z says where the tip is",
+            ));
+        }
+        setup.start_mm = Some(start.0);
+    }
+    Ok(setup)
+}
+
+/// Radii of the noses of turning tools.
+fn noses_mm(profile: &Profile) -> Vec<(u32, f64)> {
+    let noses = profile.lathe.iter().flat_map(|lathe| &lathe.noses);
+    noses.filter(|(_, nose)| nose.radius_mm > 0.0).map(|(number, nose)| (*number, nose.radius_mm)).collect()
+}
+
+/// Length vectors of the H numbers: the profile's and the command line's.
+#[must_use]
+pub fn tools(options: &JobOptions, profile: &Profile) -> Vec<(u32, [f64; 3])> {
+    let mut tools = profile.tools.clone();
+    for given in &options.tool {
+        match tools.iter_mut().find(|(known, _)| *known == given.number) {
+            Some(entry) => entry.1 = given.vector_mm,
+            None => tools.push((given.number, given.vector_mm)),
+        }
+    }
+    tools
+}
