@@ -9,7 +9,7 @@ use crate::message::Failure;
 /// `docs/diagnostics.md`: an entry for each number.
 const PAGE: &str = include_str!(env!("DIAGNOSTICS_PAGE"));
 
-/// `docs/diagnostics.ru.md`: the same in Russian, for the numbers that it has.
+/// `docs/diagnostics.ru.md`: the same in Russian.
 const PAGE_RU: &str = include_str!(env!("DIAGNOSTICS_PAGE_RU"));
 
 /// `vpost explain`
@@ -24,7 +24,11 @@ pub struct Explain {
 pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure> {
     let code = &arguments.code;
     let digits = code.strip_prefix("VP").or_else(|| code.strip_prefix("vp")).unwrap_or(code);
-    let entry = digits.parse::<u16>().ok().and_then(|number| entry_in(language, number));
+    let page = match language {
+        Language::English => PAGE,
+        Language::Russian => PAGE_RU,
+    };
+    let entry = digits.parse::<u16>().ok().and_then(|number| entry(page, number));
     let Some(entry) = entry else {
         return Err(Failure::option(
             format!("there is no message `{code}`"),
@@ -32,14 +36,6 @@ pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure
         ));
     };
     file::print(format!("{entry}\n").as_bytes())
-}
-
-/// The entry of a number, whole in one language: in English where the Russian page has none.
-fn entry_in(language: Language, number: u16) -> Option<String> {
-    match language {
-        Language::English => entry(PAGE, number),
-        Language::Russian => entry(PAGE_RU, number).or_else(|| entry(PAGE, number)),
-    }
 }
 
 /// The part of a page under the heading of a number, without the example that causes the message.
