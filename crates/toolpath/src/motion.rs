@@ -1,22 +1,4 @@
-use crate::{Hole, Plane, TiltedPlane};
-
-/// Where the axes are commanded to be.
-///
-/// ```
-/// use toolpath::{Partial, Position};
-///
-/// let at = Position { linear_mm: [10.0, 20.0, -3.0], ..Position::default() };
-/// assert_eq!(at.rotary_deg, [0.0; 3]);
-/// // What is known of it as a whole is the position again.
-/// assert_eq!(Partial::from(at).complete(), Some(at));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Position {
-    /// X, Y, Z in mm.
-    pub linear_mm: [f64; 3],
-    /// A, B, C in degrees; 0 for an axis the machine does not have.
-    pub rotary_deg: [f64; 3],
-}
+use crate::{FeedRate, Hole, Partial, Plane, Position, TiltedPlane};
 
 /// What X, Y and Z are while rotary axes stand somewhere.
 ///
@@ -36,40 +18,6 @@ pub enum Kinematics {
     /// Coordinates of a tilted working plane (G68.2), the tool's length added along its Z, while the rotary axes stand: the
     /// control brings the tip to that place of the workpiece.
     Plane(TiltedPlane),
-}
-
-/// A position of which some axes may not be known yet (start of program, after G28 or a tool change).
-///
-/// ```
-/// use toolpath::Partial;
-///
-/// // Behind a tool change only Z is known; once the program has named X and Y, all is.
-/// let mut at = Partial { linear_mm: [None, None, Some(100.0)], ..Partial::default() };
-/// assert_eq!(at.complete(), None);
-/// (at.linear_mm[0], at.linear_mm[1]) = (Some(10.0), Some(20.0));
-/// assert_eq!(at.complete().map(|place| place.linear_mm), Some([10.0, 20.0, 100.0]));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Partial {
-    /// X, Y, Z in mm where known.
-    pub linear_mm: [Option<f64>; 3],
-    /// A, B, C in degrees. Unknown counts as an error only where a rotary axis matters.
-    pub rotary_deg: [f64; 3],
-}
-
-impl Partial {
-    /// The position, where all three linear axes are known.
-    #[must_use]
-    pub fn complete(&self) -> Option<Position> {
-        let [x, y, z] = self.linear_mm;
-        Some(Position { linear_mm: [x?, y?, z?], rotary_deg: self.rotary_deg })
-    }
-}
-
-impl From<Position> for Partial {
-    fn from(p: Position) -> Self {
-        Self { linear_mm: p.linear_mm.map(Some), rotary_deg: p.rotary_deg }
-    }
 }
 
 /// A circular arc or helix; the ends belong to the motion.
@@ -122,30 +70,6 @@ pub enum Shape {
     Line,
     /// Arc in a plane, the normal axis in step with the angle.
     Arc(Arc),
-}
-
-/// What F means (ISO 6983: G93, G94, G95).
-///
-/// ```
-/// use toolpath::FeedRate;
-///
-/// // What F must become where a motion is cut into equal pieces.
-/// let piece = |rate: FeedRate, pieces: f64| match rate {
-///     FeedRate::InverseTime(f) => FeedRate::InverseTime(f * pieces),
-///     other => other,
-/// };
-/// assert_eq!(piece(FeedRate::InverseTime(2.0), 4.0), FeedRate::InverseTime(8.0));
-/// assert_eq!(piece(FeedRate::default(), 4.0), FeedRate::PerMinute);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum FeedRate {
-    /// Millimetres per minute, or whatever the control makes of F: nothing depends on it here.
-    #[default]
-    PerMinute,
-    /// Inverse time: the motion takes 1/F minutes. Must be divided when the motion is.
-    InverseTime(f64),
-    /// Millimetres per spindle turn.
-    PerRevolution,
 }
 
 /// A motion on a path that was promised.
