@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::expand;
 use crate::message::Failure;
 use crate::settings::Settings;
+use crate::summary::{json, um};
 
 /// The JSON of `vpost check --json`.
 #[derive(Debug, Clone, Serialize)]
@@ -42,7 +43,6 @@ impl Outcome {
     /// What a comparison says.
     #[must_use]
     pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<String>) -> Self {
-        let um = |mm: f64| (mm * 1e6).round() / 1e3;
         Self {
             schema: "vpost.check/1",
             passed: findings.is_empty(),
@@ -62,9 +62,7 @@ impl Outcome {
     /// The JSON text, one trailing line end.
     #[must_use]
     pub fn json(&self) -> Vec<u8> {
-        let mut text = serde_json::to_vec_pretty(self).expect("plain values always serialise");
-        text.push(b'\n');
-        text
+        json(self)
     }
 
     /// The same for people.

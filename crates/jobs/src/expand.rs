@@ -2,78 +2,16 @@
 
 use std::cell::RefCell;
 use std::io;
-use std::path::{Path, PathBuf};
 
 use diagnostic::Diagnostic;
-use nc_expand::{Environment, Expanded, Limits, Preset};
+use nc_expand::{Environment, Expanded};
 use nc_program::{Evidence, Finding};
 use rewrite::{Corrected, Job};
 use serde::{Deserialize, Serialize};
 
+use crate::flow::Flow;
 use crate::message::{Failure, Report, Source};
-use crate::options::JobOptions;
 use crate::settings::Settings;
-
-/// A subprogram's file is no larger.
-const LARGEST_FILE: u64 = 64 << 20;
-
-/// What `--set` and `--include` say.
-#[derive(Debug, Clone, Default)]
-pub struct Flow {
-    presets: Vec<Preset>,
-    folders: Vec<PathBuf>,
-    /// Where work ends that would not.
-    pub limits: Limits,
-}
-
-impl Flow {
-    /// Reads the options.
-    ///
-    /// # Errors
-    /// A folder that is none.
-    pub fn load(options: &JobOptions) -> Result<Self, Failure> {
-        for folder in &options.include {
-            if !folder.is_dir() {
-                return Err(Failure::option(
-                    format!("`--include {}` is no folder", folder.display()),
-                    "give the folder that holds the subprograms",
-                ));
-            }
-        }
-        let presets = options.set.iter().map(|given| (**given).clone()).collect();
-        Ok(Self { presets, folders: options.include.clone(), limits: Limits::default() })
-    }
-
-    /// Values of variables.
-    #[must_use]
-    pub fn presets(&self) -> &[Preset] {
-        &self.presets
-    }
-
-    /// Reads a subprogram's file from the first folder that has it.
-    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        let mut parts = Path::new(name).components();
-        let plain = matches!((parts.next(), parts.next()), (Some(std::path::Component::Normal(_)), None));
-        if !plain {
-            return Err(io::Error::from(io::ErrorKind::InvalidInput));
-        }
-        for folder in &self.folders {
-            let path = folder.join(name);
-            if !path.is_file() {
-                continue;
-            }
-            // A link may lead anywhere.
-            if !path.canonicalize()?.starts_with(folder.canonicalize()?) {
-                return Err(io::Error::from(io::ErrorKind::InvalidInput));
-            }
-            if path.metadata()?.len() > LARGEST_FILE {
-                return Err(io::Error::other(format!("longer than {LARGEST_FILE} bytes")));
-            }
-            return std::fs::read(path);
-        }
-        Err(io::Error::from(io::ErrorKind::NotFound))
-    }
-}
 
 /// A text's plain program.
 ///
@@ -90,7 +28,7 @@ fn expanded_with<'a>(
     read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Expanded<'a>, Failure> {
     let environment =
-        Environment { variables: &settings.flow.presets, read_external: read, limits: settings.flow.limits };
+        Environment { variables: settings.flow.presets(), read_external: read, limits: settings.flow.limits };
     nc_expand::expand(text, &settings.dialect, &environment).map_err(|refusal| match refusal.file {
         None => Failure::refused(name, text, refusal.diagnostics),
         Some((name, text)) => Failure::refused(&name, &text, refusal.diagnostics),
@@ -288,7 +226,10 @@ impl From<Vec<Diagnostic>> for PipelineEnd {
 #[cfg(test)]
 mod tests {
 
+    use std::path::Path;
+
     use super::*;
+    use crate::options::JobOptions;
 
     #[test]
     fn the_short_way_is_the_long_way() {

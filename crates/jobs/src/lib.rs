@@ -10,6 +10,7 @@ pub mod correct;
 pub mod diagnose;
 pub mod expand;
 pub mod figures;
+pub mod flow;
 pub mod lines;
 pub mod map;
 pub mod message;

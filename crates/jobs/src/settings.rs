@@ -10,7 +10,7 @@ use nc_syntax::Dialect;
 use nc_syntax::dialect::{MCode, Macros, PointFree, TipSwitch, TurningParameters};
 use rewrite::{Guards, Job};
 
-use crate::expand::Flow;
+use crate::flow::Flow;
 use crate::message::{Failure, Report, Source};
 use crate::options::{self, JobOptions};
 use crate::{conditions, lines, profile};

@@ -69,6 +69,14 @@ pub fn um(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e3
 }
 
+/// Plain values as JSON text, one trailing line end.
+#[must_use]
+pub fn json(values: &impl Serialize) -> Vec<u8> {
+    let mut text = serde_json::to_vec_pretty(values).expect("plain values always serialise");
+    text.push(b'\n');
+    text
+}
+
 /// What is left of the tool's direction where rotary axes turned.
 fn tilt(figures: &Figures) -> Option<(f64, u64)> {
     Some(figures.tilt).filter(|(rad, _)| *rad > 0.0)
@@ -121,9 +129,7 @@ impl<'a> Summary<'a> {
     /// The JSON text, one trailing line end.
     #[must_use]
     pub fn json(&self) -> Vec<u8> {
-        let mut text = serde_json::to_vec_pretty(self).expect("plain values always serialise");
-        text.push(b'\n');
-        text
+        json(self)
     }
 
     /// The same in one line for people.

@@ -35,9 +35,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         "sizes_only": combined(study, &study.within_sizes),
         "target": study.target.as_ref().map(|target| wanted(study, target)),
     });
-    let mut text = serde_json::to_vec_pretty(&document).expect("plain values always serialise");
-    text.push(b'\n');
-    text
+    jobs::summary::json(&document)
 }
 
 fn criteria(study: &Study, found: &Criteria) -> Value {

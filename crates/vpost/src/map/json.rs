@@ -53,9 +53,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         "histogram": { "width_um": um(sizes.width_mm), "before": sizes.before, "after": sizes.after },
         "second_order": study.second_order.as_ref().map(second_order),
     });
-    let mut text = serde_json::to_vec_pretty(&document).expect("plain values always serialise");
-    text.push(b'\n');
-    text
+    jobs::summary::json(&document)
 }
 
 fn part(study: &Study, part: &Part) -> Value {
