@@ -86,7 +86,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         roots.iter().map(|path| imports::Tree::read(&root, path)).collect::<anyhow::Result<Vec<_>>>()?;
     let of_tests: BTreeSet<PathBuf> = trees.iter().flat_map(imports::Tree::test_files).collect();
     let sources = sources(&root, &of_tests)?;
-    let circles: Vec<Vec<PathBuf>> = trees.iter().flat_map(imports::Tree::circles).collect();
+    let circles: Vec<imports::Circle> = trees.iter().flat_map(imports::Tree::circles).collect();
     let functions: Vec<&Function> = sources.iter().flat_map(|source| &source.functions).collect();
     let long_files: Vec<&Source> = sources.iter().filter(|source| source.lines > LONG_FILE).collect();
     let long_functions: Vec<&Function> =
@@ -105,7 +105,7 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
         functions: Split::of(&functions, |function| function.is_test),
         functions_above_80_lines: Split::of(&long_functions, |function| function.is_test),
         bool_parameters: Split::of(&flags, |function| function.is_test),
-        files_in_circles: circles.iter().map(Vec::len).sum(),
+        files_in_circles: circles.iter().map(|circle| circle.files.len()).sum(),
         circles: circles.len(),
         test_binaries,
         test_binaries_with_vpost,
@@ -127,10 +127,15 @@ pub(crate) fn run(options: &Options) -> anyhow::Result<String> {
             long_functions.iter().map(|function| format!("{} {}", function.lines, name(function))),
         );
         text += &list("`bool` parameters", flags.iter().map(name));
-        let names = |circle: &Vec<PathBuf>| {
-            circle.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
-        };
-        text += &list("Circles", circles.iter().map(names));
+        let heads = circles.iter().map(|circle| {
+            let files = circle.files.iter().map(|path| path.display().to_string());
+            files.collect::<Vec<_>>().join(", ")
+        });
+        text += &list("Circles", heads);
+        let lines = circles.iter().flat_map(|circle| &circle.imports).map(|import| {
+            format!("{} → {}: {}", import.from.display(), import.to.display(), import.names.join(", "))
+        });
+        text += &list("What closes the circles", lines);
     }
     Ok(text)
 }

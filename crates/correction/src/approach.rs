@@ -8,11 +8,14 @@ use machine_model::{Command, Vector};
 use smallvec::SmallVec;
 use toolpath::Division;
 
-use crate::corrector::{Corrected, CorrectionError, Corrector, Freedom};
+use crate::corrected::Corrected;
+use crate::corrector::{Corrector, Freedom};
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::deviation::Machine;
+use crate::direction::{heading, moved};
+use crate::error::CorrectionError;
+use crate::follow::Whole;
 use crate::grid::{Block, Goal};
-use crate::play::{heading, moved};
 use crate::{Piece, PieceKind};
 
 /// No line of an approach takes less than this share of its motion's time where that is told as inverse-time feed: a few
@@ -49,27 +52,6 @@ impl Tips {
         let place = tangent * (0.5 * (low + high)).clamp(least_mm, most_mm);
         self.differences.iter().map(|difference| (difference - place).norm()).fold(0.0, f64::max)
             + self.besides_mm
-    }
-}
-
-/// A motion, as far as an approach to a part of it needs it.
-#[derive(Clone, Copy)]
-pub(crate) struct Whole {
-    /// Where it starts as programmed.
-    pub(crate) start: Vector,
-    /// The rotary axes there, rad, where they turn on the way.
-    pub(crate) rotary_rad: Option<Vector>,
-    pub(crate) length_mm: f64,
-    /// Rotary axes turn on the way.
-    pub(crate) in_step: bool,
-    /// Whether lines may be put before it.
-    pub(crate) division: Division,
-}
-
-impl Whole {
-    /// True where a part of the motion is its first.
-    pub(crate) fn begins_with(&self, part: &Curve) -> bool {
-        part.at(0.0) == self.start && part.rotary_rad(0.0) == self.rotary_rad
     }
 }
 

@@ -6,9 +6,11 @@ use machine_model::Vector;
 use toolpath::Division;
 
 use crate::centre::{PLACES, Search, in_plane};
-use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::corrector::Corrector;
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::deviation::{Enclosed, Machine, Pair, Solved, Verdict};
+use crate::error::CorrectionError;
+use crate::follow::Follow;
 use crate::play::{Creep, Tried};
 use crate::{Piece, PieceKind};
 

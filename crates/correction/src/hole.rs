@@ -4,25 +4,16 @@ use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{CycleKind, Division, Hole, HoleMove, MOST_PECKS, whole_pecks};
 
-use crate::approach::Whole;
-use crate::corrector::{Corrected, Correction, CorrectionError, Corrector, Follow, Freedom, MOST_TURNS};
+use crate::corrected::{Corrected, Correction};
+use crate::corrector::{Corrector, Freedom, MOST_TURNS};
 use crate::curve::Curve;
 use crate::deviation::{Begun, Machine, Pair, Verdict};
+use crate::direction::heading;
+use crate::error::CorrectionError;
+use crate::follow::{Follow, Whole};
 use crate::grid::{Block, Goal, Stated};
-use crate::play::heading;
+use crate::remembered::Remembered;
 use crate::{Piece, PieceKind};
-
-/// Bottom and R words as the control remembers them, program mm (increments under G91), and where the series
-/// of holes began, axis command, mm: G98 returns there, R counts from there under G91.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Remembered {
-    bottom: f64,
-    r: f64,
-    began_mm: f64,
-    incremental: bool,
-    /// No R or bottom of this series was rewritten.
-    as_programmed: bool,
-}
 
 /// A cycle that stays one block.
 struct Kept {

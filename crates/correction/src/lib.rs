@@ -13,23 +13,32 @@ mod approach;
 mod arc;
 mod before;
 mod centre;
+mod corrected;
 mod corrector;
 mod curve;
 mod deviation;
+mod direction;
+mod error;
+mod follow;
 mod grid;
 mod hole;
 mod line;
+mod motion;
+mod options;
 mod play;
+mod remembered;
 mod short_line;
 #[cfg(test)]
 mod testing;
 mod turning;
 
-pub use corrector::{Corrected, Correction, CorrectionError, Corrector, Options, Outside};
+pub use corrected::{Corrected, Correction, Turned};
+pub use corrector::Corrector;
 pub use curve::Curve;
+pub use error::CorrectionError;
 pub use grid::{Block, Goal, Stated};
+pub use options::{Options, Outside};
 pub use short_line::{Run, ShortLines, ShortRun};
-pub use turning::Turned;
 
 /// One block of output, in whole output steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,9 +2,11 @@
 
 use machine_model::{Command, Vector};
 
-use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::corrector::Corrector;
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
+use crate::error::CorrectionError;
+use crate::follow::Follow;
 use crate::grid::Goal;
 use crate::play::{Creep, Tried};
 use crate::{Centre, Piece, PieceKind};

@@ -10,27 +10,13 @@
 use machine_model::{Command, Vector, turned_by_mm};
 use smallvec::SmallVec;
 
-use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::corrector::Corrector;
 use crate::curve::{Curve, SAME_PLACE_MM};
 use crate::deviation::{Begun, Machine, Pair, Verdict};
+use crate::direction::moved;
+use crate::error::CorrectionError;
+use crate::follow::Follow;
 use crate::grid::Block;
-
-/// Which way an axis goes; one that does not move keeps its direction.
-#[inline]
-pub(crate) fn heading(from: f64, to: f64, otherwise: i8) -> i8 {
-    if to > from {
-        1
-    } else if to < from {
-        -1
-    } else {
-        otherwise
-    }
-}
-
-/// Which way an axis goes that is carried from command to command; 0 where it stays.
-pub(crate) fn moved(from: f64, to: f64) -> i8 {
-    if (to - from).abs() > SAME_PLACE_MM { heading(from, to, 0) } else { 0 }
-}
 
 /// Axes that are on another side of their play than was computed for.
 #[derive(Clone, Copy)]

@@ -12,10 +12,11 @@ use std::array::from_fn;
 use machine_model::{Command, Everywhere, LANES, Vector};
 use units::decimal::nearest_whole;
 
-use crate::corrector::{Correction, Corrector};
+use crate::corrected::Correction;
+use crate::corrector::Corrector;
 use crate::curve::Curve;
+use crate::direction::heading;
 use crate::grid::{Block, Goal};
-use crate::play::heading;
 
 /// Room for the rounding of the few additions here, mm.
 const SLACK_MM: f64 = 1e-9;

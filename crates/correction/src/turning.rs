@@ -7,42 +7,15 @@
 use machine_model::{Command, Move, Turn, Vector};
 use toolpath::Feed;
 
-use crate::corrector::{CorrectionError, Corrector, Follow};
+use crate::corrected::Turned;
+use crate::corrector::Corrector;
 use crate::curve::Curve;
+use crate::error::CorrectionError;
+use crate::follow::{Follow, Turning};
 use crate::grid::{Block, Goal};
 
 /// So far rotary axes turn at most between places where the error before correction is asked for, rad.
 const BEFORE_RAD: f64 = 0.05;
-
-/// What a feed motion with rotary axes comes to, for those who know what F means.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Turned {
-    /// Way of the linear axes as programmed, mm.
-    pub programmed_mm: f64,
-    /// The same as written.
-    pub commanded_mm: f64,
-    /// What rounding may make of that, mm.
-    pub rounding_mm: f64,
-    /// Way of the rotary axes, degrees: the root of the sum of their squares.
-    pub turned_deg: f64,
-    /// Largest angle between the tool's real and its ideal direction at both ends and in the middle, rad.
-    pub tilt_rad: f64,
-}
-
-/// Where the rotary axes stand in the output while a motion is written.
-#[derive(Clone, Copy)]
-pub(crate) struct Turning {
-    start_deg: [f64; 3],
-    end_deg: [f64; 3],
-    /// Of each axis that a piece has turned, in steps of [`Block::rotary_decimals`] from where its words count from.
-    written: [Option<i64>; 3],
-}
-
-impl Turning {
-    pub(crate) fn of(feed: &Feed) -> Self {
-        Self { start_deg: feed.start.rotary_deg, end_deg: feed.end.rotary_deg, written: [None; 3] }
-    }
-}
 
 /// Words for the rotary axes at the end of a part, and where they then stand.
 pub(crate) struct RotaryWords {

@@ -1,6 +1,6 @@
 //! The six error functions of one axis, looked up together.
 
-use crate::lanes::Real;
+use crate::real::Real;
 use crate::table::{self, Cubic, Grid, slope_of, value_of};
 use crate::{Bounds, Range, Table};
 

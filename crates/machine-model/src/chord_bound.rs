@@ -9,30 +9,12 @@ use pulp::{Simd, f64x4};
 use crate::axis_tables::SixBounds;
 use crate::everywhere::Everywhere;
 use crate::lanes::{Components, Together, together};
-use crate::rigid_body::Link;
-use crate::{Command, Move, Range, RigidBody, Vector, turning_bound};
+use crate::length::{Carried, Length};
+use crate::link::Link;
+use crate::{Command, Move, Range, RigidBody};
 
 /// How far beyond the volume the box of a stretch may reach by rounding, mm.
 const ROUNDING_MM: f64 = 1e-9;
-
-/// Bounds of a vector's length along the stretch parameter: of itself, of its first and second derivative, and of the
-/// jumps of the first, weighted as those of [`Growth`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Length {
-    pub(crate) value: f64,
-    pub(crate) first: f64,
-    pub(crate) second: f64,
-    pub(crate) jumps: f64,
-}
-
-/// What a head carries along a stretch: the nominal tool vector as a box, and as it moves, and the head's own error.
-pub(crate) struct Carried {
-    pub(crate) low: Vector,
-    pub(crate) high: Vector,
-    pub(crate) first: f64,
-    pub(crate) second: f64,
-    pub(crate) error: Length,
-}
 
 /// Bounds of three components along the stretch parameter.
 #[derive(Clone, Copy)]
@@ -194,15 +176,9 @@ fn add_higher_orders<S: Simd<f64s = f64x4>>(sum: &mut Growth<S>, e: &Growth<S>, 
 
 /// Upper bound, mm, of the distance between the error and its chord over the stretch: equation (12).
 ///
-/// Real arithmetic: rounding may add some 1e-13 mm. Infinite where the stretch leaves the volume.
+/// For stretches inside the volume along which no rotary axis turns. Real arithmetic: rounding may add some 1e-13 mm.
 pub(crate) fn chord_bound_mm(model: &RigidBody, stretch: &Move) -> f64 {
-    if !lies_inside(model, stretch) {
-        return f64::INFINITY;
-    }
     let own = |link: &Link, range: Range, bounds: &mut SixBounds| own_tables(stretch, link, range, bounds);
-    if let Some(turn) = &stretch.turn {
-        return turning_bound::error_in_turn(model, stretch, turn).0.leaves_chord_mm();
-    }
     let bounded = together(Along { model, stretch, course: Course::Own, bounds: own, carried: None });
     bounded.leaves_chord_mm + model.table_gain(&stretch.state) * norm(&stretch.acceleration_mm) / 8.0
 }
@@ -239,7 +215,7 @@ fn norm(v: &[f64; 3]) -> f64 {
 /// all directions, and of the worst place for a kink hold for each stretch: equation (12). That one axis runs evenly is
 /// nothing that a volume says, be it as long as a class of speeds.
 pub(crate) fn everywhere(model: &RigidBody, state: &Command) -> Everywhere {
-    let volume = crate::Engine::volume(model);
+    let volume = model.volume;
     let stretch = |speed: f64, passes: u8| Move {
         range_mm: volume.0,
         speed_mm: [speed; 3],
@@ -301,7 +277,7 @@ impl<F: Fn(&Link, Range, &mut SixBounds) -> bool> Together for Along<'_, F> {
     #[inline(always)]
     fn with<S: Simd<f64s = f64x4>>(self, simd: S) -> Bounded {
         let Self { model, stretch, course, bounds, carried } = self;
-        let volume = crate::Engine::volume(model);
+        let volume = model.volume;
         let vector = Components::vector;
         let (mut low, mut high, mut nominal_speed, mut nominal_acceleration, mut error);
         if let Some(carried) = carried {

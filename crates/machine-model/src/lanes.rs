@@ -11,12 +11,10 @@ use pulp::bytemuck::cast;
 use pulp::{Simd, f64x4};
 
 use crate::axis_tables::{AxisTables, Cell, Six};
-use crate::rigid_body::Link;
+use crate::link::Link;
+use crate::real::Real;
 use crate::table::{slope_of, value_of};
-use crate::{Range, Vector};
-
-/// How many points are evaluated together.
-pub const LANES: usize = 4;
+use crate::{LANES, Range, Vector};
 
 /// What is done for several points at once.
 pub(crate) trait Together {
@@ -164,13 +162,10 @@ impl<S: Simd<f64s = f64x4>> Components<S> {
     }
 }
 
-/// One number, or one for each of several points.
-pub(crate) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+/// One number, or one for each of several points, that tables of an axis can be asked for.
+pub(crate) trait OfAxis: Real {
     /// Directions of motion for each point.
     type Directions;
-
-    /// The same number for each point that `self` has one for.
-    fn all(self, value: f64) -> Self;
 
     /// The six functions of an axis at `q`; `None` where it has no errors.
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]>;
@@ -180,13 +175,9 @@ pub(crate) trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Outp
     -> Option<([Self; 6], [Self; 6])>;
 }
 
-impl Real for f64 {
+impl OfAxis for f64 {
     type Directions = [i8; 3];
 
-    #[inline(always)]
-    fn all(self, value: f64) -> Self {
-        value
-    }
     #[inline(always)]
     fn six(link: &Link, q: Self, directions: &[i8; 3]) -> Option<Six> {
         link.tables(directions[link.axis]).map(|tables| tables.at(q))
@@ -219,12 +210,14 @@ each_lane!(Components, Mul, mul, mul_f64s);
 // No closures from here on where lanes meet: what they call would be compiled for every processor.
 
 impl<S: Simd<f64s = f64x4>> Real for Lanes<S> {
-    type Directions = [[i8; 3]; LANES];
-
     #[inline(always)]
     fn all(self, value: f64) -> Self {
         Self { numbers: self.simd.splat_f64s(value), ..self }
     }
+}
+
+impl<S: Simd<f64s = f64x4>> OfAxis for Lanes<S> {
+    type Directions = [[i8; 3]; LANES];
 
     #[inline(always)]
     fn six(link: &Link, q: Self, directions: &Self::Directions) -> Option<[Self; 6]> {
@@ -352,54 +345,4 @@ fn for_lanes<'l>(link: &'l Link, directions: &[[i8; 3]; LANES]) -> Option<[&'l A
         }
     }
     Some(tables)
-}
-
-/// A vector, or one for each point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Triple<T>(pub(crate) [T; 3]);
-
-impl<T: Real> Triple<T> {
-    /// The same for each point that `like` has a number for.
-    #[inline(always)]
-    pub(crate) fn all(like: T, v: &Vector) -> Self {
-        Self([like.all(v.x), like.all(v.y), like.all(v.z)])
-    }
-    #[inline(always)]
-    pub(crate) fn scaled(self, by: T) -> Self {
-        let [x, y, z] = self.0;
-        Self([x * by, y * by, z * by])
-    }
-    #[inline(always)]
-    pub(crate) fn norm_squared(self) -> T {
-        let [x, y, z] = self.0;
-        x * x + y * y + z * z
-    }
-    #[inline(always)]
-    pub(crate) fn cross(self, other: Self) -> Self {
-        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
-        Self([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-    }
-}
-
-macro_rules! each_of_three {
-    ($trait:ident, $function:ident, $operator:tt) => {
-        impl<T: Real> $trait for Triple<T> {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
-                Self([ax $operator bx, ay $operator by, az $operator bz])
-            }
-        }
-    };
-}
-
-each_of_three!(Add, add, +);
-each_of_three!(Sub, sub, -);
-
-impl From<Triple<f64>> for Vector {
-    #[inline(always)]
-    fn from(v: Triple<f64>) -> Self {
-        Self::new(v.0[0], v.0[1], v.0[2])
-    }
 }

@@ -6,6 +6,7 @@
 mod axis_tables;
 mod chain;
 mod chord_bound;
+mod command;
 mod description;
 pub mod effects;
 mod engine;
@@ -14,9 +15,13 @@ mod everywhere;
 pub mod finite_rotations;
 mod first_order;
 mod lanes;
+mod length;
+mod link;
 mod newton;
 mod play;
+mod real;
 mod rigid_body;
+mod rotary;
 pub mod rotation;
 mod solve;
 mod table;
@@ -27,13 +32,11 @@ mod with_effects;
 
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
+pub use command::{Command, Move, Range, Turn, Vector, Volume};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
-pub use engine::{
-    Command, Engine, EngineId, Models, Move, PathModel, Range, Solution, SolveError, Turn, Vector, Volume,
-};
+pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
-pub use lanes::LANES;
 pub use play::{Play, SAME_PLACE_MM, turned_by_mm};
 pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};

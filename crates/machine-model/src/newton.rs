@@ -5,7 +5,9 @@ use std::array::from_fn;
 
 use pulp::{Simd, f64x4};
 
-use crate::lanes::{LANES, Lanes, Real, Together, Triple, together};
+use crate::LANES;
+use crate::lanes::{Lanes, OfAxis, Together, together};
+use crate::real::{Real, Triple};
 use crate::solve::TOLERANCE_MM;
 use crate::{Command, Everywhere, RigidBody, Vector, Volume};
 
@@ -15,7 +17,12 @@ const ROUNDS: u32 = 4;
 impl RigidBody {
     /// `q + e(q) = wanted` by one step of Newton's method, without head and table errors.
     #[inline(always)]
-    fn newton_step<T: Real>(&self, wanted: &[T; 3], directions: &T::Directions, tool_mm: &Vector) -> [T; 3] {
+    fn newton_step<T: OfAxis>(
+        &self,
+        wanted: &[T; 3],
+        directions: &T::Directions,
+        tool_mm: &Vector,
+    ) -> [T; 3] {
         let (error, gradient) = self.chain_error_and_gradient(wanted, directions, tool_mm);
         // (1 + G)⁻¹ e = e - G e + G² e - …
         (Triple(*wanted) - (error - times(&gradient, error - times(&gradient, error)))).0
@@ -23,7 +30,7 @@ impl RigidBody {
 
     /// `q + e(q) - wanted`.
     #[inline(always)]
-    fn residual<T: Real>(
+    fn residual<T: OfAxis>(
         &self,
         q: &[T; 3],
         wanted: &[T; 3],
@@ -95,7 +102,7 @@ impl RigidBody {
 
 /// A matrix, its columns given, times a vector.
 #[inline(always)]
-fn times<T: Real>(columns: &[Triple<T>; 3], v: Triple<T>) -> Triple<T> {
+fn times<T: OfAxis>(columns: &[Triple<T>; 3], v: Triple<T>) -> Triple<T> {
     let ([a, b, c], [x, y, z]) = (*columns, v.0);
     a.scaled(x) + b.scaled(y) + c.scaled(z)
 }

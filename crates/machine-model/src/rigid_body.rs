@@ -1,49 +1,22 @@
 //! The reference model: rigid bodies along the chain. Equations (5) to (9) of `docs/equations.md`.
 
+mod engine;
+
 use std::array::from_fn;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use nalgebra::Matrix3;
 
-use crate::axis_tables::{AxisTables, SixBounds};
+use crate::axis_tables::SixBounds;
 use crate::everywhere::CLASSES;
-use crate::lanes::{LANES, Real, Triple};
-use crate::rotation::{around, of_any_size, small, turned};
-use crate::solve::solve;
-use crate::{
-    Axis, Command, Description, Engine, EngineId, Everywhere, Move, PathModel, Range, RotaryAxis, Solution,
-    SolveError, Tilt, Vector, Volume, chord_bound,
-};
-
-/// One linear axis, ready to be evaluated.
-#[derive(Clone, Debug)]
-pub(crate) struct Link {
-    /// 0 X, 1 Y, 2 Z.
-    pub(crate) axis: usize,
-    /// Ideal direction of the axis.
-    pub(crate) way: Vector,
-    /// Real minus ideal direction of the axis, per mm.
-    pub(crate) tilt: Vector,
-    /// Tables for motion in the negative, unknown and positive direction; empty where the axis has none.
-    pub(crate) by_direction: Vec<AxisTables>,
-    /// From this axis to the measured point, mm: where the lever arms begin. Equation (7).
-    pub(crate) measured_lever_mm: Vector,
-}
-
-impl Link {
-    /// Tables for a direction of motion, `None` where the axis has no errors.
-    #[inline]
-    pub(crate) fn tables(&self, direction: i8) -> Option<&AxisTables> {
-        // One set holds for all directions, or there are three.
-        match self.by_direction.len() {
-            0 => None,
-            1 => self.by_direction.first(),
-            _ => self.by_direction.get((direction.signum() + 1) as usize),
-        }
-    }
-}
+use crate::lanes::OfAxis;
+use crate::link::{Link, by_direction};
+use crate::real::Triple;
+use crate::rotary::{Machine, moved};
+use crate::rotation::{small, turned};
+use crate::{Axis, Command, Description, Everywhere, Range, SolveError, Vector, Volume};
 
 /// Why a description is no machine.
 ///
@@ -212,9 +185,9 @@ impl RigidBody {
     /// the nominal position.
     #[must_use]
     pub fn predict(&self, command: &Command) -> Prediction {
-        let (turn, shift) = self.table_transform(command, false);
+        let (turn, shift) = self.table_transform(command, Machine::Ideal);
         let inner = command.linear_mm + self.nominal_tool(command);
-        let error_mm = turn * self.error_mm(command);
+        let error_mm = turn * self.error(command);
         Prediction { position_mm: turn * inner + shift + error_mm, error_mm }
     }
 
@@ -224,25 +197,25 @@ impl RigidBody {
         if self.description.chain.head().is_empty() {
             return command.tool_mm;
         }
-        self.head(command, false)
+        self.head(command, Machine::Ideal)
     }
 
     /// Tool vector turned by the rotary axes that carry the tool.
-    fn head(&self, command: &Command, real: bool) -> Vector {
+    fn head(&self, command: &Command, machine: Machine) -> Vector {
         self.description.chain.head().iter().rev().fold(command.tool_mm, |tool, axis| {
             let (turn, shift) =
-                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, real);
+                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, machine);
             turn * tool + shift
         })
     }
 
     /// From the frame of the linear axes to the workpiece's: the inverse of what the table's axes do.
-    fn table_transform(&self, command: &Command, real: bool) -> (Matrix3<f64>, Vector) {
+    fn table_transform(&self, command: &Command, machine: Machine) -> (Matrix3<f64>, Vector) {
         self.description.chain.table().iter().rev().fold(
             (Matrix3::identity(), Vector::zeros()),
             |(turn, shift), axis| {
                 let rotary = &self.description.rotary[axis.direction()];
-                let (own, offset) = moved(rotary, *axis, &command.rotary_rad, real);
+                let (own, offset) = moved(rotary, *axis, &command.rotary_rad, machine);
                 let back = own.transpose();
                 (back * turn, back * (shift - offset))
             },
@@ -255,14 +228,26 @@ impl RigidBody {
         if self.description.chain.table().is_empty() {
             return Matrix3::identity();
         }
-        self.table_transform(command, false).0
+        self.table_transform(command, Machine::Ideal).0
     }
 
     /// From the directions of the linear axes to the workpiece's, as the real table turns them: the rotation of
     /// `M_1⁻¹ …` in equation (9). The identity without a table.
     #[must_use]
     pub fn real_table_turn(&self, command: &Command) -> Matrix3<f64> {
-        self.table_transform(command, true).0
+        self.table_transform(command, Machine::Real).0
+    }
+
+    /// Real minus nominal position, mm, in the directions of the linear axes: equations (8) and (9).
+    #[inline]
+    pub(crate) fn error(&self, command: &Command) -> Vector {
+        let q = self.volume.nearest(&command.linear_mm);
+        let linear = self.linear_error(&q, command);
+        if !self.table_has_errors {
+            return linear;
+        }
+        let (turn, shift) = self.table_error(command);
+        self.with_table(&turn, &shift, &(q + self.nominal_tool(command)), &linear)
     }
 
     /// Error of the three linear axes and the head, in the directions of the linear axes: equation (8).
@@ -271,8 +256,8 @@ impl RigidBody {
         let mut nominal = command.tool_mm;
         let mut error = Vector::zeros();
         if !self.description.chain.head().is_empty() {
-            nominal = self.head(command, false);
-            error = self.head(command, true) - nominal;
+            nominal = self.head(command, Machine::Ideal);
+            error = self.head(command, Machine::Real) - nominal;
         }
         let all = |v| Triple::all(0.0, v);
         self.chain_error(&[q.x, q.y, q.z], &command.direction, all(&nominal), all(&error)).into()
@@ -280,7 +265,7 @@ impl RigidBody {
 
     /// Error of the linear axes, on top of that of what they carry: the recursion of equation (8).
     #[inline(always)]
-    pub(crate) fn chain_error<T: Real>(
+    pub(crate) fn chain_error<T: OfAxis>(
         &self,
         q: &[T; 3],
         directions: &T::Directions,
@@ -301,7 +286,7 @@ impl RigidBody {
 
     /// [`Self::chain_error`] of a machine without head, and its gradient to first order: a column for each axis.
     #[inline(always)]
-    pub(crate) fn chain_error_and_gradient<T: Real>(
+    pub(crate) fn chain_error_and_gradient<T: OfAxis>(
         &self,
         q: &[T; 3],
         directions: &T::Directions,
@@ -338,22 +323,22 @@ impl RigidBody {
 
     /// `A` of equation (9): what is left of the table's rotation when its ideal part is taken away.
     fn table_error(&self, command: &Command) -> (Matrix3<f64>, Vector) {
-        let (real, real_shift) = self.table_transform(command, true);
-        let (ideal, ideal_shift) = self.table_transform(command, false);
+        let (real, real_shift) = self.table_transform(command, Machine::Real);
+        let (ideal, ideal_shift) = self.table_transform(command, Machine::Ideal);
         let back = ideal.transpose();
         (back * real, back * (real_shift - ideal_shift))
     }
 
     /// Tip of an ideal machine, mm, workpiece frame.
     pub(crate) fn nominal_position(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        let (turn, shift) = self.table_transform(state, false);
+        let (turn, shift) = self.table_transform(state, Machine::Ideal);
         turn * (linear_mm + self.nominal_tool(state)) + shift
     }
 
     /// Where the linear axes of an ideal machine have to stand so that its tip is there, both mm: the inverse of
     /// [`Self::nominal_position`].
     pub(crate) fn reach(&self, tip_mm: &Vector, state: &Command) -> Vector {
-        let (turn, shift) = self.table_transform(state, false);
+        let (turn, shift) = self.table_transform(state, Machine::Ideal);
         turn.tr_mul(&(tip_mm - shift)) - self.nominal_tool(state)
     }
 
@@ -363,13 +348,14 @@ impl RigidBody {
     /// Linear axes turn what they carry by their angles, in the order of the chain; squareness does not turn it.
     #[must_use]
     pub fn directions(&self, command: &Command) -> [Vector; 2] {
-        let turned_by_head = |real: bool| {
+        let turned_by_head = |machine| {
             self.description.chain.head().iter().rev().fold(Vector::z(), |tool, axis| {
-                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, real).0 * tool
+                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, machine).0
+                    * tool
             })
         };
         let q = self.volume.nearest(&command.linear_mm);
-        let linear = self.links.iter().rev().fold(turned_by_head(true), |tool, link| {
+        let linear = self.links.iter().rev().fold(turned_by_head(Machine::Real), |tool, link| {
             match link.tables(command.direction[link.axis]) {
                 Some(tables) => {
                     let [.., a, b, c] = tables.at(q[link.axis]);
@@ -378,8 +364,8 @@ impl RigidBody {
                 None => tool,
             }
         });
-        let table = |real: bool| self.table_transform(command, real).0;
-        [table(false) * turned_by_head(false), table(true) * linear]
+        let table = |machine| self.table_transform(command, machine).0;
+        [table(Machine::Ideal) * turned_by_head(Machine::Ideal), table(Machine::Real) * linear]
     }
 
     /// That every rotary axis stands inside its travel and its tables.
@@ -409,85 +395,7 @@ impl RigidBody {
         }
         Ok(())
     }
-}
 
-/// What an ideal rotary axis does.
-pub(crate) fn ideally_turned(rotary: &RotaryAxis, axis: Axis, angle_rad: f64) -> Matrix3<f64> {
-    match rotary.direction {
-        None => around(axis.direction(), angle_rad),
-        Some(direction) => of_any_size(&(direction * angle_rad)),
-    }
-}
-
-/// Motion of what a rotary axis carries, seen from what carries the axis: turn and shift, equation (9).
-fn moved(rotary: &RotaryAxis, axis: Axis, rotary_rad: &Vector, real: bool) -> (Matrix3<f64>, Vector) {
-    let angle = rotary_rad[axis.direction()];
-    let mut turn = ideally_turned(rotary, axis, angle);
-    let mut centre = rotary.centre_mm;
-    if real {
-        if let Some(tables) = &rotary.errors {
-            let [x, y, z, a, b, c] = tables.at(angle);
-            turn = small(&Vector::new(a, b, c)) * turn;
-            centre += Vector::new(x, y, z);
-        }
-        let lean = small(&rotary.tilt_rad);
-        turn = match rotary.tilt {
-            Tilt::Body => lean * turn,
-            Tilt::Axis => lean * turn * lean.transpose(),
-        };
-        centre += rotary.shift_mm;
-    }
-    (turn, centre - turn * rotary.centre_mm)
-}
-
-/// Tables per direction: one set for all, or negative, mean, positive.
-fn by_direction(data: &crate::LinearAxis, axis: usize) -> Vec<AxisTables> {
-    let half = 0.5 * data.backlash_mm;
-    let Some(positive) = data.errors.clone() else {
-        if half == 0.0 {
-            return Vec::new();
-        }
-        let only = |by: f64| AxisTables::constant(data.travel_mm, [0.0; 6]).shifted(axis, by);
-        return vec![only(half), only(0.0), only(-half)];
-    };
-    if let Some(negative) = data.errors_negative.clone()
-        && let Some(mean) = AxisTables::mean(&positive, &negative)
-    {
-        return vec![negative.shifted(axis, half), mean, positive.shifted(axis, -half)];
-    }
-    if half == 0.0 {
-        return vec![positive];
-    }
-    vec![positive.clone().shifted(axis, half), positive.clone(), positive.shifted(axis, -half)]
-}
-
-impl Engine for RigidBody {
-    fn id(&self) -> EngineId {
-        EngineId::RigidBody
-    }
-
-    fn volume(&self) -> Volume {
-        self.volume
-    }
-
-    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
-        self.rotary_inside(target)?;
-        if self.table_has_errors {
-            let (turn, shift) = self.table_error(target);
-            let tool = self.nominal_tool(target);
-            return solve(&target.linear_mm, &self.volume, |q| {
-                self.with_table(&turn, &shift, &(q + tool), &self.linear_error(q, target))
-            });
-        }
-        solve(&target.linear_mm, &self.volume, |q| self.linear_error(q, target))
-    }
-
-    fn path_model(&self) -> Option<&dyn PathModel> {
-        Some(self)
-    }
-}
-
-impl RigidBody {
     /// Equation (9): the error with the table's own, in the directions of the linear axes.
     fn with_table(&self, turn: &Matrix3<f64>, shift: &Vector, nominal: &Vector, linear: &Vector) -> Vector {
         turn * (nominal + linear) + shift - nominal
@@ -504,105 +412,6 @@ impl RigidBody {
         if self.description.chain.head().is_empty() {
             return (nominal, Vector::zeros());
         }
-        (nominal, self.head(command, true) - nominal)
-    }
-}
-
-impl PathModel for RigidBody {
-    fn error_mm(&self, command: &Command) -> Vector {
-        let q = self.volume.nearest(&command.linear_mm);
-        let linear = self.linear_error(&q, command);
-        if !self.table_has_errors {
-            return linear;
-        }
-        let (turn, shift) = self.table_error(command);
-        self.with_table(&turn, &shift, &(q + self.nominal_tool(command)), &linear)
-    }
-
-    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
-        chord_bound::chord_bound_mm(self, stretch)
-    }
-
-    fn follows_turns(&self) -> bool {
-        true
-    }
-
-    fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
-        if command.rotary_rad == *programmed_rad {
-            return self.error_mm(command);
-        }
-        // Outside the volume the error is that of its nearest point, as everywhere.
-        let inside = Command { linear_mm: self.volume.nearest(&command.linear_mm), ..*command };
-        let programmed = Command { rotary_rad: *programmed_rad, ..inside };
-        let off = self.predict(&inside).position_mm - self.nominal_position(&inside.linear_mm, &programmed);
-        self.table_turn(&programmed).tr_mul(&off)
-    }
-
-    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
-        let programmed = Command { rotary_rad: *programmed_rad, ..*state };
-        self.reach(&self.nominal_position(linear_mm, &programmed), state)
-    }
-
-    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
-        // Where nothing turns the tool is the same on both sides of every comparison.
-        if self.description.chain.has_rotary() { self.nominal_position(linear_mm, state) } else { *linear_mm }
-    }
-
-    fn tilt_rad(&self, command: &Command) -> f64 {
-        let [ideal, real] = self.directions(command);
-        // Unit vectors: as good for small angles as for large ones.
-        2.0 * units::math::asin((0.5 * (real - ideal).norm()).min(1.0))
-    }
-
-    fn everywhere(&self, state: &Command) -> Option<Everywhere> {
-        // A table's errors turn with it, a head's lever with the head: their bounds are taken stretch by stretch.
-        let plain = !self.table_has_errors && self.description.chain.head().is_empty();
-        plain.then(|| {
-            // Then the tool is all of the state that they depend on. What is kept is what would be worked out,
-            // whoever asks first: a panic elsewhere leaves it as good as it was.
-            let kept = || self.everywhere.lock().unwrap_or_else(PoisonError::into_inner);
-            let tool = self.nominal_tool(state);
-            if let Some((_, known)) = kept().iter().find(|(known, _)| *known == tool) {
-                return *known;
-            }
-            let everywhere = chord_bound::everywhere(self, state);
-            let mut kept = kept();
-            kept.truncate(TOOLS_KEPT - 1);
-            kept.push_front((tool, everywhere));
-            everywhere
-        })
-    }
-
-    fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {
-        match self.newton(target, everywhere) {
-            Some(command) => Ok(command),
-            None => self.solve(target).map(|solution| solution.linear_mm),
-        }
-    }
-
-    fn commands_for(
-        &self,
-        targets_mm: &[[f64; 3]; LANES],
-        directions: &[[i8; 3]; LANES],
-        state: &Command,
-        everywhere: &Everywhere,
-    ) -> Option<[[f64; LANES]; 3]> {
-        self.newton_together(targets_mm, directions, state, everywhere)
-    }
-
-    fn depends_on_direction(&self) -> bool {
-        self.depends_on_direction
-    }
-
-    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
-        let link = &self.links[self.place_of[axis]];
-        match link.by_direction.as_slice() {
-            [negative, _, positive] => {
-                let range = self.volume.0[axis];
-                let at = command.linear_mm[axis].clamp(range.low, range.high);
-                negative.at(at)[axis] - positive.at(at)[axis]
-            }
-            _ => 0.0,
-        }
+        (nominal, self.head(command, Machine::Real) - nominal)
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use units::math;
 
 use crate::Vector;
-use crate::lanes::{Real, Triple};
+use crate::real::{Real, Triple};
 
 /// Largest angle for which the series of [`turned_by`] is meant, rad. Larger geometric errors are a mistake in units.
 pub const LARGEST_SMALL_ANGLE_RAD: f64 = 0.1;

@@ -3,7 +3,7 @@
 //! Equations (1) to (4) of `docs/equations.md`.
 
 use crate::Range;
-use crate::lanes::Real;
+use crate::real::Real;
 
 /// What lies between the nodes of a table.
 ///

@@ -5,8 +5,9 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Matrix3;
 use toolpath::TiltedPlane;
 
-use crate::chord_bound::{Length, lies_inside};
-use crate::rigid_body::ideally_turned;
+use crate::chord_bound::lies_inside;
+use crate::length::Length;
+use crate::rotary::ideally_turned;
 use crate::solve::{inside, solve};
 use crate::turning_bound::error_in_turn;
 use crate::{

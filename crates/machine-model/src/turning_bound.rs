@@ -5,51 +5,10 @@
 //! bends by `ε X ω²`, where the path itself bends by `X ω²`.
 
 use crate::axis_tables::SixBounds;
-use crate::chord_bound::{Carried, Length, linear_error};
-use crate::rigid_body::ideally_turned;
+use crate::chord_bound::linear_error;
+use crate::length::{Carried, Length};
+use crate::rotary::ideally_turned;
 use crate::{Axis, Command, Move, Range, RigidBody, RotaryAxis, Tilt, Turn, Vector};
-
-impl Length {
-    /// Of what does not change.
-    fn constant(value: f64) -> Self {
-        Self { value, ..Self::default() }
-    }
-
-    /// Seen from what turns by `speed` rad a stretch, evenly.
-    pub(crate) fn turned(self, speed: f64) -> Self {
-        let Self { value, first, second, jumps } = self;
-        Self {
-            value,
-            first: first + speed * value,
-            second: second + 2.0 * speed * first + speed * speed * value,
-            jumps,
-        }
-    }
-
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            first: self.first + other.first,
-            second: self.second + other.second,
-            jumps: self.jumps + other.jumps,
-        }
-    }
-
-    /// Product rule: of a matrix times a vector, or of two vectors.
-    fn times(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            first: self.first * other.value + self.value * other.first,
-            second: self.second * other.value + 2.0 * self.first * other.first + self.value * other.second,
-            jumps: self.jumps * other.value + self.value * other.jumps,
-        }
-    }
-
-    /// Upper bound of the distance from the chord: equation (12).
-    pub(crate) fn leaves_chord_mm(self) -> f64 {
-        0.25 * self.jumps + 0.125 * self.second
-    }
-}
 
 /// What a rotary axis does besides turning ideally by its programmed angle.
 struct Wobble {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 pub use jobs::options::{Decimal, JobOptions, Outside, finite, size, size_or_zero};
 
+pub use crate::color::Color;
 use crate::language::Language;
 use crate::values::Given;
 
@@ -38,17 +39,6 @@ pub struct MessageOptions {
     /// Of `vpost explain`; LC_ALL, LC_MESSAGES, LANG say it otherwise.
     #[arg(id = "lang", long = "lang", value_name = "LANG", global = true, help_heading = "Messages")]
     pub language: Option<Given<Language>>,
-}
-
-/// Colours in messages.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Color {
-    /// On a terminal.
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
 }
 
 /// The main job.
@@ -184,4 +174,14 @@ pub struct Completions {
     /// The shell.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
+}
+
+/// `vpost man`
+#[derive(Debug, Args)]
+pub struct Manual {
+    /// Write the pages of all commands into this folder.
+    ///
+    /// Instead of the first page to standard output.
+    #[arg(short = 'O', long = "output-dir", value_name = "DIR")]
+    pub folder: Option<PathBuf>,
 }

@@ -2,13 +2,12 @@
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
-use crate::arguments::{Check, Completions, Correct, Grammar, Predict, Profile, Shared, Solve};
+use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Profile, Shared, Solve};
 use crate::batch::Batch;
 use crate::budget::Budget;
 use crate::calibrate::Calibrate;
 use crate::diagnose::Diagnose;
 use crate::explain::Explain;
-use crate::manual::Manual;
 use crate::map::Map;
 
 /// Rewrites NC programs so that a measured machine goes where the program says.

@@ -14,7 +14,7 @@ use crate::message::{Failure, Messages};
 use crate::roles::Roles;
 use crate::summary::Summary;
 pub(crate) use jobs::correct::Program;
-pub(crate) use program::{Growing, Input, program};
+pub(crate) use program::{Input, program};
 
 /// `vpost IN.nc -m PROFILE`
 pub(crate) fn run(

@@ -8,8 +8,8 @@ use diagnostic::{Code, Diagnostic};
 use machine_model::{Axis, Command, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
-use crate::calibrate::short;
 use crate::message::{Failure, Messages, Report};
+use crate::number::short;
 use crate::{file, profile};
 
 /// Warning: the form holds less than the profile.

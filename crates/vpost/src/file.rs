@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use jobs::lines::{LONGEST_LINE, check_lines, ends_lines, name, read_lines};
 
-use crate::correct::Growing;
-use crate::growing::{GrowingFile, Nursery, sweep};
+use crate::growing::{Growing, GrowingFile, Nursery, sweep};
 use crate::message::Failure;
 use crate::source::Still;
 use crate::terminal;

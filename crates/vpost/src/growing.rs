@@ -6,6 +6,12 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+/// What an output is written to.
+pub(crate) trait Growing: Write + Send {
+    /// Starts anew.
+    fn clear(&mut self) -> io::Result<()>;
+}
+
 /// A folder that files grow in, of the file system of their places.
 #[derive(Debug)]
 pub(crate) struct Nursery {

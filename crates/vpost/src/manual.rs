@@ -1,26 +1,13 @@
 //! Manual pages and completions, from the same description as the command line.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
-use crate::arguments::Completions;
+use crate::arguments::{Completions, Manual};
 use crate::command_line::command;
 use crate::file;
 use crate::message::Failure;
-
-/// `vpost man`
-#[derive(Debug, Args)]
-pub struct Manual {
-    /// Write the pages of all commands into this folder.
-    ///
-    /// Instead of the first page to standard output.
-    #[arg(short = 'O', long = "output-dir", value_name = "DIR")]
-    pub folder: Option<PathBuf>,
-}
 
 /// A manual page.
 #[derive(Debug, Clone, PartialEq, Eq)]

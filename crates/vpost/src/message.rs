@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write};
 pub(crate) use jobs::message::*;
 use jobs::shown::shown;
 
-use crate::arguments::Color;
+use crate::color::Color;
 
 /// Where messages go.
 #[derive(Debug)]

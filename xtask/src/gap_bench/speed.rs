@@ -9,7 +9,7 @@ use gap_lab::{CaseSpec, Kind, Plan, catalogue};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::attempt;
+use super::attempt::{attempt, read};
 
 /// One file measured.
 pub(crate) struct Speed {
@@ -63,7 +63,7 @@ pub(crate) fn measure(vpost: &Path, root: &Path) -> anyhow::Result<Vec<Speed>> {
         let ran = attempt(command, &folder, "diagnose")?;
         let verdict = match ran.failure {
             Some(words) => words,
-            None => super::read(&folder.join("answer.json")).map_or_else(|e| e, |a| a.verdict),
+            None => read(&folder.join("answer.json")).map_or_else(|e| e, |a| a.verdict),
         };
         let cpu_seconds = ran.cpu_seconds.unwrap_or(ran.seconds);
         let (seconds, peak_mib) = (ran.seconds, ran.peak_mib);

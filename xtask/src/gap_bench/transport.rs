@@ -6,7 +6,7 @@ use std::process::Command;
 use gap_lab::{Case, Kind};
 
 use super::answer::Answer;
-use super::attempt;
+use super::attempt::attempt;
 
 /// Shrinkage on fresh points, found without the diagnosis' own hold-out block.
 #[derive(Clone, Copy, Debug)]

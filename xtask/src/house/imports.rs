@@ -171,11 +171,14 @@ impl Tree {
     }
 
     /// Files that lead to each other, in groups of two and more.
-    pub(crate) fn circles(&self) -> Vec<Vec<PathBuf>> {
-        let mut imports = vec![BTreeSet::new(); self.files.len()];
+    pub(crate) fn circles(&self) -> Vec<Circle> {
+        let mut imports: Vec<BTreeMap<usize, BTreeSet<&str>>> = vec![BTreeMap::new(); self.files.len()];
         for (number, module) in self.modules.iter().enumerate().filter(|(_, module)| !module.is_test) {
-            let ends = module.mentioned.iter().filter_map(|path| self.file_of(number, path));
-            imports[module.file].extend(ends.filter(|file| *file != module.file));
+            for path in &module.mentioned {
+                if let Some(file) = self.file_of(number, path).filter(|file| *file != module.file) {
+                    imports[module.file].entry(file).or_default().extend(path.last().map(String::as_str));
+                }
+            }
         }
         let reached: Vec<BTreeSet<usize>> = (0..imports.len()).map(|file| reach(&imports, file)).collect();
         let mut seen = BTreeSet::new();
@@ -184,19 +187,46 @@ impl Tree {
             let circle: Vec<usize> =
                 reached[file].iter().copied().filter(|other| reached[*other].contains(&file)).collect();
             if circle.len() > 1 && seen.insert(circle.clone()) {
-                circles.push(circle.iter().map(|file| self.files[*file].clone()).collect());
+                let path = |file: &usize| self.files[*file].clone();
+                let within = |from: &usize| {
+                    let inside = imports[*from].iter().filter(|(to, _)| circle.contains(to));
+                    let edges = inside.map(|(to, names)| Import {
+                        from: path(from),
+                        to: path(to),
+                        names: names.iter().map(|name| (*name).to_owned()).collect(),
+                    });
+                    edges.collect::<Vec<_>>()
+                };
+                circles.push(Circle {
+                    files: circle.iter().map(path).collect(),
+                    imports: circle.iter().flat_map(within).collect(),
+                });
             }
         }
         circles
     }
 }
 
+/// Files that lead to each other.
+pub(crate) struct Circle {
+    pub files: Vec<PathBuf>,
+    /// What makes it one.
+    pub imports: Vec<Import>,
+}
+
+/// One file uses names that stand in another.
+pub(crate) struct Import {
+    pub from: PathBuf,
+    pub to: PathBuf,
+    pub names: Vec<String>,
+}
+
 /// Files that a file leads to; itself where it is on a circle.
-fn reach(imports: &[BTreeSet<usize>], from: usize) -> BTreeSet<usize> {
+fn reach(imports: &[BTreeMap<usize, BTreeSet<&str>>], from: usize) -> BTreeSet<usize> {
     let mut found = BTreeSet::new();
     let mut open = vec![from];
     while let Some(file) = open.pop() {
-        open.extend(imports[file].iter().copied().filter(|next| found.insert(*next)));
+        open.extend(imports[file].keys().copied().filter(|next| found.insert(*next)));
     }
     found
 }
@@ -350,7 +380,7 @@ mod tests {
             std::fs::write(path, text).expect("a new file");
         }
         let tree = Tree::read(folder.path(), Path::new("lib.rs")).expect("Rust");
-        let names = |circle: Vec<PathBuf>| circle.iter().map(|path| path.display().to_string()).collect();
+        let names = |circle: Circle| circle.files.iter().map(|path| path.display().to_string()).collect();
         tree.circles().into_iter().map(names).collect()
     }
 

@@ -10,8 +10,10 @@ mod inputs;
 mod job;
 mod journal;
 mod manifest;
+mod outcome;
 mod progress;
 mod record;
+mod report;
 mod shard;
 mod shelf;
 mod table;
@@ -24,7 +26,7 @@ use arguments::BatchCommand;
 
 use crate::arguments::Shared;
 use crate::exit_status::REFUSED;
-use crate::file;
+
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
@@ -32,7 +34,7 @@ use folder::{Company, OutputFolder};
 use job::Job;
 use journal::Journal;
 use progress::Progress;
-use work::Results;
+use report::{finish, has_place, interrupted, passed_over};
 
 /// `vpost batch`
 pub(crate) fn run(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
@@ -84,52 +86,4 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     } else {
         Err(Failure::Said(REFUSED))
     }
-}
-
-/// What a folder held besides programs: a program of an unusual name must not be missed.
-fn passed_over(found: &inputs::Found, messages: &Messages) {
-    for (paths, what, way) in [
-        (&found.others, "file(s) are no programs by name or kind and were passed over", "see `--pattern`"),
-        (&found.links, "link(s) to folders were not followed", "name such a folder itself"),
-        (
-            &found.outputs,
-            "folder(s) of another `vpost batch`'s outputs were passed over",
-            "correct programs as posted",
-        ),
-    ] {
-        if let Some(first) = paths.first() {
-            messages.note(&format!("{} {what}, {} the first ({way})", paths.len(), first.display()));
-        }
-    }
-}
-
-/// What is done stays, and the next run begins there.
-fn interrupted(failure: Failure, messages: &Messages) -> Failure {
-    let Failure::Interrupted(signal) = failure else { return failure };
-    messages.note("interrupted: what is done is done; the same command goes on from there");
-    Failure::Said(128 + signal)
-}
-
-/// The results' folder is there: hours later is late to say that it is not.
-fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
-    let folder = lines.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => Err(Failure::option(
-            format!("`--results`: there is no folder {}", folder.display()),
-            "make it first, or name a file in a folder that is there",
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Results to disk and to the user, who gets the table whatever cannot be written.
-fn finish(results: &Results, lines: Option<&Path>) -> Result<(), Failure> {
-    let (written, printed) = match lines {
-        Some(path) if path.as_os_str() == "-" => (Ok(()), file::print(&record::lines(&results.records))),
-        path => (
-            path.map_or(Ok(()), |path| file::write(path, &record::lines(&results.records))),
-            file::print(table::table(results).as_bytes()),
-        ),
-    };
-    written.and(printed)
 }

@@ -9,8 +9,8 @@ use std::io;
 
 use super::folder::{Grown, OutputFolder};
 use super::journal::Journal;
+use super::outcome::Outcome;
 use super::record::Record;
-use super::work::Outcome;
 use crate::file;
 use crate::message::Failure;
 

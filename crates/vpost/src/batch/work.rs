@@ -15,6 +15,7 @@ use super::folder::{Grown, OutputFolder, hash};
 use super::inputs::Item;
 use super::job::{self, Job};
 use super::journal::{Journal, Records};
+use super::outcome::Outcome;
 use super::progress::Progress;
 use super::record::{Record, Status};
 use super::shelf::Shelf;
@@ -58,15 +59,6 @@ pub(crate) struct Results {
     pub records: Vec<Record>,
     /// How many of them an earlier run had done.
     pub resumed: usize,
-}
-
-/// What became of one program.
-pub(crate) struct Outcome {
-    pub record: Record,
-    pub resumed: bool,
-    /// Its output, where it is not in its place yet.
-    pub grown: Option<Grown>,
-    told: Vec<Report>,
 }
 
 /// Threads for the work: as many as the machine gives this process.
@@ -308,25 +300,6 @@ fn foreign(place: &Path) -> Failure {
         )
         .help("give another folder with `-O`, move that file away, or write over it with `--force`"),
     )
-}
-
-impl Outcome {
-    fn of(record: Record) -> Self {
-        Self { record, resumed: false, grown: None, told: Vec::new() }
-    }
-
-    /// Makes it that of a failure.
-    pub(crate) fn fail(&mut self, failure: Failure) {
-        let (status, reports) = match failure {
-            Failure::Refused(reports) | Failure::Usage(reports) => (Status::Refused, reports),
-            Failure::File(report) | Failure::Later(report) => (Status::Failed, vec![report]),
-            Failure::Check | Failure::Interrupted(_) | Failure::Said(_) => (Status::Refused, Vec::new()),
-        };
-        self.record.status = status;
-        self.record.errors = reports.iter().flat_map(job::faults).collect();
-        self.grown = None;
-        self.told = reports;
-    }
 }
 
 /// Files that may be open at once, outputs that wait for the disk among them: as many as the system lets this process

@@ -10,7 +10,7 @@ use crate::message::Failure;
 use crate::{file, profile};
 
 use super::codes::question;
-use super::output::short;
+use crate::number::short;
 
 /// Prints the comparison.
 pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {

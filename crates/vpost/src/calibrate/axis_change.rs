@@ -19,10 +19,11 @@ use crate::conditions;
 use crate::message::Failure;
 
 use super::codes::{AXES, failure, question};
-use super::interferometer::Interferometer;
-use super::output::{Output, short};
+use super::options::Interferometer;
+use super::output::{Output, SHORTEST_MM};
 use super::sources;
 use super::squareness::Asked;
+use crate::number::short;
 
 /// The base as it was read, and where.
 pub(super) struct Session {
@@ -302,9 +303,6 @@ impl Session {
         })
     }
 }
-
-/// An axis that goes less far has none of its own: it stood there while others were measured.
-pub(super) const SHORTEST_MM: f64 = 1e-3;
 
 /// Cells between the places at which the line of an axis is taken from the base.
 const LINE_CELLS: i32 = 8;

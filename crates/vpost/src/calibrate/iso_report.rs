@@ -28,7 +28,7 @@ fn write(out: &mut String, title: &str, e: &Evaluation, scale: f64, unit: &str) 
         writeln!(
             out,
             "{:>8} {} {} {}  {}  {}  {}",
-            super::output::short(t.position, 3),
+            crate::number::short(t.position, 3),
             cell(t.positive.map(|a| a.mean)),
             cell(t.negative.map(|a| a.mean)),
             cell(t.reversal),

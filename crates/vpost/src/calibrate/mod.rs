@@ -10,14 +10,13 @@ mod bar_report;
 mod codes;
 mod interferometer;
 mod iso_report;
+mod options;
 mod output;
 mod plausibility;
 mod sources;
 mod squareness;
 mod tracker;
 mod volumetric;
-
-pub(crate) use output::short;
 
 use std::path::PathBuf;
 
@@ -41,7 +40,7 @@ pub enum CalibrateCommand {
     /// Three axis traverses of a laser tracker: directions, squareness, positioning and straightness.
     Tracker(tracker::Tracker),
     /// Runs of an interferometer, or tables of a control: eighteen functions, squareness, ISO 230-2.
-    Interferometer(interferometer::Interferometer),
+    Interferometer(options::Interferometer),
     /// Points anywhere in the volume, of a tracker or a tracking interferometer: all rigid-body terms.
     Volumetric(volumetric::Volumetric),
     /// Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes.

@@ -12,10 +12,13 @@ use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages, Report, file_diagnostic};
+use crate::number::short;
 use crate::{file, profile};
 
-use super::axis_change::SHORTEST_MM;
 use super::codes::{UNSAID, question};
+
+/// An axis that goes less far has none of its own: it stood there while others were measured.
+pub(super) const SHORTEST_MM: f64 = 1e-3;
 
 /// What every calibration is told about the profile it makes.
 #[derive(Debug, Clone, Args)]
@@ -360,11 +363,4 @@ pub(super) fn error_table(axis: Axis, positions_mm: &[f64], functions: &[Option<
         out.push('\n');
     }
     out
-}
-
-/// A number with at most so many decimals, without zeros at its end and without minus zero.
-pub(crate) fn short(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

@@ -9,7 +9,8 @@ use crate::message::{Failure, Messages};
 use measurement_files::series::{Origin, Series};
 
 use super::codes::{AXES, MISSING, RUNS, UNITS};
-use super::output::{short, warn};
+use super::output::warn;
+use crate::number::short;
 
 /// Deviations that are much too small or too large for their unit.
 ///

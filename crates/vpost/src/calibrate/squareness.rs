@@ -1,12 +1,15 @@
 //! Squareness as an instrument or a file gave it, and what must be asked of it.
 
-use calibration::functions::{self, SquarenessConvention, straight_line};
+use calibration::functions::{self, Function, SquarenessConvention, straight_line};
 use machine_model::{Axis, Squareness};
 
 use crate::message::Failure;
 
 use super::codes::question;
-use super::interferometer::{Convention, Functions, Interferometer};
+use super::options::{Convention, Interferometer};
+
+/// Everything read of one axis: its six functions.
+pub(super) type Functions = [Option<Function>; 6];
 
 /// Squareness that somebody read.
 #[derive(Debug, Clone, Copy, Default)]

@@ -17,8 +17,9 @@ use crate::file;
 use crate::message::{Failure, Messages, Report};
 
 use super::codes::{DOUBTFUL, MISSING, OUTLIER, UNFIT, failure, question};
-use super::output::{Output, Target, short, warn};
+use super::output::{Output, Target, warn};
 use super::sources;
+use crate::number::short;
 
 /// `vpost calibrate tracker X.csv Y.csv Z.csv -o PROFILE`
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ use jobs::correct::{self, Program};
 use rewrite::{Large, LargeEnd, Manner, Part};
 
 use crate::file;
+use crate::growing::Growing;
 use crate::message::{Failure, Report, Source};
 use crate::settings::Settings;
 use crate::source::{Reading, Still};
@@ -36,12 +37,6 @@ impl Input {
             _ => Self::File(path.to_owned()),
         }
     }
-}
-
-/// What an output is written to.
-pub(crate) trait Growing: Write + Send {
-    /// Starts anew.
-    fn clear(&mut self) -> io::Result<()>;
 }
 
 /// Corrects one program; `out` is empty, and of no use after an error.

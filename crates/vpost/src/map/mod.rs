@@ -1,6 +1,7 @@
 //! `vpost map`: what the machine does wrong over its volume, and where to put the zero point.
 
 mod arguments;
+mod curves;
 mod drawn;
 mod export;
 mod json;

@@ -9,7 +9,7 @@ use machine_model::{EngineId, PathModel, Range, Vector};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
-use super::drawn::{Curve, curves};
+use super::curves::{Curve, curves};
 use super::options::{Asked, command};
 use super::second_order::{self, SecondOrder};
 use crate::message::Failure;

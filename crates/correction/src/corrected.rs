@@ -1,0 +1,65 @@
+//! What comes out of a motion.
+
+use smallvec::SmallVec;
+
+use crate::Piece;
+use crate::grid::Goal;
+
+/// One motion, corrected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    /// Blocks of output in order; empty where the block stays as it is.
+    pub pieces: SmallVec<[Piece; 2]>,
+    /// What was done, for the summary.
+    pub correction: Correction,
+}
+
+impl Corrected {
+    /// One block, which stays as it is where it is `untouched`.
+    pub(crate) fn block(piece: Piece, untouched: bool, correction: Correction) -> Self {
+        let pieces = if untouched { SmallVec::new() } else { SmallVec::from_slice(&[piece]) };
+        Self { pieces, correction }
+    }
+}
+
+/// Figures of one motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// Largest distance between programmed and corrected command at an end of a piece, mm.
+    pub largest_mm: f64,
+    /// Proven upper bound of the path deviation without correction, mm; 0 for rapids.
+    pub before_mm: f64,
+    /// Proven upper bound of the path deviation, mm: what the cheapest proof says; 0 for rapids.
+    pub after_mm: f64,
+    /// A rapid ended outside the volume and took the nearest point's correction.
+    pub clamped: bool,
+    /// A short move to the corrected start was put before the motion.
+    pub approach: bool,
+    /// A cycle left to the control leans by this much over its depth, mm, more than the tolerance.
+    pub leaning_mm: Option<f64>,
+    /// Nobody knows on which side of its play an axis stands: the tool is off by up to this much besides, mm.
+    pub unknown_side_mm: f64,
+    /// Rotary axes turned on the way.
+    pub turned: Option<Turned>,
+}
+
+/// What a feed motion with rotary axes comes to, for those who know what F means.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// Way of the linear axes as programmed, mm.
+    pub programmed_mm: f64,
+    /// The same as written.
+    pub commanded_mm: f64,
+    /// What rounding may make of that, mm.
+    pub rounding_mm: f64,
+    /// Way of the rotary axes, degrees: the root of the sum of their squares.
+    pub turned_deg: f64,
+    /// Largest angle between the tool's real and its ideal direction at both ends and in the middle, rad.
+    pub tilt_rad: f64,
+}
+
+/// One block, which stays as it is where its words do.
+pub(crate) fn one(piece: Piece, correction: Correction) -> Corrected {
+    let untouched = piece.axes.iter().all(|word| matches!(word, Goal::AsStated | Goal::Stays));
+    Corrected::block(piece, untouched, correction)
+}

@@ -1,0 +1,86 @@
+//! Why a motion cannot be corrected.
+
+use machine_model::SolveError;
+
+/// Why a motion cannot be corrected.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CorrectionError {
+    /// The model has no answer.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The motion would have to be split and must not be.
+    #[error("{} and this motion must stay one block", off(*distance_um))]
+    MustNotSplit {
+        /// What one block would miss by, µm; infinite where there is none, as of an arc whose corrected ends no arc joins.
+        distance_um: f64,
+    },
+    /// A hole that would be written as more moves than anybody drills.
+    #[error("a hole of {pecks:.0} pecks, which would have to be written as moves")]
+    TooManyPecks {
+        /// Its depth by Q.
+        pecks: f64,
+    },
+    /// Lost motion in a turned frame, where every word moves several axes, this way and that by its rounding.
+    #[error(
+        "in this rotated frame an axis with lost motion would go back and forth: {distance_um:.2} um off, the tolerance is {tolerance_um} um"
+    )]
+    TurnedFrame {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+    /// What lies across an axis changes when it turns, and that is too much to be hidden.
+    #[error(
+        "where an axis turns its lost motion moves the tool sideways: {distance_um:.2} um off however it is commanded, the tolerance is {tolerance_um} um"
+    )]
+    Sideways {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+    /// An axis that must not get a word would have to have one.
+    #[error(
+        "the tool would be {distance_um:.2} um off without a further word for {}, which the program has not named",
+        toolpath::AXIS_NAMES[*axis]
+    )]
+    Unnamed {
+        /// X, Y or Z by index.
+        axis: usize,
+        /// How far it is from where it should be, µm.
+        distance_um: f64,
+    },
+    /// The model has bounds for rotary axes that stand only.
+    #[error("the path cannot be proven while a rotary axis turns at feed rate")]
+    NoBoundsForTurns,
+    /// The rotary words of a piece cannot say its direction finely enough.
+    #[error(
+        "a split needs rotary words that turn the tool by {slip_urad:.1} urad away from its direction; {allowed_urad:.1} urad are allowed"
+    )]
+    Direction {
+        /// By how much, µrad.
+        slip_urad: f64,
+        /// What was asked for, µrad.
+        allowed_urad: f64,
+    },
+    /// Splitting does not help: a jump of the model, or the shortest piece allowed.
+    #[error(
+        "the path would be {distance_um:.2} um off however short its pieces; the tolerance is {tolerance_um} um"
+    )]
+    NotWithinTolerance {
+        /// What is left, µm.
+        distance_um: f64,
+        /// What was asked for, µm.
+        tolerance_um: f64,
+    },
+}
+
+/// How far off one block would be, in words.
+fn off(distance_um: f64) -> String {
+    if distance_um.is_finite() {
+        format!("the path would be {distance_um:.2} um off")
+    } else {
+        "no single arc leads from the corrected start to the corrected end".to_owned()
+    }
+}

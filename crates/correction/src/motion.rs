@@ -1,0 +1,299 @@
+//! One motion at a time.
+
+use machine_model::{Command, LANES, SolveError, Vector};
+use smallvec::SmallVec;
+use toolpath::{Division, Feed, Kinematics, Motion, Partial, Shape};
+
+use crate::corrected::{Corrected, Correction, one};
+use crate::corrector::{Corrector, Freedom, MOST_TURNS};
+use crate::curve::Curve;
+use crate::error::CorrectionError;
+use crate::follow::{Follow, Turning, Whole};
+use crate::grid::{Block, Goal};
+use crate::short_line::Run;
+use crate::{Piece, PieceKind};
+
+impl Corrector<'_> {
+    /// Corrects one motion of a block.
+    ///
+    /// # Errors
+    /// [`CorrectionError`] where the promise cannot be kept; nothing of the motion may be used then.
+    pub fn correct(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
+        if block.kinematics != self.kinematics {
+            self.switch(block.kinematics)?;
+        }
+        if !matches!(motion, Motion::Hole(_)) {
+            self.expanding = false;
+            self.remembered = None;
+        }
+        match motion {
+            Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
+            Motion::Feed(feed) => self.heed(block, feed.end.rotary_deg),
+            Motion::Hole(hole) => self.heed(block, hole.at_r.rotary_deg),
+            Motion::Uncorrected { .. } => {}
+        }
+        self.approached = None;
+        self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
+    }
+
+    /// From here on X, Y and Z are something else. Where they still say the same, the motions tell.
+    fn switch(&mut self, kinematics: Kinematics) -> Result<(), CorrectionError> {
+        self.model = self.models.of(kinematics).ok_or(CorrectionError::NoBoundsForTurns)?;
+        self.kinematics = kinematics;
+        (self.last, self.known, self.everywhere) = (None, None, None);
+        Ok(())
+    }
+
+    /// What is not to be had in a turned frame on a machine with lost motion is so for that.
+    fn as_turned(&self, error: CorrectionError, block: &Block) -> CorrectionError {
+        match error {
+            CorrectionError::NotWithinTolerance { distance_um, tolerance_um }
+                if !block.frame.is_axial() && self.model.depends_on_direction() =>
+            {
+                CorrectionError::TurnedFrame { distance_um, tolerance_um }
+            }
+            other => other,
+        }
+    }
+
+    fn correct_in_state(&mut self, motion: &Motion, block: &Block) -> Result<Corrected, CorrectionError> {
+        match motion {
+            Motion::Rapid { start, end } => self.rapid(start, end, block),
+            Motion::Feed(feed) => {
+                let before_mm = self.unknown_side_mm(block, &feed.start);
+                let mut corrected = self.feed(feed, block)?;
+                corrected.correction.unknown_side_mm = before_mm.max(self.unknown_side_mm(block, &feed.end));
+                Ok(corrected)
+            }
+            Motion::Hole(hole) => {
+                let mut corrected = self.hole(hole, block)?;
+                corrected.correction.unknown_side_mm = self.unknown_side_mm(block, &hole.at_r);
+                Ok(corrected)
+            }
+            Motion::Uncorrected { end } => {
+                for axis in 0..3 {
+                    // An axis that the block does not name stays where the output has brought it.
+                    if end.linear_mm[axis].is_none()
+                        || block.stated.axes[axis]
+                        || self.standing[axis].is_none()
+                    {
+                        self.standing[axis] = end.linear_mm[axis];
+                        self.direction[axis] = 0;
+                        self.play.forget(axis, end.linear_mm[axis]);
+                    }
+                }
+                self.last = None;
+                Ok(Corrected { pieces: SmallVec::new(), correction: Correction::default() })
+            }
+        }
+    }
+
+    fn rapid(&mut self, start: &Partial, end: &Partial, block: &Block) -> Result<Corrected, CorrectionError> {
+        let mut correction = Correction::default();
+        for i in 0..3 {
+            if start.linear_mm[i].is_none() && end.linear_mm[i].is_some() {
+                // From wherever, as after a block that may have been skipped: nothing of the axis holds any more.
+                (self.standing[i], self.direction[i]) = (None, 0);
+                self.play.forget(i, None);
+            }
+        }
+        let Some(nominal) = end.complete() else {
+            // Some axis is not known yet, so the error is not: the words stay, and the first motion
+            // whose end is known in all axes brings the correction.
+            let stood = self.standing;
+            for i in 0..3 {
+                // An axis that the block does not name stays where the output has brought it; in a turned frame every word
+                // moves several axes.
+                let moves = block.stated.axes[i] || !block.frame.is_shift();
+                if moves || end.linear_mm[i].is_none() || stood[i].is_none() {
+                    let step = end.linear_mm[i].zip(start.linear_mm[i]).map(|(end, start)| end - start);
+                    self.standing[i] = match (block.incremental[i], stood[i], step) {
+                        (true, Some(stood), Some(step)) => Some(stood + step),
+                        _ => end.linear_mm[i],
+                    };
+                }
+            }
+            let known = |i: usize| stood[i].zip(self.standing[i]).unwrap_or((0.0, 0.0));
+            let [x, y, z] = [known(0), known(1), known(2)];
+            self.turn_towards(&Vector::new(x.0, y.0, z.0), &Vector::new(x.1, y.1, z.1));
+            self.gone(&self.state(block, end.rotary_deg));
+            self.last = None;
+            return Ok(Corrected { pieces: SmallVec::new(), correction });
+        };
+        let end_mm = Vector::from(nominal.linear_mm);
+        let from: Vector = [0, 1, 2].map(|i| start.linear_mm[i].unwrap_or(end_mm[i])).into();
+        self.turn_towards(&from, &end_mm);
+        let own_end = block.own_end(&self.standing_or(&from), &(end_mm - from), &end_mm);
+        let before = self.standing;
+        let mut turns = 0;
+        let (state, wanted, axes) = loop {
+            let state = self.state(block, nominal.rotary_deg);
+            let wanted = match self.solve(&state, end_mm) {
+                Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
+                    correction.clamped = true;
+                    self.nearest(&state, end_mm)
+                }
+                other => other?,
+            };
+            // Positioning moves what the block names and nothing else: the other axes take their correction from the
+            // next feed.
+            let axes = self.go(block, &own_end, &wanted, &Freedom::of(block.stated.axes).keeping(true));
+            // An axis comes from where the output sends it, and where it does not from where it came before.
+            let Some(against) = self.against(&state, before, self.standing, block) else {
+                break (state, wanted, axes);
+            };
+            self.turn(against);
+            turns += 1;
+            if turns == MOST_TURNS {
+                break (state, wanted, axes);
+            }
+            self.standing = before;
+        };
+        self.gone(&state);
+        self.settle(&state, block);
+        correction.largest_mm = (wanted - end_mm).norm();
+        // The nearest point's correction is no answer for a feed motion that starts here.
+        self.last = (!correction.clamped).then_some((Command { linear_mm: end_mm, ..state }, wanted));
+        Ok(one(Piece::new(PieceKind::Rapid, axes, 1.0), correction))
+    }
+
+    fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
+        if matches!(feed.shape, Shape::Line)
+            && feed.start.rotary_deg == feed.end.rotary_deg
+            && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
+            && let names = block.stated.axes
+            && let ends_mm = [feed.end.linear_mm; LANES]
+            && let run =
+                (Run { start_mm: feed.start.linear_mm, ends_mm: &ends_mm, names: [names; LANES], count: 1 })
+            && let Some(run) = self.short_run(&lines, block, &run)
+        {
+            let piece = Piece::new(PieceKind::Line, run.words(0, names), 1.0);
+            return Ok(one(piece, self.correction_of(&run, 0)));
+        }
+        let turns = feed.start.rotary_deg != feed.end.rotary_deg;
+        if turns && feed.division == Division::Any {
+            self.require_turns()?;
+        }
+        let turning = matches!(feed.shape, Shape::Line) && turns && self.model.follows_turns();
+        let whole = if turning {
+            Curve::Turn {
+                ends: [feed.start, feed.end].map(|place| place.linear_mm.into()),
+                rotary_rad: [feed.start, feed.end].map(|place| place.rotary_deg.map(f64::to_radians).into()),
+            }
+        } else {
+            Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape)
+        };
+        let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
+        let motion = Whole {
+            start: whole.at(0.0),
+            rotary_rad: whole.rotary_rad(0.0),
+            length_mm: whole.length_mm(),
+            in_step: turns,
+            division: feed.division,
+        };
+        let start_mm = self.correction_mm(&self.state(block, feed.start.rotary_deg), whole.at(0.0));
+        let parts = self.monotone_parts(&whole);
+        let alone = parts.len() == 1;
+        if feed.division == Division::One && !alone {
+            return Err(self.turns_in_one_block(&whole, block, feed.end.rotary_deg));
+        }
+        let (mut own_words, mut at_quarters_mm, mut commanded_mm) = (true, None, 0.0);
+        for &(s0, s1) in &parts {
+            let part = if alone { whole } else { whole.part(s0, s1) };
+            self.turn_towards(&part.at(0.0), &part.at(1.0));
+            let mut machine = self.machine(block, feed.end.rotary_deg);
+            if turning {
+                // Until the first piece is written it stands where the motion begins.
+                machine.state = self.state(block, feed.start.rotary_deg);
+                (machine.everywhere, machine.turns) = (None, true);
+            }
+            self.approach(&mut machine, &part, block, &motion, &mut corrected)?;
+            let mut follow = Follow {
+                machine,
+                block,
+                alone: alone && corrected.pieces.is_empty(),
+                may_split: feed.division == Division::Any && self.guessed_own(block).is_none(),
+                whole: motion,
+                nominal_step: Vector::from(feed.end.linear_mm) - Vector::from(feed.start.linear_mm),
+                solved: None,
+                enclosed: None,
+                foreseen: false,
+                turning: turning.then(|| Turning::of(feed)),
+                commanded_mm: 0.0,
+                corrected: &mut corrected,
+            };
+            match feed.shape {
+                Shape::Line => self.follow_line(&mut follow, &part)?,
+                Shape::Arc(arc) if block.frame.similarity(arc.plane).is_some() => {
+                    if let Some((solved, largest_mm)) = self.solved_arc(&follow.machine, &part) {
+                        follow.solved = Some(solved);
+                        at_quarters_mm = Some(largest_mm).filter(|_| parts.len() == 1);
+                    }
+                    self.follow_arc(&mut follow, &part)?;
+                }
+                Shape::Arc(_) => self.follow_line(&mut follow, &part)?,
+            }
+            own_words &= follow.alone;
+            commanded_mm += follow.commanded_mm;
+            let state = follow.machine.state;
+            self.settle(&state, block);
+        }
+        if corrected.pieces.is_empty() && !own_words {
+            // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
+            corrected.pieces.push(self.standstill(block)?);
+        }
+        if turning {
+            let pieces = corrected.pieces.len();
+            corrected.correction.turned = Some(self.turned(&whole, block, feed, commanded_mm, pieces));
+            corrected.correction.before_mm =
+                self.before_turning_mm(&whole, &self.state(block, feed.end.rotary_deg));
+            return Ok(corrected);
+        }
+        let at_ends_mm = start_mm.map(|mm| mm.max(corrected.correction.largest_mm));
+        let by_quarters = at_quarters_mm.and_then(|mm| self.before_by_quarters_mm(&whole, mm));
+        corrected.correction.before_mm = by_quarters
+            .unwrap_or_else(|| self.before_mm(&whole, &self.state(block, feed.end.rotary_deg), at_ends_mm));
+        Ok(corrected)
+    }
+
+    /// Why a motion on whose way axes with play turn cannot stay one block: by their play the tool would be off.
+    fn turns_in_one_block(&self, whole: &Curve, block: &Block, rotary_deg: [f64; 3]) -> CorrectionError {
+        let state = self.state(block, rotary_deg);
+        let at = whole.turns().into_iter().map(|s| Command { linear_mm: whole.at(s), ..state });
+        let play_mm = at.flat_map(|at| [0, 1, 2].map(|axis| self.model.reversal_mm(axis, &at).abs()));
+        CorrectionError::MustNotSplit { distance_um: play_mm.fold(0.0, f64::max) * 1e3 }
+    }
+
+    /// A line to where the axes stand, with a word for each axis that the block names, or for the first that may have one.
+    fn standstill(&self, block: &Block) -> Result<Piece, CorrectionError> {
+        let standing = self.standing_program(block);
+        let mut named = block.stated.axes;
+        if named == [false; 3] {
+            let Some(first) = block.named.iter().position(|named| *named) else {
+                return Err(CorrectionError::Unnamed { axis: 0, distance_um: 0.0 });
+            };
+            named[first] = true;
+        }
+        let axes = [0, 1, 2].map(|i| match standing[i] {
+            Some(mm) if named[i] => block.write(i, mm, standing[i]).0,
+            _ => Goal::Stays,
+        });
+        Ok(Piece::new(PieceKind::Line, axes, 1.0))
+    }
+
+    /// Where the model depends on direction, an arc is cut at its quadrants: each part then moves every
+    /// axis one way only.
+    fn monotone_parts(&self, whole: &Curve) -> SmallVec<[(f64, f64); 2]> {
+        let mut parts = SmallVec::new();
+        let mut s0 = 0.0;
+        if self.model.depends_on_direction() {
+            // A quadrant nearer to an end than 1e-9 of the sweep is that end.
+            for s1 in whole.turns().into_iter().filter(|s| (1e-9..=1.0 - 1e-9).contains(s)) {
+                parts.push((s0, s1));
+                s0 = s1;
+            }
+        }
+        parts.push((s0, 1.0));
+        parts
+    }
+}

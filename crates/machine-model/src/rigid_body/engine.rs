@@ -1,0 +1,136 @@
+//! The rigid-body model as an engine that corrects whole paths.
+
+use std::sync::PoisonError;
+
+use super::{RigidBody, TOOLS_KEPT};
+use crate::chord_bound::{chord_bound_mm, everywhere, lies_inside};
+use crate::solve::solve;
+use crate::turning_bound::error_in_turn;
+use crate::{
+    Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Solution, SolveError, Vector, Volume,
+};
+
+impl Engine for RigidBody {
+    fn id(&self) -> EngineId {
+        EngineId::RigidBody
+    }
+
+    fn volume(&self) -> Volume {
+        self.volume
+    }
+
+    fn solve(&self, target: &Command) -> Result<Solution, SolveError> {
+        self.rotary_inside(target)?;
+        if self.table_has_errors {
+            let (turn, shift) = self.table_error(target);
+            let tool = self.nominal_tool(target);
+            return solve(&target.linear_mm, &self.volume, |q| {
+                self.with_table(&turn, &shift, &(q + tool), &self.linear_error(q, target))
+            });
+        }
+        solve(&target.linear_mm, &self.volume, |q| self.linear_error(q, target))
+    }
+
+    fn path_model(&self) -> Option<&dyn PathModel> {
+        Some(self)
+    }
+}
+
+impl PathModel for RigidBody {
+    fn error_mm(&self, command: &Command) -> Vector {
+        self.error(command)
+    }
+
+    fn chord_bound_mm(&self, stretch: &Move) -> f64 {
+        if !lies_inside(self, stretch) {
+            return f64::INFINITY;
+        }
+        match &stretch.turn {
+            Some(turn) => error_in_turn(self, stretch, turn).0.leaves_chord_mm(),
+            None => chord_bound_mm(self, stretch),
+        }
+    }
+
+    fn follows_turns(&self) -> bool {
+        true
+    }
+
+    fn error_from_mm(&self, command: &Command, programmed_rad: &Vector) -> Vector {
+        if command.rotary_rad == *programmed_rad {
+            return self.error_mm(command);
+        }
+        // Outside the volume the error is that of its nearest point, as everywhere.
+        let inside = Command { linear_mm: self.volume.nearest(&command.linear_mm), ..*command };
+        let programmed = Command { rotary_rad: *programmed_rad, ..inside };
+        let off = self.predict(&inside).position_mm - self.nominal_position(&inside.linear_mm, &programmed);
+        self.table_turn(&programmed).tr_mul(&off)
+    }
+
+    fn same_tip_mm(&self, linear_mm: &Vector, state: &Command, programmed_rad: &Vector) -> Vector {
+        let programmed = Command { rotary_rad: *programmed_rad, ..*state };
+        self.reach(&self.nominal_position(linear_mm, &programmed), state)
+    }
+
+    fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
+        // Where nothing turns the tool is the same on both sides of every comparison.
+        if self.description.chain.has_rotary() { self.nominal_position(linear_mm, state) } else { *linear_mm }
+    }
+
+    fn tilt_rad(&self, command: &Command) -> f64 {
+        let [ideal, real] = self.directions(command);
+        // Unit vectors: as good for small angles as for large ones.
+        2.0 * units::math::asin((0.5 * (real - ideal).norm()).min(1.0))
+    }
+
+    fn everywhere(&self, state: &Command) -> Option<Everywhere> {
+        // A table's errors turn with it, a head's lever with the head: their bounds are taken stretch by stretch.
+        let plain = !self.table_has_errors && self.description.chain.head().is_empty();
+        plain.then(|| {
+            // Then the tool is all of the state that they depend on. What is kept is what would be worked out,
+            // whoever asks first: a panic elsewhere leaves it as good as it was.
+            let kept = || self.everywhere.lock().unwrap_or_else(PoisonError::into_inner);
+            let tool = self.nominal_tool(state);
+            if let Some((_, known)) = kept().iter().find(|(known, _)| *known == tool) {
+                return *known;
+            }
+            let everywhere = everywhere(self, state);
+            let mut kept = kept();
+            kept.truncate(TOOLS_KEPT - 1);
+            kept.push_front((tool, everywhere));
+            everywhere
+        })
+    }
+
+    fn command_for(&self, target: &Command, everywhere: &Everywhere) -> Result<Vector, SolveError> {
+        match self.newton(target, everywhere) {
+            Some(command) => Ok(command),
+            None => self.solve(target).map(|solution| solution.linear_mm),
+        }
+    }
+
+    fn commands_for(
+        &self,
+        targets_mm: &[[f64; 3]; LANES],
+        directions: &[[i8; 3]; LANES],
+        state: &Command,
+        everywhere: &Everywhere,
+    ) -> Option<[[f64; LANES]; 3]> {
+        self.newton_together(targets_mm, directions, state, everywhere)
+    }
+
+    fn depends_on_direction(&self) -> bool {
+        self.depends_on_direction
+    }
+
+    fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
+        let link = &self.links[self.place_of[axis]];
+        match link.by_direction.as_slice() {
+            [negative, _, positive] => {
+                let range = self.volume.0[axis];
+                let at = command.linear_mm[axis].clamp(range.low, range.high);
+                negative.at(at)[axis] - positive.at(at)[axis]
+            }
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What a program does, one thing after the other.
+
+use toolpath::{Kinematics, Motion};
+
+/// One thing that a program does, with what the comparison must know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// What is done.
+    pub act: Act,
+    /// Line of its file.
+    pub line: u64,
+    /// Which process is in force: steps of both programs with one number have one process.
+    pub process: u32,
+    /// What counts as too far, mm; of the programmed step.
+    pub limit_mm: f64,
+    /// G41 or G42 is in force before or after it: the control offsets block by block.
+    pub compensated: bool,
+}
+
+/// What a step does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "nearly all are motions, and they come by millions")]
+pub enum Act {
+    /// The axes move.
+    Motion {
+        /// The motion: axis commands or tip commands.
+        motion: Motion,
+        /// From gauge point to tip, mm.
+        tool_mm: [f64; 3],
+        /// What X, Y and Z are.
+        kinematics: Kinematics,
+        /// The number of F in force.
+        feed: Option<f64>,
+        /// The deed of a cycle at the bottom of its hole.
+        dwell: Option<u32>,
+    },
+    /// Something is done at its place between two motions: deeds of both programs with one number are one deed.
+    Deed(u32),
+}
