@@ -220,139 +220,154 @@ pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationErr
             )));
         }
     }
-    let targets: Vec<Target> = (0..count)
-        .map(|i| {
-            let (up, down) = (approach(&runs.positive, i), approach(&runs.negative, i));
-            let reversal = up.zip(down).map(|(u, d)| u.mean - d.mean);
-            let mean = match (up, down) {
-                (Some(u), Some(d)) => 0.5 * (u.mean + d.mean),
-                (Some(one), None) | (None, Some(one)) => one.mean,
-                (None, None) => 0.0,
-            };
-            let own = |a: Option<Approach>| a.map_or(0.0, |a| a.repeatability);
-            let both = up
-                .zip(down)
-                .zip(reversal)
-                .map_or(0.0, |((u, d), b)| 2.0 * u.deviation + 2.0 * d.deviation + b.abs());
-            Target {
-                position: runs.targets[i],
-                positive: up,
-                negative: down,
-                reversal,
-                mean,
-                repeatability: both.max(own(up)).max(own(down)),
-            }
-        })
-        .collect();
-    let counts = [runs.positive.len(), runs.negative.len()];
-    let sides = |side: usize| {
-        targets.iter().map(move |t| {
-            let own = if side == 0 { t.positive } else { t.negative };
-            own.map(|a| (a, counts[side]))
-        })
-    };
-    let all = scatters(&sides(0).chain(sides(1)).collect::<Vec<_>>());
-    let scatter = [&all[..count], &all[count..]];
-    let of_mean = |side: usize, i: usize| scatter[side][i].times(1.0 / counts[side].max(1) as f64);
-    let of_deviation = |side: usize, i: usize| {
-        scatter[side][i].times(if counts[side] > 1 { 0.5 / (counts[side] as f64 - 1.0) } else { 0.0 })
-    };
-    let pick = |t: &Target, side: usize| if side == 0 { t.positive } else { t.negative };
-    let limits = |sides: &[usize], spread: f64| -> Vec<(Limit, Limit)> {
+    let targets: Vec<Target> = (0..count).map(|i| Target::of(runs, i)).collect();
+    let few = || CalibrationError::TooFew("no target was read in either direction".to_owned());
+    let passes = Passes::of(&targets, [runs.positive.len(), runs.negative.len()]);
+    let given: Vec<f64> = targets.iter().filter_map(|t| t.reversal).collect();
+    Ok(Evaluation {
+        runs: passes.counts,
+        positive: passes.direction(0, relative),
+        negative: passes.direction(1, relative),
+        reversal: passes.reversal(),
+        mean_reversal: (!given.is_empty()).then(|| given.iter().sum::<f64>() / given.len() as f64),
+        repeatability: passes.repeatability().ok_or_else(few)?,
+        systematic: range(&passes.limits(&[0, 1], 0.0), relative).ok_or_else(few)?,
+        mean_range: range(&passes.means(), relative).ok_or_else(few)?,
+        accuracy: range(&passes.limits(&[0, 1], 2.0), relative).ok_or_else(few)?,
+        targets,
+    })
+}
+
+impl Target {
+    /// What the runs say of the target of this index.
+    fn of(runs: &Runs, i: usize) -> Self {
+        let (up, down) = (approach(&runs.positive, i), approach(&runs.negative, i));
+        let reversal = up.zip(down).map(|(u, d)| u.mean - d.mean);
+        let mean = match (up, down) {
+            (Some(u), Some(d)) => 0.5 * (u.mean + d.mean),
+            (Some(one), None) | (None, Some(one)) => one.mean,
+            (None, None) => 0.0,
+        };
+        let own = |a: Option<Approach>| a.map_or(0.0, |a| a.repeatability);
+        let both = up
+            .zip(down)
+            .zip(reversal)
+            .map_or(0.0, |((u, d), b)| 2.0 * u.deviation + 2.0 * d.deviation + b.abs());
+        Self {
+            position: runs.targets[i],
+            positive: up,
+            negative: down,
+            reversal,
+            mean,
+            repeatability: both.max(own(up)).max(own(down)),
+        }
+    }
+
+    /// How it was approached from one side: 0 positive, 1 negative.
+    fn from_side(&self, side: usize) -> Option<Approach> {
+        if side == 0 { self.positive } else { self.negative }
+    }
+}
+
+/// All targets, from both sides: 0 positive, 1 negative.
+struct Passes<'t> {
+    targets: &'t [Target],
+    /// Runs from each side.
+    counts: [usize; 2],
+    /// Of one reading, at each target.
+    scatter: [Vec<Variance>; 2],
+}
+
+impl<'t> Passes<'t> {
+    fn of(targets: &'t [Target], counts: [usize; 2]) -> Self {
+        let side = |side: usize| targets.iter().map(move |t| t.from_side(side).map(|a| (a, counts[side])));
+        let mut positive = scatters(&side(0).chain(side(1)).collect::<Vec<_>>());
+        let negative = positive.split_off(targets.len());
+        Self { targets, counts, scatter: [positive, negative] }
+    }
+
+    /// s²/n
+    fn of_mean(&self, side: usize, i: usize) -> Variance {
+        self.scatter[side][i].times(1.0 / self.counts[side].max(1) as f64)
+    }
+
+    /// s²/(2(n-1)); nothing of one run.
+    fn of_deviation(&self, side: usize, i: usize) -> Variance {
+        let n = self.counts[side] as f64;
+        self.scatter[side][i].times(if n > 1.0 { 0.5 / (n - 1.0) } else { 0.0 })
+    }
+
+    /// Mean and so many deviations above and below it, at each target from these sides.
+    fn limits(&self, sides: &[usize], spread: f64) -> Vec<(Limit, Limit)> {
         let mut all = Vec::new();
         for &side in sides {
-            for (i, t) in targets.iter().enumerate() {
-                if let Some(a) = pick(t, side) {
-                    // Mean and deviation come from the same scatter.
-                    let n = counts[side] as f64;
-                    let of_deviation = if n > 1.0 { 0.5 * spread * spread / (n - 1.0) } else { 0.0 };
-                    let limit = |sign: f64| Limit {
-                        value: a.mean + sign * spread * a.deviation,
-                        variance: scatter[side][i].times(1.0 / n + of_deviation),
-                        of_deviation: scatter[side][i].times(of_deviation),
-                        position: t.position,
-                        place: side * count + i,
-                    };
-                    all.push((limit(1.0), limit(-1.0)));
-                }
+            for (i, t) in self.targets.iter().enumerate() {
+                let Some(a) = t.from_side(side) else { continue };
+                // Mean and deviation come from the same scatter.
+                let n = self.counts[side] as f64;
+                let of_deviation = if n > 1.0 { 0.5 * spread * spread / (n - 1.0) } else { 0.0 };
+                let limit = |sign: f64| Limit {
+                    value: a.mean + sign * spread * a.deviation,
+                    variance: self.scatter[side][i].times(1.0 / n + of_deviation),
+                    of_deviation: self.scatter[side][i].times(of_deviation),
+                    position: t.position,
+                    place: side * self.targets.len() + i,
+                };
+                all.push((limit(1.0), limit(-1.0)));
             }
         }
         all
-    };
-    let direction = |side: usize| -> Option<Direction> {
-        let (i, worst) = targets
-            .iter()
-            .enumerate()
-            .filter_map(|(i, t)| Some((i, pick(t, side)?)))
-            .max_by(|a, b| a.1.deviation.total_cmp(&b.1.deviation))?;
-        let expanded = of_deviation(side, i).times(16.0).half_width_95();
+    }
+
+    /// What one side says alone.
+    fn direction(&self, side: usize, relative: f64) -> Option<Direction> {
+        let read = self.targets.iter().enumerate().filter_map(|(i, t)| Some((i, t.from_side(side)?)));
+        let (i, worst) = read.max_by(|a, b| a.1.deviation.total_cmp(&b.1.deviation))?;
+        let expanded = self.of_deviation(side, i).times(16.0).half_width_95();
         Some(Direction {
             repeatability: Uncertain { value: worst.repeatability, expanded },
-            systematic: range(&limits(&[side], 0.0), relative)?,
-            accuracy: range(&limits(&[side], 2.0), relative)?,
+            systematic: range(&self.limits(&[side], 0.0), relative)?,
+            accuracy: range(&self.limits(&[side], 2.0), relative)?,
         })
-    };
-    let few = || CalibrationError::TooFew("no target was read in either direction".to_owned());
-    let (at, worst) = targets
-        .iter()
-        .enumerate()
-        .max_by(|a, b| a.1.repeatability.total_cmp(&b.1.repeatability))
-        .ok_or_else(few)?;
-    let means: Vec<(Limit, Limit)> = targets
-        .iter()
-        .enumerate()
-        .map(|(i, t)| {
-            let parts: Vec<Variance> =
-                (0..2).filter(|side| pick(t, *side).is_some()).map(|side| of_mean(side, i)).collect();
+    }
+
+    /// The largest reversal value.
+    fn reversal(&self) -> Option<Uncertain> {
+        let read = self.targets.iter().enumerate().filter_map(|(i, t)| Some((i, t.reversal?)));
+        let (i, reversal) = read.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let variance = Variance::sum(&[self.of_mean(0, i), self.of_mean(1, i)]);
+        Some(Uncertain { value: reversal.abs(), expanded: variance.half_width_95() })
+    }
+
+    /// The worst bi-directional repeatability: of one direction 4s, of both 2s↑ + 2s↓ + |B|.
+    fn repeatability(&self) -> Option<Uncertain> {
+        let all = self.targets.iter().enumerate();
+        let (i, worst) = all.max_by(|a, b| a.1.repeatability.total_cmp(&b.1.repeatability))?;
+        let alone =
+            |side: &usize| worst.from_side(*side).is_some_and(|a| a.repeatability >= worst.repeatability);
+        let variance = match (0..2).find(alone) {
+            Some(side) => self.of_deviation(side, i).times(16.0),
+            None => Variance::sum(&[
+                self.of_deviation(0, i).times(4.0),
+                self.of_deviation(1, i).times(4.0),
+                self.of_mean(0, i),
+                self.of_mean(1, i),
+            ]),
+        };
+        Some(Uncertain { value: worst.repeatability, expanded: variance.half_width_95() })
+    }
+
+    /// The mean bi-directional deviations.
+    fn means(&self) -> Vec<(Limit, Limit)> {
+        let mean = |(i, t): (usize, &Target)| {
+            let read = (0..2).filter(|side| t.from_side(*side).is_some());
+            let parts: Vec<Variance> = read.map(|side| self.of_mean(side, i)).collect();
             let given = parts.len().max(1) as f64;
             let variance = Variance::sum(&parts).times(1.0 / (given * given));
-            let limit = Limit {
-                value: t.mean,
-                variance,
-                of_deviation: Variance::ZERO,
-                position: t.position,
-                place: i,
-            };
+            let of_deviation = Variance::ZERO;
+            let limit = Limit { value: t.mean, variance, of_deviation, position: t.position, place: i };
             (limit, limit)
-        })
-        .collect();
-    let reversal = targets
-        .iter()
-        .enumerate()
-        .filter_map(|(i, t)| Some((i, t.reversal?)))
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        .map(|(i, b)| Uncertain {
-            value: b.abs(),
-            expanded: Variance::sum(&[of_mean(0, i), of_mean(1, i)]).half_width_95(),
-        });
-    let given: Vec<f64> = targets.iter().filter_map(|t| t.reversal).collect();
-    Ok(Evaluation {
-        runs: counts,
-        positive: direction(0),
-        negative: direction(1),
-        reversal,
-        mean_reversal: (!given.is_empty()).then(|| given.iter().sum::<f64>() / given.len() as f64),
-        repeatability: Uncertain {
-            value: worst.repeatability,
-            expanded: {
-                // Of one direction 4s, of both 2s↑ + 2s↓ + |B|.
-                let one = (0..2)
-                    .find(|side| pick(worst, *side).is_some_and(|a| a.repeatability >= worst.repeatability));
-                match one {
-                    Some(side) => of_deviation(side, at).times(16.0),
-                    None => Variance::sum(&[
-                        of_deviation(0, at).times(4.0),
-                        of_deviation(1, at).times(4.0),
-                        of_mean(0, at),
-                        of_mean(1, at),
-                    ]),
-                }
-                .half_width_95()
-            },
-        },
-        systematic: range(&limits(&[0, 1], 0.0), relative).ok_or_else(few)?,
-        mean_range: range(&means, relative).ok_or_else(few)?,
-        accuracy: range(&limits(&[0, 1], 2.0), relative).ok_or_else(few)?,
-        targets,
-    })
+        };
+        self.targets.iter().enumerate().map(mean).collect()
+    }
 }

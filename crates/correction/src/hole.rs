@@ -70,6 +70,16 @@ impl Kept {
     }
 }
 
+/// What a cycle block says of its levels, program mm: a goal, what its word comes to, and from where that counts.
+struct Levels {
+    r: Goal,
+    r_value: f64,
+    r_origin: f64,
+    bottom: Goal,
+    bottom_value: f64,
+    bottom_origin: f64,
+}
+
 /// A place on a hole's line, axis command.
 fn on_hole(hole: &Hole, mm: f64) -> Vector {
     hole.at(mm).linear_mm.into()
@@ -148,28 +158,9 @@ impl<'m> Corrector<'m> {
         if let Some(kept) = kept
             && !(self.expanding && expandable)
         {
-            let (stood, limit_mm) = (self.play, self.limit_mm(block));
-            self.over_the_hole(&machine.state, kept.commanded.at(0.0), (!flat).then_some(normal));
-            let pair =
-                Pair { wanted: &kept.wanted, commanded: &kept.commanded, in_step: false, begun: Begun::No };
-            let verdict = |machine: &Machine<'_>, limit_mm| {
-                self.verdict_with_play(machine, &pair, kept.verdict(machine, limit_mm), limit_mm)
-            };
-            match verdict(&machine, limit_mm) {
-                Verdict::Within(bound) => correction.after_mm = bound,
-                Verdict::Beyond { distance_mm, .. } => {
-                    // What is said of it is a bound, not the place that was beyond; the least of some limits that holds.
-                    let all = Machine { everywhere: None, ..machine.clone() };
-                    let bound = |factor: f64| match verdict(&all, distance_mm * factor) {
-                        Verdict::Within(bound_mm) => Some(bound_mm),
-                        Verdict::Beyond { .. } => None,
-                    };
-                    let most_mm = [1.01, 1.1, 1.25, 1.5, 2.0, 3.0, f64::INFINITY].into_iter().find_map(bound);
-                    let most_mm = most_mm.unwrap_or(distance_mm).max(distance_mm);
-                    correction.after_mm = most_mm;
-                    correction.leaning_mm = Some(most_mm);
-                }
-            }
+            let stood = self.play;
+            let along = (!flat).then_some(normal);
+            (correction.after_mm, correction.leaning_mm) = self.leans(&machine, block, &kept, along);
             if correction.leaning_mm.is_none() || !expandable {
                 self.gone_along(&machine.state, &kept.commanded);
                 self.gone(&machine.state);
@@ -196,6 +187,38 @@ impl<'m> Corrector<'m> {
         self.direction[normal] = out;
         self.settle(&machine.state, block);
         Ok(corrected)
+    }
+
+    /// Upper bound of the deviation of a cycle block from its hole, mm, and the same where it is more than the tolerance.
+    /// The axes have gone to the hole then; `along`: the axis that drills it, where it has a depth.
+    fn leans(
+        &mut self,
+        machine: &Machine<'_>,
+        block: &Block,
+        kept: &Kept,
+        along: Option<usize>,
+    ) -> (f64, Option<f64>) {
+        let limit_mm = self.limit_mm(block);
+        self.over_the_hole(&machine.state, kept.commanded.at(0.0), along);
+        let pair =
+            Pair { wanted: &kept.wanted, commanded: &kept.commanded, in_step: false, begun: Begun::No };
+        let verdict = |machine: &Machine<'_>, limit_mm| {
+            self.verdict_with_play(machine, &pair, kept.verdict(machine, limit_mm), limit_mm)
+        };
+        match verdict(machine, limit_mm) {
+            Verdict::Within(bound_mm) => (bound_mm, None),
+            Verdict::Beyond { distance_mm, .. } => {
+                // What is said of it is a bound, not the place that was beyond; the least of some limits that holds.
+                let all = Machine { everywhere: None, ..machine.clone() };
+                let bound = |factor: f64| match verdict(&all, distance_mm * factor) {
+                    Verdict::Within(bound_mm) => Some(bound_mm),
+                    Verdict::Beyond { .. } => None,
+                };
+                let most_mm = [1.01, 1.1, 1.25, 1.5, 2.0, 3.0, f64::INFINITY].into_iter().find_map(bound);
+                let most_mm = most_mm.unwrap_or(distance_mm).max(distance_mm);
+                (most_mm, Some(most_mm))
+            }
+        }
     }
 
     /// Refuses a hole that is out of its place by an axis that must not get a word.
@@ -249,7 +272,6 @@ impl<'m> Corrector<'m> {
         let middle = block.program(&(0.5 * (top + bottom)));
         let step = at_r - Vector::from(hole.start.linear_mm);
         let own = block.program(&block.own_end(&standing, &step, &at_r));
-        let is_incremental = block.incremental[normal];
         let mut axes = [Goal::Stays; 3];
         let mut reached = block.program(&standing);
         let may = block.may_have_words();
@@ -259,7 +281,61 @@ impl<'m> Corrector<'m> {
         }
         block.complete(&mut axes, &mut reached, standing_program);
         axes[normal] = Goal::Stays;
-        // Along the hole: R from the initial level and the bottom from R under G91.
+        let Levels { r, r_value, r_origin, bottom, bottom_value, bottom_origin } =
+            self.levels(hole, block, (top, bottom), began_mm);
+        let r_reached = r_origin + r_value;
+        axes[normal] = bottom;
+        if axes.iter().all(|word| *word == Goal::Stays) && block.stated == Stated::default() {
+            // A repetition at the same place, which has no block of its own yet: only an axis word drills it.
+            (axes[first], reached[first]) = block.write(first, reached[first], standing_program[first]);
+        }
+        let untouched =
+            [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, Goal::AsStated | Goal::Stays));
+        let written = [r, bottom].iter().any(|word| matches!(word, Goal::Steps(_)));
+        let as_programmed = self.remembered.is_none_or(|last| last.as_programmed) && !written;
+        self.remembered = Some(Remembered {
+            bottom: bottom_value,
+            r: r_value,
+            began_mm,
+            incremental: block.incremental[normal],
+            as_programmed,
+        });
+        let mut place = reached;
+        place[normal] = r_reached;
+        let from = block.machine(place);
+        place[normal] = bottom_origin + bottom_value;
+        let to = block.machine(place);
+        let pecks = matches!(hole.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip)
+            && hole.cycle.peck_mm.is_some();
+        let pecks = pecks.then(|| {
+            // The control counts its pecks from R by Q, whatever the depth: where they end counts too.
+            let mut unscaled = from;
+            unscaled[normal] += hole.bottom_mm - at_r[normal];
+            Curve::Line(from, unscaled)
+        });
+        let mut end = from;
+        if hole.cycle.return_to_initial {
+            // Never below R.
+            let r_mm = from[normal];
+            end[normal] =
+                if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
+        }
+        self.standing = Into::<[f64; 3]>::into(end).map(Some);
+        let piece = Piece::new(PieceKind::Cycle { r }, axes, 1.0);
+        let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
+        let feeds = matches!(hole.cycle.kind, CycleKind::Bore | CycleKind::Synchronised);
+        let feeds_out = Some(normal).filter(|_| feeds && hole.bottom_mm != at_r[normal]);
+        Kept { piece, untouched, wanted, commanded, pecks, feeds_out, r_mm: from[normal] }
+    }
+
+    /// R and bottom of a cycle block: R from the initial level and the bottom from R under G91.
+    ///
+    /// * `began_mm` – axis command from which the series of holes began in the output
+    fn levels(&self, hole: &Hole, block: &Block, (top, bottom): (Vector, Vector), began_mm: f64) -> Levels {
+        let normal = hole.plane.axes()[2];
+        let at_r = Vector::from(hole.at_r.linear_mm);
+        let is_incremental = block.incremental[normal];
+        let stands = self.standing_program(block)[normal];
         let level = |mm: f64| block.program(&on_hole(hole, mm))[normal];
         let (r_wanted, r_own) = (block.program(&top)[normal], level(at_r[normal]));
         let (b_wanted, b_own) = (block.program(&bottom)[normal], level(hole.bottom_mm));
@@ -285,7 +361,7 @@ impl<'m> Corrector<'m> {
         let from_r = hole.cycle.return_to_initial
             && (hole.began_mm - at_r[normal]) * outward > 0.0
             && (hole.start.linear_mm[normal] - at_r[normal]) * outward <= 0.0;
-        if let Some(stands) = standing_program[normal].filter(|_| from_r)
+        if let Some(stands) = stands.filter(|_| from_r)
             && (stands - r_origin - r_value) * outward > 0.5 * block.step_mm(normal)
         {
             (r, r_value) = absolute.write(normal, stands - r_origin, None);
@@ -309,48 +385,7 @@ impl<'m> Corrector<'m> {
         if is_incremental && written(r) && b == Goal::Stays {
             (b, b_value) = absolute.write(normal, b_wanted - b_origin, None);
         }
-        let r_reached = r_origin + r_value;
-        axes[normal] = b;
-        if axes.iter().all(|word| *word == Goal::Stays) && block.stated == Stated::default() {
-            // A repetition at the same place, which has no block of its own yet: only an axis word drills it.
-            (axes[first], reached[first]) = block.write(first, reached[first], standing_program[first]);
-        }
-        let untouched =
-            [axes[0], axes[1], axes[2], r].iter().all(|w| matches!(w, Goal::AsStated | Goal::Stays));
-        let as_programmed = last.is_none_or(|last| last.as_programmed) && !written(r) && !written(b);
-        self.remembered = Some(Remembered {
-            bottom: b_value,
-            r: r_value,
-            began_mm,
-            incremental: is_incremental,
-            as_programmed,
-        });
-        let mut place = reached;
-        place[normal] = r_reached;
-        let from = block.machine(place);
-        place[normal] = b_origin + b_value;
-        let to = block.machine(place);
-        let pecks = matches!(hole.cycle.kind, CycleKind::PeckFull | CycleKind::PeckChip)
-            && hole.cycle.peck_mm.is_some();
-        let pecks = pecks.then(|| {
-            // The control counts its pecks from R by Q, whatever the depth: where they end counts too.
-            let mut unscaled = from;
-            unscaled[normal] += hole.bottom_mm - at_r[normal];
-            Curve::Line(from, unscaled)
-        });
-        let mut end = from;
-        if hole.cycle.return_to_initial {
-            // Never below R.
-            let r_mm = from[normal];
-            end[normal] =
-                if hole.bottom_mm <= at_r[normal] { began_mm.max(r_mm) } else { began_mm.min(r_mm) };
-        }
-        self.standing = Into::<[f64; 3]>::into(end).map(Some);
-        let piece = Piece::new(PieceKind::Cycle { r }, axes, 1.0);
-        let (wanted, commanded) = (Curve::Line(at_r, on_hole(hole, hole.bottom_mm)), Curve::Line(from, to));
-        let feeds = matches!(hole.cycle.kind, CycleKind::Bore | CycleKind::Synchronised);
-        let feeds_out = Some(normal).filter(|_| feeds && hole.bottom_mm != at_r[normal]);
-        Kept { piece, untouched, wanted, commanded, pecks, feeds_out, r_mm: from[normal] }
+        Levels { r, r_value, r_origin, bottom: b, bottom_value: b_value, bottom_origin: b_origin }
     }
 
     /// The cycle as the moves it is made of.

@@ -9,13 +9,6 @@ use smallvec::SmallVec;
 use crate::job::{Guards, UNGUARDED};
 use crate::pass::Pass;
 
-/// What the output guards already.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Guarded {
-    asked: SmallVec<[Asked; 4]>,
-    serial: u32,
-}
-
 /// What is in force before a block, as a guard in front of it states it.
 pub(crate) struct Before {
     work_offset: WorkOffset,

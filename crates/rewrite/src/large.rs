@@ -10,8 +10,8 @@ use nc_syntax::{Envelope, Place, Reader};
 use crate::chunks::{CHUNK_BYTES, Chunk, Chunks, Survey, Unread};
 use crate::job::{Figures, Job};
 use crate::notices::Warning;
-use crate::pass::State;
 use crate::sink::{Sink, Written};
+use crate::state::State;
 use crate::stream::{self, End, Plan};
 use crate::whole::{comment_position, each_block};
 

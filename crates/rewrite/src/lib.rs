@@ -45,7 +45,9 @@ mod notices;
 mod pass;
 mod plain;
 mod sink;
+mod state;
 mod stream;
+mod tally;
 mod whole;
 mod words;
 

@@ -1,110 +1,19 @@
-//! One block after the other: what flows through a program, and what is done with each block.
+//! One block after the other: what is done with each.
 
-use correction::{Correction, Corrector};
+use correction::Correction;
 use diagnostic::Diagnostic;
-use nc_emit::{BlockNumbers, Emitter};
-use nc_program::{Context, Evidence, Interpreter, Questions};
+use nc_program::{Context, Questions};
 use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
 use toolpath::{Feed, FeedRate, Hole, Motion, Shape};
 
 use crate::feed;
-use crate::guards::Guarded;
-use crate::job::{Figures, Job};
+use crate::job::Job;
 use crate::nose::{nose_mm, reserved_mm};
-use crate::notices::{Notices, hole_skipped, refusal};
+use crate::notices::{hole_skipped, refusal};
+use crate::state::State;
+use crate::tally::{Tally, raise};
 use crate::words::{Editing, MotionCodes, Original, letters, retreats, stated};
-
-/// What flows from block to block: all that the blocks before have to do with those that follow.
-#[derive(Clone)]
-pub(crate) struct State<'a> {
-    pub(crate) interpreter: Interpreter<'a>,
-    pub(crate) corrector: Corrector<'a>,
-    pub(crate) emitter: Emitter<'a>,
-    pub(crate) guarded: Guarded,
-    /// [`nc_syntax::Place::expects_name`]
-    pub(crate) expects_name: bool,
-}
-
-impl<'a> State<'a> {
-    /// At the start of a program.
-    pub(crate) fn new(job: &Job<'a>, numbers: &'a BlockNumbers) -> Self {
-        let mut corrector = Corrector::new(job.models.axes, job.options).with_tip_control(job.models.tip);
-        if job.dialect.turning.is_some() {
-            // A lathe's Y stands on the axis, whatever moves.
-            corrector = corrector.with_axis_at(1, 0.0);
-        }
-        Self {
-            interpreter: Interpreter::new(job.dialect, job.setup),
-            corrector: match job.setup.start_mm {
-                Some(start_mm) => corrector.standing_at(start_mm),
-                None => corrector,
-            },
-            emitter: Emitter::new(job.dialect).with_numbers(numbers),
-            guarded: Guarded::default(),
-            expects_name: false,
-        }
-    }
-
-    /// True where whatever follows comes out alike.
-    pub(crate) fn continues_as(&self, other: &Self) -> bool {
-        let Self { interpreter, corrector, emitter, guarded, expects_name } = self;
-        interpreter.modal() == other.interpreter.modal()
-            && corrector.continues_as(&other.corrector)
-            && emitter.continues_as(&other.emitter)
-            && *guarded == other.guarded
-            && *expects_name == other.expects_name
-    }
-}
-
-/// What is counted on the way.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Tally {
-    pub(crate) figures: Figures,
-    pub(crate) notices: Notices,
-    pub(crate) evidence: Evidence,
-}
-
-impl Tally {
-    /// Adds what was counted in the blocks that follow.
-    pub(crate) fn add(&mut self, later: &Self) {
-        let (figures, more) = (&mut self.figures, &later.figures);
-        figures.blocks_in += more.blocks_in;
-        figures.blocks_out += more.blocks_out;
-        figures.splits += more.splits;
-        figures.approaches += more.approaches;
-        raise(&mut figures.largest, more.largest);
-        raise(&mut figures.before, more.before);
-        raise(&mut figures.after, more.after);
-        raise(&mut figures.tilt, more.tilt);
-        self.notices.add(&later.notices);
-        self.evidence.add(&later.evidence);
-    }
-}
-
-impl Figures {
-    /// Takes the bounds of a motion in a line.
-    #[inline]
-    pub(crate) fn raise(&mut self, correction: &Correction, line: u64) {
-        raise(&mut self.largest, (correction.largest_mm, line));
-        raise(&mut self.before, (correction.before_mm, line));
-        raise(&mut self.after, (correction.after_mm, line));
-    }
-
-    /// False where [`Figures::raise`] changes nothing.
-    #[inline]
-    pub(crate) fn would_rise(&self, by: &Correction) -> bool {
-        by.largest_mm > self.largest.0 || by.before_mm > self.before.0 || by.after_mm > self.after.0
-    }
-}
-
-/// The first of the largest counts.
-#[inline]
-pub(crate) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
-    if value > figure.0 {
-        *figure = (value, line);
-    }
-}
 
 /// What stands for a block; a hole written as moves has four.
 type Pieces = SmallVec<[nc_emit::Piece; 4]>;

@@ -16,8 +16,10 @@ use nc_syntax::{Block, Envelope, Reader};
 
 use crate::chunks::{Chunk, Chunks, Unread};
 use crate::job::Job;
-use crate::pass::{Pass, State, Tally};
+use crate::pass::Pass;
 use crate::sink::Sink;
+use crate::state::State;
+use crate::tally::Tally;
 
 /// How much of the chunk before leads a guess.
 const LEAD_BYTES: usize = 2048;

@@ -6,7 +6,9 @@ use nc_syntax::{Block, Dialect, Reader};
 
 use crate::chunks;
 use crate::job::{CORRECTED_BEFORE, Corrected, Job};
-use crate::pass::{Pass, State, Tally};
+use crate::pass::Pass;
+use crate::state::State;
+use crate::tally::Tally;
 
 /// The mark of the correction stands behind one of so many blocks at most.
 const OPENING_BLOCKS: usize = 64;

@@ -1,0 +1,56 @@
+//! What is counted on the way through a program.
+
+use correction::Correction;
+use nc_program::Evidence;
+
+use crate::job::Figures;
+use crate::notices::Notices;
+
+/// What is counted on the way.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Tally {
+    pub(crate) figures: Figures,
+    pub(crate) notices: Notices,
+    pub(crate) evidence: Evidence,
+}
+
+impl Tally {
+    /// Adds what was counted in the blocks that follow.
+    pub(crate) fn add(&mut self, later: &Self) {
+        let (figures, more) = (&mut self.figures, &later.figures);
+        figures.blocks_in += more.blocks_in;
+        figures.blocks_out += more.blocks_out;
+        figures.splits += more.splits;
+        figures.approaches += more.approaches;
+        raise(&mut figures.largest, more.largest);
+        raise(&mut figures.before, more.before);
+        raise(&mut figures.after, more.after);
+        raise(&mut figures.tilt, more.tilt);
+        self.notices.add(&later.notices);
+        self.evidence.add(&later.evidence);
+    }
+}
+
+impl Figures {
+    /// Takes the bounds of a motion in a line.
+    #[inline]
+    pub(crate) fn raise(&mut self, correction: &Correction, line: u64) {
+        raise(&mut self.largest, (correction.largest_mm, line));
+        raise(&mut self.before, (correction.before_mm, line));
+        raise(&mut self.after, (correction.after_mm, line));
+    }
+
+    /// False where [`Figures::raise`] changes nothing.
+    #[inline]
+    pub(crate) fn would_rise(&self, by: &Correction) -> bool {
+        by.largest_mm > self.largest.0 || by.before_mm > self.before.0 || by.after_mm > self.after.0
+    }
+}
+
+/// The first of the largest counts.
+#[inline]
+pub(crate) fn raise(figure: &mut (f64, u64), (value, line): (f64, u64)) {
+    if value > figure.0 {
+        *figure = (value, line);
+    }
+}
