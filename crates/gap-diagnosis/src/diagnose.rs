@@ -52,6 +52,7 @@ pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
         gap: Gap { rows, ..Gap::default() },
         places: Vec::new(),
         causes: Vec::new(),
+        withheld: None,
         setup: Setup::default(),
         leftover: Leftover::default(),
         holdout: None,

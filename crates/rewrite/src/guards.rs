@@ -4,7 +4,6 @@ use diagnostic::Diagnostic;
 use nc_emit::{Asked, Stated};
 use nc_program::{Compensation, ToolLength, WorkOffset};
 use nc_syntax::Block;
-use smallvec::SmallVec;
 
 use crate::job::{Guards, UNGUARDED};
 use crate::pass::Pass;

@@ -254,62 +254,149 @@ const OUTLIER: f64 = 4.5;
 /// A neighbour that is as far out on the same side makes it structure, not an outlier.
 const ACCOMPLICE: f64 = 2.5;
 
+/// A reading this many robust standard deviations off its neighbours, which agree, is a blunder whatever the model.
+const BLUNDER: f64 = 10.0;
+/// Two neighbours agree where they differ by at most this share of what a reading differs from them.
+const AGREE: f64 = 0.25;
+
 /// Rows that stand alone far from what the model and their neighbours say, ascending.
 #[must_use]
 pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Vec<usize> {
     let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
-    let mut sizes: Vec<f64> = weighted.iter().map(|v| v.abs()).collect();
-    let Some(mad) = median(&mut sizes) else { return Vec::new() };
-    // Where most readings show the same number, the display's step is the scatter.
-    let sigma = (1.4826 * mad).max(quantum_um(scalars)).max(1e-6);
+    let Some(sigma) = robust_sigma(scalars, weighted.iter().copied()) else { return Vec::new() };
+    let far: Vec<f64> = weighted.iter().map(|v| v / sigma).collect();
+    Surroundings::new(rows, scalars, &far).lone(OUTLIER)
+}
+
+/// Rows that no model is needed to know as blunders, ascending: far off both neighbours of their run, which agree with each
+/// other, while no other reading of that place says the same.
+///
+/// A search that has them among its rows finds causes for them: a step at a moment, damage at a place.
+#[must_use]
+pub(crate) fn blunders(rows: &[Row], scalars: &[Scalar]) -> Vec<usize> {
+    let mut off = vec![0.0; scalars.len()];
+    let mut stands_out = vec![false; scalars.len()];
+    let mut at_end = vec![false; scalars.len()];
+    for line in lines(rows, scalars).values() {
+        for (place, index) in line.iter().enumerate() {
+            let last = line.len() - 1;
+            let beside = match place {
+                _ if line.len() < 3 => continue,
+                0 => [1, 2],
+                _ if place == last => [last - 1, last - 2],
+                _ => [place - 1, place + 1],
+            };
+            let [a, b] = beside.map(|p| scalars[line[p]].gap_um);
+            let weight = scalars[*index].weight.sqrt();
+            off[*index] = (scalars[*index].gap_um - 0.5 * (a + b)) * weight;
+            stands_out[*index] = (a - b).abs() * weight <= AGREE * off[*index].abs();
+            at_end[*index] = place == 0 || place == last;
+        }
+    }
+    let Some(sigma) = robust_sigma(scalars, off.iter().copied()) else { return Vec::new() };
+    let far: Vec<f64> =
+        off.iter().zip(&stands_out).map(|(off, alone)| if *alone { off / sigma } else { 0.0 }).collect();
+    let surroundings = Surroundings::new(rows, scalars, &far);
+    let mut found = surroundings.lone(BLUNDER);
+    // Behind a turn at the end of a run everything may be different: only other readings of that place say that it is not.
+    let unknown = |row: usize| {
+        let own = || (0..scalars.len()).filter(move |i| scalars[*i].row == row);
+        own().any(|i| at_end[i]) && !own().any(|i| surroundings.has_returns(i))
+    };
+    found.retain(|row| !unknown(*row));
+    found
+}
+
+/// Standard deviation by the median, no less than the step of the display: where most readings show the same number, that
+/// step is the scatter.
+fn robust_sigma(scalars: &[Scalar], values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mad = median(&mut values.map(f64::abs).collect::<Vec<f64>>())?;
+    Some((1.4826 * mad).max(quantum_um(scalars)).max(1e-6))
+}
+
+/// Equations of a run and a class, in order.
+fn lines(rows: &[Row], scalars: &[Scalar]) -> BTreeMap<(usize, usize), Vec<usize>> {
     let mut lines: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-    // Sum and count at one place, whatever the direction and the repeat.
-    let mut places: BTreeMap<(usize, usize, [i64; 6]), (f64, f64)> = BTreeMap::new();
-    let place_of = |scalar: &Scalar| {
-        let row = &rows[scalar.row];
+    for (index, scalar) in scalars.iter().enumerate() {
+        lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
+    }
+    lines
+}
+
+/// Equations with how far off each is, in standard deviations, and what others say of its place.
+struct Surroundings<'a> {
+    rows: &'a [Row],
+    scalars: &'a [Scalar],
+    far: &'a [f64],
+    /// Sum and count at one place of a run, whatever the direction and the repeat.
+    places: BTreeMap<(usize, usize, [i64; 6]), (f64, f64)>,
+    /// Sum and count at one place reached one way, whatever the run.
+    returns: BTreeMap<Returning, (f64, f64)>,
+}
+
+impl<'a> Surroundings<'a> {
+    fn new(rows: &'a [Row], scalars: &'a [Scalar], far: &'a [f64]) -> Self {
+        let (places, returns) = (BTreeMap::new(), BTreeMap::new());
+        let mut all = Self { rows, scalars, far, places, returns };
+        for (scalar, far) in scalars.iter().zip(far) {
+            let (place, returning) = (all.place_of(scalar), all.return_of(scalar));
+            let entry = all.places.entry(place).or_default();
+            *entry = (entry.0 + far, entry.1 + 1.0);
+            let entry = all.returns.entry(returning).or_default();
+            *entry = (entry.0 + far, entry.1 + 1.0);
+        }
+        all
+    }
+
+    fn place_of(&self, scalar: &Scalar) -> (usize, usize, [i64; 6]) {
+        let row = &self.rows[scalar.row];
         let (q, t) = (row.command.linear_mm, row.command.rotary_rad);
         let step = |v: f64| (v * 1e4).round() as i64;
         (row.run, scalar.class, [step(q.x), step(q.y), step(q.z), step(t.x), step(t.y), step(t.z)])
-    };
-    // Sum and count at one place reached one way, whatever the run.
-    let mut returns = BTreeMap::<Returning, (f64, f64)>::new();
-    let return_of = |scalar: &Scalar| {
-        let (_, class, place) = place_of(scalar);
-        (place, class, rows[scalar.row].command.direction)
-    };
-    for (index, scalar) in scalars.iter().enumerate() {
-        lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
-        let entry = places.entry(place_of(scalar)).or_default();
-        *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
-        let entry = returns.entry(return_of(scalar)).or_default();
-        *entry = (entry.0 + weighted[index] / sigma, entry.1 + 1.0);
     }
-    let mut found: Vec<usize> = Vec::new();
-    for line in lines.values() {
-        for (place, index) in line.iter().enumerate() {
-            let value = weighted[*index] / sigma;
-            if value.abs() <= OUTLIER {
-                continue;
-            }
-            let beside = [place.checked_sub(1), Some(place + 1)];
-            let alone = beside.iter().flatten().filter_map(|p| line.get(*p)).all(|other| {
-                let there = weighted[*other] / sigma;
-                there * value.signum() < ACCOMPLICE
-            });
-            // Repeats that say the same make it structure, too.
-            let says = |(sum, count): (f64, f64)| {
-                count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE
-            };
-            let scalar = &scalars[*index];
-            let confirmed = says(places[&place_of(scalar)]) || says(returns[&return_of(scalar)]);
-            if alone && !confirmed {
-                found.push(scalars[*index].row);
+
+    fn return_of(&self, scalar: &Scalar) -> Returning {
+        let (_, class, place) = self.place_of(scalar);
+        (place, class, self.rows[scalar.row].command.direction)
+    }
+
+    /// Another reading of the same place, reached the same way or in the same run.
+    fn has_returns(&self, index: usize) -> bool {
+        let scalar = &self.scalars[index];
+        self.places[&self.place_of(scalar)].1 > 1.0 || self.returns[&self.return_of(scalar)].1 > 1.0
+    }
+
+    /// Rows beyond a limit that neither a neighbour nor a repeat confirms, ascending.
+    fn lone(&self, limit: f64) -> Vec<usize> {
+        let mut found: Vec<usize> = Vec::new();
+        for line in lines(self.rows, self.scalars).values() {
+            for (place, index) in line.iter().enumerate() {
+                let value = self.far[*index];
+                if value.abs() <= limit {
+                    continue;
+                }
+                let beside = [place.checked_sub(1), Some(place + 1)];
+                let alone = beside
+                    .iter()
+                    .flatten()
+                    .filter_map(|p| line.get(*p))
+                    .all(|other| self.far[*other] * value.signum() < ACCOMPLICE);
+                // Repeats that say the same make it structure, too.
+                let says = |(sum, count): (f64, f64)| {
+                    count > 1.0 && (sum - value) / (count - 1.0) * value.signum() >= ACCOMPLICE
+                };
+                let scalar = &self.scalars[*index];
+                let confirmed =
+                    says(self.places[&self.place_of(scalar)]) || says(self.returns[&self.return_of(scalar)]);
+                if alone && !confirmed {
+                    found.push(scalar.row);
+                }
             }
         }
+        found.sort_unstable();
+        found.dedup();
+        found
     }
-    found.sort_unstable();
-    found.dedup();
-    found
 }
 
 /// Ratio of the variance that further rows will have to the variance of the rows kept.

@@ -238,6 +238,8 @@ pub struct Diagnosis {
     pub places: Vec<Cell>,
     /// Causes, largest share first.
     pub causes: Vec<Cause>,
+    /// Why no correction may be made of the causes, in words; `None` where one may.
+    pub withheld: Option<String>,
     /// Set-up.
     pub setup: Setup,
     /// Rest.
@@ -256,4 +258,13 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// Equation by equation, outliers left out.
     pub residuals: Vec<Residual>,
+}
+
+impl Diagnosis {
+    /// True where a correction may be made of the causes: an effect explains the gap, no unseen row contradicts it, and it
+    /// does no harm where nothing was measured.
+    #[must_use]
+    pub fn corrects(&self) -> bool {
+        self.verdict != Verdict::Unknown && self.withheld.is_none() && !self.causes.is_empty()
+    }
 }

@@ -16,6 +16,7 @@ use crate::judgement::rivals::{Rival, rivals};
 use crate::judgement::structure::{correlates, lack_of_fit};
 use crate::judgement::verdict::{Evidence, LACK_OF_FIT, WORTH_NAMING};
 use crate::library::candidates::Part;
+use crate::search::bounds::{Bounds, Harm};
 use crate::search::crossval::Folds;
 use crate::search::explanation::Explanation;
 use crate::search::moves::without;
@@ -36,6 +37,8 @@ pub(crate) struct Assembly<'a> {
     /// Variance of the runs' own offsets over the noise's that an alignment takes out: any, or none where a cause shows
     /// between the runs alone.
     pub(crate) alignment: f64,
+    /// What the causes do together where nothing was measured.
+    pub(crate) harm: Option<Harm>,
 }
 
 pub(crate) struct Ranked {
@@ -71,8 +74,12 @@ impl<'a> Assembly<'a> {
     pub(crate) fn new(data: &'a Measurements, model: &'a Explanation) -> Self {
         let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um, model.phi);
         let (ordered, folds, alignment) = (Vec::new(), OnceCell::new(), FREE_OFFSETS);
-        let mut assembly = Self { data, model, noise, ordered, folds, alignment };
+        let mut assembly = Self { data, model, noise, ordered, folds, alignment, harm: None };
         assembly.ordered = assembly.rank();
+        let parts = model.parts.iter().enumerate();
+        let causes: Vec<_> =
+            parts.map(|(place, part)| (model.library.kind(*part), assembly.own(place))).collect();
+        assembly.harm = Bounds::new(data, &model.scalars).broken_together(&causes, &data.geometry);
         if assembly.between_runs() {
             assembly.alignment = 0.0;
         }
@@ -229,6 +236,7 @@ impl<'a> Assembly<'a> {
             carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution > SLOW_PHI,
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
+            swings: matches!(self.harm, Some(Harm::Swings(..))),
             unseen: None,
         }
     }

@@ -38,6 +38,8 @@ pub(crate) struct Evidence {
     pub slow: bool,
     /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
     pub trifling: bool,
+    /// Together the causes move places between those measured by more than any reading could mean.
+    pub swings: bool,
     /// What rows that no fit has seen say.
     pub unseen: Option<Unseen>,
 }
@@ -85,8 +87,9 @@ const LITTLE: f64 = 0.25;
 const SHORT: f64 = 0.05;
 /// Up to this factor above the noise, what is left on unseen rows is noise: tails and blunders among them are not left out.
 const NOISE_LEFT: f64 = 1.6;
-/// An unseen gap of so many times the noise is one, whatever the rows of the fit say.
-const UNSEEN_GAP: f64 = 2.0;
+/// An unseen gap of so many times the noise is one, whatever the rows of the fit say: at twice the noise, which nobody
+/// would call agreement, chance must not make it pass, and noise is known to a third.
+const UNSEEN_GAP: f64 = 1.5;
 /// Beside structure without a name, a cause that takes off less than this share of the RMS is none that anyone acts on.
 pub(crate) const WORTH_NAMING: f64 = 0.1;
 
@@ -102,6 +105,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// 4. AMBIGUOUS where any cause has rivals; this stands before the next rule, since a drift of the instrument that a warm-up of
 ///    the machine explains as well is not known to be the instrument's.
 /// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
+///
+/// Causes that swing between the places measured explain nothing, however well they fit: UNKNOWN.
 ///
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
 /// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise.
@@ -140,6 +145,9 @@ fn on_the_rows(e: &Evidence) -> Verdict {
         let suspect = e.noise_ratio.is_some_and(|r| !(1.0 / NOISE_FACTOR..=NOISE_FACTOR).contains(&r));
         return if suspect || e.slow { Verdict::NoiseModelSuspect } else { Verdict::NoGap };
     }
+    if e.swings {
+        return Verdict::Unknown;
+    }
     if structured {
         // What is left is no noise, so the intervals are too narrow, and even those exceed the gap.
         if !e.carries {
@@ -170,6 +178,7 @@ mod tests {
         carries: true,
         slow: false,
         trifling: false,
+        swings: false,
         unseen: None,
     };
 
@@ -199,6 +208,9 @@ mod tests {
             (Evidence { instrument_causes: 1, causes: 2, ..CLEAR }, Verdict::Named),
             (Evidence { trifling: true, ..left }, Verdict::Unknown),
             (Evidence { slow: true, ..none }, Verdict::NoiseModelSuspect),
+            (Evidence { swings: true, ..CLEAR }, Verdict::Unknown),
+            (Evidence { swings: true, ambiguous: true, ..CLEAR }, Verdict::Unknown),
+            (Evidence { swings: true, ..none }, Verdict::NoGap),
         ];
         for (evidence, expected) in cases {
             assert_eq!(verdict(&evidence), expected, "{evidence:?}");
@@ -226,8 +238,8 @@ mod tests {
             // Few rows prove little, and what is left at the level of the noise refutes nothing.
             (with(Unseen { error: 0.2, ..after(7.0) }, CLEAR), Verdict::Named),
             (with(Unseen { before: 2.0, after: 1.5, ..kept }, CLEAR), Verdict::Named),
-            (with(Unseen { before: 1.9, after: 1.9, ..kept }, none), Verdict::NoGap),
-            (with(Unseen { before: 2.1, after: 2.1, ..kept }, none), Verdict::Unknown),
+            (with(Unseen { before: 1.4, after: 1.4, ..kept }, none), Verdict::NoGap),
+            (with(Unseen { before: 1.6, after: 1.6, ..kept }, none), Verdict::Unknown),
         ] {
             assert_eq!(found, expected);
         }

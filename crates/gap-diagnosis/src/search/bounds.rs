@@ -33,6 +33,22 @@ pub(crate) struct Bounds {
     /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
     /// while the measuring frame takes up to half of it off each reading.
     widest_um: f64,
+    /// Components that were read; all where the readings are lengths.
+    read: [bool; 3],
+    /// Longest reading, µm: all its components together, each from its median.
+    longest_um: f64,
+    /// Lengths of the ranges of the components together, µm.
+    span_um: f64,
+}
+
+/// What causes that pass each alone do together between the places measured, which no reading of the file is as large as.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Harm {
+    /// They swing: by so much they displace a place, or change from their mean over the rows; and the longest reading; µm.
+    Swings(f64, f64),
+    /// They shift: straight lines through machine zero, read on a short way far from it, move all of that way by so much,
+    /// which the measuring frame took off the readings; and the range of the readings; µm.
+    Shifts(f64, f64),
 }
 
 impl Bounds {
@@ -56,26 +72,77 @@ impl Bounds {
                 }
             }
         }
-        let (mut largest_um, mut widest_um): (f64, f64) = (0.0, 0.0);
+        let (mut largest_um, mut widest_um, mut span_um): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        let mut read = [false; 3];
+        let mut lengths = vec![0.0; data.rows.len()];
         for class in 0..4 {
-            let gaps = || scalars.iter().filter(|s| s.class == class).map(|s| s.gap_um);
+            let of_class = || scalars.iter().filter(|s| s.class == class);
+            let gaps = || of_class().map(|s| s.gap_um);
             if let Some(middle) = median(&mut gaps().collect::<Vec<f64>>()) {
                 largest_um = gaps().fold(largest_um, |most, gap| most.max((gap - middle).abs()));
                 let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
                 widest_um = widest_um.max(ends.1 - ends.0);
+                span_um = span_um.hypot(ends.1 - ends.0);
+                of_class().for_each(|s| lengths[s.row] = f64::hypot(lengths[s.row], s.gap_um - middle));
+                match read.get_mut(class) {
+                    Some(component) => *component = true,
+                    None => read = [true; 3],
+                }
             }
         }
+        let longest_um = lengths.into_iter().fold(0.0, f64::max);
         let places = [0, 1, 2].map(|axis| data.effective_places(axis));
-        Self { probes, measured, places, largest_um, widest_um }
+        Self { probes, measured, places, largest_um, widest_um, read, longest_um, span_um }
+    }
+
+    /// What is wrong with causes that each pass alone; `None` where nothing is. Faults of the instrument correct nothing.
+    ///
+    /// What is straight is held to its own limits, and only its shift counts here.
+    #[must_use]
+    pub(crate) fn broken_together(
+        &self,
+        causes: &[(EffectKind, Vec<(Term, f64)>)],
+        geometry: &EffectGeometry,
+    ) -> Option<Harm> {
+        let of_the_machine = || causes.iter().filter(|(kind, _)| !kind.is_instrument());
+        let bent = of_the_machine().filter(|(kind, _)| !is_straight(*kind));
+        let of_places = of_the_machine().filter(|(kind, _)| depends_on_place(*kind));
+        let terms = |causes: Vec<&(EffectKind, Vec<(Term, f64)>)>| -> Vec<(Term, f64)> {
+            causes.into_iter().flat_map(|(_, terms)| terms.iter().copied()).collect()
+        };
+        let (all, of_places) = (terms(of_the_machine().collect()), terms(of_places.collect()));
+        let bent = terms(bent.collect());
+        let length = |d: Vector| (0..3).filter(|c| self.read[*c]).map(|c| d[c] * d[c]).sum::<f64>().sqrt();
+        let bent = self.displacements_um(&bent, geometry);
+        let mean = self.mean(&bent);
+        let swing_um = bent.iter().map(|d| length(d - mean)).fold(0.0, f64::max);
+        // What depends on the place alone has no zero but its own.
+        let places = self.displacements_um(&of_places, geometry);
+        let swing_um = places.into_iter().map(length).fold(swing_um, f64::max);
+        if swing_um > LARGEST * self.longest_um {
+            return Some(Harm::Swings(swing_um, self.longest_um));
+        }
+        let shift_um = self.displacements_um(&all, geometry).into_iter().map(length).fold(0.0, f64::max);
+        (shift_um > LARGEST * self.span_um).then_some(Harm::Shifts(shift_um, self.span_um))
+    }
+
+    /// Displacements by some terms at the rows and between them, µm.
+    fn displacements_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> Vec<Vector> {
+        let at = |row: &Row| -> Vector {
+            terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
+        };
+        self.probes.iter().map(at).collect()
+    }
+
+    /// Mean over the rows of what [`Self::displacements_um`] gives.
+    fn mean(&self, all: &[Vector]) -> Vector {
+        all.iter().take(self.measured).sum::<Vector>() / self.measured.max(1) as f64
     }
 
     /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.
     fn excursion_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> f64 {
-        let at = |row: &Row| -> Vector {
-            terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
-        };
-        let all: Vec<Vector> = self.probes.iter().map(at).collect();
-        let mean = all.iter().take(self.measured).sum::<Vector>() / self.measured.max(1) as f64;
+        let all = self.displacements_um(terms, geometry);
+        let mean = self.mean(&all);
         all.iter().map(|d| (d - mean).amax()).fold(0.0, f64::max)
     }
 
@@ -90,13 +157,29 @@ impl Bounds {
         if let Some(reason) = implausible(kind, terms) {
             return Some(reason);
         }
-        // What is straight does not swing between places.
-        let straight = matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..));
-        let largest_um = if straight { self.widest_um } else { self.largest_um };
+        let largest_um = if is_straight(kind) { self.widest_um } else { self.largest_um };
         let harmful = self.excursion_um(terms, geometry) > LARGEST * largest_um;
         harmful
             .then_some("between the places measured it would displace by more than twice the largest reading")
     }
+}
+
+/// What is straight does not swing between places.
+const fn is_straight(kind: EffectKind) -> bool {
+    matches!(kind, EffectKind::Scale(_) | EffectKind::Squareness(..))
+}
+
+/// A curve over places: it does not count from a temperature, a time or a load.
+const fn depends_on_place(kind: EffectKind) -> bool {
+    matches!(
+        kind,
+        EffectKind::Positioning(_)
+            | EffectKind::Straightness { .. }
+            | EffectKind::Local(_)
+            | EffectKind::Joint(_)
+            | EffectKind::Pitch(_)
+            | EffectKind::Angular { .. }
+    )
 }
 
 /// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.

@@ -4,7 +4,7 @@ use machine_model::effects::EffectKind;
 
 use crate::equations::columns::{Places, Source};
 use crate::equations::fit::{Solution, residuals};
-use crate::equations::noise::{estimate, outliers};
+use crate::equations::noise::{blunders, estimate, outliers};
 use crate::equations::observation::{Measurements, Scalar};
 use crate::equations::pool::Pool;
 use crate::equations::set_up::Clamping;
@@ -80,8 +80,13 @@ fn settled(
     start: Option<Explanation>,
 ) -> Explanation {
     let scalars = source.scalars;
+    // Then they are no exceptions.
+    let too_many = |rows: &[usize]| rows.len() * 5 > data.rows.len();
     let mut pool = Pool::new(source);
-    let mut dropped: Vec<usize> = Vec::new();
+    let mut dropped = blunders(&data.rows, scalars);
+    if too_many(&dropped) {
+        dropped.clear();
+    }
     let mut setting = Setting { phi: 0.0, caution: 0.0, clamping };
     let mut result = pass(data, &mut pool, &dropped, without, setting, start, Task::Search);
     let lone = |solution: &Solution| {
@@ -92,7 +97,7 @@ fn settled(
         let local = result.parts.iter().any(|p| is_local(result.library.kind(*p)));
         let found =
             if nth == 0 && local { lone(&without_damage(&result, source)) } else { lone(&result.solution) };
-        if found == dropped || found.len() * 5 > data.rows.len() {
+        if found == dropped || too_many(&found) {
             break;
         }
         dropped = found;

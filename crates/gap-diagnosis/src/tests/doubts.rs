@@ -70,6 +70,48 @@ fn between_the_places_a_cause_does_no_harm() {
     }
 }
 
+/// Three blunders of 80 µm in a machine without faults, one of them the last row of its run: a step at a moment and damage at a
+/// place would explain them. They are left out instead, by their lines, and nothing is named.
+#[test]
+fn blunders_get_no_cause() {
+    let clean = measured(Plan { sigma_um: 0.8, ..GOOD }, nothing);
+    let last = clean.rows.iter().rposition(|row| row.run == 2).unwrap();
+    let spoilt = [30, 95, last];
+    let mut row = 0;
+    let data = changed(clean, |_| {
+        row += 1;
+        if spoilt.contains(&(row - 1)) { Vector::new(80.0, -75.0, 70.0) } else { Vector::zeros() }
+    });
+    let answer = diagnose(&data, None, &Options::default());
+    assert!(answer.causes.is_empty(), "{:?}", names(&answer));
+    let expected: Vec<u64> = spoilt.iter().map(|row| data.rows[*row].line).collect();
+    assert!(expected.iter().all(|line| answer.outlier_lines.contains(line)), "{:?}", answer.outlier_lines);
+}
+
+/// 45 mm of Z, 250 mm and more from machine zero, seem to be 800 µm/m too short: written as a scale that would move every
+/// place measured by 0.2 mm. Over the whole axis the same scale may be written.
+#[test]
+fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
+    let answer = |from_mm: f64, share: f64| {
+        let mut data = measured(SILENT, nothing);
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        for row in &mut data.rows {
+            row.command.linear_mm.z = from_mm + share * row.command.linear_mm.z;
+            let dz = -0.8 * row.command.linear_mm.z;
+            row.reading = Reading::Displacement([0.0, 0.0, dz].map(|v| Some(v + 0.5 * normal(&mut random))));
+        }
+        diagnose(&data, None, &Options::default())
+    };
+    let near = answer(0.0, 1.0);
+    assert_eq!(names(&near), ["scale.Z"]);
+    assert!(near.corrects() && near.withheld.is_none());
+    let far = answer(250.0, 0.1);
+    assert_eq!(names(&far), ["scale.Z"]);
+    assert!(!far.corrects());
+    assert!(far.withheld.is_some_and(|words| words.contains("count from machine zero")));
+    assert!(far.causes[0].remedy.starts_with("Do not act on this"));
+}
+
 /// Of 40 draws at a level of 3 % more than four are an alarm once in forty times.
 #[test]
 fn components_that_scatter_unequally_raise_no_alarm() {

@@ -9,7 +9,7 @@ use crate::judgement::assembly::Assembly;
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// What stands in the place of a remedy where the causes do not explain the gap, or unseen rows refute them.
-pub(crate) const DO_NOT_ACT: &str = "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it.";
+pub(crate) const DO_NOT_ACT: &str = "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it, or it would move more than was ever read.";
 
 /// What stands there for play of the wrong sign.
 pub(crate) const NO_PLAY: &str = "This is no play: the reversal is over-compensated (lower the control's backlash value), or the sensor sits on the motor's side of it.";

@@ -6,6 +6,7 @@ use crate::equations::set_up::Clamping;
 use crate::judgement::answer::Cause;
 use crate::judgement::assembly::Assembly;
 use crate::judgement::structure::jerks;
+use crate::search::bounds::Harm;
 
 impl Assembly<'_> {
     pub(crate) fn notes(&self) -> Vec<String> {
@@ -125,5 +126,19 @@ impl Assembly<'_> {
             ));
         }
         notes
+    }
+}
+
+impl Harm {
+    /// Why no correction may be made of the causes.
+    pub(crate) fn words(self) -> String {
+        match self {
+            Self::Swings(moved_um, reading_um) => format!(
+                "No correction is made of the causes: between the places measured they would together move the tool by up to {moved_um:.0} um, and no reading is larger than {reading_um:.0} um. Measure more places between, and repeat each."
+            ),
+            Self::Shifts(moved_um, range_um) => format!(
+                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, while the readings range over {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis."
+            ),
+        }
     }
 }

@@ -70,7 +70,9 @@ impl Assembly<'_> {
         if verdict == Verdict::Underpowered {
             causes.clear();
         }
-        if nameless {
+        let withheld = self.harm.filter(|_| !causes.is_empty()).map(|harm| harm.words());
+        notes.extend(withheld.clone());
+        if nameless || withheld.is_some() {
             causes.iter_mut().for_each(|c| c.remedy = DO_NOT_ACT);
         }
         let (data, scalars) = (self.data, &self.model.scalars);
@@ -87,6 +89,7 @@ impl Assembly<'_> {
             )
             .or_else(|| nameless.then(|| once_more(data)).flatten()),
             causes,
+            withheld,
             setup: self.setup(),
             leftover,
             holdout: held.filter(|_| !unsure),

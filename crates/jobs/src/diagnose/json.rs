@@ -15,6 +15,7 @@ struct Document<'a> {
     #[serde(rename = "where")]
     places: Vec<Value>,
     causes: Vec<Value>,
+    withheld: Option<&'a str>,
     setup: Value,
     leftover: Value,
     holdout: Value,
@@ -42,6 +43,7 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             .map(|c| json!({ "by": c.by, "cell": c.cell, "share": round(c.share), "p": round(c.p) }))
             .collect(),
         causes: d.causes.iter().zip(changes).map(|(c, changes)| cause(c, changes)).collect(),
+        withheld: d.withheld.as_deref(),
         setup: json!({
             "shift_um": d.setup.shift_um.map(round),
             "rotation_urad": d.setup.rotation_urad.map(round),

@@ -51,8 +51,11 @@ pub fn diagnose(
         resolution_um: steps.fold(f64::INFINITY, f64::min),
     };
     let diagnosis = gap_diagnosis::diagnose(&measured.data, holdout.map(|held| &held.data), &options);
-    let changes: Vec<Vec<Change>> =
-        diagnosis.causes.iter().map(|cause| change::of(cause, &model.profile)).collect();
+    let change = |cause| match diagnosis.withheld {
+        None => change::of(cause, &model.profile),
+        Some(_) => Vec::new(),
+    };
+    let changes: Vec<Vec<Change>> = diagnosis.causes.iter().map(change).collect();
     let json = json::text(&diagnosis, &changes);
     Ok(Diagnosed { diagnosis, changes, json })
 }

@@ -168,6 +168,8 @@ class Diagnosis:
     where: Tuple[Place, ...]
     #: By share, the largest first.
     causes: Tuple[Cause, ...]
+    #: Why no correction may be made of the causes; None where one may.
+    withheld: Optional[str]
     setup: Setup
     leftover: Leftover
     holdout: Optional[Holdout]

@@ -95,7 +95,12 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     }
     if let Some(path) = &arguments.write_profile {
         written::write(path, machine(&shared.job)?, &diagnosis)?;
-        messages.note(&format!("{} holds the profile with the causes as effects", file::name(path)));
+        let holds = if diagnosis.corrects() {
+            "the profile with the causes as effects"
+        } else {
+            "the profile as it was: there is nothing to correct by"
+        };
+        messages.note(&format!("{} holds {holds}", file::name(path)));
     }
     file::print(summary::text(&diagnosis, &changes).as_bytes())
 }

@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use diagnostic::Code;
-use gap_diagnosis::{Diagnosis, Verdict};
+use gap_diagnosis::Diagnosis;
 use machine_model::effects::EffectKind;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
@@ -14,8 +14,8 @@ use jobs::diagnose::json::{number, round};
 /// The profile is no TOML any more: someone changed it meanwhile.
 const UNREADABLE: Code = Code(301);
 
-/// Writes the profile `from` to `path` with the causes as `[[effect]]` and the frame as `[setup]`; comments and order stay. Under
-/// UNKNOWN no cause is written.
+/// Writes the profile `from` to `path` with the causes as `[[effect]]` and the frame as `[setup]`; comments and order stay. Where
+/// [`Diagnosis::corrects`] is false nothing is added.
 pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(), Failure> {
     let text = String::from_utf8_lossy(&file::read(from)?).into_owned();
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
@@ -23,8 +23,7 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
         Failure::usage(diagnostic.help("run `vpost profile check` on it"))
     })?;
     move_tables(document.as_table_mut(), &folder(from), &folder(path));
-    // What no effect explains, or unseen rows contradict, corrects nothing.
-    let causes = if diagnosis.verdict == Verdict::Unknown { &[] } else { diagnosis.causes.as_slice() };
+    let causes = if diagnosis.corrects() { diagnosis.causes.as_slice() } else { &[] };
     let effects = document.entry("effect").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
     if let Some(effects) = effects.as_array_of_tables_mut() {
         // What a fault of the instrument could have shown as well is no correction of the machine.
