@@ -264,7 +264,7 @@ impl Target {
     }
 
     /// How it was approached from one side: 0 positive, 1 negative.
-    fn from_side(&self, side: usize) -> Option<Approach> {
+    fn approached_from(&self, side: usize) -> Option<Approach> {
         if side == 0 { self.positive } else { self.negative }
     }
 }
@@ -280,7 +280,8 @@ struct Passes<'t> {
 
 impl<'t> Passes<'t> {
     fn of(targets: &'t [Target], counts: [usize; 2]) -> Self {
-        let side = |side: usize| targets.iter().map(move |t| t.from_side(side).map(|a| (a, counts[side])));
+        let side =
+            |side: usize| targets.iter().map(move |t| t.approached_from(side).map(|a| (a, counts[side])));
         let mut positive = scatters(&side(0).chain(side(1)).collect::<Vec<_>>());
         let negative = positive.split_off(targets.len());
         Self { targets, counts, scatter: [positive, negative] }
@@ -302,7 +303,7 @@ impl<'t> Passes<'t> {
         let mut all = Vec::new();
         for &side in sides {
             for (i, t) in self.targets.iter().enumerate() {
-                let Some(a) = t.from_side(side) else { continue };
+                let Some(a) = t.approached_from(side) else { continue };
                 // Mean and deviation come from the same scatter.
                 let n = self.counts[side] as f64;
                 let of_deviation = if n > 1.0 { 0.5 * spread * spread / (n - 1.0) } else { 0.0 };
@@ -321,7 +322,7 @@ impl<'t> Passes<'t> {
 
     /// What one side says alone.
     fn direction(&self, side: usize, relative: f64) -> Option<Direction> {
-        let read = self.targets.iter().enumerate().filter_map(|(i, t)| Some((i, t.from_side(side)?)));
+        let read = self.targets.iter().enumerate().filter_map(|(i, t)| Some((i, t.approached_from(side)?)));
         let (i, worst) = read.max_by(|a, b| a.1.deviation.total_cmp(&b.1.deviation))?;
         let expanded = self.of_deviation(side, i).times(16.0).half_width_95();
         Some(Direction {
@@ -343,8 +344,9 @@ impl<'t> Passes<'t> {
     fn repeatability(&self) -> Option<Uncertain> {
         let all = self.targets.iter().enumerate();
         let (i, worst) = all.max_by(|a, b| a.1.repeatability.total_cmp(&b.1.repeatability))?;
-        let alone =
-            |side: &usize| worst.from_side(*side).is_some_and(|a| a.repeatability >= worst.repeatability);
+        let alone = |side: &usize| {
+            worst.approached_from(*side).is_some_and(|a| a.repeatability >= worst.repeatability)
+        };
         let variance = match (0..2).find(alone) {
             Some(side) => self.of_deviation(side, i).times(16.0),
             None => Variance::sum(&[
@@ -360,7 +362,7 @@ impl<'t> Passes<'t> {
     /// The mean bi-directional deviations.
     fn means(&self) -> Vec<(Limit, Limit)> {
         let mean = |(i, t): (usize, &Target)| {
-            let read = (0..2).filter(|side| t.from_side(*side).is_some());
+            let read = (0..2).filter(|side| t.approached_from(*side).is_some());
             let parts: Vec<Variance> = read.map(|side| self.of_mean(side, i)).collect();
             let given = parts.len().max(1) as f64;
             let variance = Variance::sum(&parts).times(1.0 / (given * given));

@@ -72,9 +72,9 @@ impl Bounds {
                 }
             }
         }
-        let (mut largest_um, mut widest_um, mut span_um): (f64, f64, f64) = (0.0, 0.0, 0.0);
+        let (mut largest_um, mut widest_um, mut span_square): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let mut read = [false; 3];
-        let mut lengths = vec![0.0; data.rows.len()];
+        let mut squares = vec![0.0; data.rows.len()];
         for class in 0..4 {
             let of_class = || scalars.iter().filter(|s| s.class == class);
             let gaps = || of_class().map(|s| s.gap_um);
@@ -82,15 +82,16 @@ impl Bounds {
                 largest_um = gaps().fold(largest_um, |most, gap| most.max((gap - middle).abs()));
                 let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
                 widest_um = widest_um.max(ends.1 - ends.0);
-                span_um = span_um.hypot(ends.1 - ends.0);
-                of_class().for_each(|s| lengths[s.row] = f64::hypot(lengths[s.row], s.gap_um - middle));
+                span_square += (ends.1 - ends.0) * (ends.1 - ends.0);
+                of_class().for_each(|s| squares[s.row] += (s.gap_um - middle) * (s.gap_um - middle));
                 match read.get_mut(class) {
                     Some(component) => *component = true,
                     None => read = [true; 3],
                 }
             }
         }
-        let longest_um = lengths.into_iter().fold(0.0, f64::max);
+        let longest_um = squares.into_iter().fold(0.0, f64::max).sqrt();
+        let span_um = span_square.sqrt();
         let places = [0, 1, 2].map(|axis| data.effective_places(axis));
         Self { probes, measured, places, largest_um, widest_um, read, longest_um, span_um }
     }
