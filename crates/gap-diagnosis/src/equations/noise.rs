@@ -265,7 +265,7 @@ pub(crate) fn outliers(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -
     let weighted: Vec<f64> = scalars.iter().zip(residuals_um).map(|(s, r)| r * s.weight.sqrt()).collect();
     let Some(sigma) = robust_sigma(scalars, weighted.iter().copied()) else { return Vec::new() };
     let far: Vec<f64> = weighted.iter().map(|v| v / sigma).collect();
-    Surroundings::new(rows, scalars, &far).lone(OUTLIER)
+    Surroundings::new(rows, scalars, &far).lone(&lines(rows, scalars), OUTLIER)
 }
 
 /// Rows that no model is needed to know as blunders, ascending: far off both neighbours of their run, which agree with each
@@ -277,7 +277,8 @@ pub(crate) fn blunders(rows: &[Row], scalars: &[Scalar]) -> Vec<usize> {
     let mut off = vec![0.0; scalars.len()];
     let mut stands_out = vec![false; scalars.len()];
     let mut at_end = vec![false; scalars.len()];
-    for line in lines(rows, scalars).values() {
+    let lines = lines(rows, scalars);
+    for line in lines.values() {
         for (place, index) in line.iter().enumerate() {
             let last = line.len() - 1;
             let beside = match place {
@@ -296,8 +297,11 @@ pub(crate) fn blunders(rows: &[Row], scalars: &[Scalar]) -> Vec<usize> {
     let Some(sigma) = robust_sigma(scalars, off.iter().copied()) else { return Vec::new() };
     let far: Vec<f64> =
         off.iter().zip(&stands_out).map(|(off, alone)| if *alone { off / sigma } else { 0.0 }).collect();
+    if far.iter().all(|far| far.abs() <= BLUNDER) {
+        return Vec::new();
+    }
     let surroundings = Surroundings::new(rows, scalars, &far);
-    let mut found = surroundings.lone(BLUNDER);
+    let mut found = surroundings.lone(&lines, BLUNDER);
     // Behind a turn at the end of a run everything may be different: only other readings of that place say that it is not.
     let unknown = |row: usize| {
         let own = || (0..scalars.len()).filter(move |i| scalars[*i].row == row);
@@ -315,8 +319,10 @@ fn robust_sigma(scalars: &[Scalar], values: impl Iterator<Item = f64>) -> Option
 }
 
 /// Equations of a run and a class, in order.
-fn lines(rows: &[Row], scalars: &[Scalar]) -> BTreeMap<(usize, usize), Vec<usize>> {
-    let mut lines: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+type Lines = BTreeMap<(usize, usize), Vec<usize>>;
+
+fn lines(rows: &[Row], scalars: &[Scalar]) -> Lines {
+    let mut lines = Lines::new();
     for (index, scalar) in scalars.iter().enumerate() {
         lines.entry((rows[scalar.row].run, scalar.class)).or_default().push(index);
     }
@@ -367,9 +373,9 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Rows beyond a limit that neither a neighbour nor a repeat confirms, ascending.
-    fn lone(&self, limit: f64) -> Vec<usize> {
+    fn lone(&self, lines: &Lines, limit: f64) -> Vec<usize> {
         let mut found: Vec<usize> = Vec::new();
-        for line in lines(self.rows, self.scalars).values() {
+        for line in lines.values() {
             for (place, index) in line.iter().enumerate() {
                 let value = self.far[*index];
                 if value.abs() <= limit {

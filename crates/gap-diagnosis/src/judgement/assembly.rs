@@ -37,8 +37,6 @@ pub(crate) struct Assembly<'a> {
     /// Variance of the runs' own offsets over the noise's that an alignment takes out: any, or none where a cause shows
     /// between the runs alone.
     pub(crate) alignment: f64,
-    /// What the causes do together where nothing was measured.
-    pub(crate) harm: Option<Harm>,
 }
 
 pub(crate) struct Ranked {
@@ -74,12 +72,8 @@ impl<'a> Assembly<'a> {
     pub(crate) fn new(data: &'a Measurements, model: &'a Explanation) -> Self {
         let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um, model.phi);
         let (ordered, folds, alignment) = (Vec::new(), OnceCell::new(), FREE_OFFSETS);
-        let mut assembly = Self { data, model, noise, ordered, folds, alignment, harm: None };
+        let mut assembly = Self { data, model, noise, ordered, folds, alignment };
         assembly.ordered = assembly.rank();
-        let parts = model.parts.iter().enumerate();
-        let causes: Vec<_> =
-            parts.map(|(place, part)| (model.library.kind(*part), assembly.own(place))).collect();
-        assembly.harm = Bounds::new(data, &model.scalars).broken_together(&causes, &data.geometry);
         if assembly.between_runs() {
             assembly.alignment = 0.0;
         }
@@ -212,6 +206,14 @@ impl<'a> Assembly<'a> {
         }
     }
 
+    /// What the causes do together where nothing was measured.
+    pub(crate) fn harm(&self) -> Option<Harm> {
+        let parts = self.model.parts.iter().enumerate();
+        let causes: Vec<_> =
+            parts.map(|(place, part)| (self.model.library.kind(*part), self.own(place))).collect();
+        Bounds::new(self.data, &self.model.scalars).broken_together(&causes, &self.data.geometry)
+    }
+
     /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the
     /// volume.
     pub(crate) fn evidence(
@@ -220,6 +222,7 @@ impl<'a> Assembly<'a> {
         leftover: &Leftover,
         causes: &[Cause],
         corner_um: f64,
+        harm: Option<Harm>,
     ) -> Evidence {
         let model = self.model;
         let after_um = causes.last().map_or(gap.rms_um, |c| c.rms_after_um);
@@ -236,7 +239,7 @@ impl<'a> Assembly<'a> {
             carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution > SLOW_PHI,
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
-            swings: matches!(self.harm, Some(Harm::Swings(..))),
+            swings: matches!(harm, Some(Harm::Swings(..))),
             unseen: None,
         }
     }

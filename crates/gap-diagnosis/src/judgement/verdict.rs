@@ -87,8 +87,8 @@ const LITTLE: f64 = 0.25;
 const SHORT: f64 = 0.05;
 /// Up to this factor above the noise, what is left on unseen rows is noise: tails and blunders among them are not left out.
 const NOISE_LEFT: f64 = 1.6;
-/// An unseen gap of so many times the noise is one, whatever the rows of the fit say: at twice the noise, which nobody
-/// would call agreement, chance must not make it pass, and noise is known to a third.
+/// An unseen gap of so many times the noise is one, whatever the rows of the fit say. Nobody calls twice the noise agreement,
+/// and with the limit there one gap in ten of about that size passed by chance.
 const UNSEEN_GAP: f64 = 1.5;
 /// Beside structure without a name, a cause that takes off less than this share of the RMS is none that anyone acts on.
 pub(crate) const WORTH_NAMING: f64 = 0.1;

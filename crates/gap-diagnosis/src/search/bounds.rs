@@ -105,25 +105,22 @@ impl Bounds {
         causes: &[(EffectKind, Vec<(Term, f64)>)],
         geometry: &EffectGeometry,
     ) -> Option<Harm> {
-        let of_the_machine = || causes.iter().filter(|(kind, _)| !kind.is_instrument());
-        let bent = of_the_machine().filter(|(kind, _)| !is_straight(*kind));
-        let of_places = of_the_machine().filter(|(kind, _)| depends_on_place(*kind));
-        let terms = |causes: Vec<&(EffectKind, Vec<(Term, f64)>)>| -> Vec<(Term, f64)> {
-            causes.into_iter().flat_map(|(_, terms)| terms.iter().copied()).collect()
+        let moved = |counts: fn(EffectKind) -> bool| {
+            let counted = causes.iter().filter(|(kind, _)| !kind.is_instrument() && counts(*kind));
+            let terms: Vec<(Term, f64)> = counted.flat_map(|(_, terms)| terms.iter().copied()).collect();
+            self.displacements_um(&terms, geometry)
         };
-        let (all, of_places) = (terms(of_the_machine().collect()), terms(of_places.collect()));
-        let bent = terms(bent.collect());
         let length = |d: Vector| (0..3).filter(|c| self.read[*c]).map(|c| d[c] * d[c]).sum::<f64>().sqrt();
-        let bent = self.displacements_um(&bent, geometry);
-        let mean = self.mean(&bent);
-        let swing_um = bent.iter().map(|d| length(d - mean)).fold(0.0, f64::max);
+        let farthest =
+            |all: &[Vector], from: Vector| all.iter().map(|d| length(d - from)).fold(0.0, f64::max);
+        let bent = moved(|kind| !is_straight(kind));
         // What depends on the place alone has no zero but its own.
-        let places = self.displacements_um(&of_places, geometry);
-        let swing_um = places.into_iter().map(length).fold(swing_um, f64::max);
+        let of_places = moved(depends_on_place);
+        let swing_um = farthest(&bent, self.mean(&bent)).max(farthest(&of_places, Vector::zeros()));
         if swing_um > LARGEST * self.longest_um {
             return Some(Harm::Swings(swing_um, self.longest_um));
         }
-        let shift_um = self.displacements_um(&all, geometry).into_iter().map(length).fold(0.0, f64::max);
+        let shift_um = farthest(&moved(|_| true), Vector::zeros());
         (shift_um > LARGEST * self.span_um).then_some(Harm::Shifts(shift_um, self.span_um))
     }
 

@@ -1,7 +1,5 @@
 //! A search under way: the equations, the library as it grows, the model so far.
 
-use std::collections::BTreeSet;
-
 use machine_model::effects::EffectKind;
 
 use crate::equations::columns::Source;
@@ -63,11 +61,7 @@ impl<'a, 'b> State<'a, 'b> {
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
-        // A blunder is no reading that a cause could be as large as.
-        let left_out: BTreeSet<usize> = lost.0.scalars.iter().map(|s| s.row).collect();
-        let kept = source.scalars.iter().filter(|s| !left_out.contains(&s.row)).copied();
-        let bounds = Bounds::new(data, &kept.collect::<Vec<_>>());
-        let phi = setting.caution.max(setting.phi);
+        let (bounds, phi) = (Bounds::new(data, source.scalars), setting.caution.max(setting.phi));
         let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
             data,

@@ -30,7 +30,8 @@ impl Assembly<'_> {
         let leftover = self.leftover();
         let causes = self.causes(holdout, gap.rms_um);
         let corner_um = self.uncertainty_in_corners_um(options.volume);
-        let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um);
+        let harm = self.harm();
+        let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um, harm);
         let held = holdout.map(|h| self.holdout(h));
         let believed = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous);
         evidence.unseen = match (holdout, &held) {
@@ -70,7 +71,7 @@ impl Assembly<'_> {
         if verdict == Verdict::Underpowered {
             causes.clear();
         }
-        let withheld = self.harm.filter(|_| !causes.is_empty()).map(|harm| harm.words());
+        let withheld = harm.filter(|_| !causes.is_empty()).map(|harm| harm.words());
         notes.extend(withheld.clone());
         if nameless || withheld.is_some() {
             causes.iter_mut().for_each(|c| c.remedy = DO_NOT_ACT);
