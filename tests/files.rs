@@ -6,6 +6,8 @@ use std::io::Write;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::PathBuf;
 use std::process::{Output, Stdio};
+use std::sync::Barrier;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::common::{messages, root, run, vpost};
@@ -121,16 +123,24 @@ fn a_program_that_changes_while_it_is_read_is_refused() {
     }
     std::fs::write(place.path("part.nc"), &program).expect("written");
     let out = place.path("out.nc");
-    let child = vpost()
-        .args([&place.name("part.nc"), "-m", PROFILE, "-d", "fanuc", "-o", &place.name("out.nc")])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("starts");
-    // The program is opened by then, and millions of bytes are yet to be read.
-    std::thread::sleep(Duration::from_millis(150));
     let mut file = std::fs::File::options().append(true).open(place.path("part.nc")).expect("there");
-    file.write_all(b"X50. Y50.\nM30\n%\n").expect("written");
-    refused(&child.wait_with_output().expect("ends"), 1, "VP0003");
+    let (at_work, written) = (AtomicBool::new(true), Barrier::new(2));
+    let ran = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            file.write_all(b"X50. Y50.\n").expect("written");
+            written.wait();
+            // From before the program is opened until the command has ended: no moment of either is told by a clock.
+            while at_work.load(Ordering::Relaxed) {
+                file.write_all(b"X50. Y50.\n").expect("written");
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        });
+        written.wait();
+        let ran = run(&[&place.name("part.nc"), "-m", PROFILE, "-d", "fanuc", "-o", &place.name("out.nc")]);
+        at_work.store(false, Ordering::Relaxed);
+        ran
+    });
+    refused(&ran, 1, "VP0003");
     assert!(!out.exists());
 }
 
