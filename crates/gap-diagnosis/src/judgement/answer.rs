@@ -36,6 +36,12 @@ impl Verdict {
             Self::Underpowered => "UNDERPOWERED",
         }
     }
+
+    /// True where a part of the gap has no name, or unseen rows refute the causes: none to act on.
+    #[must_use]
+    pub const fn leaves_open(self) -> bool {
+        matches!(self, Self::Partial | Self::Unknown)
+    }
 }
 
 /// Size of the gap after alignment, per row (length over the measured components), µm.
@@ -261,10 +267,10 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// True where a correction may be made of the causes: an effect explains the gap, no unseen row contradicts it, and it
-    /// does no harm where nothing was measured.
+    /// True where a profile may take the causes: they explain the gap, no unseen row speaks against them, and they do no
+    /// harm where nothing was measured.
     #[must_use]
     pub fn corrects(&self) -> bool {
-        self.verdict != Verdict::Unknown && self.withheld.is_none() && !self.causes.is_empty()
+        !self.verdict.leaves_open() && self.withheld.is_none() && !self.causes.is_empty()
     }
 }

@@ -112,6 +112,21 @@ fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
     assert!(far.causes[0].remedy.starts_with("Do not act on this"));
 }
 
+/// What depends on place and direction at once is left beside the play, and has no name.
+#[test]
+fn what_leaves_a_part_open_is_not_written() {
+    let rest = |row: &Row| {
+        let [place, other] = [0, 1].map(|a| row.command.linear_mm[a] / 40.0);
+        Vector::new(0.0, 0.0, 6.0 * (place * other).sin() * f64::from(row.command.direction[0]))
+    };
+    let whole = diagnose(&measured(GOOD, backlash_um), None, &Options::default());
+    let part = diagnose(&measured(GOOD, |row| backlash_um(row) + rest(row)), None, &Options::default());
+    assert_eq!((whole.verdict, part.verdict), (Verdict::Named, Verdict::Partial), "{}", part.sentence);
+    assert_eq!((names(&whole), names(&part)), (vec!["backlash.X"], vec!["backlash.X"]));
+    assert!(whole.corrects() && !part.corrects());
+    assert!(part.causes[0].remedy.starts_with("Do not act on this"), "{}", part.causes[0].remedy);
+}
+
 /// Of 40 draws at a level of 3 % more than four are an alarm once in forty times.
 #[test]
 fn components_that_scatter_unequally_raise_no_alarm() {

@@ -46,7 +46,7 @@ impl Assembly<'_> {
         let fine = gap.rms_um * 12.0_f64.sqrt() < options.resolution_um;
         let mut causes = if fine { Vec::new() } else { causes };
         let verdict = if fine { Verdict::NoGap } else { verdict(&evidence) };
-        let nameless = matches!(verdict, Verdict::Unknown | Verdict::Partial);
+        let nameless = verdict.leaves_open();
         let formulas = if nameless { formulas(self.data, &self.model.scalars) } else { Vec::new() };
         let mut notes = self.notes();
         notes.extend(evidence.unseen.filter(|_| holdout.is_none()).map(|u| u.kept_back_note()));

@@ -28,9 +28,8 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
     if let Some(effects) = effects.as_array_of_tables_mut() {
         // What a fault of the instrument could have shown as well is no correction of the machine.
         let of_the_machine = |cause: &&gap_diagnosis::Cause| {
-            let rivals = cause.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
-            cause.term.kind().is_instrument()
-                || !rivals.into_iter().any(|kind| matches!(kind, EffectKind::Tracker(_)))
+            let mut rivals = cause.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
+            cause.term.kind().is_instrument() || !rivals.any(|kind| kind.is_instrument())
         };
         for cause in causes.iter().filter(of_the_machine) {
             let mut entry = Table::new();
