@@ -2,21 +2,18 @@
 
 use diagnostic::{Code, Diagnostic};
 use nc_syntax::dialect::{GCode, Semicolon};
-use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Span, Value};
+use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Value};
 
 use crate::edit::{Piece, WordEdit};
-use crate::habits::{Habits, Increments, Modes, is_motion, line_end};
+use crate::habits::{Habits, Increments, Modes, line_end};
 use crate::numbers::BlockNumbers;
 use crate::splice::{Place, Splices, Style, bit, letters, number_span};
+use crate::words::{WORD_NOT_EDITABLE, find_word, is_after_motion, missing, motion_code};
 
 /// A block longer than the control takes.
 const BLOCK_TOO_LONG: Code = Code(601);
-/// A word that cannot be edited: missing, doubled, or not a plain number.
-const WORD_NOT_EDITABLE: Code = Code(603);
 /// 15 digits are read back exactly; no more.
 const MOST_STEPS: u64 = 1_000_000_000_000_000;
-/// G9: exact stop, at the end of this block's motion only.
-const EXACT_STOP: GCode = GCode(90);
 
 /// Writes blocks one after the other, in the order of the program.
 ///
@@ -437,63 +434,5 @@ impl Line<'_> {
     fn add(&mut self, text: &[u8]) {
         self.blank();
         self.out.extend_from_slice(text);
-    }
-}
-
-/// The only word of that letter, or `None`.
-pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, Value)>, Diagnostic> {
-    let mut found = None;
-    for item in &block.items {
-        let ItemKind::Word { letter, value } = item.kind else { continue };
-        if letter != wanted {
-            continue;
-        }
-        if found.is_some() {
-            let letter = char::from(wanted);
-            return Err(Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has two {letter} words"))
-                .at(block.file_span(item.span), format!("second {letter}"))
-                .help("leave one of them"));
-        }
-        found = Some((item.span, value));
-    }
-    Ok(found)
-}
-
-/// A word that should be there is not.
-pub(crate) fn missing(block: &Block<'_>, letter: u8) -> Diagnostic {
-    Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has no {} word to keep", char::from(letter)))
-        .at(block.file_range(), "this block")
-        .help("this is a fault of vpost; please report it with the program")
-}
-
-/// A word whose value is no plain number cannot be replaced by one.
-pub(crate) fn not_a_number(block: &Block<'_>, letter: u8, span: Span) -> Diagnostic {
-    Diagnostic::error(
-        WORD_NOT_EDITABLE,
-        format!("{} has no plain number, so it cannot be corrected", char::from(letter)),
-    )
-    .at(block.file_span(span), "expected a number such as 10.5")
-    .help("write the value as a number")
-}
-
-/// The code of a G word.
-pub(crate) fn g_code(kind: ItemKind) -> Option<GCode> {
-    let ItemKind::Word { letter: b'G', value: Value::Number(number) } = kind else { return None };
-    number.tenths().map(GCode)
-}
-
-/// The code of a G word of the motion group.
-pub(crate) fn motion_code(dialect: &Dialect, kind: ItemKind) -> Option<GCode> {
-    g_code(kind).filter(|code| dialect.code(*code).is_some_and(is_motion))
-}
-
-/// Executed after the block's motion: belongs on the last piece.
-pub(crate) fn is_after_motion(dialect: &Dialect, kind: ItemKind) -> bool {
-    match kind {
-        ItemKind::Word { letter: b'M', value: Value::Number(number) } => number
-            .integer()
-            .and_then(|number| dialect.m_code(u16::try_from(number).ok()?))
-            .is_some_and(|code| code.after_motion),
-        _ => g_code(kind) == Some(EXACT_STOP),
     }
 }

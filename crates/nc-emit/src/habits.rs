@@ -4,6 +4,8 @@ use nc_syntax::dialect::{Action, CodeEntry, GCode, Numbers, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, PlainWord, Sign, Span, Value};
 use units::decimal::Spelling;
 
+use crate::words::{MOTION_GROUP, g_code, is_motion};
+
 /// True for letters whose number is a length or an angle: without a point it may count least increments.
 ///
 /// F, S, T, M, N, G, O, P, L, D, H follow rules of their own; a number without a point is a unit there.
@@ -372,7 +374,7 @@ impl Modes {
     /// than G0's ends the cycle before they move.
     pub(crate) fn motion_for(&self, dialect: &Dialect, block: &Block<'_>) -> Option<GCode> {
         if self.cycle.is_some() {
-            let codes = block.items.iter().filter_map(|item| crate::emitter::g_code(item.kind));
+            let codes = block.items.iter().filter_map(|item| g_code(item.kind));
             if codes.filter_map(|code| dialect.code(code)).any(|entry| entry.action == Action::CycleCancel) {
                 return self.straight;
             }
@@ -384,7 +386,7 @@ impl Modes {
     pub(crate) fn read(&mut self, dialect: &Dialect, block: &Block<'_>) {
         let mut moves = false;
         for item in &block.items {
-            let Some(code) = crate::emitter::g_code(item.kind) else { continue };
+            let Some(code) = g_code(item.kind) else { continue };
             let Some(entry) = dialect.code(code) else { continue };
             // `G0 G80 Z50`: the cycle ends, and the motion is G0.
             if entry.action != Action::CycleCancel || !moves {
@@ -415,15 +417,6 @@ impl Modes {
         }
     }
 }
-
-/// G0 to G3 and the cycles: some dialects keep the cycles in a group of their own, yet they and the other
-/// motion codes exclude each other all the same. G80 only where it is one of G0's group.
-pub(crate) fn is_motion(entry: &CodeEntry) -> bool {
-    entry.group == MOTION_GROUP || matches!(entry.action, Action::Cycle(_))
-}
-
-/// Modal group of G0 to G3, and in some dialects of the cycles.
-pub(crate) const MOTION_GROUP: u8 = 1;
 
 /// The gap between two words as something that can be repeated: one blank, one tab, or nothing.
 pub(crate) fn separator(gap: &[u8]) -> &'static [u8] {

@@ -12,6 +12,7 @@ mod habits;
 mod numbers;
 mod provenance;
 mod splice;
+mod words;
 
 pub use edit::{Piece, WordEdit, WordEdits};
 pub use emitter::Emitter;

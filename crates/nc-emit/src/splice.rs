@@ -6,8 +6,8 @@ use nc_syntax::{Block, Dialect, ItemKind, Number, PlainWord, Span, Value};
 use smallvec::SmallVec;
 
 use crate::edit::{Piece, WordEdit};
-use crate::emitter::{find_word, is_after_motion, missing, motion_code, not_a_number};
 use crate::habits::{Habits, Increments, Step};
+use crate::words::{find_word, is_after_motion, missing, motion_code, not_a_number};
 
 /// Order in which words are written: G, then coordinates and arc centres, then the rest.
 const ORDER: &[u8] = b"GXYZABCUVWIJKRPQLFSTM";

@@ -1,6 +1,6 @@
 use units::decimal::Decimal;
 
-use crate::dialect::GCode;
+use crate::code::GCode;
 
 /// Bytes of a block, counted from its start.
 ///

@@ -5,6 +5,9 @@ use memchr::{memchr_iter, memchr2};
 use crate::lexer::{Lexer, is_blank, skip_blanks};
 use crate::{Dialect, Item, ItemKind};
 
+/// UTF-8's mark at the start of a file; not text.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
 /// What surrounds the program in its file.
 ///
 /// ```
@@ -127,8 +130,7 @@ impl<'d> EnvelopeFinder<'d> {
 fn first_on_line(text: &[u8], at: usize, starts: bool) -> bool {
     let before = text[..at].iter().rposition(|byte| !is_blank(*byte));
     before.is_none_or(|before| {
-        matches!(text[before], b'\n' | b'\r')
-            || (starts && text[..=before] == *crate::reader::BYTE_ORDER_MARK)
+        matches!(text[before], b'\n' | b'\r') || (starts && text[..=before] == *BYTE_ORDER_MARK)
     })
 }
 
@@ -136,8 +138,8 @@ fn first_on_line(text: &[u8], at: usize, starts: bool) -> bool {
 fn holds_blocks(text: &[u8], starts: bool, lexer: &Lexer<'_>) -> bool {
     let mut items: Vec<Item> = Vec::new();
     let mut at = skip_blanks(text, 0);
-    if starts && text[at..].starts_with(crate::reader::BYTE_ORDER_MARK) {
-        at += crate::reader::BYTE_ORDER_MARK.len();
+    if starts && text[at..].starts_with(BYTE_ORDER_MARK) {
+        at += BYTE_ORDER_MARK.len();
     }
     while at < text.len() {
         let end = memchr2(b'\n', b'\r', &text[at..]).map_or(text.len(), |length| at + length);

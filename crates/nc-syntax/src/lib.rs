@@ -9,6 +9,7 @@
 //! `grammars/` by `nc-dialect`.
 
 mod block;
+mod code;
 mod content;
 pub mod dialect;
 mod envelope;

@@ -2,12 +2,9 @@
 
 use memchr::{memchr_iter, memchr2, memchr3, memrchr2};
 
-use crate::envelope::{Envelope, EnvelopeFinder};
+use crate::envelope::{BYTE_ORDER_MARK, Envelope, EnvelopeFinder};
 use crate::lexer::{Lexer, skip_blanks, trim_end};
 use crate::{Block, Dialect, Invalid, Item, ItemKind, MAX_BLOCK_BYTES, PlainLine, Span};
-
-/// UTF-8's mark at the start of a file; not text.
-pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Reads a program block by block.
 ///
