@@ -38,6 +38,7 @@ mod holes;
 mod identity;
 mod large;
 mod map;
+mod on_a_terminal;
 mod one_block;
 mod points;
 mod real_machines;

@@ -103,18 +103,20 @@ pub fn findings_between(
     corrected: (&str, &[u8]),
     settings: &Settings,
 ) -> Result<Vec<String>, Failure> {
-    Ok(closed(posted, corrected, settings, Traces::Forgotten)?.findings)
+    Ok(closed([posted, corrected], settings, Traces::Forgotten, &|_| ())?.findings)
 }
 
-/// Both programs through the model.
+/// Both programs through the model, the posted and the corrected one, by the names they have in messages.
+///
+/// `progress` is told the share that is done, 0 to 1.
 ///
 /// # Errors
 /// The messages of a program that cannot be read.
 pub fn closed(
-    posted: (&str, &[u8]),
-    corrected: (&str, &[u8]),
+    [posted, corrected]: [(&str, &[u8]); 2],
     settings: &Settings,
     traces: Traces,
+    progress: &dyn Fn(f64),
 ) -> Result<Checked, Failure> {
     // What is refused is not compared either: its motions would be read as the correction would not read them.
     let questions = settings.questions();
@@ -132,7 +134,7 @@ pub fn closed(
     let [wanted, commanded] = programs;
     let (wanted, commanded): ((_, _, Expanded<'_>), (_, _, Expanded<'_>)) = (wanted?, commanded?);
     let job = settings.job(true, "")?;
-    rewrite::check(&job, [&wanted.2, &commanded.2], traces).map_err(|unreadable| {
+    rewrite::check(&job, [&wanted.2, &commanded.2], traces, progress).map_err(|unreadable| {
         let (name, text, expanded) = [&wanted, &commanded][unreadable.program];
         Failure::Refused(expand::reports(expanded, name, text, unreadable.diagnostics))
     })

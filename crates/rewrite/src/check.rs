@@ -34,13 +34,24 @@ pub struct Unreadable {
 /// Compares a posted and a corrected program on the machine as it is. Where blocks may be skipped, once with and once
 /// without them: what is said of the path is said of the way with them, what is wrong is said of both.
 ///
+/// `progress` is told the share of the corrected program that is read, 0 to 1, each time anew.
+///
 /// # Errors
 /// [`Unreadable`] of the first program that cannot be read to its end.
-pub fn check(job: &Job<'_>, programs: [&Expanded<'_>; 2], traces: Traces) -> Result<Checked, Unreadable> {
+pub fn check(
+    job: &Job<'_>,
+    programs: [&Expanded<'_>; 2],
+    traces: Traces,
+    progress: &dyn Fn(f64),
+) -> Result<Checked, Unreadable> {
     let retreats = retreats(job.dialect);
     let compared = |optional: Optional, traces: Traces| {
         let numbers = RefCell::new(Numbers::default());
-        let mut steps = programs.map(|text| Program::new(text, job, optional, &numbers));
+        let [wanted, commanded] = programs;
+        let mut steps = [
+            Program::new(wanted, job, optional, &numbers, &|_| ()),
+            Program::new(commanded, job, optional, &numbers, progress),
+        ];
         let [w, c] = &mut steps;
         let comparison = compare(job.models, &mut *w, &mut *c, retreats, traces);
         // The one that the other was compared with may end early: what cannot be read is refused all the same.

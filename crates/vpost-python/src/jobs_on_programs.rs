@@ -70,7 +70,7 @@ pub(crate) fn check(
         for (name, text) in [original, corrected] {
             jobs::lines::check_lines(text, name)?;
         }
-        let checked = closed(original, corrected, &settings, Traces::Forgotten)?;
+        let checked = closed([original, corrected], &settings, Traces::Forgotten, &|_| ())?;
         Ok(Outcome::new(&settings, &checked.comparison, checked.findings))
     });
     let outcome = outcome.map_err(|failure| raised(py, &failure))?;

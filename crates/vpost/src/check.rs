@@ -11,6 +11,7 @@ use rewrite::Checked;
 use crate::arguments::{Check, Shared};
 use crate::file;
 use crate::message::{Failure, Messages};
+use crate::progress::Progress;
 use crate::roles::Roles;
 use crate::settings;
 
@@ -28,8 +29,11 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let (wanted_name, wanted) = read(&arguments.input)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
     let traces = if arguments.html.is_some() { Traces::Kept } else { Traces::Forgotten };
+    let progress = Progress::new(messages, None);
+    let programs = [(wanted_name.as_str(), wanted.as_slice()), (&commanded_name, &commanded)];
     let Checked { comparison, findings } =
-        closed((&wanted_name, &wanted), (&commanded_name, &commanded), &settings, traces)?;
+        closed(programs, &settings, traces, &|done| progress.report(done))?;
+    progress.end();
     let limit_mm = limit_mm(&settings, &comparison);
     let outcome = Outcome::new(&settings, &comparison, findings);
     let (passed, findings) = (outcome.passed, &outcome.findings);

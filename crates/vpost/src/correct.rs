@@ -2,8 +2,8 @@
 
 mod program;
 
+use std::io::IsTerminal;
 use std::path::Path;
-use std::sync::Mutex;
 
 use rewrite::Manner;
 
@@ -11,6 +11,7 @@ use crate::arguments::{self, Shared};
 use crate::file;
 use crate::interrupt::Interrupt;
 use crate::message::{Failure, Messages};
+use crate::progress::Progress;
 use crate::roles::Roles;
 use crate::summary::Summary;
 pub(crate) use jobs::correct::Program;
@@ -33,18 +34,10 @@ pub(crate) fn run(
         .are_apart()?;
     let input = Input::open(path);
     let interrupt = Interrupt::listen();
-    let linuxcnc = arguments.progress.is_some();
-    let reported = Mutex::new(None);
-    let report = |percent: u64| {
-        let mut reported = reported.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if linuxcnc && *reported != Some(percent) {
-            messages.note(&format!("FILTER_PROGRESS={percent}"));
-            *reported = Some(percent);
-        }
-    };
+    let shown = Progress::new(messages, arguments.progress);
     let progress = |done: f64| {
         interrupt.check()?;
-        report((done * 100.0) as u64);
+        shown.report(done);
         Ok(())
     };
     let manner = Manner {
@@ -55,7 +48,7 @@ pub(crate) fn run(
     let mut output = file::Output::new(arguments.output.as_deref())?;
     let done = program(input, &settings, manner, &mut output, &progress)?;
     interrupt.check()?;
-    report(100);
+    shown.report(1.0);
     // All that can fail before the program gets its name.
     let summary = match arguments.summary.as_deref() {
         Some(path) => Some(file::written(path, &Summary::new(&settings, &done).json())?),
@@ -63,10 +56,12 @@ pub(crate) fn run(
     };
     output.finish()?;
     summary.map_or(Ok(()), file::Output::finish)?;
+    shown.end();
     for report in &done.warnings {
         messages.report(report);
     }
-    if shared.messages.verbose > 0 {
+    // Whoever looks on wants to know that it is done; a pipe has the exit status.
+    if shared.messages.verbose > 0 || std::io::stderr().is_terminal() {
         messages.note(&Summary::line(&done.figures));
     }
     Ok(())

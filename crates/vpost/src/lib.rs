@@ -25,6 +25,7 @@ mod message;
 mod number;
 mod predict;
 mod profile_command;
+mod progress;
 mod roles;
 pub mod session;
 mod settings;

@@ -52,6 +52,11 @@ impl Messages {
         }
     }
 
+    /// The user wants errors alone.
+    pub(crate) fn are_quiet(&self) -> bool {
+        self.quiet
+    }
+
     fn line(&self, text: &str) {
         // A closed standard error leaves nobody to tell.
         let _ = writeln!(std::io::stderr().lock(), "{text}");

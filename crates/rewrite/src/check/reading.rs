@@ -83,7 +83,14 @@ pub(super) struct Program<'a, 'n> {
     pub(super) refused: Option<Vec<Diagnostic>>,
     /// A block may be skipped.
     pub(super) may_skip: bool,
+    /// Is told the share that is read.
+    progress: &'n dyn Fn(f64),
+    /// Where it is told next, bytes.
+    told_at: u64,
 }
+
+/// Progress is told so many times.
+const PARTS: u64 = 1000;
 
 impl<'a, 'n> Program<'a, 'n> {
     pub(super) fn new(
@@ -91,6 +98,7 @@ impl<'a, 'n> Program<'a, 'n> {
         job: &'a Job<'a>,
         optional: Optional,
         numbers: &'n std::cell::RefCell<Numbers>,
+        progress: &'n dyn Fn(f64),
     ) -> Self {
         Self {
             job,
@@ -107,6 +115,8 @@ impl<'a, 'n> Program<'a, 'n> {
             ended: false,
             refused: None,
             may_skip: false,
+            progress,
+            told_at: 0,
         }
     }
 
@@ -115,6 +125,11 @@ impl<'a, 'n> Program<'a, 'n> {
         let mut block = std::mem::take(&mut self.block);
         let read = !self.ended && self.reader.next(&mut block);
         if read {
+            if block.offset >= self.told_at {
+                let bytes = self.expanded.text().len().max(1) as u64;
+                (self.progress)(block.offset as f64 / bytes as f64);
+                self.told_at = block.offset + bytes / PARTS;
+            }
             let before = self.interpreter.modal().axes;
             match self.interpreter.step(&block) {
                 Err(diagnostics) => (self.refused, self.ended) = (Some(diagnostics), true),

@@ -1,0 +1,61 @@
+//! What somebody at a terminal sees and a pipe does not: one line of success, a bar where it takes longer.
+
+#![cfg(target_os = "linux")]
+
+use std::fmt::Write;
+use std::process::Command;
+
+use crate::common::{root, run};
+
+const PROFILE: &str = "machine-profiles/stan_s500.toml";
+const PROGRAM: &str = "samples/pocket_perspektiva.nc";
+
+/// A command on a pseudo-terminal, by util-linux' `script`: what the terminal was sent.
+fn on_a_terminal(arguments: &[&str]) -> String {
+    let quoted: Vec<String> = [&[env!("CARGO_BIN_EXE_vpost")], arguments]
+        .concat()
+        .iter()
+        .map(|argument| format!("'{argument}'"))
+        .collect();
+    let script = ["-q", "-e", "-c", &quoted.join(" "), "/dev/null"];
+    let ran = Command::new("script").args(script).current_dir(root()).output().expect("script is there");
+    let seen = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(ran.status.success(), "{seen}");
+    seen
+}
+
+#[test]
+fn success_is_one_line_for_eyes_and_none_for_pipes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("out.nc");
+    let arguments = [PROGRAM, "-m", PROFILE, "-o", out.to_str().expect("plain")];
+    let seen = on_a_terminal(&arguments);
+    assert_eq!(seen.lines().count(), 1, "{seen:?}");
+    assert!(
+        seen.starts_with("20 blocks in, 24 out, 2 split; largest correction 197.3 um (line 10)"),
+        "{seen:?}"
+    );
+    assert_eq!(on_a_terminal(&[&arguments[..], &["-q"]].concat()), "");
+    let piped = run(&arguments);
+    assert!(piped.status.success() && piped.stdout.is_empty() && piped.stderr.is_empty());
+}
+
+/// A check of that many blocks takes seconds: the bar comes and goes, and the answer stands alone.
+#[test]
+fn long_work_shows_how_far_it_is() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let program = folder.path().join("part.nc");
+    let mut text = "G21 G90 G54\nG0 X10. Y10. Z60.\nG1 Z50. F200.\n".to_owned();
+    for k in 0..250_000 {
+        writeln!(text, "X{}.{:03} Y{}.", 10 + k % 90, k % 1000, 20 + k % 70).expect("memory");
+    }
+    std::fs::write(&program, text + "M30\n").expect("written");
+    let program = program.to_str().expect("plain");
+    let arguments = ["check", program, program, "-m", "machine-profiles/perfect.toml", "-d", "fanuc"];
+    let seen = on_a_terminal(&arguments);
+    assert!(seen.contains(" %  ") && seen.contains(" left"), "{:?}", seen.get(..300));
+    let answer = seen.rsplit("\u{1b}[2K").next().expect("the bar was taken away");
+    assert!(answer.ends_with("passed\r\n") && !answer.contains('%'), "{answer:?}");
+    let piped = run(&arguments);
+    assert!(piped.status.success() && piped.stderr.is_empty());
+}
