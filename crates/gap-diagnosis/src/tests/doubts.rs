@@ -117,7 +117,7 @@ fn a_scale_read_on_a_short_way_far_from_zero_is_not_written() {
 fn what_leaves_a_part_open_is_not_written() {
     let rest = |row: &Row| {
         let [place, other] = [0, 1].map(|a| row.command.linear_mm[a] / 40.0);
-        Vector::new(0.0, 0.0, 6.0 * (place * other).sin() * f64::from(row.command.direction[0]))
+        Vector::new(0.0, 0.0, 6.0 * units::math::sin(place * other) * f64::from(row.command.direction[0]))
     };
     let whole = diagnose(&measured(GOOD, backlash_um), None, &Options::default());
     let part = diagnose(&measured(GOOD, |row| backlash_um(row) + rest(row)), None, &Options::default());
