@@ -55,11 +55,11 @@ def curves(spec, motions, perfect):
     ideal = Machine(spec, perfect=True)
     q, rot, number, share, tools = sample(motions, ideal, control)
     if not perfect:
-        play = machine.play(q)
+        play, turned = machine.play(q), machine.rotary_play(rot)
         tip, way = np.empty_like(q), np.empty_like(q)
         for tool in np.unique(tools, axis=0):
             rows = np.all(tools == tool, axis=1)
-            tip[rows], way[rows] = machine.place(q[rows], rot[rows], tool, play[rows])
+            tip[rows], way[rows] = machine.place(q[rows], rot[rows], tool, play[rows], [part[rows] for part in turned])
     else:
         # The ideal tip under TCP is what the program says, whatever the centres.
         tip, way = np.empty_like(q), np.empty_like(q)

@@ -10,6 +10,9 @@ axes in the order of `Machine.rotary`.
     M(x) = c + s + delta + L R(eps) Rot(theta) (x - c)              tilt = "body": what it carries leans with the axis
     M(x) = c + s + delta + L R(eps) Rot(theta) L^-1 (x - c)         tilt = "axis": it turns about the leaning line
 
+An axis with play turns by theta + lag, lag the play operator of its commands (`rotary_play`). `table_negative` holds behind a turn
+towards minus, `table` then towards plus: where they differ about the axis' own line, that is its play; the rest goes with the side.
+
 A table's centre is in machine coordinates of the tip, a head's in those of the tool (from the gauge point, at angle 0).
 """
 
@@ -65,9 +68,9 @@ class Machine:
         ec0y, eb0z, ea0z = (0, 0, 0) if perfect else np.array(spec["squareness_urad"]) * 1e-6
         self.lean = {"X": np.array([1.0, 0, 0]), "Y": np.array([-ec0y, 1, 0]), "Z": np.array([eb0z, -ea0z, 1])}
 
-    def functions(self, name, at):
+    def functions(self, name, at, key="table"):
         """The six error functions (n, 6) of an axis, mm and rad, straight between nodes, constant beyond."""
-        table = self.spec["rotary" if name in "ABC" else "axes"][name].get("table")
+        table = self.spec["rotary" if name in "ABC" else "axes"][name].get(key)
         if self.perfect or table is None:
             return np.zeros((len(at), 6))
         nodes, rows = np.array(table[0], float), np.array(table[1], float)
@@ -87,14 +90,61 @@ class Machine:
                     out[n, i] = stands - q
         return out
 
-    def rotary_map(self, name, degrees):
-        """R (n, 3, 3) and shift (n, 3) of M(x) = R x + shift."""
+    def half_width(self, name, degrees):
+        """Half the play of a rotary axis (n,), rad: stated, or by how much its two tables differ about its own line."""
+        one = self.spec["rotary"][name]
+        if self.perfect:
+            return np.zeros(len(degrees))
+        if "table_negative" in one:
+            apart = self.functions(name, degrees, "table_negative") - self.functions(name, degrees)
+            return np.maximum(0.5 * apart[:, 3:] @ self.direction[name], 0)
+        return np.full(len(degrees), one.get("backlash_urad", 0.0) * 0.5e-6)
+
+    def rotary_play(self, travel):
+        """Lag (n, k), rad, and side (n, k; 0 unknown) of the rotary axes along a sequence of commands (n, k), degrees.
+
+        An axis starts in the middle of its play. Its side is that to which it last moved with all play taken up.
+        """
+        travel = np.atleast_2d(np.asarray(travel, float))
+        lag, side = np.zeros(travel.shape), np.zeros(travel.shape, int)
+        for k, name in enumerate(self.rotary):
+            if self.perfect or not {"backlash_urad", "table_negative"} & set(self.spec["rotary"][name]):
+                continue
+            command, half = np.radians(travel[:, k]), self.half_width(name, travel[:, k])
+            stands, on = command[0], 0
+            for n in range(1, len(command)):
+                heading = np.sign(command[n] - command[n - 1])
+                if heading > 0:
+                    stands = max(stands, command[n] - half[n])
+                elif heading < 0:
+                    stands = min(stands, command[n] + half[n])
+                if heading and abs(stands - command[n] + heading * half[n]) < 1e-15 + 1e-12 * abs(command[n]):
+                    on = int(heading)
+                # The play may be narrower here than where it was taken up.
+                lag[n, k], side[n, k] = min(max(stands - command[n], -half[n]), half[n]), on
+        return lag, side
+
+    def sided(self, name, degrees, side):
+        """The six functions behind turns to these sides (n,), without the play about the axis' own line."""
+        up = self.functions(name, degrees)
+        if self.perfect or "table_negative" not in self.spec["rotary"][name]:
+            return up
+        down = self.functions(name, degrees, "table_negative")
+        side = np.asarray(side)
+        out = np.where((side > 0)[:, None], up, np.where((side < 0)[:, None], down, 0.5 * (up + down)))
+        out[:, 3:] += (side * self.half_width(name, degrees))[:, None] * self.direction[name]
+        return out
+
+    def rotary_map(self, name, degrees, lag=None, side=None):
+        """R (n, 3, 3) and shift (n, 3) of M(x) = R x + shift; `lag`, `side` (n,) as `rotary_play` gives them."""
         nominal = about(self.direction[name], degrees)
         c = self.centre[name]
         if self.perfect:
             return nominal, c - times(nominal, np.broadcast_to(c, (len(degrees), 3)))
         one = self.spec["rotary"][name]
-        f = self.functions(name, degrees)
+        f = self.sided(name, degrees, np.zeros(len(degrees), int) if side is None else side)
+        if lag is not None:
+            nominal = about(self.direction[name], np.asarray(degrees) + np.degrees(lag))
         s, lean = np.zeros(3), np.zeros(3)
         for key in LOCATIONS[name]:
             value = one.get("location", {}).get(key, 0.0)
@@ -109,14 +159,22 @@ class Machine:
             r = r @ np.transpose(tilt, (0, 2, 1))
         return r, c + s + f[:, :3] - times(r, np.broadcast_to(c, (len(degrees), 3)))
 
-    def place(self, q, rot, tool, play=None):
-        """Tip (n, 3) and tool direction (n, 3; from tip to spindle) in the workpiece, which is the machine frame at angles 0."""
+    def place(self, q, rot, tool, play=None, rotary_play=None):
+        """Tip (n, 3) and tool direction (n, 3; from tip to spindle) in the workpiece, which is the machine frame at angles 0.
+
+        `play`: of X Y Z, from `play`; `rotary_play`: lag and side, from `rotary_play`. Without them the means of both ways.
+        """
         q, rot = np.atleast_2d(np.asarray(q, float)), np.atleast_2d(np.asarray(rot, float))
         n = len(q)
+
+        def carried(name):
+            k = self.rotary.index(name)
+            return self.rotary_map(name, rot[:, k], *(() if rotary_play is None else (part[:, k] for part in rotary_play)))
+
         x = np.broadcast_to(np.asarray(tool, float), (n, 3)).copy()
         d = np.broadcast_to(np.array([0, 0, 1.0]), (n, 3)).copy()
         for name in reversed(self.head):
-            r, shift = self.rotary_map(name, rot[:, self.rotary.index(name)])
+            r, shift = carried(name)
             x, d = times(r, x) + shift, times(r, d)
         for name in reversed(self.linear):
             at = q[:, "XYZ".index(name)]
@@ -127,7 +185,7 @@ class Machine:
                 x = x + play[:, "XYZ".index(name)][:, None] * np.array(UNIT[name], float)
             d = times(r, d)
         for name in reversed(self.table):
-            r, shift = self.rotary_map(name, rot[:, self.rotary.index(name)])
+            r, shift = carried(name)
             back = np.transpose(r, (0, 2, 1))
             x, d = times(back, x - shift), times(back, d)
         return x, d

@@ -91,7 +91,33 @@ def forms():
     grown = plain()
     grown["rotary"]["C"]["table"] = ([0, 90], [[0] * 6, [0, 0, 0, 0, 0, 50.0]])
     yield "ECC times the arm", close(np.linalg.norm(Machine(grown).place([o + [100, 0, 0]], [[90, 0]], [0, 0, 0])[0][0] - ac.place([o + [100, 0, 0]], [[90, 0]], [0, 0, 0])[0][0]), 0.005), 0, 1e-8
+    yield from turning_back()
     yield "arm of C", Machine(plain()).reach([o + [0, 70, 5]], [[0, 0]], [0, 0, 0])[0, 0], 70, 1e-4
+
+
+def turning_back():
+    """(name, found, expected, within): play of C along 0, 10, 10 back by 20 and by 80 urad, then 0 degrees, worked out by hand."""
+    back = [10 - math.degrees(urad * 1e-6) for urad in (20, 80)]
+    angles = np.array([[c, 0.0] for c in (0, 10, *back, 0)])
+    tables = {"table": ([-20, 20], [[0, 0, 4.0, 0, 0, -25.0]] * 2), "table_negative": ([-20, 20], [[0, 0, -4.0, 0, 0, 25.0]] * 2)}
+    for name, more in (("backlash", {"backlash_urad": 50.0}), ("tables", tables)):
+        loose = plain()
+        loose["rotary"]["C"].update(more)
+        machine = Machine(loose)
+        lag, side = machine.rotary_play(angles)
+        # Up: behind by half. Back by 20 of 50: it stands where it stood. Back by 80, and on: ahead by half.
+        for row, expected in enumerate((0, -25, -5, 25, 25)):
+            yield f"lag of C, {name}, place {row}", lag[row, 0] * 1e6, expected, 1e-6
+        yield f"sides of C, {name}", close(side[:, 0], [0, 1, 1, -1, -1]), 0, 0
+        yield f"A has none, {name}", close(lag[:, 1], 0) + close(side[:, 1], 0), 0, 0
+        # 100 mm from C at 0 degrees: the table is 25 urad too far, so the tool is seen 2.5 um back in Y.
+        at = [loose["rotary"]["C"]["centre"] + np.array([100.0, 0, 0])] * 5
+        seen = machine.place(at, angles, [0, 0, 0], None, (lag, side))[0] - Machine(plain()).place(at, angles, [0, 0, 0])[0]
+        yield f"tip behind a turn, {name}", close(seen[4] * 1e3, [0, -2.5, 4.0 if name == "tables" else 0]), 0, 1e-4
+        # The way up: 2.5 um the other way round at 10 degrees, and the table's Z of that side.
+        yield f"tip before it, {name}", close(seen[1] * 1e3, [*(rz(-10) @ [0, 2.5, 0])[:2], -4.0 if name == "tables" else 0]), 0, 1e-4
+        perfect = Machine(loose, perfect=True).rotary_play(angles)
+        yield f"a perfect machine has no play, {name}", close(perfect[0], 0), 0, 1e-15
 
 
 def program(*lines):
