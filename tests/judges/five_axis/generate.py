@@ -2,8 +2,8 @@
 
 `pair(seed, number)` -> (chain, kind, spec, text). `spec` is a plain dictionary in mm, degrees, um and urad as profiles have them:
 chain, control, axes {X: travel, resolution, table (nodes, rows of 6), backlash_um}, squareness_urad (EC0Y, EB0Z, EA0Z),
-rotary {A: centre, travel, table, location {EY0A: ...}, tilt, direction, resolution}, control_centres, tool, lengths, offset,
-tolerance_um, tcp (codes or None).
+rotary {A: centre, travel, table, table_negative, backlash_urad, location {EY0A: ...}, tilt, direction, resolution},
+control_centres, tool, lengths, offset, tolerance_um, tcp (codes or None).
 """
 
 import math
@@ -13,7 +13,7 @@ import random
 import numpy as np
 
 import planes
-from machine import LOCATIONS, Machine
+from machine import LOCATIONS, UNIT, Machine
 
 CHAINS = {
     "table-table-ac": ["[w C A b X Y Z t]", "[w C A Y b X Z t]", "[w C A X Y b Z t]"],
@@ -39,6 +39,18 @@ def table(rng, low, high, count, um, urad, period):
     nodes = [round(low + (high - low) * k / (count - 1), 4) for k in range(count)]
     columns = [smooth(rng, nodes, um, period) for _ in range(3)] + [smooth(rng, nodes, urad, period) for _ in range(3)]
     return nodes, np.round(np.stack(columns, axis=1), 3).tolist()
+
+
+def loosened(rng, one, direction):
+    """Play for a rotary axis: a reversal value, or a second table apart by one about its line, and by a little elsewhere."""
+    urad = rng.choice([10.0, 30.0, 60.0])
+    if "table" not in one or rng.random() < 0.5:
+        one["backlash_urad"] = urad
+        return
+    nodes, rows = one["table"]
+    aside = [rng.uniform(-1, 1) for _ in range(3)] + [rng.uniform(-3, 3) for _ in range(3)]
+    along = np.array([0, 0, 0, *(urad * direction / np.linalg.norm(direction))])
+    one["table_negative"] = nodes, np.round(np.array(rows) + aside + along, 3).tolist()
 
 
 def machine(rng, chain, control, has):
@@ -73,6 +85,8 @@ def machine(rng, chain, control, has):
             one["direction"] = rng.choice([[0, 1, 1], [0, 1, -1], [0, -1, 1]])
         elif has("direction") and head and name == "B" and rng.random() < 0.5:
             one["direction"] = [0, -1, 0]  # 5axiskins turns B this way
+        if play and has("backlash_urad") and rng.random() < 0.7:
+            loosened(rng, one, np.array(one.get("direction", UNIT[name]), float))
         spec["rotary"][name] = one
     if chain.startswith("table-table"):
         # Most tables' axes nearly meet.
@@ -385,11 +399,12 @@ def write_profile(spec, folder, has, orientation=None):
     lines = ["format = 1", 'name = "Judge"', f'control = "{spec["control"]}"', f'chain = "{spec["chain"]}"']
 
     def errors(name, one):
-        if one.get("table"):
-            file = f"{name.lower()}.csv"
-            with open(os.path.join(folder, file), "w", encoding="ascii") as out:
-                out.write(csv(name, *one["table"]))
-            lines.append(f'errors = "{file}"')
+        for key, written, suffix in (("table", "errors", ""), ("table_negative", "errors_negative", "_negative")):
+            if one.get(key):
+                file = f"{name.lower()}{suffix}.csv"
+                with open(os.path.join(folder, file), "w", encoding="ascii") as out:
+                    out.write(csv(name, *one[key]))
+                lines.append(f'{written} = "{file}"')
 
     for name, one in spec["axes"].items():
         lines += [f"[axis.{name}]", f"travel_mm = {one['travel']}", f"resolution_mm = {one['resolution']}"]
@@ -400,6 +415,8 @@ def write_profile(spec, folder, has, orientation=None):
     for name, one in spec["rotary"].items():
         lines += [f"[rotary.{name}]", f"centre_mm = {one['centre']}", f"travel_deg = {one['travel']}"]
         errors(name, one)
+        if one.get("backlash_urad"):
+            lines.append(f"backlash_urad = {one['backlash_urad']}")
         for key, value in one["location"].items():
             lines.append(f"{key}_{'um' if key[1] in 'XYZ' else 'urad'} = {value}")
         if has("tilt"):
@@ -447,6 +464,9 @@ def pair(seed, number, has, chains=tuple(CHAINS), kinds=tuple(KINDS)):
     if kind in PLANE_KINDS:
         for one in spec["axes"].values():
             one.pop("backlash_um", None)  # no path is proven with play
+        for one in spec["rotary"].values():
+            for key in ("backlash_urad", "table_negative"):
+                one.pop(key, None)
     if kind == "plane-g53":
         tilt = [k for k in spec["rotary"] if spec["rotary"][k]["travel"][1] < 200][-1]
         spec.update(branch=tilt + rng.choice("+-"), turn=rng.choice(["shortest", "principal"]))
