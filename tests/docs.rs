@@ -271,15 +271,16 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
 }
 
 #[test]
-fn the_russian_readme_has_the_same_commands_and_outputs() {
-    let [english, russian] = ["README.md", "README.ru.md"].map(|name| {
-        let text = read(name);
-        let kept = |fence: &Fence| (fence.info.clone(), fence.text.clone());
-        fences(&text).iter().map(kept).collect::<Vec<_>>()
-    });
-    assert_eq!(english, russian);
-    let pictures = |name: &str| read(name).matches("docs/img/").count();
-    assert_eq!(pictures("README.md"), pictures("README.ru.md"));
+fn russian_pages_have_the_same_commands_outputs_and_pictures() {
+    for (english, russian) in [("README.md", "README.ru.md"), ("docs/tutorial.md", "docs/tutorial.ru.md")] {
+        let blocks = |name: &str| {
+            let kept = |fence: &Fence| (fence.info.clone(), fence.text.clone());
+            fences(&read(name)).iter().map(kept).collect::<Vec<_>>()
+        };
+        assert_eq!(blocks(english), blocks(russian), "{russian}");
+        let pictures = |name: &str| read(name).matches("img/").count();
+        assert_eq!(pictures(english), pictures(russian), "{russian}");
+    }
 }
 
 #[test]
