@@ -41,6 +41,7 @@ mod map;
 mod on_a_terminal;
 mod one_block;
 mod points;
+mod profile_new;
 mod real_machines;
 mod refusals;
 mod spreadsheets;

@@ -40,21 +40,29 @@ pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
 pub fn load(path: &Path) -> Result<Loaded, Failure> {
     let bytes = std::fs::read(path)
         .map_err(|error| Failure::usage(file_diagnostic(&lines::name(path), "read", &error)))?;
+    loaded(path, &bytes)
+}
+
+/// The same of a profile whose bytes stand at a path, or will.
+///
+/// # Errors
+/// Everything wrong with it and its tables.
+pub fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     let source = |name: &str, bytes: &[u8]| Some(Source::whole(name, bytes));
     let name = lines::name(path);
-    let Ok(text) = std::str::from_utf8(&bytes) else {
-        let at = std::str::from_utf8(&bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        let at = std::str::from_utf8(bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
         let diagnostic = Diagnostic::error(Code(301), "a profile is UTF-8 text")
             .at(at..at + 1, "this byte is not")
             .help("save it as UTF-8, or give the profile, not the program, to -m");
         return Err(Failure::Usage(vec![Report {
-            source: source(&name, &bytes),
+            source: source(&name, bytes),
             diagnostics: vec![diagnostic],
         }]));
     };
     let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let hasher = std::cell::RefCell::new(blake3::Hasher::new());
-    hasher.borrow_mut().update(&bytes);
+    hasher.borrow_mut().update(bytes);
     let files = std::cell::RefCell::new(vec![path.to_owned()]);
     let read = |table: &str| {
         let table = folder.join(table);
@@ -72,7 +80,7 @@ pub fn load(path: &Path) -> Result<Loaded, Failure> {
                 .into_iter()
                 .map(|ProfileError { file, diagnostic }| {
                     let source = match file {
-                        None => source(&name, &bytes),
+                        None => source(&name, bytes),
                         Some(table) => {
                             let path = folder.join(&table);
                             let bytes = std::fs::read(&path).unwrap_or_default();

@@ -6,7 +6,7 @@ use std::ops::Deref;
 use std::str::FromStr;
 
 use error_map::Plane;
-use machine_model::{EngineId, Range};
+use machine_model::{Axis, EngineId, Range};
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
 
@@ -380,6 +380,79 @@ impl Value for Region3 {
     }
 }
 
+/// `X=0..500`
+#[derive(Debug, Clone, Copy)]
+pub struct Travel {
+    /// The axis.
+    pub axis: Axis,
+    /// mm.
+    pub range_mm: Range,
+}
+
+impl Value for Travel {
+    const WHAT: &'static str = "an axis and millimetres";
+    const EXAMPLES: &'static [&'static str] = &["X=0..500"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (axis, range) = assignment(text).ok_or(None)?;
+        let (low, high) = range.split_once("..").ok_or(None)?;
+        let axis = linear_axis(axis).ok_or(None)?;
+        let ends = millimetres(low).zip(millimetres(high)).ok_or(None)?;
+        let range_mm = Range { low: ends.0, high: ends.1 };
+        (range_mm.low < range_mm.high).then_some(Self { axis, range_mm }).ok_or(None)
+    }
+}
+
+/// `X=errors_x.csv`
+#[derive(Debug, Clone)]
+pub struct AxisTable {
+    /// The axis.
+    pub axis: Axis,
+    /// The file, relative to the profile.
+    pub path: String,
+}
+
+impl Value for AxisTable {
+    const WHAT: &'static str = "an axis and a file";
+    const EXAMPLES: &'static [&'static str] = &["X=errors_x.csv"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (axis, path) = assignment(text).ok_or(None)?;
+        let axis = linear_axis(axis).ok_or(None)?;
+        (!path.is_empty()).then(|| Self { axis, path: path.to_owned() }).ok_or(None)
+    }
+}
+
+/// `C=250,200,0`
+#[derive(Debug, Clone, Copy)]
+pub struct Centre {
+    /// The rotary axis.
+    pub axis: Axis,
+    /// A point of its line, machine coordinates, mm.
+    pub point_mm: [f64; 3],
+}
+
+impl Value for Centre {
+    const WHAT: &'static str = "a rotary axis and millimetres";
+    const EXAMPLES: &'static [&'static str] = &["C=250,200,0"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        let (axis, point) = assignment(text).ok_or(None)?;
+        let axis = axis_of(axis).filter(|axis| !axis.is_linear()).ok_or(None)?;
+        three(point, millimetres).map(|point_mm| Self { axis, point_mm }).ok_or(None)
+    }
+}
+
+fn linear_axis(text: &str) -> Option<Axis> {
+    axis_of(text).filter(|axis| axis.is_linear())
+}
+
+fn axis_of(text: &str) -> Option<Axis> {
+    let mut letters = text.chars();
+    let axis = letters.next().and_then(Axis::from_letter);
+    axis.filter(|_| letters.next().is_none())
+}
+
 /// `table=0..200,0..140,0..100`
 #[derive(Debug, Clone)]
 pub struct NamedRegion {
@@ -483,6 +556,9 @@ mod tests {
         examples::<Rotary>();
         examples::<SquarenessReadings>();
         examples::<Region3>();
+        examples::<Travel>();
+        examples::<AxisTable>();
+        examples::<Centre>();
         examples::<NamedRegion>();
         examples::<Layer>();
         examples::<Lattice>();

@@ -141,6 +141,8 @@ pub enum ProfileCommand {
         /// Machine profile (TOML).
         profile: PathBuf,
     },
+    /// Write a profile to begin with, its sections explained.
+    New(crate::profile_new::New),
     /// Write the model in a form that a control takes.
     Export(crate::export::Export),
     /// Print the JSON Schema of profiles.

@@ -25,6 +25,7 @@ mod message;
 mod number;
 mod predict;
 mod profile_command;
+pub mod profile_new;
 mod progress;
 mod roles;
 pub mod session;

@@ -2,9 +2,9 @@
 
 use crate::arguments::{Profile, ProfileCommand};
 use crate::message::{Failure, Messages};
-use crate::{export, file, profile};
+use crate::{export, file, profile, profile_new};
 
-/// `vpost profile check|show|export|schema`
+/// `vpost profile check|show|new|export|schema`
 pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failure> {
     match &arguments.command {
         ProfileCommand::Check { profile: path } => {
@@ -16,6 +16,7 @@ pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failur
             let loaded = profile::load(path)?;
             file::print(loaded.profile.show().as_bytes())
         }
+        ProfileCommand::New(a) => profile_new::run(a, messages),
         ProfileCommand::Export(a) => export::run(a, messages),
         ProfileCommand::Schema => file::print(machine_profile::schema().as_bytes()),
     }

@@ -1,0 +1,173 @@
+//! `vpost profile new`: a profile to begin with.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use machine_model::Chain;
+
+use crate::message::{Failure, Messages};
+use crate::number::short;
+use crate::values::{AxisTable, Centre, Given, Travel};
+use crate::{file, profile};
+
+/// `vpost profile new`
+#[derive(Debug, Args)]
+pub struct New {
+    /// Name of the machine.
+    #[arg(long)]
+    pub name: String,
+    /// Dialect of the control, see `vpost grammar list`.
+    #[arg(long, value_name = "DIALECT")]
+    pub control: String,
+    /// Travel of a linear axis, mm; one for each.
+    #[arg(long, value_name = "X=LOW..HIGH", required = true, allow_hyphen_values = true)]
+    pub travel: Vec<Given<Travel>>,
+    /// Axes from workpiece to tool, b the bed.
+    #[arg(long, default_value = "[w X Y b Z t]")]
+    pub chain: String,
+    /// Step of the coordinates that the control takes, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.001)]
+    pub resolution: f64,
+    /// Table of an axis' errors, relative to the profile.
+    #[arg(long, value_name = "X=FILE")]
+    pub table: Vec<Given<AxisTable>>,
+    /// A point of a rotary axis' line, machine coordinates; one for each.
+    #[arg(long, value_name = "C=X,Y,Z", allow_hyphen_values = true)]
+    pub centre: Vec<Given<Centre>>,
+    /// The profile; a file that is there is left alone.
+    #[arg(short = 'o', long, value_name = "PROFILE.toml")]
+    pub output: Option<PathBuf>,
+}
+
+/// `vpost profile new`
+pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
+    if nc_dialect::builtin(&arguments.control).is_none() {
+        let names = nc_dialect::builtin_names().join(", ");
+        return Err(Failure::option(
+            format!("there is no dialect `{}`", arguments.control),
+            format!("one of {names}"),
+        ));
+    }
+    let chain = Chain::parse(&arguments.chain).map_err(|error| {
+        let help =
+            "like `--chain '[w X Y b Z t]'`; of a lathe begin with machine-profiles/generic_lathe.toml";
+        Failure::option(format!("--chain: {error}"), help)
+    })?;
+    let text = text(arguments, &chain)?;
+    // What is wrong is said of the lines as they would stand there.
+    let path = arguments.output.as_deref().unwrap_or(Path::new("profile.toml"));
+    profile::loaded(path, text.as_bytes())?;
+    let Some(path) = &arguments.output else { return file::print(text.as_bytes()) };
+    if path.exists() {
+        return Err(Failure::option(
+            format!("{} is there already", file::name(path)),
+            "give another name, or remove it",
+        ));
+    }
+    file::write(path, text.as_bytes())?;
+    messages.note(&format!(
+        "{}: a profile of {}; fill in what is measured",
+        file::name(path),
+        arguments.name
+    ));
+    Ok(())
+}
+
+/// The profile with an example for each section that it has not.
+fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
+    let string = |value: &str| toml_edit::Value::from(value).to_string();
+    let mut text = format!(
+        "# Every key: docs/reference.md, or `vpost profile schema`. Check with `vpost profile check`.\n\
+         format  = 1\n\
+         name    = {}\n\
+         control = {}\n\
+         # From workpiece to tool, b the bed: what stands before it carries the workpiece.\n\
+         chain   = {}\n\
+         # calibrated = {{ date = \"2026-01-31\", temperature_c = 20.0, instrument = \"interferometer\" }}\n",
+        string(&arguments.name),
+        string(&arguments.control),
+        string(&chain.to_string()),
+    );
+    let write = |text: &mut String, line: std::fmt::Arguments<'_>| {
+        text.write_fmt(line).expect("writing to a string cannot fail");
+    };
+    for axis in [0, 1, 2].map(|k| machine_model::Axis::ALL[k]) {
+        let letter = axis.letter();
+        let mut travels = arguments.travel.iter().filter(|travel| travel.axis == axis);
+        let (Some(travel), None) = (travels.next(), travels.next()) else {
+            return Err(Failure::option(
+                format!("--travel of {letter} is not given once"),
+                format!("`--travel {letter}=0..500` with the ends of its travel in machine coordinates"),
+            ));
+        };
+        let [low, high] = [travel.range_mm.low, travel.range_mm.high].map(|end| short(end, 6));
+        write(
+            &mut text,
+            format_args!(
+                "\n[axis.{letter}]\ntravel_mm     = [{low}, {high}]\nresolution_mm = {}\n",
+                short(arguments.resolution, 6)
+            ),
+        );
+        let mut tables = arguments.table.iter().filter(|table| table.axis == axis);
+        match (tables.next(), tables.next()) {
+            (Some(table), None) => {
+                write(&mut text, format_args!("errors        = {}\n", string(&table.path)));
+            }
+            (None, _) => {
+                let lower = letter.to_ascii_lowercase();
+                let columns = "position_mm and any of EXX_um EYX_um EZX_um EAX_urad EBX_urad ECX_urad"
+                    .replace("X_u", &format!("{letter}_u"));
+                let example = format!("# errors      = \"errors_{lower}.csv\"  # {columns}\n");
+                text.push_str(&example);
+            }
+            (Some(_), Some(_)) => {
+                let help = format!("one `--table {letter}=FILE` with all six functions");
+                return Err(Failure::option(format!("--table of {letter} is given twice"), help));
+            }
+        }
+        text.push_str("# backlash_um = 0.0\n");
+    }
+    let rotary = || chain.table().iter().chain(chain.head());
+    if let Some(centre) = arguments.centre.iter().find(|centre| rotary().all(|axis| *axis != centre.axis)) {
+        let help = format!("put {} into `--chain`, or leave the option out", centre.axis.letter());
+        return Err(Failure::option(format!("--centre {centre} is of no axis of {chain}"), help));
+    }
+    for axis in rotary() {
+        let letter = axis.letter();
+        let mut centres = arguments.centre.iter().filter(|centre| centre.axis == *axis);
+        let (Some(centre), None) = (centres.next(), centres.next()) else {
+            return Err(Failure::option(
+                format!("--centre of {letter} is not given once"),
+                format!("`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line"),
+            ));
+        };
+        let [x, y, z] = centre.point_mm.map(|value| short(value, 6));
+        write(
+            &mut text,
+            format_args!(
+                "\n[rotary.{letter}]\n# A point of its line, machine coordinates of the linear axes.\ncentre_mm = [{x}, {y}, {z}]\n"
+            ),
+        );
+    }
+    text.push_str(
+        "\n# Signs of ISO 230-1, vpost profile show says what they mean.\n\
+         [squareness]\n\
+         # EC0Y_urad = 0.0  # Y against X\n\
+         # EB0Z_urad = 0.0  # Z against X\n\
+         # EA0Z_urad = 0.0  # Z against Y\n\
+         \n\
+         [tool]\n\
+         # From the point where the tables were measured to the tip, mm.\n\
+         # default_mm = [0, 0, 0]\n\
+         # lengths_mm = { H1 = 120.0 }\n\
+         \n\
+         # Machine coordinates of the program's zero.\n\
+         [work_offsets_mm]\n\
+         # G54 = [0, 0, 0]\n\
+         \n\
+         [correction]\n\
+         # tolerance_um = 1.0\n",
+    );
+    Ok(text)
+}
