@@ -12,7 +12,6 @@ use std::process::Command;
 use anyhow::Context;
 use clap::Args;
 use nc_syntax::{Block, Reader};
-use toml_edit::visit_mut::VisitMut;
 
 use crate::markdown::table;
 use measure::{Run, in_turn, own_cpu_s, run_anew};
@@ -137,23 +136,11 @@ pub(crate) fn run_all(options: &Options) -> anyhow::Result<String> {
 fn with_effect(profile: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     let mut text: toml_edit::DocumentMut = std::fs::read_to_string(profile)?.parse()?;
     let tables = std::fs::canonicalize(profile.parent().unwrap_or(Path::new(".")))?;
-    Tables(tables).visit_document_mut(&mut text);
+    machine_profile::rename_tables(&mut text, &mut |table| tables.join(table).display().to_string());
     let path = folder.join("with-effect.toml");
     let effect = "\n[[effect]]\nid = \"scale.X\"\nscale_um_per_m = 30.0\n";
     std::fs::write(&path, text.to_string() + effect)?;
     Ok(path)
-}
-
-/// The folder of a profile's tables; whatever names a file there names it from anywhere.
-struct Tables(PathBuf);
-
-impl VisitMut for Tables {
-    fn visit_string_mut(&mut self, named: &mut toml_edit::Formatted<String>) {
-        let file = self.0.join(named.value());
-        if file.is_file() {
-            *named = toml_edit::Formatted::new(file.display().to_string());
-        }
-    }
 }
 
 /// A program on disk; one that is there with its size is used again.

@@ -23,4 +23,4 @@ pub use profile::{
 };
 pub use show::schema;
 pub use tables::ErrorRows;
-pub use write::ProfileText;
+pub use write::{ProfileText, rename_tables};

@@ -32,19 +32,7 @@ impl ProfileText {
 
     /// Gives every table file the profile names another name.
     pub fn rename_tables(&mut self, rename: &mut dyn FnMut(&str) -> String) {
-        for group in ["axis", "rotary"] {
-            let Some(axes) = self.document.get_mut(group).and_then(Item::as_table_like_mut) else { continue };
-            for (_, axis) in axes.iter_mut() {
-                for file in ["errors", "errors_negative"] {
-                    rename_at(axis, file, rename);
-                }
-            }
-        }
-        if let Some(tracker) = self.document.get_mut("tracker") {
-            for file in ["x", "y", "z"] {
-                rename_at(tracker, file, rename);
-            }
-        }
+        rename_tables(&mut self.document, rename);
     }
 
     /// When, how warm, with what and how well it was measured: known facts replace earlier ones, unknown ones go.
@@ -145,12 +133,31 @@ impl ProfileText {
     }
 }
 
+/// Gives every table file that a profile names another name; what keeps its name keeps its spelling.
+pub fn rename_tables(profile: &mut DocumentMut, rename: &mut dyn FnMut(&str) -> String) {
+    for group in ["axis", "rotary"] {
+        let Some(axes) = profile.get_mut(group).and_then(Item::as_table_like_mut) else { continue };
+        for (_, axis) in axes.iter_mut() {
+            for file in ["errors", "errors_negative"] {
+                rename_at(axis, file, rename);
+            }
+        }
+    }
+    if let Some(tracker) = profile.get_mut("tracker") {
+        for file in ["x", "y", "z"] {
+            rename_at(tracker, file, rename);
+        }
+    }
+}
+
 fn rename_at(table: &mut Item, key: &str, rename: &mut dyn FnMut(&str) -> String) {
     if let Some(item) = table.as_table_like_mut().and_then(|t| t.get_mut(key))
         && let Some(old) = item.as_str()
     {
         let new = rename(old);
-        replace(item, Value::from(new));
+        if new != old {
+            replace(item, Value::from(new));
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The answer: what `vpost diagnose` reports.
 
 use machine_model::Vector;
-use machine_model::effects::EffectTerm;
+use machine_model::effects::{EffectKind, EffectTerm};
 
 /// The verdicts of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +136,14 @@ pub struct Cause {
     pub remedy: &'static str,
 }
 
+impl Cause {
+    /// True where a fault of the instrument could have shown as well; one that is such a fault stands by its own name.
+    fn may_be_the_instrument(&self) -> bool {
+        let mut rivals = self.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
+        !self.term.kind().is_instrument() && rivals.any(|kind| kind.is_instrument())
+    }
+}
+
 /// Measuring frame against machine frame: reported, never blamed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
@@ -267,10 +275,16 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// True where a profile may take the causes: they explain the gap, no unseen row speaks against them, and they do no
-    /// harm where nothing was measured.
+    /// The causes that a profile may take: they explain the gap, no unseen row speaks against them, they do no harm where
+    /// nothing was measured, and what a fault of the instrument could have shown as well is none of them.
+    pub fn corrections(&self) -> impl Iterator<Item = &Cause> {
+        let doubted = self.verdict.leaves_open() || self.withheld.is_some();
+        self.causes.iter().filter(move |cause| !doubted && !cause.may_be_the_instrument())
+    }
+
+    /// True where there are any.
     #[must_use]
     pub fn corrects(&self) -> bool {
-        !self.verdict.leaves_open() && self.withheld.is_none() && !self.causes.is_empty()
+        self.corrections().next().is_some()
     }
 }

@@ -4,7 +4,6 @@ use std::path::{Component, Path, PathBuf};
 
 use diagnostic::Code;
 use gap_diagnosis::Diagnosis;
-use machine_model::effects::EffectKind;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
 use crate::file;
@@ -22,16 +21,10 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
         let diagnostic = diagnostic::Diagnostic::error(UNREADABLE, error.to_string());
         Failure::usage(diagnostic.help("run `vpost profile check` on it"))
     })?;
-    move_tables(document.as_table_mut(), &folder(from), &folder(path));
-    let causes = if diagnosis.corrects() { diagnosis.causes.as_slice() } else { &[] };
+    move_tables(&mut document, &folder(from), &folder(path));
     let effects = document.entry("effect").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
     if let Some(effects) = effects.as_array_of_tables_mut() {
-        // What a fault of the instrument could have shown as well is no correction of the machine.
-        let of_the_machine = |cause: &&gap_diagnosis::Cause| {
-            let mut rivals = cause.cannot_be_told_from.iter().filter_map(|id| id.parse::<EffectKind>().ok());
-            cause.term.kind().is_instrument() || !rivals.any(|kind| kind.is_instrument())
-        };
-        for cause in causes.iter().filter(of_the_machine) {
+        for cause in diagnosis.corrections() {
             let mut entry = Table::new();
             entry.insert("id", Item::Value(cause.effect.as_str().into()));
             for (name, value) in cause.term.entry() {
@@ -40,7 +33,7 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
             effects.push(entry);
         }
     }
-    if !causes.is_empty() {
+    if diagnosis.corrects() {
         let setup = document.entry("setup").or_insert(Item::Table(Table::new()));
         if let Some(setup) = setup.as_table_like_mut() {
             setup.insert("shift_mm", three(diagnosis.setup.shift_um.map(|v| 1e-3 * v)));
@@ -65,35 +58,18 @@ fn folder(path: &Path) -> PathBuf {
 }
 
 /// Table files are named relative to the profile: in another folder they need other names.
-fn move_tables(document: &mut Table, from: &Path, to: &Path) {
+fn move_tables(document: &mut DocumentMut, from: &Path, to: &Path) {
     if from == to {
         return;
     }
     let lead = relative(to, from);
-    let rename = |item: &mut Item| {
-        if let Some(old) = item.as_str().filter(|old| !Path::new(old).is_absolute()) {
-            let joined = if old.is_empty() { lead.clone() } else { clean(&lead.join(old)) };
-            let mut new = Value::from(joined.to_string_lossy().replace('\\', "/"));
-            if let Some(value) = item.as_value() {
-                *new.decor_mut() = value.decor().clone();
-            }
-            *item = Item::Value(new);
+    machine_profile::rename_tables(document, &mut |old| {
+        if Path::new(old).is_absolute() {
+            return old.to_owned();
         }
-    };
-    for group in ["axis", "rotary"] {
-        let axes = document.get_mut(group).and_then(Item::as_table_like_mut);
-        for (_, axis) in axes.into_iter().flat_map(|axes| axes.iter_mut()) {
-            for key in ["errors", "errors_negative"] {
-                if let Some(item) = axis.as_table_like_mut().and_then(|a| a.get_mut(key)) {
-                    rename(item);
-                }
-            }
-        }
-    }
-    let tracker = document.get_mut("tracker").and_then(Item::as_table_like_mut);
-    for (_, item) in tracker.into_iter().flat_map(|tracker| tracker.iter_mut()) {
-        rename(item);
-    }
+        let moved = if old.is_empty() { lead.clone() } else { clean(&lead.join(old)) };
+        moved.to_string_lossy().replace('\\', "/")
+    });
 }
 
 /// The way from one folder to another, both absolute.
@@ -133,7 +109,7 @@ mod tests {
     fn only_table_files_are_renamed() {
         let text = "name = \"a\"\n[axis.X]\nerrors = \"t/x.csv\" # measured\ntravel_mm = [0, 1]\n[tracker]\nx = \"/abs.csv\"\n";
         let mut document: DocumentMut = text.parse().expect("TOML");
-        move_tables(document.as_table_mut(), Path::new("/p"), Path::new("/q/r"));
+        move_tables(&mut document, Path::new("/p"), Path::new("/q/r"));
         assert_eq!(document.to_string().replace("../../p/t/x.csv", "t/x.csv"), text);
     }
 }
