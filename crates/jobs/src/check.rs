@@ -108,7 +108,7 @@ pub fn findings_between(
 
 /// Both programs through the model, the posted and the corrected one, by the names they have in messages.
 ///
-/// `progress` is told the share that is done, 0 to 1.
+/// `progress` gets the share that is done, 0 to 1.
 ///
 /// # Errors
 /// The messages of a program that cannot be read.

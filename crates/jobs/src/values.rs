@@ -371,13 +371,15 @@ impl Value for Region3 {
     const EXAMPLES: &'static [&'static str] = &["100..220,50..130,20..60"];
 
     fn read(text: &str) -> Result<Self, Option<String>> {
-        let range = |part: &str| {
-            let (low, high) = part.split_once("..")?;
-            let range = Range { low: millimetres(low)?, high: millimetres(high)? };
-            (range.low <= range.high).then_some(range)
-        };
-        three(text, range).map(Self).ok_or(None)
+        three(text, range_mm).map(Self).ok_or(None)
     }
+}
+
+/// `100..220`, mm, the lower end first.
+fn range_mm(text: &str) -> Option<Range> {
+    let (low, high) = text.split_once("..")?;
+    let range = Range { low: millimetres(low)?, high: millimetres(high)? };
+    (range.low <= range.high).then_some(range)
 }
 
 /// `X=0..500`
@@ -395,11 +397,10 @@ impl Value for Travel {
 
     fn read(text: &str) -> Result<Self, Option<String>> {
         let (axis, range) = assignment(text).ok_or(None)?;
-        let (low, high) = range.split_once("..").ok_or(None)?;
         let axis = linear_axis(axis).ok_or(None)?;
-        let ends = millimetres(low).zip(millimetres(high)).ok_or(None)?;
-        let range_mm = Range { low: ends.0, high: ends.1 };
-        (range_mm.low < range_mm.high).then_some(Self { axis, range_mm }).ok_or(None)
+        // An axis that travels nowhere is none.
+        let range_mm = range_mm(range).filter(|range| range.low < range.high).ok_or(None)?;
+        Ok(Self { axis, range_mm })
     }
 }
 

@@ -34,7 +34,7 @@ pub struct Unreadable {
 /// Compares a posted and a corrected program on the machine as it is. Where blocks may be skipped, once with and once
 /// without them: what is said of the path is said of the way with them, what is wrong is said of both.
 ///
-/// `progress` is told the share of the corrected program that is read, 0 to 1, each time anew.
+/// `progress` gets the share of the corrected program that is read, 0 to 1, each time anew.
 ///
 /// # Errors
 /// [`Unreadable`] of the first program that cannot be read to its end.

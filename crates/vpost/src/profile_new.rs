@@ -4,10 +4,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use machine_model::Chain;
+use machine_model::{Axis, Chain};
 
 use crate::message::{Failure, Messages};
 use crate::number::short;
+use crate::settings::load_dialect;
 use crate::values::{AxisTable, Centre, Given, Travel};
 use crate::{file, profile};
 
@@ -42,13 +43,7 @@ pub struct New {
 
 /// `vpost profile new`
 pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
-    if nc_dialect::builtin(&arguments.control).is_none() {
-        let names = nc_dialect::builtin_names().join(", ");
-        return Err(Failure::option(
-            format!("there is no dialect `{}`", arguments.control),
-            format!("one of {names}"),
-        ));
-    }
+    load_dialect(&arguments.control)?;
     let chain = Chain::parse(&arguments.chain).map_err(|error| {
         let help =
             "like `--chain '[w X Y b Z t]'`; of a lathe begin with machine-profiles/generic_lathe.toml";
@@ -89,43 +84,28 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
         string(&arguments.control),
         string(&chain.to_string()),
     );
-    let write = |text: &mut String, line: std::fmt::Arguments<'_>| {
-        text.write_fmt(line).expect("writing to a string cannot fail");
-    };
-    for axis in [0, 1, 2].map(|k| machine_model::Axis::ALL[k]) {
+    for axis in [Axis::X, Axis::Y, Axis::Z] {
         let letter = axis.letter();
-        let mut travels = arguments.travel.iter().filter(|travel| travel.axis == axis);
-        let (Some(travel), None) = (travels.next(), travels.next()) else {
+        let Some(Travel { range_mm, .. }) = only(&arguments.travel, |travel| travel.axis == axis) else {
             return Err(Failure::option(
                 format!("--travel of {letter} is not given once"),
                 format!("`--travel {letter}=0..500` with the ends of its travel in machine coordinates"),
             ));
         };
-        let [low, high] = [travel.range_mm.low, travel.range_mm.high].map(|end| short(end, 6));
-        write(
-            &mut text,
-            format_args!(
-                "\n[axis.{letter}]\ntravel_mm     = [{low}, {high}]\nresolution_mm = {}\n",
-                short(arguments.resolution, 6)
+        let [low, high, step] = [range_mm.low, range_mm.high, arguments.resolution].map(|mm| short(mm, 6));
+        let _ = writeln!(text, "\n[axis.{letter}]\ntravel_mm     = [{low}, {high}]\nresolution_mm = {step}");
+        let _ = match arguments.table.iter().filter(|table| table.axis == axis).collect::<Vec<_>>()[..] {
+            [] => writeln!(
+                text,
+                "# errors      = \"errors_{}.csv\"  # position_mm and any of EX{letter}_um EY{letter}_um EZ{letter}_um EA{letter}_urad EB{letter}_urad EC{letter}_urad",
+                letter.to_ascii_lowercase()
             ),
-        );
-        let mut tables = arguments.table.iter().filter(|table| table.axis == axis);
-        match (tables.next(), tables.next()) {
-            (Some(table), None) => {
-                write(&mut text, format_args!("errors        = {}\n", string(&table.path)));
-            }
-            (None, _) => {
-                let lower = letter.to_ascii_lowercase();
-                let columns = "position_mm and any of EXX_um EYX_um EZX_um EAX_urad EBX_urad ECX_urad"
-                    .replace("X_u", &format!("{letter}_u"));
-                let example = format!("# errors      = \"errors_{lower}.csv\"  # {columns}\n");
-                text.push_str(&example);
-            }
-            (Some(_), Some(_)) => {
+            [table] => writeln!(text, "errors        = {}", string(&table.path)),
+            _ => {
                 let help = format!("one `--table {letter}=FILE` with all six functions");
                 return Err(Failure::option(format!("--table of {letter} is given twice"), help));
             }
-        }
+        };
         text.push_str("# backlash_um = 0.0\n");
     }
     let rotary = || chain.table().iter().chain(chain.head());
@@ -135,19 +115,16 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
     }
     for axis in rotary() {
         let letter = axis.letter();
-        let mut centres = arguments.centre.iter().filter(|centre| centre.axis == *axis);
-        let (Some(centre), None) = (centres.next(), centres.next()) else {
+        let Some(Centre { point_mm, .. }) = only(&arguments.centre, |centre| centre.axis == *axis) else {
             return Err(Failure::option(
                 format!("--centre of {letter} is not given once"),
                 format!("`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line"),
             ));
         };
-        let [x, y, z] = centre.point_mm.map(|value| short(value, 6));
-        write(
-            &mut text,
-            format_args!(
-                "\n[rotary.{letter}]\n# A point of its line, machine coordinates of the linear axes.\ncentre_mm = [{x}, {y}, {z}]\n"
-            ),
+        let [x, y, z] = point_mm.map(|value| short(value, 6));
+        let _ = writeln!(
+            text,
+            "\n[rotary.{letter}]\n# A point of its line, machine coordinates of the linear axes.\ncentre_mm = [{x}, {y}, {z}]"
         );
     }
     text.push_str(
@@ -170,4 +147,10 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
          # tolerance_um = 1.0\n",
     );
     Ok(text)
+}
+
+/// The only one that is wanted; `None` where there is none or are several.
+fn only<T>(given: &[Given<T>], is_wanted: impl Fn(&T) -> bool) -> Option<&T> {
+    let mut found = given.iter().map(|one| &**one).filter(|one| is_wanted(one));
+    found.next().filter(|_| found.next().is_none())
 }

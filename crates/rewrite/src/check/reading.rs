@@ -83,13 +83,13 @@ pub(super) struct Program<'a, 'n> {
     pub(super) refused: Option<Vec<Diagnostic>>,
     /// A block may be skipped.
     pub(super) may_skip: bool,
-    /// Is told the share that is read.
+    /// Gets the share that is read.
     progress: &'n dyn Fn(f64),
-    /// Where it is told next, bytes.
-    told_at: u64,
+    /// Where it is reported next, bytes.
+    report_at: u64,
 }
 
-/// Progress is told so many times.
+/// Progress is reported so many times.
 const PARTS: u64 = 1000;
 
 impl<'a, 'n> Program<'a, 'n> {
@@ -116,7 +116,7 @@ impl<'a, 'n> Program<'a, 'n> {
             refused: None,
             may_skip: false,
             progress,
-            told_at: 0,
+            report_at: 0,
         }
     }
 
@@ -125,10 +125,10 @@ impl<'a, 'n> Program<'a, 'n> {
         let mut block = std::mem::take(&mut self.block);
         let read = !self.ended && self.reader.next(&mut block);
         if read {
-            if block.offset >= self.told_at {
+            if block.offset >= self.report_at {
                 let bytes = self.expanded.text().len().max(1) as u64;
                 (self.progress)(block.offset as f64 / bytes as f64);
-                self.told_at = block.offset + bytes / PARTS;
+                self.report_at = block.offset + bytes / PARTS;
             }
             let before = self.interpreter.modal().axes;
             match self.interpreter.step(&block) {
