@@ -12,6 +12,7 @@ use crate::equations::gram::Gram;
 use crate::equations::linear::Products;
 use crate::equations::noise::{NoiseSource, estimate, outliers};
 use crate::equations::observation::{Measurements, Reading, Row, Scalar};
+use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::equations::term::Term;
 use crate::library::candidates::Library;
@@ -106,7 +107,7 @@ fn repeats_and_neighbours_find_the_noise_and_not_the_curve() {
     let data = measured(plan, curve);
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    let noise = estimate(&data.rows, &scalars, &values, 0.0).unwrap();
+    let noise = estimate(&data.rows, &scalars, &values, Serial::default()).unwrap();
     assert_eq!(noise.source, NoiseSource::Repeats);
     // 12 runs × 34 places × 3 components; the deviation of s is sigma / sqrt(2 · degrees), times 4.
     assert!((noise.degrees - 12.0 * 34.0 * 3.0).abs() < 0.5, "{}", noise.degrees);
@@ -115,7 +116,7 @@ fn repeats_and_neighbours_find_the_noise_and_not_the_curve() {
     let data = measured(GOOD, curve);
     let scalars = data.scalars(None);
     let values: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    let noise = estimate(&data.rows, &scalars, &values, 0.0).unwrap();
+    let noise = estimate(&data.rows, &scalars, &values, Serial::default()).unwrap();
     assert_eq!(noise.source, NoiseSource::Neighbours);
     // The second difference of the curve over 25 mm adds 2e-3 · 25² / 2 = 0.6 µm to a third of the equations.
     assert!((0.85..1.3).contains(&noise.variance.sqrt()), "{noise:?}");

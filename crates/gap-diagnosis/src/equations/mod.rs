@@ -10,6 +10,7 @@ pub(crate) mod motion;
 pub(crate) mod noise;
 pub(crate) mod observation;
 pub(crate) mod pool;
+pub(crate) mod serial;
 pub(crate) mod set_up;
 pub(crate) mod term;
 pub(crate) mod tile;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use crate::equations::observation::{Row, Scalar};
+use crate::equations::serial::Serial;
 
 /// Where the noise figure comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,12 +52,17 @@ const SLOW: f64 = 2.0;
 
 /// Noise variance from residuals: from repeats where there are enough, else from neighbours.
 ///
-/// `phi`: correlation of a reading with the next one of its run. Neighbours then differ by less than independent
-/// readings: `σ²` times `1 - 4φ/3 + φ²/3` in second differences.
+/// `serial`: how the readings of a run hang together. Neighbours then differ by less than independent readings: `σ²` times
+/// `1 - 4ρ₁/3 + ρ₂/3` in second differences.
 #[must_use]
-pub(crate) fn estimate(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
+pub(crate) fn estimate(
+    rows: &[Row],
+    scalars: &[Scalar],
+    residuals_um: &[f64],
+    serial: Serial,
+) -> Option<Noise> {
     let floor = quantum_um(scalars).powi(2) / 12.0;
-    let neighbours = from_neighbours(rows, scalars, residuals_um, phi);
+    let neighbours = from_neighbours(rows, scalars, residuals_um, serial);
     let found = match from_repeats(rows, scalars, residuals_um) {
         Some(noise) if noise.degrees >= ENOUGH_REPEATS => {
             let slow = neighbours
@@ -220,7 +226,7 @@ fn from_forms(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Option<
 type Returning = ([i64; 6], usize, [i8; 3]);
 
 /// Second differences along a run, robustly: a smooth residual cancels, noise does not.
-fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: f64) -> Option<Noise> {
+fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], serial: Serial) -> Option<Noise> {
     let mut lines: BTreeMap<(usize, usize, [i8; 3]), Vec<f64>> = BTreeMap::new();
     for (scalar, r) in scalars.iter().zip(residuals_um) {
         let row = &rows[scalar.row];
@@ -233,7 +239,7 @@ fn from_neighbours(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64], phi: 
         .collect();
     let degrees = differences.len() as f64 / 3.0;
     let sigma = 1.4826 * median(&mut differences)?;
-    let variance = sigma * sigma / (1.0 - 4.0 / 3.0 * phi + phi * phi / 3.0).max(0.02);
+    let variance = sigma * sigma / (1.0 - 4.0 / 3.0 * serial.lag(1) + serial.lag(2) / 3.0).max(0.02);
     let source = NoiseSource::Neighbours;
     (degrees >= 4.0).then_some(Noise { variance, degrees, source, slow: 1.0 })
 }
@@ -403,6 +409,18 @@ impl<'a> Surroundings<'a> {
         found.dedup();
         found
     }
+}
+
+/// True where the variance of residuals is no measure of their scatter: most are alike, others far off.
+#[must_use]
+pub(crate) fn is_lumpy(scalars: &[Scalar], residuals_um: &[f64]) -> bool {
+    /// Standard deviation over that by the median: 1 for normal noise, 1.5 for tails as heavy as Student's with three degrees.
+    const LUMPY: f64 = 2.5;
+    let mut sizes: Vec<f64> =
+        scalars.iter().zip(residuals_um).map(|(s, r)| (r * s.weight.sqrt()).abs()).collect();
+    let square: f64 = sizes.iter().map(|v| v * v).sum();
+    let deviation = (square / sizes.len().max(1) as f64).sqrt();
+    median(&mut sizes).is_some_and(|mad| deviation > LUMPY * 1.4826 * mad)
 }
 
 /// Ratio of the variance that further rows will have to the variance of the rows kept.

@@ -1,6 +1,8 @@
 //! Columns of what is neither machine nor noise: where the measuring frame lies, how the runs are clamped, what the
 //! instruments read at zero.
 
+use machine_model::Vector;
+
 use crate::equations::observation::Measurements;
 use crate::equations::term::Term;
 
@@ -23,14 +25,23 @@ pub(crate) fn frame(data: &Measurements, clamping: Clamping) -> Vec<Term> {
         Clamping::Shifted => 0,
         Clamping::Turned => data.runs.len(),
     };
-    for run in 0..turned {
-        let tips =
-            || data.rows.iter().filter(|r| r.run == run).map(|r| r.command.linear_mm + r.command.tool_mm);
-        let count = tips().count().max(1) as f64;
-        let centre_mm: [f64; 3] = (tips().sum::<machine_model::Vector>() / count).into();
+    for (run, middle) in middles_mm(data).into_iter().enumerate().take(turned) {
+        let centre_mm = middle.into();
         terms.extend((0..3).map(|about| Term::RunRotation { run, about, centre_mm }));
     }
     terms
+}
+
+/// Middle of the tips of every run, mm.
+#[must_use]
+pub(crate) fn middles_mm(data: &Measurements) -> Vec<Vector> {
+    let mut sums = vec![(0.0, Vector::zeros()); data.runs.len()];
+    for row in &data.rows {
+        let (count, sum) = &mut sums[row.run];
+        *count += 1.0;
+        *sum += row.command.linear_mm + row.command.tool_mm;
+    }
+    sums.into_iter().map(|(count, sum)| sum / f64::max(count, 1.0)).collect()
 }
 
 /// Columns of the zero of every instrument, and of the frame of every station, but the first.

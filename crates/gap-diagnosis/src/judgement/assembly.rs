@@ -20,7 +20,7 @@ use crate::search::bounds::{Bounds, Harm};
 use crate::search::crossval::Folds;
 use crate::search::explanation::Explanation;
 use crate::search::moves::without;
-use crate::search::space::RHO_GRID;
+use crate::search::space::FREE;
 
 /// Readings that keep more than this of the one before are no noise that a verdict of NO GAP could rest on.
 const SLOW_PHI: f64 = 0.5;
@@ -70,7 +70,7 @@ impl Ranked {
 
 impl<'a> Assembly<'a> {
     pub(crate) fn new(data: &'a Measurements, model: &'a Explanation) -> Self {
-        let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um, model.phi);
+        let noise = estimate(&data.rows, &model.scalars, &model.solution.residuals_um, model.serial);
         let (ordered, folds, alignment) = (Vec::new(), OnceCell::new(), FREE_OFFSETS);
         let mut assembly = Self { data, model, noise, ordered, folds, alignment };
         assembly.ordered = assembly.rank();
@@ -100,12 +100,11 @@ impl<'a> Assembly<'a> {
         /// Share of its information that lies within the runs.
         const WITHIN: f64 = 0.02;
         let (space, library) = (&self.model.space, &self.model.library);
-        let free = RHO_GRID.len() - 1;
         self.model.parts.iter().any(|part| {
             let columns = space.columns(library, &[*part]);
             let information =
                 |level: usize| columns.iter().map(|c| space.products(level).product(*c, *c)).sum::<f64>();
-            information(free) < WITHIN * information(0)
+            information(FREE) < WITHIN * information(0)
         })
     }
 
@@ -237,7 +236,7 @@ impl<'a> Assembly<'a> {
             lack_of_fit_p: leftover.lack_of_fit_p,
             noise_ratio: self.noise_ratio(),
             carries: corner_um <= gap.rms_um,
-            slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution > SLOW_PHI,
+            slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
             swings: matches!(harm, Some(Harm::Swings(..))),
             unseen: None,

@@ -34,7 +34,7 @@ impl Assembly<'_> {
     /// By how much the variance of a part's numbers grows because readings hang together.
     fn inflations(&self, place: usize) -> Vec<f64> {
         let (model, own) = (self.model, self.positions(place));
-        if model.caution == 0.0 {
+        if model.caution.is_none() {
             return vec![1.0; own.len()];
         }
         let terms = &model.solution.terms;

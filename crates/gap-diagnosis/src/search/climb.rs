@@ -63,8 +63,8 @@ pub(crate) fn pass(
         dropped_residuals_um: Vec::new(),
         equally_good: Vec::new(),
         refused,
-        phi: setting.phi,
-        caution: setting.caution.max(setting.phi),
+        serial: setting.serial,
+        caution: setting.caution.max(setting.serial),
         clamping: setting.clamping,
         scalars,
     }
@@ -75,10 +75,10 @@ impl State<'_, '_> {
         self.refused = None;
         // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang together,
         // for what one cause leaves of the others does so as well.
-        if self.phi > 0.0 {
+        if self.setting.is_doubtful() {
             self.weed();
         }
-        let earlier = if self.phi > 0.0 { Vec::new() } else { std::mem::take(&mut self.parts) };
+        let earlier = if self.setting.is_doubtful() { Vec::new() } else { std::mem::take(&mut self.parts) };
         for part in earlier {
             let mut with = self.parts.clone();
             with.push(part);

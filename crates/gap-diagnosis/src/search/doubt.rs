@@ -3,46 +3,55 @@
 //! A search believes that readings are independent, equally uncertain in every component, and that a run shifts but does
 //! not turn. Each of these is asked here on its residual; where one does not hold, the search is made again without it.
 
-use std::collections::BTreeMap;
-
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, Matrix3, SVector};
 
 use crate::equations::columns::{Column, Source};
 use crate::equations::f_test::f_tail;
 use crate::equations::gram::Gram;
+use crate::equations::linear::explained;
 use crate::equations::noise::estimate;
-use crate::equations::observation::{Measurements, Row, Scalar};
-use crate::equations::set_up::Clamping;
+use crate::equations::observation::{Measurements, Scalar};
+use crate::equations::serial::Serial;
+use crate::equations::set_up::{Clamping, middles_mm};
 use crate::equations::term::Term;
 use crate::search::explanation::Explanation;
 
 /// What a search takes for granted.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Setting {
-    /// Correlation of a reading with the next one of its run, where runs are long enough to call it noise.
-    pub phi: f64,
-    /// The correlation that tests and intervals count with, however short the runs.
-    pub caution: f64,
+    /// How readings of a run hang together, where runs are long enough to call it noise.
+    pub serial: Serial,
+    /// The same as tests and intervals count with it, however short the runs.
+    pub caution: Serial,
+    /// Variance that further rows will have over that of the rows kept (`tail_factor`).
+    pub tails: f64,
+    /// Most readings are alike and others far off, as on a coarse display: variances say little of such noise.
+    pub lumpy: bool,
     /// How the set-ups of the runs may differ.
     pub clamping: Clamping,
+}
+
+/// Tails with more than this factor of the variance are no tails but what a coarse display makes of noise.
+const HEAVY: f64 = 3.0;
+
+impl Setting {
+    /// Readings that are independent, tails that end, runs that may be shifted or turned.
+    #[must_use]
+    pub(crate) fn plain(clamping: Clamping) -> Self {
+        Self { serial: Serial::default(), caution: Serial::default(), tails: 1.0, lumpy: false, clamping }
+    }
+
+    /// True where the noise is far from what a fit takes for granted: independent readings of one scatter.
+    #[must_use]
+    pub(crate) fn is_doubtful(&self) -> bool {
+        !self.serial.is_none() || !self.caution.is_none() || self.tails > HEAVY || self.lumpy
+    }
 }
 
 /// Components are equally uncertain unless an F test at this level says otherwise …
 const UNEVEN_LEVEL: f64 = 1e-3;
 /// … and the variances differ by this factor: below it the weights change nothing that a test sees.
 const UNEVEN: f64 = 1.3;
-/// Readings hang together beyond so many standard errors of the correlation …
-const SERIAL_SIGMA: f64 = 3.0;
-/// … and this correlation: below it intervals grow by less than a tenth.
-const SERIAL: f64 = 0.1;
-/// More cannot be told from a random walk.
-const MOST_SERIAL: f64 = 0.98;
-/// A run must be so many times as long as its readings hang together.
-const LONG: f64 = 5.0;
-/// Readings of one place one after the other that show how they hang together, and how many pairs there must be.
-const STILL: usize = 8;
-const PAIRS: f64 = 30.0;
-
 /// The equations with weights by component, where the components are not equally uncertain.
 #[must_use]
 pub(crate) fn weighed(data: &Measurements, first: &Explanation, scalars: &[Scalar]) -> Option<Vec<Scalar>> {
@@ -50,7 +59,7 @@ pub(crate) fn weighed(data: &Measurements, first: &Explanation, scalars: &[Scala
     let of_class = |class: usize| {
         let pairs = first.scalars.iter().zip(residuals).filter(|(s, _)| s.class == class);
         let (own, left): (Vec<Scalar>, Vec<f64>) = pairs.map(|(s, r)| (*s, *r)).unzip();
-        let noise = estimate(&data.rows, &own, &left, 0.0)?;
+        let noise = estimate(&data.rows, &own, &left, Serial::default())?;
         let square: f64 = own.iter().zip(&left).map(|(s, r)| s.weight * r * r).sum();
         // Never more than what is left: structure that the neighbours of few rows show is no noise.
         Some((noise.variance.min(square / own.len() as f64), noise.degrees, own.len() as f64))
@@ -71,126 +80,13 @@ pub(crate) fn weighed(data: &Measurements, first: &Explanation, scalars: &[Scala
     Some(scalars.iter().map(|s| Scalar { weight: s.weight * factor(s.class), ..*s }).collect())
 }
 
-/// Correlation of a reading with the next one of its run; 0 where they do not hang together.
-///
-/// Readings taken one after the other at one place show it free of all structure. Elsewhere what is left of the model
-/// shows it, structure without a name included: either way it is no independent evidence for a name.
-/// The lag-one correlation of n readings less their mean is low by (1 + 4φ)/n (Marriott and Pope 1954).
-#[must_use]
-pub(crate) fn phi(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64 {
-    let Series { standing, moving } = series(rows, scalars, residuals_um);
-    if let Some(phi) = lag_one(&standing) {
-        return phi;
-    }
-    // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
-    let length = moving.iter().map(Vec::len).sum::<usize>() as f64 / moving.len().max(1) as f64;
-    lag_one(&moving).filter(|phi| length >= LONG * (1.0 + phi) / (1.0 - phi)).unwrap_or(0.0)
-}
-
-/// The same for runs of any length: what tests and intervals must count with, for noise that hangs together over a run is
-/// as smooth as an effect and no evidence for one.
-#[must_use]
-pub(crate) fn caution(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> f64 {
-    let Series { standing, moving } = series(rows, scalars, residuals_um);
-    lag_one(&standing).or_else(|| lag_one(&moving)).unwrap_or(0.0)
-}
-
-/// Residuals of runs and components in order: stretches at one place, and whole runs.
-struct Series {
-    standing: Vec<Vec<f64>>,
-    moving: Vec<Vec<f64>>,
-}
-
-fn series(rows: &[Row], scalars: &[Scalar], residuals_um: &[f64]) -> Series {
-    let mut runs: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
-    for (scalar, r) in scalars.iter().zip(residuals_um) {
-        let line = runs.entry((rows[scalar.row].run, scalar.class)).or_default();
-        line.push((scalar.row, r * scalar.weight.sqrt()));
-    }
-    let still = |a: &(usize, f64), b: &(usize, f64)| {
-        let (a, b) = (&rows[a.0].command, &rows[b.0].command);
-        a.linear_mm == b.linear_mm && a.rotary_rad == b.rotary_rad && a.tool_mm == b.tool_mm
-    };
-    let standing: Vec<Vec<f64>> = runs
-        .values()
-        .flat_map(|line| line.chunk_by(|a, b| still(a, b)))
-        .filter(|stretch| stretch.len() >= STILL)
-        .map(|stretch| stretch.iter().map(|(_, v)| *v).collect())
-        .collect();
-    let moving: Vec<Vec<f64>> =
-        runs.values().filter(|l| l.len() > 3).map(|l| l.iter().map(|(_, v)| *v).collect()).collect();
-    Series { standing, moving }
-}
-
-/// Pooled lag-one correlation of some series; `None` of too few pairs, 0 where it is none.
-fn lag_one(series: &[Vec<f64>]) -> Option<f64> {
-    let (mut product, mut square, mut pairs, mut count, mut lines) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for line in series {
-        let length = line.len() as f64;
-        let mean = line.iter().sum::<f64>() / length;
-        product += line.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum::<f64>();
-        square += line.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
-        (pairs, count, lines) = (pairs + length - 1.0, count + length, lines + 1.0);
-    }
-    if pairs < PAIRS || square <= 0.0 {
-        return None;
-    }
-    let (raw, short) = ((product / pairs) / (square / count), lines / count);
-    let phi = ((raw + short) / (1.0 - 4.0 * short).max(0.2)).min(MOST_SERIAL);
-    let sure = (raw + short) * pairs.sqrt() > SERIAL_SIGMA;
-    Some(if sure && phi > SERIAL { phi } else { 0.0 })
-}
-
-/// Variance of a weighted sum of readings that hang together, over that of independent ones: `Σ φ^|s-t| x_s x_t / Σ x²`
-/// within the runs, component by component. Below one for what changes from reading to reading, and then taken as one:
-/// the correlation itself is estimated.
-///
-/// The variance that the second is of was estimated about the means of the runs, and these take a part of the first with
-/// them: about the mean of n readings `σ²(1 - Σ φ^|s-t| / n²)·n/(n-1)` is left.
-#[must_use]
-pub(crate) fn inflation(rows: &[Row], scalars: &[Scalar], column: &[f64], phi: f64) -> f64 {
-    if phi == 0.0 {
-        return 1.0;
-    }
-    // What the readings before one say of it, by component, faded.
-    let mut before = [0.0; 4];
-    let mut run = usize::MAX;
-    let (mut square, mut cross) = (0.0, 0.0);
-    // By component of a run: readings, and what the ones before say of them all.
-    let (mut own, mut within, mut degrees) = ([(0.0, 0.0, 0.0); 4], 0.0, 0.0);
-    let mut close = |own: &mut [(f64, f64, f64); 4]| {
-        for (count, together, _) in own.iter().filter(|o| o.0 > 1.0) {
-            within += count - (count + 2.0 * together) / count;
-            degrees += count - 1.0;
-        }
-        *own = [(0.0, 0.0, 0.0); 4];
-    };
-    for (scalar, x) in scalars.iter().zip(column) {
-        if rows[scalar.row].run != run {
-            (run, before) = (rows[scalar.row].run, [0.0; 4]);
-            close(&mut own);
-        }
-        let (count, together, faded) = &mut own[scalar.class];
-        *together += *faded;
-        *faded = phi * (*faded + 1.0);
-        *count += 1.0;
-        let value = x * scalar.weight.sqrt();
-        square += value * value;
-        cross += value * before[scalar.class];
-        before[scalar.class] = phi * (before[scalar.class] + value);
-    }
-    close(&mut own);
-    let left = if degrees > 0.0 { (within / degrees).clamp(0.02, 1.0) } else { 1.0 };
-    if square > 0.0 { ((1.0 + 2.0 * cross / square) / left).max(1.0) } else { 1.0 }
-}
-
-/// [`inflation`] of some columns, each beside others and the runs' offsets.
+/// [`Serial::inflation`] of some columns, each beside others and the runs' offsets.
 #[must_use]
 pub(crate) fn inflations(
     beside: &[Term],
     columns: &[Term],
     rho: f64,
-    phi: f64,
+    serial: Serial,
     source: &Source<'_>,
 ) -> Vec<f64> {
     let scalars = source.scalars;
@@ -212,9 +108,31 @@ pub(crate) fn inflations(
                 column.value(i) - fitted[i] - offset
             })
             .collect();
-        inflation(source.rows, scalars, &left, phi)
+        serial.inflation(source.rows, scalars, &left)
     };
     own.iter().enumerate().map(of).collect()
+}
+
+/// Square that turns of the runs about their middles take off what a model leaves, beside shifts of the runs, weighted, µm²;
+/// the causes of the model stay as they are.
+#[must_use]
+pub(crate) fn taken_by_turns(data: &Measurements, model: &Explanation) -> f64 {
+    let middles_mm = middles_mm(data);
+    // By run, of what a shift, a turn (µm and µrad) and the rest show.
+    let mut products = vec![DMatrix::zeros(7, 7); data.runs.len()];
+    for (scalar, left) in model.scalars.iter().zip(&model.solution.residuals_um) {
+        let row = &data.rows[scalar.row];
+        let arm_m = 1e-3 * (row.command.linear_mm + row.command.tool_mm - middles_mm[row.run]);
+        let (along, turn) = (scalar.along, arm_m.cross(&scalar.along));
+        let seen = SVector::from([along.x, along.y, along.z, turn.x, turn.y, turn.z, *left]);
+        products[row.run] += scalar.weight * seen * seen.transpose();
+    }
+    let gain = |products: &DMatrix<f64>| {
+        let squares: Vec<f64> = products.diagonal().iter().copied().collect();
+        let by = |columns: &[usize]| explained(products, columns, &squares).0;
+        by(&[0, 1, 2, 3, 4, 5]) - by(&[0, 1, 2])
+    };
+    products.iter().map(gain).sum()
 }
 
 /// True where most runs see an area or a volume, so that a turned run shows and is not taken for a slope of one line.

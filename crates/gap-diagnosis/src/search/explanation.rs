@@ -4,6 +4,7 @@ use machine_model::effects::EffectKind;
 
 use crate::equations::fit::Solution;
 use crate::equations::observation::Scalar;
+use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::library::candidates::{Library, Part};
 use crate::search::space::{Fit, Space};
@@ -31,10 +32,10 @@ pub(crate) struct Explanation {
     pub dropped_residuals_um: Vec<f64>,
     /// The effect that would come next and why it did not.
     pub refused: Option<Refused>,
-    /// Correlation of a reading with the next one of its run.
-    pub phi: f64,
-    /// The same as tests and intervals count with, for runs of any length.
-    pub caution: f64,
+    /// How readings of a run hang together.
+    pub serial: Serial,
+    /// The same as tests and intervals count with it, for runs of any length.
+    pub caution: Serial,
     /// How the set-ups of the runs may differ.
     pub clamping: Clamping,
 }

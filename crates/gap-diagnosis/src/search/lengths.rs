@@ -17,6 +17,7 @@ use crate::equations::fit::{Solution, residuals};
 use crate::equations::gram::Gram;
 use crate::equations::noise;
 use crate::equations::observation::{Believed, Measurements, Reading, Scalar};
+use crate::equations::serial::Serial;
 use crate::equations::set_up::Clamping;
 use crate::equations::term::Term;
 use crate::library::candidates::Library;
@@ -67,7 +68,7 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explana
 fn noise_um(data: &Measurements) -> f64 {
     let scalars = first_equations(data);
     let gaps: Vec<f64> = scalars.iter().map(|s| s.gap_um).collect();
-    noise::estimate(&data.rows, &scalars, &gaps, 0.0).map_or(0.0, |noise| noise.variance.sqrt())
+    noise::estimate(&data.rows, &scalars, &gaps, Serial::default()).map_or(0.0, |noise| noise.variance.sqrt())
 }
 
 /// A file with lengths and the noise of one component.

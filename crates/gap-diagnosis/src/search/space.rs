@@ -11,7 +11,10 @@ use crate::equations::linear::{Factor, Products, RANK_TOLERANCE, explained};
 use crate::library::candidates::{Library, Part};
 
 /// Ratios of run-offset variance to row variance among which the likelihood chooses.
-pub(crate) const RHO_GRID: [f64; 9] = [0.0, 0.003, 0.01, 0.04, 0.15, 0.6, 2.5, 10.0, 100.0];
+pub(crate) const RHO_GRID: [f64; 11] = [0.0, 0.003, 0.01, 0.04, 0.15, 0.6, 2.5, 10.0, 80.0, 640.0, 1e6];
+
+/// The ratio at which runs are free: nothing between them counts.
+pub(crate) const FREE: usize = RHO_GRID.len() - 1;
 
 /// Two models are equally likely within this difference of the extended BIC.
 pub(crate) const WITHIN: f64 = 10.0;

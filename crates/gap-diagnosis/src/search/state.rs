@@ -7,6 +7,7 @@ use crate::equations::gram::Gram;
 use crate::equations::noise::quantum_um;
 use crate::equations::observation::Measurements;
 use crate::equations::pool::Pool;
+use crate::equations::serial::Serial;
 use crate::equations::term::Term;
 use crate::library::candidates::{Library, Part};
 use crate::search::bounds::Bounds;
@@ -32,8 +33,10 @@ pub(crate) struct State<'a, 'b> {
     pub(super) fit: Fit,
     pub(super) refused: Option<Refused>,
     pub(super) bounds: Bounds,
-    /// Correlation of neighbouring readings of a run.
-    pub(super) phi: f64,
+    /// How readings of a run hang together.
+    pub(super) serial: Serial,
+    /// What the search counts with beside the scatter of the rows kept.
+    pub(super) setting: Setting,
     /// Least variance of a reading, µm²: that of the display's step.
     pub(super) floor: f64,
 }
@@ -61,7 +64,7 @@ impl<'a, 'b> State<'a, 'b> {
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
-        let (bounds, phi) = (Bounds::new(data, source.scalars), setting.caution.max(setting.phi));
+        let (bounds, serial) = (Bounds::new(data, source.scalars), setting.caution.max(setting.serial));
         let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
             data,
@@ -77,7 +80,8 @@ impl<'a, 'b> State<'a, 'b> {
             fit,
             refused,
             bounds,
-            phi,
+            serial,
+            setting,
             floor,
         }
     }

@@ -7,7 +7,7 @@
 use machine_model::effects::EffectKind;
 
 use crate::equations::f_test::f_tail;
-use crate::equations::linear::Products;
+use crate::equations::linear::{Products, explained};
 use crate::equations::term::Term;
 use crate::library::candidates::Part;
 use crate::library::seen::curve_axis;
@@ -15,7 +15,7 @@ use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
 use crate::search::explanation::Refused;
 use crate::search::moves::without;
-use crate::search::space::Fit;
+use crate::search::space::{FREE, Fit};
 use crate::search::state::State;
 
 /// Level of the F test, over all questions asked: shared evenly among the effects, and within an effect among
@@ -25,6 +25,15 @@ pub(crate) const LEVEL: f64 = 3e-2;
 pub(crate) const LEAST_SHARE: f64 = 0.02;
 /// Least share of a joint of rails: where curves are bent otherwise than in textbooks a step fits a little.
 const LEAST_STEP: f64 = 0.15;
+
+/// Where the noise is not what the tests take for granted, an effect that takes less than this share off the RMS …
+const WORTH: f64 = 0.1;
+/// … must be known to so many standard deviations: five times its 95 % interval, so that noise three times as large in what
+/// counts, as a walk too slow for the lags or a display's step makes it, names nothing.
+const BEYOND_DOUBT: f64 = 10.0;
+
+/// More than this share of what shows an effect lies between the runs: how much these differ by chance decides.
+const MOSTLY: f64 = 0.5;
 
 /// Why an effect is refused that may be there and is not proven.
 pub(crate) const UNPROVEN: &str = "the F test";
@@ -38,23 +47,31 @@ impl State<'_, '_> {
         with.push(part);
         let kind = self.library.kind(part);
         let (before, rank_before) = self.space.left(&self.library, rest, fit.level);
-        let gain = (before - fit.residual).max(0.0);
+        let between = self.between_runs(part, fit.level);
+        let (tested, residual) =
+            if between > MOSTLY { self.at_best_ratio(&with, fit.level) } else { (before, fit.residual) };
         let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
         let inflation = self.inflation(rest, part, fit.level);
-        // Readings that hang together are as good as (1 - φ)/(1 + φ) times as many independent ones.
-        let independent = degrees * (1.0 - self.phi) / (1.0 + self.phi);
-        let effective = self.effective_degrees(part, fit.level, independent.max(1.0));
-        let ratio = gain / columns / (fit.residual / degrees).max(self.floor) / inflation;
+        let independent = degrees / self.serial.as_one();
+        let effective = self.effective_degrees(between, independent.max(1.0));
+        let ratio = (tested - residual).max(0.0) / columns / (residual / degrees).max(self.floor) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
         // them can deceive, and the better of two tests costs a factor of two.
         let p = 2.0
             * self.library.questions(part.candidate)
             * f_tail(ratio, columns, effective).min(self.within_runs(&with, inflation));
+        let gain = (before - fit.residual).max(0.0);
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
             return refuse(UNPROVEN);
+        }
+        let trifling = residual > (1.0 - WORTH) * (1.0 - WORTH) * tested;
+        if self.setting.is_doubtful() && trifling && ratio < BEYOND_DOUBT * BEYOND_DOUBT {
+            return refuse(
+                "so small a gain rests on the noise being independent and normal, which it is not",
+            );
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         if matches!(kind, EffectKind::Joint(_)) && gain / reducible < LEAST_STEP {
@@ -146,15 +163,14 @@ impl State<'_, '_> {
 
     /// F test of the last part with the runs' offsets left free.
     fn within_runs(&self, with: &[Part], inflation: f64) -> f64 {
-        let level = crate::search::space::RHO_GRID.len() - 1;
-        let (before, rank_before) = self.space.left(&self.library, &with[..with.len() - 1], level);
-        let (after, rank_after) = self.space.left(&self.library, with, level);
+        let (before, rank_before) = self.space.left(&self.library, &with[..with.len() - 1], FREE);
+        let (after, rank_after) = self.space.left(&self.library, with, FREE);
         let columns = rank_after.saturating_sub(rank_before) as f64;
         let degrees = self.space.degrees - 3.0 * self.source.runs as f64 - rank_after as f64;
         if columns < 1.0 || degrees < 1.0 {
             return 1.0;
         }
-        let independent = (degrees * (1.0 - self.phi) / (1.0 + self.phi)).max(1.0);
+        let independent = (degrees / self.serial.as_one()).max(1.0);
         f_tail(
             (before - after) / columns / (after / degrees).max(self.floor) / inflation,
             columns,
@@ -162,36 +178,55 @@ impl State<'_, '_> {
         )
     }
 
-    /// By how much the readings' hanging together widens what is known of a part beside the rest: its columns with the
+    /// By how much the tails of the noise and the readings' hanging together widen what is known of a part beside the rest: its columns with the
     /// rest and the runs' offsets taken out, the widest counts.
     fn inflation(&self, rest: &[Part], part: Part, level: usize) -> f64 {
-        if self.phi == 0.0 {
-            return 1.0;
+        let tails = self.setting.tails;
+        if self.serial.is_none() {
+            return tails;
         }
         let beside: Vec<Term> =
             self.library.model_columns(rest).into_iter().map(|c| self.library.terms[c]).collect();
         let own = &self.library.form(part).columns;
         let own: Vec<Term> = own.iter().map(|c| self.library.terms[*c]).collect();
-        inflations(&beside, &own, self.space.rho(level), self.phi, self.source)
+        inflations(&beside, &own, self.space.rho(level), self.serial, self.source)
             .into_iter()
-            .fold(1.0, f64::max)
+            .fold(tails, |most, serial| most.max(tails * serial))
     }
 
-    /// Degrees of freedom of the noise that an effect competes with: few where only the differences
-    /// between runs show it (Satterthwaite's combination of within and between).
-    fn effective_degrees(&self, part: Part, level: usize, within: f64) -> f64 {
+    /// Square that a model leaves without its last part and with it, where the runs differ by chance as much as is most
+    /// likely: the ratios of the search lie far apart, and an effect that differs from run to run is judged by that alone.
+    fn at_best_ratio(&self, with: &[Part], level: usize) -> (f64, f64) {
+        let sub = self.space.gram.select(&self.library.model_columns(with));
+        let whitened = sub.whitened(sub.best_rho(self.space.rho(level))).0;
+        let squares = sub.squares();
+        let own = self.library.positions(with, with.len() - 1);
+        let left = |columns: std::ops::Range<usize>| {
+            let columns: Vec<usize> = columns.collect();
+            (whitened[(sub.terms.len(), sub.terms.len())] - explained(&whitened, &columns, &squares).0)
+                .max(0.0)
+        };
+        (left(0..own.start), left(0..sub.terms.len()))
+    }
+
+    /// Share of what shows an effect that lies between the runs.
+    fn between_runs(&self, part: Part, level: usize) -> f64 {
         let columns = self.space.columns(&self.library, &[part]);
-        let last_level = crate::search::space::RHO_GRID.len() - 1;
         let information = |l: usize| -> f64 {
             columns
                 .iter()
                 .map(|c| self.space.products(l).product(*c, *c) / self.space.reference()[*c].max(1e-300))
                 .sum()
         };
-        let (here, free) = (information(level), information(last_level));
-        let share = if here > 0.0 { (free / here).clamp(0.0, 1.0) } else { 1.0 };
+        let (here, free) = (information(level), information(FREE));
+        if here > 0.0 { (1.0 - free / here).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// Degrees of freedom of the noise that an effect competes with: few where only the differences
+    /// between runs show it (Satterthwaite's combination of within and between).
+    fn effective_degrees(&self, share: f64, within: f64) -> f64 {
         let between = (self.source.runs as f64 - 2.0).max(1.0);
-        1.0 / (share * share / within + (1.0 - share) * (1.0 - share) / between)
+        1.0 / (share * share / between + (1.0 - share) * (1.0 - share) / within)
     }
 
     /// True where the last of `with` helps to predict lines left out.

@@ -28,11 +28,11 @@ impl Assembly<'_> {
             )),
             Some(_) => {}
         }
-        if self.model.caution > 0.0 {
+        if !self.model.caution.is_none() {
             notes.push(format!(
                 "Neighbouring readings hang together (correlation {:.2} from one to the next): intervals and tests count them as {:.0} % of as many independent ones.",
-                self.model.caution,
-                100.0 * (1.0 - self.model.caution) / (1.0 + self.model.caution)
+                self.model.caution.lag(1),
+                100.0 / self.model.caution.as_one()
             ));
         }
         notes.extend(self.setup_notes());
