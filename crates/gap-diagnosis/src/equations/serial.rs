@@ -18,6 +18,8 @@ pub(crate) struct Serial {
     share: f64,
     /// What is kept of it from one reading to the next.
     phi: f64,
+    /// Readings of a run on average: what hangs together ends with the run.
+    length: f64,
 }
 
 /// Readings hang together beyond so many standard errors of what the lags say, from one reading to the next or together …
@@ -27,7 +29,8 @@ const LOSS: f64 = 1.2;
 /// Lags that are looked at.
 const LAGS: usize = 12;
 /// What may be kept from one reading to the next: more cannot be told from a random walk.
-const KEPT: [f64; 11] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98];
+const MOST_KEPT: f64 = 0.98;
+const KEPT: [f64; 11] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, MOST_KEPT];
 /// A run must be so many times as long as its readings hang together.
 const LONG: f64 = 5.0;
 /// Readings of one place one after the other that show how they hang together, and how many pairs there must be.
@@ -47,9 +50,15 @@ impl Serial {
         self.share == 0.0
     }
 
-    /// So many readings are as good as an independent one: `1 + 2 Σ share φ^k`.
+    /// So many readings of a run are as good as an independent one: n of them scatter about their truth as n/this would,
+    /// `1 + 2 Σ_{k<n} share φ^k (1 - k/n)`.
     #[must_use]
     pub(crate) fn as_one(self) -> f64 {
+        1.0 + self.share * of_mean(self.phi, self.length)
+    }
+
+    /// The same of a run without end.
+    fn as_one_without_end(self) -> f64 {
         1.0 + 2.0 * self.share * self.phi / (1.0 - self.phi)
     }
 
@@ -71,7 +80,7 @@ impl Serial {
         }
         // Readings that hang together for as long as a run cannot be told from structure: it stays what it is called.
         let length = moving.iter().map(Vec::len).sum::<usize>() as f64 / moving.len().max(1) as f64;
-        estimated(&moving).filter(|found| length >= LONG * found.as_one()).unwrap_or_default()
+        estimated(&moving).filter(|found| length >= LONG * found.as_one_without_end()).unwrap_or_default()
     }
 
     /// The same for runs of any length: what tests and intervals must count with, for noise that hangs together over a run
@@ -93,7 +102,7 @@ impl Serial {
         if self.is_none() {
             return 1.0;
         }
-        let Self { share, phi } = self;
+        let Self { share, phi, .. } = self;
         // What the readings before one say of it, by component, faded.
         let mut before = [0.0; 4];
         let mut run = usize::MAX;
@@ -200,20 +209,40 @@ fn estimated(series: &[Vec<f64>]) -> Option<Serial> {
     if next.max(together) <= SURE {
         return Some(Serial::default());
     }
+    // Of each φ: what is shown of a share of one, lag by lag, and how far a share misses the lags, in squares of standard errors.
+    let column = |phi: f64| {
+        let of_mean = of_mean(phi, length) / length;
+        move |lag: &Lag| units::math::powf(phi, f64::from(lag.k)) - (1.0 - lag.found) * of_mean
+    };
+    let missed = |Serial { share, phi, .. }: Serial| -> f64 {
+        let column = column(phi);
+        let miss = |lag: &Lag| lag.about_known - share * column(lag);
+        seen.iter().map(|lag| lag.pairs * miss(lag) * miss(lag)).sum()
+    };
     let fitted = |phi: f64| {
-        let kept = |k: i32| units::math::powf(phi, f64::from(k));
-        let of_mean =
-            (1..length as i32).map(|k| 2.0 * kept(k) * (1.0 - f64::from(k) / length)).sum::<f64>() / length;
-        let column = |lag: &Lag| kept(lag.k) - (1.0 - lag.found) * of_mean;
+        let column = column(phi);
         let with: f64 = seen.iter().map(|lag| lag.pairs * column(lag) * lag.about_known).sum();
         let own: f64 = seen.iter().map(|lag| lag.pairs * column(lag) * column(lag)).sum();
-        let share = (with / own.max(1e-12)).clamp(0.0, 1.0);
-        let miss = |lag: &Lag| lag.about_known - share * column(lag);
-        let left: f64 = seen.iter().map(|lag| lag.pairs * miss(lag) * miss(lag)).sum();
-        (left, Serial { share, phi })
+        Serial { share: (with / own.max(1e-12)).clamp(0.0, 1.0), phi, length }
     };
-    let best = KEPT.into_iter().map(fitted).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    let best = KEPT.into_iter().map(fitted).min_by(|a, b| missed(*a).total_cmp(&missed(*b)))?;
+    // All of it hangs together, as the first lag says, unless the others deny that. Lags scatter the more, and the more alike,
+    // the longer readings hang together (Bartlett).
+    let short = lines / count;
+    let phi = ((seen[0].found + short) / (1.0 - 4.0 * short).max(0.2)).clamp(0.0, MOST_KEPT);
+    let whole = Serial { share: 1.0, phi, length };
+    let best = if missed(whole) > missed(best) + SURE * SURE * whole.as_one() { best } else { whole };
     Some(if best.as_one() > LOSS { best } else { Serial::default() })
+}
+
+/// `2 Σ_{k<n} φ^k (1 - k/n)`.
+fn of_mean(phi: f64, length: f64) -> f64 {
+    let (mut kept, mut sum) = (1.0, 0.0);
+    for k in 1..length as usize {
+        kept *= phi;
+        sum += kept * (1.0 - k as f64 / length);
+    }
+    2.0 * sum
 }
 
 #[cfg(test)]
@@ -250,7 +279,7 @@ mod tests {
         {
             let found = |seed| of_sum(estimated(&drawn(share, phi, seed)).unwrap());
             let found = (0..10).map(found).sum::<f64>() / 10.0;
-            let expected = of_sum(Serial { share, phi });
+            let expected = of_sum(Serial { share, phi, length: 40.0 });
             assert!((found - expected).abs() < spread, "{share} {phi}: {found} for {expected}");
         }
     }
@@ -258,11 +287,10 @@ mod tests {
     /// Sum of n readings: its variance over n by the formula, and as drawn.
     #[test]
     fn a_sum_scatters_as_the_inflation_says() {
-        let serial = Serial { share: 0.5, phi: 0.7 };
-        let drawn = drawn(0.5, 0.7, 1);
+        let serial = Serial { share: 0.5, phi: 0.7, length: 40.0 };
+        let drawn: Vec<Vec<f64>> = (0..20).flat_map(|seed| drawn(0.5, 0.7, seed)).collect();
         let square = drawn.iter().map(|run| run.iter().sum::<f64>().powi(2)).sum::<f64>();
-        let found = square / 60.0 / 40.0;
-        // n readings: a little less than of endless ones.
-        assert!((0.7..1.35).contains(&(found / serial.as_one())), "{found} {}", serial.as_one());
+        let found = square / drawn.len() as f64 / 40.0;
+        assert!((0.9..1.1).contains(&(found / serial.as_one())), "{found} {}", serial.as_one());
     }
 }

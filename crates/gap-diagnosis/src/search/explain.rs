@@ -17,6 +17,8 @@ use crate::search::space::WITHIN;
 
 /// What grows by less than this factor is as before: readings that are as good as one, variance in the tails.
 const MORE: f64 = 1.1;
+/// Tails with less than this factor of the variance are none to tests: numbers would scatter by a tenth more.
+const TAILS: f64 = 1.2;
 /// Passes of dropping outliers and searching again.
 const PASSES: usize = 3;
 
@@ -126,7 +128,8 @@ fn settled(
     };
     let tails = |model: &Explanation| {
         let left_out = left_out(&model.solution, source, &dropped);
-        tail_factor(&model.scalars, &model.solution.residuals_um, &left_out)
+        let factor = tail_factor(&model.scalars, &model.solution.residuals_um, &left_out);
+        if factor > TAILS { factor } else { 1.0 }
     };
     // Names that noise made take its smoothness and its tails with them: as they go, what is left shows more of both.
     for _ in 0..PASSES {
