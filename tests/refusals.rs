@@ -120,6 +120,24 @@ fn a_work_offset_the_profile_lacks() {
     ");
 }
 
+/// All that a program is refused for by itself is told at once, each with what settles it; what only follows from a refused block
+/// is not: behind `G43 H7` nobody knows where Z stands, and that is no fault of the program.
+#[test]
+fn all_refusals_at_once() {
+    let program = b"G21 G90 G54\nG43 H7 Z50.\nG1 X10. F100.\nG12.1\nG55\nG12.1\nG68.9\nG12.1\nG0 X+-3\nM30\n";
+    let said = Trial::new().refused(program, &[]);
+    let errors: Vec<&str> = said.lines().filter(|line| line.starts_with("error")).collect();
+    insta::assert_snapshot!(errors.join("\n"), @"
+    error[VP0215]: tool length H7 is not given
+    error[VP0207]: G12.1 is not in the table of dialect perspektiva
+    error[VP0214]: work offset G55 is not given
+    error[VP0207]: G68.9 is not in the table of dialect perspektiva
+    error[VP0101]: `X+-3` is not a number a control reads
+    ");
+    assert!(said.contains("2 more blocks like it"), "{said}");
+    assert_eq!(said.matches("help:").count(), errors.len());
+}
+
 #[test]
 fn a_second_pass() {
     let trial = Trial::new();

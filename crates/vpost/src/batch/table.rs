@@ -67,6 +67,8 @@ fn reasons<'r>(title: &str, records: &'r [Record], faults: impl Fn(&'r Record) -
     let mut by_code: BTreeMap<(&str, &str), (usize, &str, &str)> = BTreeMap::new();
     for record in records {
         let mut codes: Vec<&Fault> = faults(record).iter().collect();
+        // The first of each stays: sorting keeps their order.
+        codes.sort_by_key(|fault| &fault.code);
         codes.dedup_by_key(|fault| &fault.code);
         for fault in codes {
             // Files fail for more than one reason: what the system said stands behind the name.
