@@ -2,7 +2,7 @@
 
 use machine_model::Vector;
 use machine_model::rotation::{around, of_any_size};
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::Matrix3;
 use units::math;
 
 /// One term of a Fourier series over the spindle's angle: `amplitude·cos(order·φ + phase)`.
@@ -95,8 +95,10 @@ impl Spindle {
         let along = self.tailstock.map_or(alone, |Tailstock { at_mm, offset_mm: [x, y] }| {
             self.centre_mm + Vector::new(-x, -y, at_mm) - chuck
         });
-        let turn = Rotation3::rotation_between(&Vector::z(), &along);
-        (chuck, turn.map_or(Matrix3::identity(), Rotation3::into_inner))
+        // By the sine: the arc cosine of an angle of microradians is off by up to 1e-8 rad.
+        let along = along.normalize();
+        let sine = Vector::z().cross(&along).cross_matrix();
+        (chuck, Matrix3::identity() + sine + sine * sine / (1.0 + along.z))
     }
 
     /// Where a point of the machine is in the workpiece's frame, the spindle at an angle. Equation (72).
