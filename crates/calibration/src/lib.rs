@@ -1,7 +1,7 @@
 //! Measurements to machine profiles: what an instrument read becomes error functions with their uncertainty.
 //!
 //! Millimetres and radians throughout, as in [`machine_model`]; no files, no text formats, no clock. Every result
-//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40) and (47) to (51) of
+//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40), (47) to (51) and (71) to (73) of
 //! `docs/equations.md`.
 
 pub mod adjustment;
@@ -22,6 +22,7 @@ pub mod rotary_sequence;
 mod student;
 pub mod tracker;
 mod traverse;
+pub mod turning;
 pub mod volumetric;
 
 pub use error::CalibrationError;

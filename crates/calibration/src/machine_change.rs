@@ -323,7 +323,7 @@ fn positions(axis: &LinearAxis, nodes: &[f64], interpolation: Interpolation) -> 
     all
 }
 
-fn tables_of(positions: &[f64], rows: &[Six], interpolation: Interpolation) -> Option<AxisTables> {
+pub(crate) fn tables_of(positions: &[f64], rows: &[Six], interpolation: Interpolation) -> Option<AxisTables> {
     let function = |i: usize| {
         Table::new(positions.to_vec(), rows.iter().map(|row| row[i]).collect(), interpolation).ok()
     };

@@ -1,0 +1,103 @@
+//! What was measured on turned test pieces, and what cannot be used of it.
+
+use machine_model::{Command, Vector};
+
+use crate::CalibrationError;
+
+/// What was read at one place of a test piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Feature {
+    /// Measured minus commanded diameter, mm.
+    Diameter,
+    /// Deviation of a face along +Z, mm, from a zero of its own.
+    Face,
+}
+
+/// One reading of a test piece.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurnedReading {
+    /// Which test piece: one clamping, one finishing cut.
+    pub part: usize,
+    /// Which tool and edge, where that is known.
+    pub tool: Option<usize>,
+    /// What was read.
+    pub feature: Feature,
+    /// The command at which the tool cut there: X a radius, mm, machine frame.
+    pub command: Command,
+    /// The reading, mm.
+    pub deviation_mm: f64,
+    /// What effects beyond tables and lathe do of it, mm; 0 for none.
+    pub by_effects_mm: f64,
+    /// Its standard uncertainty, mm, where that is known.
+    pub uncertainty_mm: Option<f64>,
+    /// Since the spindle was started, s, where that is known.
+    pub time_s: Option<f64>,
+}
+
+impl TurnedReading {
+    /// Place of the tip, mm.
+    pub(super) fn tip_mm(&self) -> Vector {
+        self.command.linear_mm + self.command.tool_mm
+    }
+
+    /// The same place of the same piece, cut at the same time.
+    fn is_repeat_of(&self, other: &Self) -> bool {
+        let near = |a: Vector, b: Vector| (a - b).amax() <= SAME_MM;
+        (self.part, self.tool, self.feature, self.time_s)
+            == (other.part, other.tool, other.feature, other.time_s)
+            && near(self.tip_mm(), other.tip_mm())
+    }
+}
+
+/// Places nearer than this are one, mm.
+const SAME_MM: f64 = 1e-3;
+/// Repeats that differ by more standard uncertainties contradict one another.
+const DISAGREE: f64 = 6.0;
+/// Finer than any reading, mm.
+pub(super) const FINEST_MM: f64 = 1e-5;
+
+/// Refuses sets of readings of which no machine can be had.
+pub(super) fn check(rows: &[TurnedReading], part_names: &[String]) -> Result<(), CalibrationError> {
+    let diameters = || rows.iter().filter(|row| row.feature == Feature::Diameter);
+    let mut parts: Vec<usize> = diameters().map(|row| row.part).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    if parts.len() < 2 {
+        return Err(CalibrationError::TooFew(format!(
+            "diameters of {} test piece{}: one part cannot tell its own bending from the machine",
+            if parts.is_empty() { "no" } else { "one" },
+            if parts.is_empty() { "s" } else { "" }
+        )));
+    }
+    for part in parts {
+        let places = || diameters().filter(|row| row.part == part).map(|row| row.tip_mm().z);
+        let first = places().next().unwrap_or(0.0);
+        if places().all(|z| (z - first).abs() <= SAME_MM) {
+            return Err(CalibrationError::TooFew(format!(
+                "part `{}` has one cross section: a taper needs two along Z or more",
+                part_names[part]
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses repeats that disagree; `usual_mm` is the uncertainty of readings that state none, mm.
+pub(super) fn check_repeats(rows: &[TurnedReading], usual_mm: f64) -> Result<(), CalibrationError> {
+    for (point, row) in rows.iter().enumerate() {
+        let u = |row: &TurnedReading| row.uncertainty_mm.unwrap_or(usual_mm);
+        let before = rows[..point].iter().find(|earlier| {
+            let apart = (earlier.deviation_mm - row.deviation_mm).abs();
+            row.is_repeat_of(earlier) && apart > (DISAGREE * u(row).max(u(earlier))).max(FINEST_MM)
+        });
+        if let Some(earlier) = before {
+            let message = format!(
+                "the same place was read as {:.3} and as {:.3} um, more than six standard uncertainties apart",
+                earlier.deviation_mm * 1e3,
+                row.deviation_mm * 1e3
+            );
+            return Err(CalibrationError::Outlier { point, message });
+        }
+    }
+    Ok(())
+}
