@@ -5,7 +5,7 @@ use crate::common::{messages, run};
 /// Those that read so many options of their own that one screen of 80 by 50 does not hold them.
 const LONG: [&str; 2] = ["calibrate tracker", "calibrate interferometer"];
 
-const COMMANDS: [&str; 22] = [
+const COMMANDS: [&str; 23] = [
     "",
     "correct",
     "batch",
@@ -20,6 +20,7 @@ const COMMANDS: [&str; 22] = [
     "calibrate interferometer",
     "calibrate volumetric",
     "calibrate ballbar",
+    "calibrate turning",
     "diagnose",
     "map",
     "budget",

@@ -143,6 +143,10 @@ static FAMILIES: &[Family] = &[
     of(TEXT, "instrument", ONE, &["прибор"]),
     of(TEXT, "artefact", ONE, &["artifact", "эталон", "мера"]),
     of(TEXT, "station", ONE, &["станция"]),
+    of(TEXT, "part", ONE, &["деталь", "образец", "test piece"]),
+    of(TEXT, "feature", ONE, &["элемент"]),
+    of(TEXT, "tool", ONE, &["инструмент"]),
+    of(PLACE, "diameter", ONE, &["диаметр"]),
     of(TEXT, "note", ONE, &["comment", "примечание", "комментарий"]),
 ];
 

@@ -16,6 +16,7 @@ mod plausibility;
 mod sources;
 mod squareness;
 mod tracker;
+mod turning;
 mod volumetric;
 
 use std::path::PathBuf;
@@ -45,6 +46,8 @@ pub enum CalibrateCommand {
     Volumetric(volumetric::Volumetric),
     /// Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes.
     Ballbar(ballbar::Ballbar),
+    /// Measured test pieces of a lathe: taper, bow, squareness, sizes of the tools, growth and wear.
+    Turning(turning::Turning),
 }
 
 /// `vpost calibrate INSTRUMENT FILES… -o PROFILE`
@@ -56,6 +59,7 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         }
         CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone()),
         CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),
+        CalibrateCommand::Turning(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
     };
     Roles::default()
         .reads_all("a measurement", &files)
@@ -66,5 +70,6 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),
         CalibrateCommand::Volumetric(a) => volumetric::run(a, shared, messages),
         CalibrateCommand::Ballbar(a) => ballbar::run(a, shared, messages),
+        CalibrateCommand::Turning(a) => turning::run(a, shared, messages),
     }
 }

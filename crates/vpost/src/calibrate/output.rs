@@ -64,10 +64,23 @@ pub(super) struct Output {
 impl Output {
     /// From `-m`, or new. `chain` must be known then: nothing about a machine is guessed.
     pub(super) fn start(target: &Target, shared: &Shared) -> Result<Self, Failure> {
+        Self::start_of(target, shared, profile::load_mill)
+    }
+
+    /// The same of a lathe or a mill.
+    pub(super) fn start_any(target: &Target, shared: &Shared) -> Result<Self, Failure> {
+        Self::start_of(target, shared, profile::load)
+    }
+
+    fn start_of(
+        target: &Target,
+        shared: &Shared,
+        load: fn(&Path) -> Result<profile::Loaded, Failure>,
+    ) -> Result<Self, Failure> {
         let stem = target.output.as_deref().and_then(Path::file_stem);
         let folder = stem.map_or_else(|| "calibrated".to_owned(), |s| s.to_string_lossy().into_owned());
         if let Some(path) = &shared.job.machine {
-            let base = profile::load_mill(path)?.profile;
+            let base = load(path)?.profile;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
                 return Err(question("the base profile cannot be edited", "run `vpost profile check` on it"));

@@ -1,0 +1,400 @@
+//! `vpost calibrate turning`.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use calibration::CalibrationError;
+use calibration::turning::{
+    Feature, FoundTerm, HeldOut, LEVEL, Term, TurnedReading, TurningBase, TurningCalibration, calibrate,
+};
+use clap::Args;
+use diagnostic::Diagnostic;
+use machine_model::{Axis, Command, PathModel, Vector};
+use machine_profile::{Calibrated, Profile};
+use measurement_files::{Row, Sheet};
+
+use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
+use super::output::{Output, Target};
+use super::sources;
+use crate::arguments::Shared;
+use crate::conditions::conditions;
+use crate::file;
+use crate::message::{Failure, Messages, Report};
+
+/// `vpost calibrate turning PARTS… -m LATHE -o PROFILE`
+#[derive(Debug, Args)]
+pub struct Turning {
+    /// Measured test pieces (CSV): part, z_mm, diameter_mm, d_um; feature, tool, time_s, u_um where known.
+    #[arg(value_name = "PARTS.csv", required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub target: Target,
+    /// Diameters of further parts that judge the profile; one that makes them worse is not written.
+    #[arg(long, value_name = "HELD.csv")]
+    pub holdout: Option<PathBuf>,
+    /// Write what was found as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_c note";
+const EXPECTED: &str = "expected: part,z_mm,diameter_mm,d_um";
+/// No lathe turns so wrong, µm.
+const MOST_UM: f64 = 2000.0;
+
+#[derive(Default)]
+struct Parts {
+    rows: Vec<TurnedReading>,
+    sheets: Vec<Sheet>,
+    places: Vec<(usize, usize)>,
+    parts: Vec<String>,
+    tools: Vec<String>,
+    temperatures: Vec<f64>,
+}
+
+fn number_of(names: &mut Vec<String>, name: &str) -> usize {
+    names.iter().position(|known| known == name).unwrap_or_else(|| {
+        names.push(name.to_owned());
+        names.len() - 1
+    })
+}
+
+impl Parts {
+    fn read(&mut self, path: &PathBuf, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
+        let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
+        sheet.need(&["part", "z_mm", "diameter_mm", "d_um"], EXPECTED)?;
+        for (line, row) in sheet.rows().enumerate() {
+            let read = self.reading(&row, profile)?;
+            self.temperatures.extend(row.number("temp_c")?);
+            self.rows.push(read);
+            self.places.push((self.sheets.len(), line));
+        }
+        self.sheets.push(sheet);
+        Ok(())
+    }
+
+    fn reading(&mut self, row: &Row<'_>, profile: &Profile) -> Result<TurnedReading, Failure> {
+        let feature = match row.text("feature").to_lowercase().as_str() {
+            "" | "diameter" | "диаметр" => Feature::Diameter,
+            "face" | "торец" => Feature::Face,
+            other => {
+                let message = format!("`{other}` is no feature of a test piece");
+                return Err(row.refuse(CELL, "feature", message, "write diameter or face").into());
+            }
+        };
+        let name = row.text("part");
+        if name.is_empty() {
+            let help = "name the clamping and finishing cut, like P1";
+            return Err(row.refuse(CELL, "part", "a reading of no part".to_owned(), help).into());
+        }
+        let (part, tool) = (number_of(&mut self.parts, &name), row.text("tool"));
+        let tool = (!tool.is_empty()).then(|| number_of(&mut self.tools, &tool));
+        let (z_mm, diameter_mm) = (row.needed("z_mm")?, row.needed("diameter_mm")?);
+        let d_um = row.needed("d_um")?;
+        if d_um.abs() > MOST_UM {
+            let message = format!("a deviation of {d_um} um is no error of a lathe");
+            let help = "d_um is measured minus commanded, in um: look for another column or unit";
+            return Err(row.refuse(UNITS, "d_um", message, help).into());
+        }
+        if diameter_mm <= 0.0 && feature == Feature::Diameter {
+            let message = "a diameter is above 0".to_owned();
+            return Err(row.refuse(CELL, "diameter_mm", message, "give the commanded diameter").into());
+        }
+        let tool_mm = Vector::from(profile.default_tool_mm);
+        let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
+        let tip_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm);
+        let linear_mm = tip_mm - tool_mm;
+        let volume = profile.volume();
+        if (volume.nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
+            let message = "the tool stands outside the travel or the tables of the profile there".to_owned();
+            let help = "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis";
+            return Err(row.refuse(AXES, "z_mm", message, help).into());
+        }
+        let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
+        if uncertainty_mm.is_some_and(|u| u <= 0.0) {
+            let message = "an uncertainty is above zero".to_owned();
+            return Err(row.refuse(CELL, "u_um", message, "give the standard uncertainty in um").into());
+        }
+        Ok(TurnedReading {
+            part,
+            tool,
+            feature,
+            command: Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3] },
+            deviation_mm: d_um * 1e-3,
+            by_effects_mm: 0.0,
+            uncertainty_mm,
+            time_s: row.number("time_s")?,
+        })
+    }
+
+    fn refused(&self, error: &CalibrationError) -> Failure {
+        if let CalibrationError::Outlier { point, .. } = error {
+            let (sheet, line) = self.places[*point];
+            if let Some(row) = self.sheets[sheet].row(line) {
+                let help = "measure it again, or take the row out";
+                return row.refuse(OUTLIER, "d_um", error.to_string(), help).into();
+            }
+        }
+        failure("", &[], error)
+    }
+}
+
+/// Name in the profile, what the base says, and from the unit of the adjustment.
+fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
+    match term {
+        Term::Axis => match base.spindle.tailstock {
+            Some(tailstock) => ("tailstock.offset_um.X", tailstock.offset_mm[0], 1e3),
+            None => ("spindle.EB0S_urad", base.spindle.tilt_rad[1], 1e6),
+        },
+        Term::Squareness => ("squareness.EB0Z_urad", base.description.squareness.eb0z_rad, 1e6),
+        Term::Growth => ("growth_um_per_h", 0.0, 1e3),
+        Term::Wear => ("wear_um_per_part", 0.0, 1e3),
+        Term::Bow => ("axis.Z.EXZ_bow_um", 0.0, 1e3),
+        Term::FourthOrder => ("axis.Z.EXZ_order4_um", 0.0, 1e3),
+        Term::Drift => ("drift_um_per_h", 0.0, 1e3),
+    }
+}
+
+/// `vpost calibrate turning`
+pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    if shared.job.machine.is_none() {
+        return Err(question("which lathe? its profile is not known", "add `-m LATHE.toml`"));
+    }
+    let mut output = Output::start_any(&arguments.target, shared)?;
+    let Some(profile) = output.base.clone() else {
+        return Err(question("which lathe? its profile is not known", "add `-m LATHE.toml`"));
+    };
+    let Some(lathe) = profile.lathe.clone() else {
+        return Err(Failure::option(
+            format!("test pieces are turned on a lathe, and {} has no spindle in its chain", profile.chain()),
+            "give the profile of the lathe, with a chain like \"[w S b Z X t]\"",
+        ));
+    };
+    let base = TurningBase {
+        description: profile.description.clone(),
+        interpolation: profile.interpolation,
+        spindle: lathe.spindle,
+        bending: lathe.bending,
+        tip: lathe.tip,
+    };
+    let ignore = &arguments.target.ignore_column;
+    let mut parts = Parts::default();
+    for path in &arguments.files {
+        parts.read(path, &profile, ignore)?;
+    }
+    let trained = parts.rows.len();
+    if let Some(path) = &arguments.holdout {
+        parts.read(path, &profile, ignore)?;
+    }
+    by_effects(&mut parts.rows, &profile, &base, shared)?;
+    let (rows, held) = parts.rows.split_at(trained);
+    let stated = rows.iter().filter(|row| row.uncertainty_mm.is_some()).count();
+    if stated > 0 && stated < rows.len() {
+        return Err(question(
+            format!("{stated} of {} readings state their uncertainty, the others do not", rows.len()),
+            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+        ));
+    }
+    let found = calibrate(rows, &base, &parts.parts).map_err(|error| parts.refused(&error))?;
+    let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
+    let holdout = holdout.map_err(|error| parts.refused(&error))?;
+    file::print(report(&found, holdout.as_ref(), &base, &parts).as_bytes())?;
+    if let Some(path) = &arguments.json {
+        let mut text = serde_json::to_string_pretty(&json(&found, holdout.as_ref(), &base, &parts, trained))
+            .expect("plain values always serialise");
+        text.push('\n');
+        file::write(path, text.as_bytes())?;
+    }
+    if let Some(judged) = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9) {
+        let message = format!(
+            "{} held-out diameters get worse: {:.2} um RMS before, {:.2} um after",
+            judged.rows,
+            judged.rms_before_mm * 1e3,
+            judged.rms_after_mm * 1e3
+        );
+        let help = "look for a sign, or for parts of another machine or clamping; nothing was written";
+        let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
+        return Err(Failure::Refused(vec![Report { source: None, diagnostics }]));
+    }
+    write(&mut output, &found, &base);
+    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
+    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
+    let measured = Calibrated {
+        temperature_c: mean(&parts.temperatures),
+        repeatability_um: Some(found.noise_mm * 1e3),
+        uncertainty_um: Some(uncertainty_mm * 1e3),
+        ..Calibrated::default()
+    };
+    output.calibrated(&arguments.target, messages, measured)?;
+    output.write(&arguments.target, messages)
+}
+
+/// What the profile's effects do of each reading: the whole lathe less its tables and spindle.
+fn by_effects(
+    rows: &mut [TurnedReading],
+    profile: &Profile,
+    base: &TurningBase,
+    shared: &Shared,
+) -> Result<(), Failure> {
+    if profile.effects.is_empty() {
+        return Ok(());
+    }
+    let whole =
+        profile.lathe(&conditions(&shared.job)?).map_err(|error| crate::conditions::failure(&error))?;
+    let stretch = calibration::turning::Stretch { low_mm: 0.0, high_mm: 1.0 };
+    let bare = base
+        .predicted_mm(&calibration::turning::Change::default(), stretch, rows)
+        .map_err(|error| question(error.to_string(), "run `vpost profile check` on it"))?;
+    let Some(whole) = whole else { return Ok(()) };
+    for (row, bare) in rows.iter_mut().zip(bare) {
+        let error_mm = whole.error_mm(&row.command);
+        row.by_effects_mm = match row.feature {
+            Feature::Diameter => 2.0 * error_mm.x - bare,
+            Feature::Face => error_mm.z - bare,
+        };
+    }
+    Ok(())
+}
+
+fn write(output: &mut Output, found: &TurningCalibration, base: &TurningBase) {
+    let change = &found.change;
+    if change.axis != 0.0 {
+        match base.spindle.tailstock {
+            Some(tailstock) => {
+                let [x, y] = tailstock.offset_mm;
+                let offset_um = [(x + change.axis) * 1e3, y * 1e3];
+                output.text.set_range(&["tailstock", "offset_um"], offset_um, 4);
+            }
+            None => {
+                let urad = (base.spindle.tilt_rad[1] + change.axis) * 1e6;
+                output.text.set_number(&["spindle", "EB0S_urad"], urad, 4);
+            }
+        }
+    }
+    if change.eb0z_rad != 0.0 {
+        let urad = (base.description.squareness.eb0z_rad + change.eb0z_rad) * 1e6;
+        output.text.set_number(&["squareness", "EB0Z_urad"], urad, 4);
+    }
+    if let Some(tables) = base.z_tables(change, found.stretch) {
+        for (key, rows) in [("errors", Some(&tables.errors)), ("errors_negative", tables.negative.as_ref())] {
+            let Some(rows) = rows else { continue };
+            let column = |f: usize| tables.given[f].then(|| rows.iter().map(|row| row[f]).collect());
+            output.errors(Axis::Z, key, &tables.positions_mm, &std::array::from_fn(column));
+        }
+    }
+}
+
+/// Name of a tool or, where there is none, of its part.
+fn owner(found: &calibration::turning::Offset, parts: &Parts) -> String {
+    match found.tool {
+        Some(tool) => parts.tools[tool].clone(),
+        None => parts.parts[found.part].clone(),
+    }
+}
+
+fn report(
+    found: &TurningCalibration,
+    holdout: Option<&HeldOut>,
+    base: &TurningBase,
+    parts: &Parts,
+) -> String {
+    let mut out = String::new();
+    let mut line = |text: std::fmt::Arguments<'_>| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "{text}");
+    };
+    line(format_args!(
+        "test pieces: diameters scatter by {:.3} um (standard deviation)",
+        found.noise_mm * 1e3
+    ));
+    let mut term = |own: &FoundTerm| {
+        let (name, before, scale) = named(own.term, base);
+        let said = match (own.is_significant, own.term.is_geometry()) {
+            (false, _) => "not significant, not written",
+            (true, true) => "written",
+            (true, false) => "in the report only",
+        };
+        line(format_args!(
+            "  {:<10} {name} {:.3} ± {:.3}, {said}",
+            own.term.name(),
+            (before + own.value) * scale,
+            found.coverage_95 * own.u * scale
+        ));
+    };
+    for own in found.terms.iter().filter(|own| own.term != Term::Drift).chain(&found.not_there) {
+        term(own);
+    }
+    line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
+    for [a, b] in &found.not_told_apart {
+        let help = match (*a, *b) {
+            ("growth", "wear") => {
+                ": measure a second part with a new edge while warm, or cut the first size again when warm"
+            }
+            _ => "",
+        };
+        line(format_args!("  {a} and {b} cannot be told apart by these parts{help}"));
+    }
+    for offset in &found.offsets {
+        line(format_args!(
+            "  size of {}: {:.3} ± {:.3} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
+            owner(offset, parts),
+            offset.radius_mm * 1e3,
+            found.coverage_95 * offset.u_mm * 1e3,
+            -2.0 * offset.radius_mm
+        ));
+    }
+    let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
+    line(format_args!("fitted {before:.3} -> {after:.3} um RMS on the diameter"));
+    if let Some(judged) = holdout {
+        line(format_args!(
+            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)",
+            judged.rms_before_mm * 1e3,
+            judged.rms_after_mm * 1e3,
+            judged.max_after_mm * 1e3,
+            judged.rows
+        ));
+    }
+    out
+}
+
+fn json(
+    found: &TurningCalibration,
+    holdout: Option<&HeldOut>,
+    base: &TurningBase,
+    parts: &Parts,
+    rows: usize,
+) -> serde_json::Value {
+    use serde_json::json;
+    let shown: Vec<usize> = (0..found.terms.len()).filter(|k| found.terms[*k].term != Term::Drift).collect();
+    let term = |own: &FoundTerm| {
+        let (name, before, scale) = named(own.term, base);
+        json!({ "name": name, "value": (before + own.value) * scale, "u": own.u * scale, "f": own.f,
+                "written": own.is_significant && own.term.is_geometry() })
+    };
+    let scale = |k: usize| named(found.terms[k].term, base).2;
+    let covariance: Vec<Vec<f64>> = shown
+        .iter()
+        .map(|&i| shown.iter().map(|&k| found.covariance[(i, k)] * scale(i) * scale(k)).collect())
+        .collect();
+    let offset = |own: &calibration::turning::Offset| json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": own.u_mm * 1e3 });
+    let mut counted: Vec<usize> = parts.rows[..rows].iter().map(|row| row.part).collect();
+    counted.sort_unstable();
+    counted.dedup();
+    let mut out = json!({
+        "schema": "vpost.turning/1",
+        "parts": counted.len(),
+        "rows": rows,
+        "noise_um": found.noise_mm * 1e3,
+        "level": LEVEL,
+        "terms": shown.iter().map(|&k| term(&found.terms[k])).collect::<Vec<_>>(),
+        "covariance": covariance,
+        "not_significant": found.not_there.iter().filter(|own| own.term != Term::Drift).map(term).collect::<Vec<_>>(),
+        "not_told_apart": found.not_told_apart,
+        "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
+    });
+    if let Some(judged) = holdout {
+        out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
+            "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
+    }
+    out
+}
