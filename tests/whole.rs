@@ -19,6 +19,7 @@ mod budget;
 mod calibrate;
 mod calibrate_interferometer;
 mod calibrate_machine;
+mod calibrate_turning;
 mod closed_loop;
 mod controls;
 mod corpus;

@@ -1,7 +1,7 @@
 //! `vpost calibrate turning`.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibration::CalibrationError;
 use calibration::turning::{
@@ -59,8 +59,29 @@ fn number_of(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
+/// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
+/// else what the user can do. Any name where the profile has no tools.
+fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, &'static str> {
+    if profile.tools.is_empty() {
+        return Ok(Vector::from(profile.default_tool_mm));
+    }
+    let rest = tool.get(1..).unwrap_or_default();
+    let digits = rest.find(|c: char| !c.is_ascii_digit()).map_or(rest, |end| &rest[..end]);
+    let number = match (tool.get(..1), digits.len()) {
+        (Some("H" | "h"), _) => digits.parse().ok(),
+        (Some("T" | "t"), 4) => digits[2..].parse().ok(),
+        _ => None,
+    };
+    let number: u32 =
+        number.ok_or("name it by its length, H1, or by its call, T0101; an edge behind it: T0101-2")?;
+    let known = profile.tools.iter().find(|(known, _)| *known == number);
+    known
+        .map(|(_, length_mm)| -Vector::from(*length_mm))
+        .ok_or("add its length to the profile: `lengths_mm` under `[tool]`")
+}
+
 impl Parts {
-    fn read(&mut self, path: &PathBuf, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
+    fn read(&mut self, path: &Path, profile: &Profile, ignore: &[String]) -> Result<(), Failure> {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, ignore)?;
         sheet.need(&["part", "z_mm", "diameter_mm", "d_um"], EXPECTED)?;
         for (line, row) in sheet.rows().enumerate() {
@@ -88,6 +109,10 @@ impl Parts {
             return Err(row.refuse(CELL, "part", "a reading of no part".to_owned(), help).into());
         }
         let (part, tool) = (number_of(&mut self.parts, &name), row.text("tool"));
+        let tool_mm = vector_mm(profile, &tool).map_err(|help| {
+            let message = format!("which tool of the profile is `{tool}`? It says where the carriage stood");
+            row.refuse(CELL, "tool", message, help)
+        })?;
         let tool = (!tool.is_empty()).then(|| number_of(&mut self.tools, &tool));
         let (z_mm, diameter_mm) = (row.needed("z_mm")?, row.needed("diameter_mm")?);
         let d_um = row.needed("d_um")?;
@@ -100,7 +125,6 @@ impl Parts {
             let message = "a diameter is above 0".to_owned();
             return Err(row.refuse(CELL, "diameter_mm", message, "give the commanded diameter").into());
         }
-        let tool_mm = Vector::from(profile.default_tool_mm);
         let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
         let tip_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm);
         let linear_mm = tip_mm - tool_mm;
