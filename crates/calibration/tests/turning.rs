@@ -227,6 +227,38 @@ fn growth_and_wear_are_named_only_where_they_can_be_told_apart() {
     assert!((together.change.axis - 60e-6).abs() < 0.5e-6, "{together:?}");
 }
 
+/// Sizes that change from part to part are wear only where neither growth nor an error that goes with the diameter may be it.
+#[test]
+fn what_may_be_something_else_is_not_called_wear() {
+    let machine = |timed: bool, diameters_mm: [f64; 4]| {
+        let mut rows = pieces(4, false);
+        for row in &mut rows {
+            row.tool = Some(0);
+            // Warm before the first part: no growth, and pauses that tell it from the order.
+            row.time_s = timed.then(|| 3600.0 * [9.0, 9.2, 9.4, 14.0][row.part]);
+            row.command.linear_mm.x = 0.5 * diameters_mm[row.part];
+        }
+        cut(&mut rows, &base(), &Change { axis: 60e-6, ..Change::default() }, 0.0);
+        for row in &mut rows {
+            row.deviation_mm -= 2.0 * 0.002 * row.part as f64;
+        }
+        calibrate(&rows, &base(), &names(&rows)).expect("found")
+    };
+    let has_wear = |found: &calibration::turning::TurningCalibration| {
+        found.terms.iter().any(|found| found.term == Term::Wear)
+    };
+    let told = machine(true, [60.0, 40.0, 40.0, 60.0]);
+    assert!(has_wear(&told) && told.not_told_apart.is_empty(), "{told:?}");
+    let untimed = machine(false, [60.0, 40.0, 40.0, 60.0]);
+    assert_eq!(untimed.not_told_apart, [["wear", "growth"]]);
+    let sized = machine(true, [40.0, 44.0, 48.0, 52.0]);
+    assert_eq!(sized.not_told_apart, [["wear", "an error of X that goes with the diameter"]]);
+    for found in [untimed, sized] {
+        assert!(!has_wear(&found), "{found:?}");
+        assert!((found.change.axis - 60e-6).abs() < 1e-9, "{found:?}");
+    }
+}
+
 #[test]
 fn refused_is_what_gives_no_machine() {
     let taper = Change { axis: 60e-6, ..Change::default() };

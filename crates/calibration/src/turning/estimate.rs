@@ -41,6 +41,8 @@ pub enum Term {
     FourthOrder,
     /// Growth and wear, which these parts cannot tell apart: taken off, not named.
     Drift,
+    /// From part to part, by wear or by something else: taken off, not named.
+    PartToPart,
 }
 
 impl Term {
@@ -55,13 +57,20 @@ impl Term {
             Self::Bow => "barrel",
             Self::FourthOrder => "order 4 of the barrel",
             Self::Drift => "drift",
+            Self::PartToPart => "from part to part",
         }
     }
 
     /// True where it is geometry that a profile holds.
     #[must_use]
     pub fn is_geometry(self) -> bool {
-        !matches!(self, Self::Growth | Self::Wear | Self::Drift)
+        !matches!(self, Self::Growth | Self::Wear | Self::Drift | Self::PartToPart)
+    }
+
+    /// True where it may be told: the others are taken off, and nobody knows what they are.
+    #[must_use]
+    pub fn is_named(self) -> bool {
+        !matches!(self, Self::Drift | Self::PartToPart)
     }
 }
 
@@ -199,7 +208,7 @@ impl<'r> Readings<'r> {
                 Term::Squareness => change.eb0z_rad = *value,
                 Term::Bow => change.bow_mm[0] = *value,
                 Term::FourthOrder => change.bow_mm[1] = *value,
-                Term::Growth | Term::Wear | Term::Drift => {}
+                Term::Growth | Term::Wear | Term::Drift | Term::PartToPart => {}
             }
         }
         change
@@ -215,7 +224,7 @@ impl<'r> Readings<'r> {
     fn drift(&self, term: Term, row: usize) -> f64 {
         match (self.rows[row].feature, term) {
             (Feature::Diameter, Term::Growth | Term::Drift) => 2.0 * self.hours[row],
-            (Feature::Diameter, Term::Wear) => 2.0 * self.order[row],
+            (Feature::Diameter, Term::Wear | Term::PartToPart) => 2.0 * self.order[row],
             _ => 0.0,
         }
     }
@@ -369,7 +378,31 @@ impl<'r> Readings<'r> {
         if kept.first().is_none_or(|(term, _)| *term != Term::Axis) {
             return Err(CalibrationError::Unobservable("the taper from the sizes of the tools".to_owned()));
         }
+        if let (Some((wear, _)), Some(rival)) =
+            (kept.iter_mut().find(|(term, _)| *term == Term::Wear), self.rival_of_wear())
+        {
+            pairs.push(["wear", rival]);
+            *wear = Term::PartToPart;
+        }
         Ok(kept.into_iter().map(|(term, _)| term).collect())
+    }
+
+    /// What else may change the size from part to part: growth where no time is known, an error that goes with the diameter
+    /// where the parts' order does.
+    fn rival_of_wear(&self) -> Option<&'static str> {
+        let diameters: Vec<usize> =
+            (0..self.rows.len()).filter(|k| self.rows[*k].feature == Feature::Diameter).collect();
+        if diameters.iter().any(|k| self.rows[*k].time_s.is_none()) {
+            return Some("growth");
+        }
+        let centred = |value: &dyn Fn(usize) -> f64| {
+            let mean = diameters.iter().map(|k| value(*k)).sum::<f64>() / diameters.len() as f64;
+            DVector::from_iterator(diameters.len(), diameters.iter().map(|k| value(*k) - mean))
+        };
+        let order = centred(&|k| self.order[k]);
+        let size = centred(&|k| self.rows[k].tip_mm().x);
+        let together = order.dot(&size).powi(2) > ALIKE * order.norm_squared() * size.norm_squared();
+        (together && size.norm() > NOTHING).then_some("an error of X that goes with the diameter")
     }
 
     /// Refuses test pieces whose tapers differ beyond chance.

@@ -176,6 +176,7 @@ fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
         Term::Bow => ("axis.Z.EXZ_bow_um", 0.0, 1e3),
         Term::FourthOrder => ("axis.Z.EXZ_order4_um", 0.0, 1e3),
         Term::Drift => ("drift_um_per_h", 0.0, 1e3),
+        Term::PartToPart => ("change_um_per_part", 0.0, 1e3),
     }
 }
 
@@ -345,13 +346,13 @@ fn report(
             found.coverage_95 * own.u * scale
         ));
     };
-    for own in found.terms.iter().filter(|own| own.term != Term::Drift).chain(&found.not_there) {
+    for own in found.terms.iter().filter(|own| own.term.is_named()).chain(&found.not_there) {
         term(own);
     }
     line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
     for [a, b] in &found.not_told_apart {
         let help = match (*a, *b) {
-            ("growth", "wear") => {
+            ("growth", "wear") | ("wear", "growth") => {
                 ": measure a second part with a new edge while warm, or cut the first size again when warm"
             }
             _ => "",
@@ -389,7 +390,7 @@ fn json(
     rows: usize,
 ) -> serde_json::Value {
     use serde_json::json;
-    let shown: Vec<usize> = (0..found.terms.len()).filter(|k| found.terms[*k].term != Term::Drift).collect();
+    let shown: Vec<usize> = (0..found.terms.len()).filter(|k| found.terms[*k].term.is_named()).collect();
     let term = |own: &FoundTerm| {
         let (name, before, scale) = named(own.term, base);
         json!({ "name": name, "value": (before + own.value) * scale, "u": own.u * scale, "f": own.f,
@@ -412,7 +413,7 @@ fn json(
         "level": LEVEL,
         "terms": shown.iter().map(|&k| term(&found.terms[k])).collect::<Vec<_>>(),
         "covariance": covariance,
-        "not_significant": found.not_there.iter().filter(|own| own.term != Term::Drift).map(term).collect::<Vec<_>>(),
+        "not_significant": found.not_there.iter().filter(|own| own.term.is_named()).map(term).collect::<Vec<_>>(),
         "not_told_apart": found.not_told_apart,
         "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
     });
