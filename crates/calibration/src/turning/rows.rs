@@ -54,14 +54,28 @@ const SAME_MM: f64 = 1e-3;
 /// Repeats that differ by more standard uncertainties contradict one another.
 const DISAGREE: f64 = 6.0;
 /// Finer than any reading, mm.
-pub(super) const FINEST_MM: f64 = 1e-5;
+const FINEST_MM: f64 = 1e-5;
+/// Steps of instruments, mm, from a vernier micrometer's: a coarser one is none, however even the readings.
+const STEPS_MM: [f64; 9] = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5];
+
+/// Step in which the readings were written, mm: the coarsest of which all are multiples.
+pub(super) fn finest_mm(rows: &[TurnedReading]) -> f64 {
+    let is_step = |step: &&f64| {
+        rows.iter().all(|row| {
+            let steps = row.deviation_mm / **step;
+            (steps - steps.round()).abs() < 1e-4
+        })
+    };
+    STEPS_MM.iter().find(is_step).copied().unwrap_or(FINEST_MM)
+}
 
 /// Refuses sets of readings of which no machine can be had.
-pub(super) fn check(rows: &[TurnedReading], part_names: &[String]) -> Result<(), CalibrationError> {
+pub(super) fn check(
+    rows: &[TurnedReading],
+    parts: &[usize],
+    part_names: &[String],
+) -> Result<(), CalibrationError> {
     let diameters = || rows.iter().filter(|row| row.feature == Feature::Diameter);
-    let mut parts: Vec<usize> = diameters().map(|row| row.part).collect();
-    parts.sort_unstable();
-    parts.dedup();
     if parts.len() < 2 {
         return Err(CalibrationError::TooFew(format!(
             "diameters of {} test piece{}: one part cannot tell its own bending from the machine",
@@ -69,7 +83,7 @@ pub(super) fn check(rows: &[TurnedReading], part_names: &[String]) -> Result<(),
             if parts.is_empty() { "s" } else { "" }
         )));
     }
-    for part in parts {
+    for part in parts.iter().copied() {
         let places = || diameters().filter(|row| row.part == part).map(|row| row.tip_mm().z);
         let first = places().next().unwrap_or(0.0);
         if places().all(|z| (z - first).abs() <= SAME_MM) {
@@ -84,11 +98,12 @@ pub(super) fn check(rows: &[TurnedReading], part_names: &[String]) -> Result<(),
 
 /// Refuses repeats that disagree; `usual_mm` is the uncertainty of readings that state none, mm.
 pub(super) fn check_repeats(rows: &[TurnedReading], usual_mm: f64) -> Result<(), CalibrationError> {
+    let finest_mm = finest_mm(rows);
     for (point, row) in rows.iter().enumerate() {
         let u = |row: &TurnedReading| row.uncertainty_mm.unwrap_or(usual_mm);
         let before = rows[..point].iter().find(|earlier| {
             let apart = (earlier.deviation_mm - row.deviation_mm).abs();
-            row.is_repeat_of(earlier) && apart > (DISAGREE * u(row).max(u(earlier))).max(FINEST_MM)
+            row.is_repeat_of(earlier) && apart > (DISAGREE * u(row).max(u(earlier))).max(finest_mm)
         });
         if let Some(earlier) = before {
             let message = format!(

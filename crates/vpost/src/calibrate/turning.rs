@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use calibration::CalibrationError;
 use calibration::turning::{
-    Feature, FoundTerm, HeldOut, LEVEL, Term, TurnedReading, TurningBase, TurningCalibration, calibrate,
+    Feature, FoundTerm, HeldOut, LEVEL, Term, TurnedReading, TurningBase, TurningCalibration, Uncertainty,
+    calibrate,
 };
 use clap::Args;
 use diagnostic::Diagnostic;
@@ -175,7 +176,6 @@ fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
         Term::Wear => ("wear_um_per_part", 0.0, 1e3),
         Term::Bow => ("axis.Z.EXZ_bow_um", 0.0, 1e3),
         Term::FourthOrder => ("axis.Z.EXZ_order4_um", 0.0, 1e3),
-        Term::Drift => ("drift_um_per_h", 0.0, 1e3),
         Term::PartToPart => ("change_um_per_part", 0.0, 1e3),
     }
 }
@@ -223,7 +223,8 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let found = calibrate(rows, &base, &parts.parts).map_err(|error| parts.refused(&error))?;
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
     let holdout = holdout.map_err(|error| parts.refused(&error))?;
-    file::print(report(&found, holdout.as_ref(), &base, &parts).as_bytes())?;
+    let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
+    file::print(report(&found, holdout.as_ref(), &base, &parts, timed).as_bytes())?;
     if let Some(path) = &arguments.json {
         let mut text = serde_json::to_string_pretty(&json(&found, holdout.as_ref(), &base, &parts, trained))
             .expect("plain values always serialise");
@@ -322,6 +323,7 @@ fn report(
     holdout: Option<&HeldOut>,
     base: &TurningBase,
     parts: &Parts,
+    timed: bool,
 ) -> String {
     let mut out = String::new();
     let mut line = |text: std::fmt::Arguments<'_>| {
@@ -329,8 +331,12 @@ fn report(
         let _ = writeln!(out, "{text}");
     };
     line(format_args!(
-        "test pieces: diameters scatter by {:.3} um (standard deviation)",
-        found.noise_mm * 1e3
+        "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}",
+        found.noise_mm * 1e3,
+        match found.shared_mm {
+            Some(shared_mm) => format!("by {:.3} um beyond that", shared_mm * 1e3),
+            None => "are too few to tell by how much they differ".to_owned(),
+        }
     ));
     let mut term = |own: &FoundTerm| {
         let (name, before, scale) = named(own.term, base);
@@ -343,29 +349,37 @@ fn report(
             "  {:<10} {name} {:.3} ± {:.3}, {said}",
             own.term.name(),
             (before + own.value) * scale,
-            found.coverage_95 * own.u * scale
+            own.u.half_width_95() * scale
         ));
     };
-    for own in found.terms.iter().filter(|own| own.term.is_named()).chain(&found.not_there) {
+    for own in found.terms.iter().chain(&found.not_there) {
         term(own);
     }
     line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
     for [a, b] in &found.not_told_apart {
         let help = match (*a, *b) {
+            ("growth", "wear") | ("wear", "growth") if !timed => ": add the column time_s",
             ("growth", "wear") | ("wear", "growth") => {
                 ": measure a second part with a new edge while warm, or cut the first size again when warm"
             }
+            (_, "what else differs from part to part") => ": measure a further part",
             _ => "",
         };
         line(format_args!("  {a} and {b} cannot be told apart by these parts{help}"));
     }
     for offset in &found.offsets {
+        let interval = offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
         line(format_args!(
-            "  size of {}: {:.3} ± {:.3} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
+            "  size of {}: {:.3}{interval} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
             owner(offset, parts),
             offset.radius_mm * 1e3,
-            found.coverage_95 * offset.u_mm * 1e3,
             -2.0 * offset.radius_mm
+        ));
+    }
+    if found.unseen_blunder_mm > 0.0 {
+        line(format_args!(
+            "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it",
+            found.unseen_blunder_mm * 1e3
         ));
     }
     let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
@@ -390,18 +404,26 @@ fn json(
     rows: usize,
 ) -> serde_json::Value {
     use serde_json::json;
-    let shown: Vec<usize> = (0..found.terms.len()).filter(|k| found.terms[*k].term.is_named()).collect();
+    let known = |u: Uncertainty, scale: f64| {
+        let freedom = u.freedom.is_finite().then_some(u.freedom);
+        (u.standard * scale, freedom, u.half_width_95() * scale)
+    };
     let term = |own: &FoundTerm| {
         let (name, before, scale) = named(own.term, base);
-        json!({ "name": name, "value": (before + own.value) * scale, "u": own.u * scale, "f": own.f,
+        let (u, freedom, u95) = known(own.u, scale);
+        json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
+                "f": own.f, "significant": own.is_significant,
                 "written": own.is_significant && own.term.is_geometry() })
     };
-    let scale = |k: usize| named(found.terms[k].term, base).2;
-    let covariance: Vec<Vec<f64>> = shown
-        .iter()
-        .map(|&i| shown.iter().map(|&k| found.covariance[(i, k)] * scale(i) * scale(k)).collect())
-        .collect();
-    let offset = |own: &calibration::turning::Offset| json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": own.u_mm * 1e3 });
+    let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
+    let row =
+        |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
+    let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
+    let offset = |own: &calibration::turning::Offset| {
+        let known = own.u.map(|u| known(u, 1e3));
+        json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
+                "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
+    };
     let mut counted: Vec<usize> = parts.rows[..rows].iter().map(|row| row.part).collect();
     counted.sort_unstable();
     counted.dedup();
@@ -411,9 +433,11 @@ fn json(
         "rows": rows,
         "noise_um": found.noise_mm * 1e3,
         "level": LEVEL,
-        "terms": shown.iter().map(|&k| term(&found.terms[k])).collect::<Vec<_>>(),
+        "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
+        "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
+        "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
         "covariance": covariance,
-        "not_significant": found.not_there.iter().filter(|own| own.term.is_named()).map(term).collect::<Vec<_>>(),
+        "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
         "not_told_apart": found.not_told_apart,
         "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
     });

@@ -1,0 +1,501 @@
+//! Readings as equations, and their adjustments.
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use super::equations::{Change, Stretch, TurningBase};
+use super::rows::{Feature, TurnedReading, finest_mm};
+use super::strata::{Between, MeanSquare, Spread, Uncertainty, Whitening};
+use super::term::Term;
+use crate::CalibrationError;
+use crate::adjustment::{Estimate, Jacobian, Noise, Outlier, Problem, adjust, linear};
+
+/// Test pieces of one machine differ so much in their tapers with this chance.
+const PARTS_CHANCE: f64 = 1e-3;
+/// Of differences: large against rounding, small against the curvature of the model.
+const STEPS: [f64; 3] = [1e-4, 1e-4, 1e-2];
+/// A step that changes no reading by more is the last, mm: what it leaves is its square.
+const SETTLED_MM: f64 = 1e-9;
+/// Rounds in which faces and diameters are weighed.
+const WEIGHINGS: usize = 3;
+/// No reading is finer, mm: weights of readings without noise stay finite.
+const LEAST_NOISE_MM: f64 = 1e-9;
+/// Shares below this are rounding.
+const NOTHING: f64 = 1e-9;
+
+/// Sizes and shifts, numbered.
+pub(super) struct Levels {
+    /// Of each row.
+    pub(super) of_row: Vec<usize>,
+    /// The first row of each.
+    pub(super) first: Vec<usize>,
+}
+
+impl Levels {
+    /// Rows of one key have one level.
+    fn by<K: PartialEq>(rows: &[TurnedReading], key: impl Fn(&TurnedReading) -> K) -> Self {
+        let mut first: Vec<usize> = Vec::new();
+        let of_row = rows.iter().enumerate().map(|(k, row)| {
+            first.iter().position(|known| key(&rows[*known]) == key(row)).unwrap_or_else(|| {
+                first.push(k);
+                first.len() - 1
+            })
+        });
+        let of_row = of_row.collect();
+        Self { of_row, first }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.first.len()
+    }
+}
+
+/// Readings with what does not change from fit to fit.
+pub(super) struct Readings<'r> {
+    pub(super) rows: &'r [TurnedReading],
+    base: &'r TurningBase,
+    pub(super) stretch: Stretch,
+    /// One size per tool, where it is known, else per part; a shift per part's faces.
+    pub(super) tools: Levels,
+    /// One size per part and tool: what parts share is none of the form.
+    cells: Levels,
+    /// Parts that have diameters, in the order in which they are named.
+    pub(super) parts: Vec<usize>,
+    /// h from the mean.
+    hours: Vec<f64>,
+    /// Order of its part among those of its tool, from the mean.
+    order: Vec<f64>,
+    /// mm, or relative.
+    weights: Vec<f64>,
+    pub(super) is_known: bool,
+}
+
+/// Adjusted with the error that parts share.
+pub(super) struct Adjusted {
+    /// Of the terms, then of the tools' sizes.
+    pub(super) values: DVector<f64>,
+    pub(super) spread: Spread,
+    /// mm, of the rows.
+    pub(super) residuals: DVector<f64>,
+    /// Standard deviation of what a part's diameters share, mm on the diameter; `None` where no part tells it.
+    pub(super) shared_mm: Option<f64>,
+}
+
+impl Adjusted {
+    pub(super) fn uncertainty(&self, k: usize) -> Uncertainty {
+        self.spread.of_unknown(k)
+    }
+}
+
+impl<'r> Readings<'r> {
+    pub(super) fn new(rows: &'r [TurnedReading], base: &'r TurningBase) -> Self {
+        let tools = Levels::by(rows, |row| {
+            let tool = row.tool.filter(|_| row.feature == Feature::Diameter);
+            (row.feature, tool, tool.is_none().then_some(row.part))
+        });
+        let cells = Levels::by(rows, |row| {
+            (row.feature, row.tool.filter(|_| row.feature == Feature::Diameter), row.part)
+        });
+        let mut parts: Vec<usize> =
+            rows.iter().filter(|row| row.feature == Feature::Diameter).map(|row| row.part).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        let order = order_of_parts(rows, &tools);
+        let times: Vec<f64> = rows.iter().filter_map(|row| row.time_s).collect();
+        let mean = if times.is_empty() { 0.0 } else { times.iter().sum::<f64>() / times.len() as f64 };
+        let hours = rows.iter().map(|row| row.time_s.map_or(0.0, |time| (time - mean) / 3600.0)).collect();
+        let is_known = rows.iter().all(|row| row.uncertainty_mm.is_some());
+        let weights = rows.iter().map(|row| row.uncertainty_mm.unwrap_or(1.0)).collect();
+        let stretch = Stretch::of(rows);
+        Self { rows, base, stretch, tools, cells, parts, hours, order, weights, is_known }
+    }
+
+    pub(super) fn change(terms: &[Term], values: &DVector<f64>) -> Change {
+        let mut change = Change::default();
+        for (term, value) in terms.iter().zip(values.iter()) {
+            match term {
+                Term::Axis => change.axis = *value,
+                Term::Squareness => change.eb0z_rad = *value,
+                Term::Bow => change.bow_mm[0] = *value,
+                Term::FourthOrder => change.bow_mm[1] = *value,
+                Term::Growth | Term::Wear | Term::PartToPart => {}
+            }
+        }
+        change
+    }
+
+    pub(super) fn is(&self, row: usize, feature: Feature) -> bool {
+        self.rows[row].feature == feature
+    }
+
+    /// A machine that cannot be made predicts nothing: the adjustment says so.
+    fn predicted(&self, change: &Change) -> DVector<f64> {
+        let nothing = |_| vec![f64::NAN; self.rows.len()];
+        self.base.predicted_mm(change, self.stretch, self.rows).unwrap_or_else(nothing).into()
+    }
+
+    /// What a unit of a term that is no geometry does to a row.
+    fn drift(&self, term: Term, row: usize) -> f64 {
+        match (self.rows[row].feature, term) {
+            (Feature::Diameter, Term::Growth) => 2.0 * self.hours[row],
+            (Feature::Diameter, Term::Wear | Term::PartToPart) => 2.0 * self.order[row],
+            _ => 0.0,
+        }
+    }
+
+    fn by_level(&self, row: usize) -> f64 {
+        if self.is(row, Feature::Diameter) { 2.0 } else { 1.0 }
+    }
+
+    fn forward(&self, terms: &[Term], levels: &Levels, values: &DVector<f64>) -> DVector<f64> {
+        let mut predicted = self.predicted(&Self::change(terms, values));
+        for (row, value) in predicted.iter_mut().enumerate() {
+            for (k, term) in terms.iter().enumerate() {
+                *value += self.drift(*term, row) * values[k];
+            }
+            *value += self.by_level(row) * values[terms.len() + levels.of_row[row]];
+        }
+        predicted
+    }
+
+    /// One column per term, then one per level.
+    pub(super) fn jacobian(&self, terms: &[Term], levels: &Levels, values: &DVector<f64>) -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(self.rows.len(), terms.len() + levels.count());
+        for (k, term) in terms.iter().enumerate() {
+            if term.is_geometry() {
+                let step = match term {
+                    Term::Axis => STEPS[0],
+                    Term::Squareness => STEPS[1],
+                    _ => STEPS[2],
+                };
+                let at = |by: f64| {
+                    let mut moved = values.clone();
+                    moved[k] += by;
+                    self.predicted(&Self::change(terms, &moved))
+                };
+                matrix.set_column(k, &((at(step) - at(-step)) / (2.0 * step)));
+            } else {
+                matrix.set_column(k, &DVector::from_fn(self.rows.len(), |row, _| self.drift(*term, row)));
+            }
+        }
+        for row in 0..self.rows.len() {
+            matrix[(row, terms.len() + levels.of_row[row])] = self.by_level(row);
+        }
+        matrix
+    }
+
+    pub(super) fn readings(&self) -> DVector<f64> {
+        DVector::from_iterator(self.rows.len(), self.rows.iter().map(|row| row.deviation_mm))
+    }
+
+    /// Divided by the uncertainties.
+    pub(super) fn weighted(&self, mut design: DMatrix<f64>) -> DMatrix<f64> {
+        for (row, weight) in self.weights.iter().enumerate() {
+            design.row_mut(row).scale_mut(1.0 / weight);
+        }
+        design
+    }
+
+    fn fit(&self, terms: &[Term], levels: &Levels) -> Result<Estimate, CalibrationError> {
+        let unknowns = terms.len() + levels.count();
+        if self.rows.len() <= unknowns {
+            return Err(CalibrationError::TooFew(format!(
+                "{} readings for {unknowns} unknowns: nothing is left that could judge them",
+                self.rows.len()
+            )));
+        }
+        let problem = Problem {
+            readings: &self.readings(),
+            noise: if self.is_known { Noise::Known(&self.weights) } else { Noise::Relative(&self.weights) },
+            forward: &|values| self.forward(terms, levels, values),
+            jacobian: Jacobian::Exact(&|values| self.jacobian(terms, levels, values)),
+            gauge: &DMatrix::zeros(0, unknowns),
+            settled: SETTLED_MM,
+        };
+        adjust(&problem, &DVector::zeros(unknowns))
+            .map_err(|error| CalibrationError::Contradicted(error.to_string()))
+    }
+
+    /// Each part at its own size: what is left is the noise of a reading.
+    pub(super) fn within(&self, terms: &[Term]) -> Result<Estimate, CalibrationError> {
+        self.fit(&within_a_part(terms), &self.cells)
+    }
+
+    /// True where readings are left that judge the noise.
+    pub(super) fn is_judged(&self, terms: &[Term]) -> bool {
+        self.rows.len() > within_a_part(terms).len() + self.cells.count() + 1
+    }
+
+    /// Nothing changed, each tool at its size: residuals, mm.
+    pub(super) fn unchanged(&self) -> Result<DVector<f64>, CalibrationError> {
+        Ok(self.fit(&[], &self.tools)?.residuals)
+    }
+
+    /// Faces and diameters scatter differently: each by what is left of its own.
+    pub(super) fn weigh(&mut self, terms: &[Term]) -> Result<(), CalibrationError> {
+        if self.is_known || self.rows.iter().all(|row| row.feature == Feature::Diameter) {
+            return Ok(());
+        }
+        for _ in 0..WEIGHINGS {
+            let within = self.within(terms)?;
+            let [diameters, faces] =
+                [Feature::Diameter, Feature::Face].map(|feature| self.noise_mm(&within, feature));
+            for (row, weight) in self.rows.iter().zip(&mut self.weights) {
+                let own = if row.feature == Feature::Diameter { diameters } else { faces };
+                *weight = own.max(LEAST_NOISE_MM);
+            }
+        }
+        Ok(())
+    }
+
+    /// Standard deviation of the readings of a feature by what is left, mm.
+    pub(super) fn noise_mm(&self, within: &Estimate, feature: Feature) -> f64 {
+        let own = || (0..self.rows.len()).filter(|k| self.is(*k, feature));
+        let squares: f64 = own().map(|k| within.residuals[k] * within.residuals[k]).sum();
+        let free: f64 = own().map(|k| within.redundancy_numbers[k]).sum();
+        if free > NOTHING { (squares / free).sqrt() } else { 0.0 }
+    }
+
+    /// Mean square of what is left of a feature, in squares of the weights.
+    fn mean_square(&self, within: &Estimate, feature: Feature) -> MeanSquare {
+        if self.is_known {
+            return MeanSquare { value: 1.0, freedom: f64::INFINITY };
+        }
+        let own = || (0..self.rows.len()).filter(|k| self.is(*k, feature));
+        let squares: f64 = own().map(|k| (within.residuals[k] / self.weights[k]).powi(2)).sum();
+        let freedom: f64 = own().map(|k| within.redundancy_numbers[k]).sum();
+        MeanSquare {
+            value: if freedom > NOTHING { squares / freedom } else { 0.0 },
+            freedom: freedom.max(1.0),
+        }
+    }
+
+    /// Columns of Z: the diameters of a part, weighted.
+    fn shared(&self) -> Vec<DVector<f64>> {
+        let of_part = |part: &usize| {
+            DVector::from_fn(self.rows.len(), |k, _| {
+                let is_own = self.rows[k].part == *part && self.is(k, Feature::Diameter);
+                if is_own { 1.0 / self.weights[k] } else { 0.0 }
+            })
+        };
+        self.parts.iter().map(of_part).collect()
+    }
+
+    /// What the sizes of the parts leave where each tool has one.
+    fn between(
+        &self,
+        terms: &[Term],
+        within: &Estimate,
+        shared: &[DVector<f64>],
+    ) -> Result<Between, CalibrationError> {
+        let of_tools = self.fit(terms, &self.tools)?;
+        let squares = |found: &Estimate| -> f64 {
+            found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w)).sum()
+        };
+        let design = self.weighted(self.jacobian(terms, &self.tools, &of_tools.values));
+        let columns: Vec<DVector<f64>> = design.column_iter().map(|column| column.into_owned()).collect();
+        let basis = orthonormal(&columns, &[]);
+        Ok(Between {
+            squares: (squares(&of_tools) - squares(within)).max(0.0),
+            freedom: of_tools.redundancy.saturating_sub(within.redundancy) as f64,
+            share: shared.iter().map(|column| without(column, &basis).norm_squared()).sum(),
+        })
+    }
+
+    /// True where a degree of freedom is left that tells how parts differ.
+    pub(super) fn tells_parts_apart(&self, terms: &[Term]) -> Result<bool, CalibrationError> {
+        let within = self.within(terms)?;
+        Ok(self.between(terms, &within, &self.shared())?.is_seen())
+    }
+
+    /// Generalised least squares (30) with the covariance of [`super::strata`].
+    pub(super) fn adjusted(&self, terms: &[Term]) -> Result<Adjusted, CalibrationError> {
+        let within = self.within(terms)?;
+        let shared = self.shared();
+        let between = self.between(terms, &within, &shared)?;
+        let noise = [Feature::Diameter, Feature::Face].map(|feature| self.mean_square(&within, feature));
+        let largest = shared.iter().map(DVector::norm_squared).fold(f64::MIN_POSITIVE, f64::max);
+        let variance = between.variance(noise[0].value, largest);
+        // Weights need not be the variances: below nought they are those of parts that share nothing.
+        let theta = variance.max(0.0) / noise[0].value.max(LEAST_NOISE_MM * LEAST_NOISE_MM);
+        let whitening = Whitening::new(&shared, theta);
+        let white =
+            |raw: DVector<f64>| whitening.apply(DVector::from_fn(raw.len(), |k, _| raw[k] / self.weights[k]));
+        let unknowns = terms.len() + self.tools.count();
+        let settled = SETTLED_MM / self.weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let problem = Problem {
+            readings: &white(self.readings()),
+            noise: Noise::Known(&vec![1.0; self.rows.len()]),
+            forward: &|values| white(self.forward(terms, &self.tools, values)),
+            jacobian: Jacobian::Exact(&|values| {
+                whitening.apply_to(&self.weighted(self.jacobian(terms, &self.tools, values)))
+            }),
+            gauge: &DMatrix::zeros(0, unknowns),
+            settled,
+        };
+        let found = adjust(&problem, &DVector::zeros(unknowns))
+            .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+        let design = whitening.apply_to(&self.weighted(self.jacobian(terms, &self.tools, &found.values)));
+        let gains = whitening.apply_to(&(design * &found.covariance)).transpose();
+        let is_face: Vec<bool> = (0..self.rows.len()).map(|k| self.is(k, Feature::Face)).collect();
+        let spread = Spread::new(&gains, &is_face, &shared, noise, &between);
+        let residuals = self.readings() - self.forward(terms, &self.tools, &found.values);
+        let shared_mm = between.is_seen().then(|| variance.max(0.0).sqrt());
+        Ok(Adjusted { values: found.values, spread, residuals, shared_mm })
+    }
+
+    /// A reading that does not belong to its part's others. Rounding scatters by a step over √12 whatever the luck of the
+    /// others.
+    pub(super) fn outlier(&self, within: &Estimate, chance: f64) -> Option<Outlier> {
+        let finest_mm = finest_mm(self.rows);
+        let rounding_mm = finest_mm / 12f64.sqrt();
+        within.outlier(chance).filter(|found| {
+            let own = within.redundancy_numbers[found.reading].sqrt();
+            found.residual.abs() > finest_mm
+                && found.residual.abs() > found.limit.min(6.0) * rounding_mm * own
+        })
+    }
+
+    /// Standard deviation that most readings keep, mm: by the median, which a few wrong ones do not move.
+    pub(super) fn usual_mm(&self, within: &Estimate) -> f64 {
+        let mut sizes: Vec<f64> = within.residuals.iter().map(|r| r.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let widened = (sizes.len() as f64 / within.redundancy.max(1) as f64).sqrt();
+        1.4826 * sizes[sizes.len() / 2] * widened
+    }
+
+    /// What else may change the size from part to part: an error that goes with the diameter where the parts' order (or time)
+    /// does. `None` where nothing else is in sight.
+    pub(super) fn goes_with_the_diameter(&self, term: Term, alike: f64) -> bool {
+        let diameters: Vec<usize> = (0..self.rows.len()).filter(|k| self.is(*k, Feature::Diameter)).collect();
+        let centred = |value: &dyn Fn(usize) -> f64| {
+            let mean = diameters.iter().map(|k| value(*k)).sum::<f64>() / diameters.len() as f64;
+            DVector::from_iterator(diameters.len(), diameters.iter().map(|k| value(*k) - mean))
+        };
+        let own = centred(&|k| self.drift(term, k));
+        let size = centred(&|k| self.rows[k].tip_mm().x);
+        size.norm() > NOTHING && own.dot(&size).powi(2) > alike * own.norm_squared() * size.norm_squared()
+    }
+
+    /// Refuses test pieces whose tapers differ beyond chance.
+    pub(super) fn one_machine(
+        &self,
+        terms: &[Term],
+        adjusted: &Adjusted,
+        names: &[String],
+    ) -> Result<(), CalibrationError> {
+        // What grows in time is told by the sizes of the parts: within a part it looks like a taper of its own.
+        let (terms, mut values): (Vec<Term>, Vec<f64>) =
+            (terms.iter().copied().zip(adjusted.values.iter().copied()))
+                .filter(|(term, _)| term.is_geometry())
+                .unzip();
+        values.resize(terms.len() + self.cells.count(), 0.0);
+        let design = self.jacobian(&terms, &self.cells, &values.into());
+        let middle = 0.5 * (self.stretch.low_mm + self.stretch.high_mm);
+        // The first part's own taper is what the others differ from.
+        let own = self.parts[1..].iter().map(|part| {
+            DVector::from_fn(self.rows.len(), |k, _| {
+                let row = &self.rows[k];
+                let is_own = row.part == *part && row.feature == Feature::Diameter;
+                if is_own { 2.0 * (row.command.linear_mm.z - middle) } else { 0.0 }
+            })
+        });
+        let columns: Vec<DVector<f64>> =
+            design.column_iter().map(|column| column.into_owned()).chain(own).collect();
+        let more = self.parts.len() - 1;
+        if self.rows.len() < columns.len() + 2 {
+            return Ok(());
+        }
+        let wide = DMatrix::from_columns(&columns);
+        let fitted = |design: &DMatrix<f64>| {
+            let gauge = DMatrix::zeros(0, design.ncols());
+            linear(design, &adjusted.residuals, Noise::Relative(&self.weights), &gauge)
+                .map_err(|error| CalibrationError::Contradicted(error.to_string()))
+        };
+        let (alike, apart) = (fitted(&design)?, fitted(&wide)?);
+        let squares = |found: &Estimate| {
+            let weighted = found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w));
+            weighted.sum::<f64>()
+        };
+        let (all, left) = (squares(&alike), squares(&apart));
+        let free = apart.redundancy.max(1);
+        let variance = if self.is_known { 1.0 } else { left / free as f64 };
+        let ratio = (all - left) / more as f64 / variance;
+        let limit =
+            fisher_limit(more as f64, if self.is_known { f64::INFINITY } else { free as f64 }, PARTS_CHANCE);
+        let tapers = apart.values.rows(design.ncols(), more);
+        let length = self.stretch.high_mm - self.stretch.low_mm;
+        let (low, high) = tapers.iter().fold((0.0f64, 0.0f64), |(l, h), t| (l.min(*t), h.max(*t)));
+        let apart_mm = 2.0 * (high - low) * length;
+        if ratio <= limit || apart_mm <= finest_mm(self.rows) {
+            return Ok(());
+        }
+        let odd = tapers.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let odd = odd.map_or(0, |(k, _)| self.parts[k + 1]);
+        Err(CalibrationError::Contradicted(format!(
+            "the test pieces differ in their tapers, by {:.2} um on the diameter over {length:.0} mm (F {ratio:.1}, {limit:.1} by \
+             chance at 0.1 %), `{}` and `{}` among them: that is their own bending or clamping, not one machine",
+            apart_mm * 1e3,
+            names[self.parts[0]],
+            names[odd],
+        )))
+    }
+}
+
+/// Those that differ within a part; the others are part of its size.
+fn within_a_part(terms: &[Term]) -> Vec<Term> {
+    terms.iter().copied().filter(|term| !matches!(term, Term::Wear | Term::PartToPart)).collect()
+}
+
+/// Which part of its tool a row's part is, counted from the mean: by time where all say it, else as the file lists them.
+fn order_of_parts(rows: &[TurnedReading], tools: &Levels) -> Vec<f64> {
+    let mut order = vec![0.0; rows.len()];
+    for level in 0..tools.count() {
+        let own: Vec<usize> = (0..rows.len()).filter(|k| tools.of_row[*k] == level).collect();
+        let mut parts: Vec<usize> = Vec::new();
+        for k in &own {
+            if !parts.contains(&rows[*k].part) {
+                parts.push(rows[*k].part);
+            }
+        }
+        if own.iter().all(|k| rows[*k].time_s.is_some()) {
+            let start = |part: usize| {
+                let times = own.iter().filter(|k| rows[**k].part == part).filter_map(|k| rows[*k].time_s);
+                times.fold(f64::INFINITY, f64::min)
+            };
+            parts.sort_by(|a, b| start(*a).total_cmp(&start(*b)));
+        }
+        for k in own {
+            let place = parts.iter().position(|part| *part == rows[k].part).unwrap_or(0);
+            order[k] = place as f64 - 0.5 * (parts.len() - 1) as f64;
+        }
+    }
+    order
+}
+
+/// What an F of so many degrees of freedom exceeds with this chance; infinite ones below: the noise is known.
+pub(super) fn fisher_limit(above: f64, below: f64, chance: f64) -> f64 {
+    FisherSnedecor::new(above, below.min(KNOWN_FREEDOM))
+        .map_or(f64::INFINITY, |f| f.inverse_cdf(1.0 - chance))
+}
+
+/// Degrees of freedom of a standard deviation that is stated.
+const KNOWN_FREEDOM: f64 = 1e6;
+
+/// An orthonormal basis of what these span beyond the given one.
+pub(super) fn orthonormal(vectors: &[DVector<f64>], given: &[DVector<f64>]) -> Vec<DVector<f64>> {
+    let mut basis = given.to_vec();
+    for vector in vectors {
+        let own = without(vector, &basis);
+        if own.norm() > 1e-9 * vector.norm() {
+            basis.push(own.normalize());
+        }
+    }
+    basis
+}
+
+/// A vector less its part in an orthonormal basis; twice, for rounding.
+pub(super) fn without(vector: &DVector<f64>, basis: &[DVector<f64>]) -> DVector<f64> {
+    let once = basis.iter().fold(vector.clone(), |left, own| &left - own * own.dot(&left));
+    basis.iter().fold(once, |left, own| &left - own * own.dot(&left))
+}
