@@ -14,6 +14,14 @@ pub fn utf8_or_1251(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
+/// The number of a name, in order of appearance: 0 is the first of `names`, to which a new one is added.
+pub fn numbered(names: &mut Vec<String>, name: &str) -> usize {
+    names.iter().position(|known| known == name).unwrap_or_else(|| {
+        names.push(name.to_owned());
+        names.len() - 1
+    })
+}
+
 /// The text of a file: UTF-8 with or without a byte order mark, UTF-16 (Excel's "Unicode text"), else Windows-1251.
 ///
 /// Places in what is refused count bytes of this text.

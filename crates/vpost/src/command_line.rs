@@ -53,7 +53,7 @@ pub enum Command {
     Map(Map),
     /// What each deviation of the machine costs.
     Budget(Budget),
-    /// Check, show or describe machine profiles.
+    /// Make, check, show or describe machine profiles.
     Profile(Profile),
     /// List or check dialect tables.
     Grammar(Grammar),

@@ -1,7 +1,7 @@
 //! Measured test pieces of a lathe to its geometry: taper, bow, squareness, and what is the tool's or the heat's.
 //!
 //! Readings are rows of `d = 2 (r − R)` and of faces `z − Z`; the chain of (71) to (73) predicts them, generalised least
-//! squares (30), (77) finds what changed. Diameters alone see how parallel Z is to the axis of the workpiece: `EB0Z − EB0S`,
+//! squares (30), (78) finds what changed. Diameters alone see how parallel Z is to the axis of the workpiece: `EB0Z − EB0S`,
 //! counted as EB0S. Faces see how square X is to that axis: EB0S alone, for X is straight along itself; with both,
 //! EB0Z is told as well.
 

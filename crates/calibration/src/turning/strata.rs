@@ -5,7 +5,7 @@
 //! known by different noise with different degrees of freedom. `V = s_d² W_d + s_f² W_f + s_p² Z Zᵀ`: noise of diameters,
 //! of faces, and what parts share, Z one column per part. s_p² is what the sizes of the parts leave beyond the noise
 //! (Henderson's third method: its expectation is exact, so it may be below nought); combined variances have Welch's and
-//! Satterthwaite's effective degrees of freedom (GUM G.4.1). Equation (77) of `docs/equations.md`.
+//! Satterthwaite's effective degrees of freedom (GUM G.4.1). Equation (78) of `docs/equations.md`.
 
 use nalgebra::{DMatrix, DVector};
 

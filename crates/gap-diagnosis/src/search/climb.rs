@@ -64,7 +64,7 @@ pub(crate) fn pass(
         equally_good: Vec::new(),
         refused,
         serial: setting.serial,
-        caution: setting.caution.max(setting.serial),
+        caution: setting.counted(),
         clamping: setting.clamping,
         scalars,
     }

@@ -41,10 +41,16 @@ impl Setting {
         Self { serial: Serial::default(), caution: Serial::default(), tails: 1.0, lumpy: false, clamping }
     }
 
+    /// How readings of a run hang together, by the more careful of both accounts.
+    #[must_use]
+    pub(crate) fn counted(&self) -> Serial {
+        self.caution.max(self.serial)
+    }
+
     /// True where the noise is far from what a fit takes for granted: independent readings of one scatter.
     #[must_use]
     pub(crate) fn is_doubtful(&self) -> bool {
-        !self.serial.is_none() || !self.caution.is_none() || self.tails > HEAVY || self.lumpy
+        !self.counted().is_none() || self.tails > HEAVY || self.lumpy
     }
 }
 

@@ -7,7 +7,6 @@ use crate::equations::gram::Gram;
 use crate::equations::noise::quantum_um;
 use crate::equations::observation::Measurements;
 use crate::equations::pool::Pool;
-use crate::equations::serial::Serial;
 use crate::equations::term::Term;
 use crate::library::candidates::{Library, Part};
 use crate::search::bounds::Bounds;
@@ -33,8 +32,6 @@ pub(crate) struct State<'a, 'b> {
     pub(super) fit: Fit,
     pub(super) refused: Option<Refused>,
     pub(super) bounds: Bounds,
-    /// How readings of a run hang together.
-    pub(super) serial: Serial,
     /// What the search counts with beside the scatter of the rows kept.
     pub(super) setting: Setting,
     /// Least variance of a reading, µm²: that of the display's step.
@@ -64,7 +61,7 @@ impl<'a, 'b> State<'a, 'b> {
         let fit = space.fit(&library, &parts);
         let pitches = [0, 1, 2].map(|axis| Pitches::new(source, axis));
         let lost = (lost, gone);
-        let (bounds, serial) = (Bounds::new(data, source.scalars), setting.caution.max(setting.serial));
+        let bounds = Bounds::new(data, source.scalars);
         let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
             data,
@@ -80,7 +77,6 @@ impl<'a, 'b> State<'a, 'b> {
             fit,
             refused,
             bounds,
-            serial,
             setting,
             floor,
         }

@@ -53,7 +53,7 @@ impl State<'_, '_> {
         let columns = (fit.rank - rank_before.min(fit.rank)).max(1) as f64;
         let degrees = (self.space.degrees - fit.rank as f64).max(1.0);
         let inflation = self.inflation(rest, part, fit.level);
-        let independent = degrees / self.serial.as_one();
+        let independent = degrees / self.setting.counted().as_one();
         let effective = self.effective_degrees(between, independent.max(1.0));
         let ratio = (tested - residual).max(0.0) / columns / (residual / degrees).max(self.floor) / inflation;
         // Once with everything, once with the runs' offsets left free: within the runs no drift between
@@ -170,7 +170,7 @@ impl State<'_, '_> {
         if columns < 1.0 || degrees < 1.0 {
             return 1.0;
         }
-        let independent = (degrees / self.serial.as_one()).max(1.0);
+        let independent = (degrees / self.setting.counted().as_one()).max(1.0);
         f_tail(
             (before - after) / columns / (after / degrees).max(self.floor) / inflation,
             columns,
@@ -182,14 +182,14 @@ impl State<'_, '_> {
     /// rest and the runs' offsets taken out, the widest counts.
     fn inflation(&self, rest: &[Part], part: Part, level: usize) -> f64 {
         let tails = self.setting.tails;
-        if self.serial.is_none() {
+        if self.setting.counted().is_none() {
             return tails;
         }
         let beside: Vec<Term> =
             self.library.model_columns(rest).into_iter().map(|c| self.library.terms[c]).collect();
         let own = &self.library.form(part).columns;
         let own: Vec<Term> = own.iter().map(|c| self.library.terms[*c]).collect();
-        inflations(&beside, &own, self.space.rho(level), self.serial, self.source)
+        inflations(&beside, &own, self.space.rho(level), self.setting.counted(), self.source)
             .into_iter()
             .fold(tails, |most, serial| most.max(tails * serial))
     }

@@ -12,7 +12,7 @@ use clap::Args;
 use diagnostic::Diagnostic;
 use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{Calibrated, Profile};
-use measurement_files::{Row, Sheet};
+use measurement_files::{Row, Sheet, numbered};
 
 use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
 use super::output::{Output, Target};
@@ -51,13 +51,6 @@ struct Parts {
     parts: Vec<String>,
     tools: Vec<String>,
     temperatures: Vec<f64>,
-}
-
-fn number_of(names: &mut Vec<String>, name: &str) -> usize {
-    names.iter().position(|known| known == name).unwrap_or_else(|| {
-        names.push(name.to_owned());
-        names.len() - 1
-    })
 }
 
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
@@ -109,12 +102,12 @@ impl Parts {
             let help = "name the clamping and finishing cut, like P1";
             return Err(row.refuse(CELL, "part", "a reading of no part".to_owned(), help).into());
         }
-        let (part, tool) = (number_of(&mut self.parts, &name), row.text("tool"));
+        let (part, tool) = (numbered(&mut self.parts, &name), row.text("tool"));
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
             let message = format!("which tool of the profile is `{tool}`? It says where the carriage stood");
             row.refuse(CELL, "tool", message, help)
         })?;
-        let tool = (!tool.is_empty()).then(|| number_of(&mut self.tools, &tool));
+        let tool = (!tool.is_empty()).then(|| numbered(&mut self.tools, &tool));
         let (z_mm, diameter_mm) = (row.needed("z_mm")?, row.needed("diameter_mm")?);
         let d_um = row.needed("d_um")?;
         if d_um.abs() > MOST_UM {

@@ -10,7 +10,7 @@ use gap_diagnosis::{Measurements, Reading};
 use machine_model::effects::{Conditions, EffectGeometry};
 use machine_model::{Command, Vector};
 use measurement_files::codes::CELL;
-use measurement_files::{Bar, Codes, Kind, Refusal, Row, Sheet};
+use measurement_files::{Bar, Codes, Kind, Refusal, Row, Sheet, numbered};
 
 use super::books::Slip;
 use crate::message::Failure;
@@ -61,9 +61,9 @@ pub(super) fn read(
         row.number("repeat")?;
         let text = |key: &str| Some(row.text(key).into_owned()).filter(|text| !text.is_empty());
         data.rows.push(gap_diagnosis::Row {
-            instrument: text("instrument").map(|name| numbered(&mut data.instruments, name)),
-            artefact: text("artefact").map(|name| numbered(&mut artefacts, name)),
-            station: text("station").map(|name| numbered(&mut stations, name)),
+            instrument: text("instrument").map(|name| numbered(&mut data.instruments, &name)),
+            artefact: text("artefact").map(|name| numbered(&mut artefacts, &name)),
+            station: text("station").map(|name| numbered(&mut stations, &name)),
             ..measured(&sheet, row, index, tool_mm)?
         });
     }
@@ -83,14 +83,6 @@ pub(super) fn slipped(sheet: &Sheet, slip: &Slip) -> Failure {
     );
     let help = "correct the column and diagnose again; with --as-written it is taken as it stands";
     sheet.refuse_column(SLIP, slip.column, message, help).into()
-}
-
-/// The number of a name, in order of appearance.
-fn numbered(names: &mut Vec<String>, name: String) -> usize {
-    names.iter().position(|known| *known == name).unwrap_or_else(|| {
-        names.push(name);
-        names.len() - 1
-    })
 }
 
 /// What a row says, names apart.
