@@ -224,11 +224,21 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
 /// Puts into a lathe's dialect what the profile says of its words and cycles.
 fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
     let Some(turning) = &mut dialect.turning else { return };
-    let TurningRules { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm } =
-        profile.program.turning;
+    let TurningRules {
+        thread_chamfer_leads,
+        thread_chamfer_deg,
+        roughing_escape_mm,
+        groove_return_mm,
+        nose_in_finishing,
+    } = profile.program.turning;
     turning.diameters = profile.program.diameters;
-    turning.cycles =
-        TurningParameters { thread_chamfer_leads, thread_chamfer_deg, roughing_escape_mm, groove_return_mm };
+    turning.cycles = TurningParameters {
+        thread_chamfer_leads,
+        thread_chamfer_deg,
+        roughing_escape_mm,
+        groove_return_mm,
+        nose_in_finishing,
+    };
 }
 
 /// Their names.

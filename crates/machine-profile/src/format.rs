@@ -439,6 +439,14 @@ pub(crate) struct Program {
     /// By how much pecks (G74, G75) go back (parameter 5139).
     #[schemars(with = "Option<f64>")]
     pub(crate) groove_return_mm: Option<Spanned<Finite>>,
+    /// Where G41 and G42 between P and Q of G70 to G73 hold: "finishing" (G70 alone).
+    pub(crate) contour_compensation: Option<ContourCompensation>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum ContourCompensation {
+    Finishing,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

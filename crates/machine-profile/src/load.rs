@@ -14,7 +14,8 @@ use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::format::{
-    self, ChangePlace, DecimalName, Document, Finite, InterpolationName, OutsideName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, InterpolationName, OutsideName,
+    ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, MeasuringFrame,
@@ -347,6 +348,7 @@ impl Loader<'_> {
                 "mm",
             ),
             groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
+            nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
         }
     }
 

@@ -99,6 +99,8 @@ pub struct TurningRules {
     pub roughing_escape_mm: Option<f64>,
     /// By how much pecks go back, mm.
     pub groove_return_mm: Option<f64>,
+    /// G41 and G42 within the contour of a cycle hold in finishing alone; false: not said.
+    pub nose_in_finishing: bool,
 }
 
 /// Tool centre point control: the tip runs straight from end to end of a block.

@@ -189,10 +189,13 @@ impl Profile {
             ("escape of roughing", turning.roughing_escape_mm, "mm"),
             ("return of pecks", turning.groove_return_mm, "mm"),
         ];
-        let said: Vec<String> = said
+        let mut said: Vec<String> = said
             .into_iter()
             .filter_map(|(what, value, unit)| Some(format!("{what} {} {unit}", value?)))
             .collect();
+        if turning.nose_in_finishing {
+            said.push("G41 and G42 of contours in finishing alone".to_owned());
+        }
         if !said.is_empty() {
             writeln!(out, "cycles       {}", said.join(", "))?;
         }

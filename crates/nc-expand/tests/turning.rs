@@ -136,6 +136,40 @@ fn roughing_goes_down_to_the_contour_and_finishing_makes_it() {
     assert_eq!(lines(&dialect("C"), &program), wanted);
 }
 
+/// Programs of schools and shops: a work offset in the block of the start, the block of P names both axes, the nose is
+/// compensated in the contour, which ends with rapids; eight decimals.
+#[test]
+fn a_contour_as_it_is_posted_is_roughed_and_finished() {
+    let mut lathe = dialect("A");
+    let contour = "N10 G0 G42 X20. Z2.\nG1 Z-10.00000001 F0.1\nX40. Z-30.\nG0 X60.\nN20 G40 Z2.\n";
+    let program =
+        format!("G55 G0 X60. Z2.\nG71 U20. R1.\nG71 P10 Q20 U0.4 W0.2 F0.3\n{contour}G70 P10 Q20\n");
+    let (code, message) = refused(&lathe, &program);
+    assert!(code == 144 && message.contains("G42 within a contour"), "{message}");
+    lathe.turning.as_mut().unwrap().cycles.nose_in_finishing = true;
+    let wanted = [
+        "G55 G0 X60. Z2.",
+        "F0.3 G0 X60.4 Z2.2",
+        // One pass would go below the contour; that alone is cut, and left as the program leaves it.
+        "G0 X20.4 Z2.2",
+        "G1 Z-9.8",
+        "G1 X40.4 Z-29.8",
+        "G0 X60.4 Z-29.8",
+        "G0 X60.4 Z2.2",
+        "G0 X60. Z2.",
+        "G0 G42 X20. Z2.",
+        "G1 Z-10.00000001 F0.1",
+        "X40. Z-30.",
+        "G0 X60.",
+        "G40 Z2.",
+    ];
+    assert_eq!(lines(&lathe, &program), wanted);
+    // A finishing that never comes, or one that leaves compensation in force.
+    let unfinished = program.replace("G70 P10 Q20\n", "");
+    assert_eq!(refused(&lathe, &unfinished).0, 144);
+    assert_eq!(refused(&lathe, &program.replace("G40 ", "")).0, 144);
+}
+
 #[test]
 fn a_face_is_roughed_along_x() {
     let program = "G72 W3. R1.\nG72 P10 Q20 U0. W0. F0.3\nN10 G0 Z-8.\nG1 X40.\nN20 G2 X20. Z2. R10.\n";
@@ -294,11 +328,8 @@ fn what_is_not_certain_is_refused() {
         (rough("N10 G0 X20. Z1.\nG1 Z-10.\nN20 X60.\n"), 143),
         (rough("N10 G0 X20.\nG1 Z-10.\nN20 X60.\nX70.\n"), 143),
         ("G70 P10 Q20\nN10 G0 X20.\nN20 G1 Z-10.\n".to_owned(), 144),
-        // Finer than a millionth, or nowhere.
-        ("G90 X50. Z-30. R-1.0000005\n".to_owned(), 143),
-        ("G90 X50.0000005 Z-30.\n".to_owned(), 143),
+        // Nowhere.
         ("G90 X9000000000. Z-30.\n".to_owned(), 143),
-        (rough("N10 G0 X20.\nG1 Z-10.0000005\nN20 X60.\n"), 144),
         ("G73 U4. W2. R1\nG73 P10 Q20 U1. W0.5\nN10 G0 X20.\nN20 G1 Z-10.\n".to_owned(), 143),
     ] {
         let (found, message) = refused(&lathe, &program);

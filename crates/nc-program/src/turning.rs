@@ -73,6 +73,9 @@ pub(crate) fn require_lead(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> 
 /// A face that was corrected leaves its plane by less than this share of its way.
 const FACE_SLOPE: f64 = 0.01;
 
+/// Faces begin and end so far beyond the axis, of the radius, that a nose leaves no pip.
+const FACES_PASS_MM: f64 = 2.0;
+
 /// Feeds beyond the axis: a face may pass the centre, what moves along Z may not.
 pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &[Motion]) -> Outcome<()> {
     let Some(frame) = &state.frame else { return Ok(()) };
@@ -81,7 +84,9 @@ pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &
         let [start, end] = [&feed.start, &feed.end].map(|place| frame.to_program(place.linear_mm));
         let along =
             feed.shape != Shape::Line || (end[2] - start[2]).abs() > FACE_SLOPE * (end[0] - start[0]).abs();
-        if along && start[0].min(end[0]) < -ON_THE_AXIS_MM {
+        // A face that begins there is approached there.
+        let most = if feed.shape == Shape::Line { FACES_PASS_MM } else { ON_THE_AXIS_MM };
+        if along && start[0].min(end[0]) < -most {
             return Err(words
                 .refuse(
                     codes::BELOW_THE_AXIS,

@@ -791,6 +791,8 @@ pub struct TurningParameters {
     pub roughing_escape_mm: Option<f64>,
     /// By how much G74 and G75 go back behind a peck, mm (parameter 5139).
     pub groove_return_mm: Option<f64>,
+    /// G41 and G42 between P and Q hold in finishing alone: roughing leaves its allowance at the tip as programmed.
+    pub nose_in_finishing: bool,
 }
 
 /// A G-code system of a lathe's control: what its table has in place of the dialect's own rows.

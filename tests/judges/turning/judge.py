@@ -176,6 +176,8 @@ def surface(spec, lathe, motions, z, angles, perfect):
 def surfaces(spec, motions_in, motions_out, angles):
     """Largest difference of the finished surfaces beyond the limit, as a ratio, and the largest difference, um."""
     lathe, perfect = workpiece.Lathe(spec), workpiece.Lathe(spec, True)
+    if all(m.kind == "rapid" for m in motions_in):
+        return 0.0, 0.0
     limit = limit_mm(spec)
     floor = floor_of(spec, lathe)
     low = min(m.b[1] for m in motions_in) + spec["work_offsets_mm"]["G54"][2]

@@ -284,7 +284,7 @@ class Fanuc(Player):
         if 4 in codes or 10 in codes:
             return None
         if 28 in codes or 30 in codes:
-            self.events.append(("reference", self.line))
+            self.events.append(("reference", "".join(sorted({letter for letter, _, _ in words if letter in "XUZW"}))))
             for letter, _, _ in words:
                 if letter in "XU":
                     self.x = None

@@ -29,11 +29,12 @@ def lathe(linuxcnc, x, system, perfect=False):
     spec = {
         "name": "unseen", "control": "linuxcnc-lathe" if linuxcnc else "fanuc-lathe", "chain": "[w S b Z X t]", "x": x, "decimal": "millimetres",
         "axes": {"X": {"travel_mm": [-500, 900], "resolution_mm": 0.001}, "Z": {"travel_mm": [-900, 900], "resolution_mm": 0.001}},
-        "tool": {"lengths_mm": {f"H{k}": [0, 0, 0] for k in range(1, 33)}, "noses": {}},
+        "tool": {"lengths_mm": {f"H{k}": [0, 0, 0] for k in range(1, 33)}, "noses": {f"H{k}": {"radius_mm": 0.4, "direction": 3} for k in range(1, 33)}},
         "work_offsets_mm": {f"G{k}": [0, 0, 400] for k in range(54, 60)}, "spindle": {"centre_mm": [0, 0], "face_mm": 0.0}, "tolerance_um": 1.0,
     }
     if not linuxcnc:
         spec["g_code_system"] = system
+        spec["parameters"] = {"thread_chamfer_leads": 1.0, "thread_chamfer_deg": 45.0, "roughing_escape_mm": 0.5, "groove_return_mm": 0.2, "contour_compensation": '"finishing"'}
     if not perfect:
         at = [-900 + 150 * k for k in range(13)]
         spec["axes"]["Z"]["table"] = {"position_mm": at, "EZZ_um": SINE, "EXZ_um": SINE[::-1], "EBZ_urad": [4 * v for v in SINE]}

@@ -7,6 +7,7 @@ use units::math;
 use super::emit::Code;
 use super::state::Motion;
 use super::{Fault, Spot, Writer};
+use crate::codes;
 use crate::shorthand::Words;
 
 /// Ends and centres of programs are rounded: so far may a contour turn back, mm or inches.
@@ -58,10 +59,14 @@ pub(super) struct Contour {
     pub(super) entry: Piece,
     /// From A' to B.
     pub(super) pieces: Vec<Piece>,
+    /// Rapids behind B, which lead off the workpiece.
+    pub(super) retract: Vec<Piece>,
     /// The first block names both axes.
     pub(super) names_both: bool,
     /// F stands in one of its blocks.
     pub(super) says_feed: bool,
+    /// The first G41 or G42 in its blocks: which of them.
+    pub(super) compensated: Option<usize>,
 }
 
 impl Contour {
@@ -173,12 +178,14 @@ impl Writer<'_, '_> {
         // A code of the blocks before does not reach into the contour.
         state.motion = Motion::Unknown;
         let (mut at, mut pieces) = (start, Vec::new());
-        let (mut names_both, mut says_feed) = (false, false);
+        let (mut names_both, mut says_feed, mut compensated) = (false, false, None);
+        let mut retract: Vec<Piece> = Vec::new();
         for index in first..=last {
             let block = self.words(index);
             self.check_contour_block(&block)?;
             says_feed |= block.number(b'F').is_some();
             state.step(&block);
+            compensated = compensated.or(state.compensated.then_some(index));
             if !state.moves(&block) {
                 if index == first {
                     return Err(block.contour_fault(
@@ -190,17 +197,18 @@ impl Writer<'_, '_> {
                 continue;
             }
             let code = match state.motion {
-                Motion::Rapid if pieces.is_empty() => Code::Rapid,
+                Motion::Rapid => Code::Rapid,
+                _ if !retract.is_empty() => {
+                    let rapid = self.words(retract[0].block);
+                    return Err(rapid.contour_fault(
+                        rapid.whole(),
+                        "a rapid within the contour",
+                        "feeds were expected, rapids behind the last of them only",
+                    ));
+                }
                 Motion::Line => Code::Line,
                 Motion::Clockwise if !pieces.is_empty() => Code::Clockwise,
                 Motion::CounterClockwise if !pieces.is_empty() => Code::CounterClockwise,
-                Motion::Rapid => {
-                    return Err(block.contour_fault(
-                        block.whole(),
-                        "a rapid within the contour",
-                        "feeds were expected",
-                    ));
-                }
                 _ => {
                     return Err(block.contour_fault(
                         block.whole(),
@@ -229,7 +237,8 @@ impl Writer<'_, '_> {
                 }
                 _ => (None, Vec::new()),
             };
-            pieces.push(Piece {
+            let list = if code == Code::Rapid && !pieces.is_empty() { &mut retract } else { &mut pieces };
+            list.push(Piece {
                 code,
                 to,
                 round,
@@ -247,11 +256,11 @@ impl Writer<'_, '_> {
                 "one move only leads to it",
             ));
         }
-        Ok(Contour { first, last, start, entry, pieces, names_both, says_feed })
+        Ok(Contour { first, last, start, entry, pieces, retract, names_both, says_feed, compensated })
     }
 
     /// The only block whose N is the number of P or Q.
-    fn numbered(&self, words: &Words<'_, '_>, letter: u8) -> Result<usize, Fault> {
+    pub(super) fn numbered(&self, words: &Words<'_, '_>, letter: u8) -> Result<usize, Fault> {
         let name = letter as char;
         let Some((number, span)) = words.number(letter) else {
             let message = format!("a cycle without {name}");
@@ -281,6 +290,7 @@ impl Writer<'_, '_> {
 
     /// Refuses what no control takes, or takes differently, between P and Q.
     fn check_contour_block(&self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let in_finishing = self.turning.cycles.nose_in_finishing;
         let refuse = |span: Span, label: &str| {
             let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
             Err(words.contour_fault(span, &format!("{text} within a contour"), label))
@@ -306,8 +316,18 @@ impl Writer<'_, '_> {
                                 | Action::Pass { takes_words: false }
                         )
                     );
-                    if matches!(action, None | Some(Action::Refuse { .. } | Action::Compensation(_))) {
-                        return refuse(item.span, "lines and arcs were expected, G40 in force");
+                    if matches!(action, Some(Action::Compensation(_))) {
+                        if in_finishing {
+                            continue;
+                        }
+                        return Err(words.fault(
+                            codes::CONTOUR,
+                            item.span,
+                            &format!("{} within a contour", String::from_utf8_lossy(words.block.text(item.span))),
+                            "whether roughing heeds it controls differ",
+                            "write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
+                             alone: roughing then leaves its allowance at the tip as programmed",
+                        ));
                     }
                     if !fits {
                         return refuse(item.span, "lines and arcs were expected");

@@ -17,7 +17,7 @@ use nc_syntax::{ItemKind, Span};
 use super::contour::{Axis, Contour, Piece};
 use super::emit::{Code, Moves};
 use super::state::Motion;
-use super::{Fault, MILLION, Spot, Writer};
+use super::{Fault, MILLION, Spot, Writer, cycle_of};
 use crate::shorthand::{Words, from, shown};
 
 /// Passes of one cycle; more are a wrong depth.
@@ -61,6 +61,14 @@ impl Writer<'_, '_> {
                 "where the program goes on behind the cycle is certain only there",
             ));
         }
+        if let Some(block) = contour.compensated.filter(|_| !self.is_finished(&contour)) {
+            let block = self.words(block);
+            return Err(block.contour_fault(
+                block.whole(),
+                "compensation of the nose in a contour that no G70 finishes",
+                "it would hold nowhere: roughing leaves it out here",
+            ));
+        }
         let own: &[u8] = if cycle == TurningCycle::RoughPattern { b"PQUWDIK" } else { b"PQUWD" };
         let mut moves = self.begin(&words, start, own)?;
         let allowance = self.allowance(&words);
@@ -82,6 +90,15 @@ impl Writer<'_, '_> {
             self.out.comment(shown(block), from(block));
         }
         Ok(contour.last + 1)
+    }
+
+    /// True where a block behind the contour finishes it.
+    fn is_finished(&self, contour: &Contour) -> bool {
+        (contour.last + 1..self.blocks.len()).any(|index| {
+            let words = self.words(index);
+            let is_finish = cycle_of(&words).is_some_and(|(cycle, _)| cycle == TurningCycle::Finish);
+            is_finish && self.numbered(&words, b'P').is_ok_and(|first| first == contour.first)
+        })
     }
 
     /// The block without P and Q.
@@ -187,7 +204,9 @@ impl Writer<'_, '_> {
         let down: Axis = axis_of(cycle);
         let along: Axis = 1 - down;
         let (depth, escape) = self.depths(words, span, down)?;
-        if contour.names_both {
+        let [a, a1, b] = [self.plane(contour.start), contour.entry.way.to, contour.end()];
+        // Named for both axes and yet without pockets, which the ways below show, it is cut as one of type I.
+        if contour.names_both && a1[along] != a[along] {
             let block = self.words(contour.first);
             return Err(block.cycle_fault(
                 block.whole(),
@@ -196,7 +215,6 @@ impl Writer<'_, '_> {
                 "name only the axis of the infeed in the block of P (type I), or let the CAM write the moves",
             ));
         }
-        let [a, a1, b] = [self.plane(contour.start), contour.entry.way.to, contour.end()];
         let sign = (a1[down] - a[down]).signum();
         let forwards = (b[along] - a1[along]).signum();
         if a1[down] == a[down] || a1[along] != a[along] || b[along] == a1[along] {
@@ -285,7 +303,7 @@ impl Writer<'_, '_> {
     /// The contour as a whole, off by `by`.
     fn along(&mut self, moves: &mut Moves, contour: &Contour, by: Spot) {
         let whom = moves.from;
-        for piece in std::iter::once(&contour.entry).chain(&contour.pieces) {
+        for piece in std::iter::once(&contour.entry).chain(&contour.pieces).chain(&contour.retract) {
             moves.from = from(&self.blocks[piece.block]);
             self.go_with(moves, piece.code, sum(piece.to, by), &piece.round);
         }
@@ -321,6 +339,13 @@ impl Writer<'_, '_> {
             self.unsure_feed &= block.number(b'F').is_none();
             self.state.step(&block);
             self.copy_without_number(&block);
+        }
+        if self.state.compensated {
+            return Err(self.words(contour.last).contour_fault(
+                self.words(contour.last).whole(),
+                "compensation is in force behind the contour",
+                "the way back to the start of the cycle would be compensated",
+            ));
         }
         let end = self.state.at.map(Option::unwrap_or_default);
         let mut back = Moves::new(from(words.block), end);

@@ -96,18 +96,24 @@ impl State {
             }
             // With S alone it moves nothing.
             Action::LimitOrPreset if !with_places => return false,
+            // The words of its block are places from its zero already.
+            Action::WorkOffset(_) | Action::WorkOffsetNumbered => self.moves_frame(),
             Action::Plane(_) => {}
             _ if action.keeps_places() => {}
             // Whatever moves the frame, or the axes by rules of the control; a single pass ends with it.
             _ => {
-                self.at = [None; 2];
-                if matches!(self.motion, Motion::Pass(_)) {
-                    self.motion = Motion::Unknown;
-                }
+                self.moves_frame();
                 return false;
             }
         }
         true
+    }
+
+    fn moves_frame(&mut self) {
+        self.at = [None; 2];
+        if matches!(self.motion, Motion::Pass(_)) {
+            self.motion = Motion::Unknown;
+        }
     }
 
     /// After the block as it stands.
@@ -196,14 +202,15 @@ impl State {
 /// Places and sizes up to 400 km, in millionths: the difference of two has 15 digits, which is what a word may have.
 const MOST: i64 = 400_000_000_000_000;
 
-/// A decimal number in millionths; `None` where it has finer digits, or is no place of any machine.
+/// A decimal number in millionths, finer digits rounded; `None` where it is no place of any machine.
 pub(super) fn millionths(Decimal { mantissa, decimals }: Decimal) -> Option<i64> {
     let shift = 6_i32 - i32::from(decimals);
     let power = 10_i64.checked_pow(shift.unsigned_abs())?;
     let whole = if shift >= 0 {
         mantissa.checked_mul(power)
     } else {
-        (mantissa % power == 0).then_some(mantissa / power)
+        // Half a millionth is 0.013 um of an inch, far below the step of any control.
+        Some((mantissa + mantissa.signum() * (power / 2)) / power)
     };
     whole.filter(|whole| whole.unsigned_abs() <= MOST.unsigned_abs())
 }
