@@ -7,7 +7,7 @@ use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{MCode, Macros, PointFree, TipSwitch, TurningParameters};
+use nc_syntax::dialect::{DrillPecks, MCode, Macros, PointFree, TipSwitch, TurningParameters};
 use rewrite::{Guards, Job};
 
 use crate::flow::Flow;
@@ -229,6 +229,8 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         thread_chamfer_deg,
         roughing_escape_mm,
         groove_return_mm,
+        drill_chips,
+        drill_return_mm,
         nose_in_finishing,
     } = profile.program.turning;
     turning.diameters = profile.program.diameters;
@@ -237,6 +239,8 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         thread_chamfer_deg,
         roughing_escape_mm,
         groove_return_mm,
+        drill_pecks: drill_chips.map(|chips| if chips { DrillPecks::Chip } else { DrillPecks::Full }),
+        drill_return_mm,
         nose_in_finishing,
     };
 }

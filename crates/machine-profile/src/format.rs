@@ -439,8 +439,20 @@ pub(crate) struct Program {
     /// By how much pecks (G74, G75) go back (parameter 5139).
     #[schemars(with = "Option<f64>")]
     pub(crate) groove_return_mm: Option<Spanned<Finite>>,
+    /// How far pecks of G83 go back: "full" (to R) or "chip" (by `drill_return_mm`); parameter 5101.2.
+    pub(crate) drill_pecks: Option<PecksName>,
+    /// By how much pecks of G83 go back, or stay off what is drilled (parameter 5114).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) drill_return_mm: Option<Spanned<Finite>>,
     /// Where G41 and G42 between P and Q of G70 to G73 hold: "finishing" (G70 alone).
     pub(crate) contour_compensation: Option<ContourCompensation>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum PecksName {
+    Full,
+    Chip,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

@@ -15,7 +15,7 @@ use units::{Angle, Length};
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::format::{
     self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, InterpolationName, OutsideName,
-    ToolChange, XName,
+    PecksName, ToolChange, XName,
 };
 use crate::profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, MeasuringFrame,
@@ -348,6 +348,8 @@ impl Loader<'_> {
                 "mm",
             ),
             groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
+            drill_chips: program.drill_pecks.map(|name| matches!(name, PecksName::Chip)),
+            drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", MOST_ESCAPE_MM, "mm"),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
         }
     }

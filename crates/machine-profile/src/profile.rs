@@ -99,6 +99,10 @@ pub struct TurningRules {
     pub roughing_escape_mm: Option<f64>,
     /// By how much pecks go back, mm.
     pub groove_return_mm: Option<f64>,
+    /// Pecks of a drilling cycle go back by the return alone; false: to R; `None`: not said.
+    pub drill_chips: Option<bool>,
+    /// By how much they do, or stay off what is drilled, mm.
+    pub drill_return_mm: Option<f64>,
     /// G41 and G42 within the contour of a cycle hold in finishing alone; false: not said.
     pub nose_in_finishing: bool,
 }

@@ -188,11 +188,15 @@ impl Profile {
             ("its angle", turning.thread_chamfer_deg, "degrees"),
             ("escape of roughing", turning.roughing_escape_mm, "mm"),
             ("return of pecks", turning.groove_return_mm, "mm"),
+            ("return in drilling", turning.drill_return_mm, "mm"),
         ];
         let mut said: Vec<String> = said
             .into_iter()
             .filter_map(|(what, value, unit)| Some(format!("{what} {} {unit}", value?)))
             .collect();
+        if let Some(chips) = turning.drill_chips {
+            said.push(if chips { "pecks break the chip" } else { "pecks go back to R" }.to_owned());
+        }
         if turning.nose_in_finishing {
             said.push("G41 and G42 of contours in finishing alone".to_owned());
         }

@@ -3,7 +3,7 @@
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, Side, TipSwitch, TurningCycle};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 76] = [
+pub const ACTION_NAMES: [&str; 77] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -78,6 +78,7 @@ pub const ACTION_NAMES: [&str; 76] = [
     "peck-face",
     "peck-groove",
     "thread-passes",
+    "drill-face",
     "pass",
     "pass-with-words",
 ];
@@ -160,6 +161,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "peck-face" => Action::Turning(TurningCycle::PeckFace),
         "peck-groove" => Action::Turning(TurningCycle::PeckGroove),
         "thread-passes" => Action::Turning(TurningCycle::ThreadPasses),
+        "drill-face" => Action::Turning(TurningCycle::DrillFace),
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         _ => return None,

@@ -5,7 +5,7 @@ mod common;
 use common::blocks;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::TurningParameters;
+use nc_syntax::dialect::{DrillPecks, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 
@@ -235,6 +235,58 @@ fn pecks_go_back_and_on() {
     );
     assert_eq!(refused(&dialect("A"), "G75 X52. P3000 F0.1\n").0, 145);
     assert_eq!(refused(&dialect("A"), "G75 R0.5\nG75 X52. Z0. P3000 Q2000 R0.2 F0.1\n").0, 143);
+}
+
+/// 27 mm deep from Z-1 in pecks of 10: to R or by the return, the start 3 mm before R.
+#[test]
+fn a_hole_is_drilled_on_the_axis() {
+    let mut lathe = dialect("A");
+    let hole = |words: &str| format!("G0 X0 Z2.\nG83 Z-28. R-3. {words}\nG80\n");
+    let plain = ["G0 X0 Z2.", "F0.1 G0 X0. Z-1.", "G1 Z-28.", "G0 X0. Z-1.", "G0 X0. Z2.", "G80"];
+    assert_eq!(lines(&lathe, &hole("F0.1")), plain);
+    let dwelt =
+        ["G0 X0 Z2.", "F0.1 G0 X0. Z-1.", "G1 Z-28.", "G4 P500", "G0 X0. Z-1.", "G0 X0. Z2. M9", "G80"];
+    assert_eq!(lines(&lathe, &hole("P500 F0.1 M9")), dwelt);
+    assert_eq!(refused(&lathe, &hole("Q10000 F0.1")).0, 145);
+    let cycles = &mut lathe.turning.as_mut().unwrap().cycles;
+    (cycles.drill_pecks, cycles.drill_return_mm) = (Some(DrillPecks::Full), Some(0.5));
+    let full = [
+        "G0 X0 Z2.",
+        "F0.1 G0 X0. Z-1.",
+        "G1 Z-11.",
+        "G0 X0. Z-1.",
+        "G0 X0. Z-10.5",
+        "G1 Z-21.",
+        "G0 X0. Z-1.",
+        "G0 X0. Z-20.5",
+        "G1 Z-28.",
+        "G0 X0. Z-1.",
+        "G0 X0. Z2.",
+        "G80",
+    ];
+    assert_eq!(lines(&lathe, &hole("Q10000 F0.1")), full);
+    lathe.turning.as_mut().unwrap().cycles.drill_pecks = Some(DrillPecks::Chip);
+    let chip: Vec<&str> =
+        full.iter().enumerate().filter(|(k, _)| ![3, 6].contains(k)).map(|(_, line)| *line).collect();
+    assert_eq!(lines(&lathe, &hole("Q10000 F0.1")), chip);
+    for words in ["X10. F0.1", "K2 F0.1", "C90. F0.1"] {
+        assert_eq!(refused(&lathe, &hole(words)).0, 143, "{words}");
+    }
+    for program in [
+        "G0 X0 Z2.\nG83 Z-28. R3. F0.1\n",
+        "G0 X0 Z2.\nG83 Z-28. F0.1\n",
+        "G0 X0 Z2.\nG83 Z-2. R-5. F0.1\n",
+        "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\nZ-30.\n",
+    ] {
+        assert_eq!(refused(&lathe, program).0, 143, "{program}");
+    }
+    // Whether R is a place there, a parameter says.
+    assert!(
+        expanded(&dialect("B"), "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\n")
+            .expect("as it is")
+            .text()
+            .ends_with(b"G83 Z-28. R-3. F0.1\n")
+    );
 }
 
 #[test]

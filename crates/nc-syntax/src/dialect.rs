@@ -398,6 +398,8 @@ pub enum TurningCycle {
     PeckGroove,
     /// G76 (A, B), G78 (C): a thread in several passes.
     ThreadPasses,
+    /// G83 (A): a hole on the axis.
+    DrillFace,
 }
 
 /// What R and Z of a cycle mean for the blocks that repeat it without writing them again.
@@ -774,6 +776,15 @@ pub struct Turning {
     pub systems: Vec<System>,
 }
 
+/// How far a peck of a lathe's drilling cycle goes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrillPecks {
+    /// To R, out of the hole.
+    Full,
+    /// By the return alone: the chip breaks.
+    Chip,
+}
+
 /// Parameters of a lathe's control that decide how its cycles move; what is not said is not guessed.
 ///
 /// ```
@@ -791,6 +802,10 @@ pub struct TurningParameters {
     pub roughing_escape_mm: Option<f64>,
     /// By how much G74 and G75 go back behind a peck, mm (parameter 5139).
     pub groove_return_mm: Option<f64>,
+    /// How far a peck of G83 goes back (parameter 5101.2).
+    pub drill_pecks: Option<DrillPecks>,
+    /// By how much it does, or stays off what is drilled, mm (parameter 5114).
+    pub drill_return_mm: Option<f64>,
     /// G41 and G42 between P and Q hold in finishing alone: roughing leaves its allowance at the tip as programmed.
     pub nose_in_finishing: bool,
 }

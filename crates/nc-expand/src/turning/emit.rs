@@ -41,6 +41,15 @@ impl Moves {
     pub(super) const fn at(&self) -> Spot {
         self.at
     }
+
+    /// Words for the last move, where that is still to come.
+    pub(super) fn pause(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.behind)
+    }
+
+    pub(super) fn resumed(self, behind: Vec<u8>) -> Self {
+        Self { behind, ..self }
+    }
 }
 
 impl<'b> Writer<'b, '_> {

@@ -8,7 +8,7 @@
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself.
-//! * [`pecks`]: grooves and holes.
+//! * [`pecks`]: grooves and holes; [`drill`]: a hole on the axis.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
 //! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
@@ -16,6 +16,7 @@
 
 mod compound;
 mod contour;
+mod drill;
 mod emit;
 mod pass;
 mod pecks;
@@ -139,6 +140,10 @@ impl<'b, 'a> Writer<'b, 'a> {
             }
             TurningCycle::PeckFace | TurningCycle::PeckGroove => {
                 self.pecks(at, cycle, span)?;
+                Ok(at + 1)
+            }
+            TurningCycle::DrillFace => {
+                self.drill(at, span)?;
                 Ok(at + 1)
             }
             TurningCycle::ThreadPasses => {

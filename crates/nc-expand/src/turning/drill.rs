@@ -1,0 +1,126 @@
+//! A hole on the axis: G83 of system A.
+//!
+//! B-64304EN-1, "Front drilling cycle": along X to the hole, a rapid to R, which counts from where the cycle starts, a feed to
+//! Z, dwell P at the bottom, a rapid back to the start. With Q in pecks: parameter 5101.2 (RTR) says whether each goes back
+//! to R or by the return 5114 (d); down again a rapid ends d above what is drilled. Q is a depth, without a point in least
+//! increments. Systems B and C are refused by their tables: whether R is a place or a way there is a parameter (5102.6).
+
+use nc_syntax::dialect::DrillPecks;
+use nc_syntax::{Item, ItemKind, Span, Value};
+
+use super::emit::{Code, Moves};
+use super::state::Motion;
+use super::{Fault, Spot, Writer};
+use crate::shorthand::{Words, from};
+
+/// Pecks of one hole; more are a wrong step.
+const MOST: i64 = 10_000;
+
+impl Writer<'_, '_> {
+    pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
+        let words = self.words(at);
+        let start = self.standing(&words, span)?;
+        let refuse = |what: &str, label: &str, help: &str| Err(words.cycle_fault(span, what, label, help));
+        if let Some((number, span)) = words.number(b'K').filter(|(number, _)| number.integer() != Some(1)) {
+            return Err(words.cycle_fault(
+                span,
+                &format!("a hole drilled {} times", number.to_f64()),
+                "K counts the holes, and on the axis there is one",
+                "leave K out",
+            ));
+        }
+        let [Some(x), Some(bottom)] = self.state.target(&words) else {
+            return refuse("where the cycle leads is not known", "above 400 km", "correct X and Z");
+        };
+        if x != 0 {
+            return refuse(
+                "a hole off the axis",
+                "beside the axis of a workpiece that turns nothing is drilled",
+                "write X0; correct the turning apart from what is drilled with a driven tool",
+            );
+        }
+        if bottom == start[1] || words.number(b'R').is_none() {
+            return refuse(
+                "a hole without a depth, or without R",
+                "R is the way from the start to where drilling begins",
+                "write Z and R, as in `G83 Z-30. R-3. F0.1`",
+            );
+        }
+        let sign = (bottom - start[1]).signum();
+        let approach = self.state.length(&words, b'R').unwrap_or_default();
+        let deep = (bottom - start[1] - approach) * sign;
+        if approach * sign < 0 || deep <= 0 {
+            return refuse(
+                "R does not lie between the start and the bottom",
+                "it counts from the start, with its sign",
+                "R-3. goes 3 mm along -Z",
+            );
+        }
+        let peck = self.state.depth(&words, b'Q').map_or(deep, i64::abs);
+        let (style, back) =
+            if peck > 0 && peck < deep { self.peck_rules(&words, span)? } else { (DrillPecks::Full, 0) };
+        let peck = if peck == 0 { deep } else { peck };
+        if deep / peck > MOST {
+            return refuse(
+                "a hole of more than 10000 pecks",
+                "Q counts least increments where it has no point",
+                "correct Z and Q",
+            );
+        }
+        let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
+        let level = start[1] + approach;
+        let place = |reached: i64| -> Spot { [x, level + sign * reached] };
+        self.go(&mut moves, Code::Rapid, [x, start[1]]);
+        self.go(&mut moves, Code::Rapid, place(0));
+        let mut reached = 0;
+        while reached < deep {
+            if reached > 0 {
+                let up = (reached - back).max(0);
+                if style == DrillPecks::Full {
+                    self.go(&mut moves, Code::Rapid, place(0));
+                }
+                self.go(&mut moves, Code::Rapid, place(up));
+            }
+            reached = (reached + peck).min(deep);
+            self.go(&mut moves, Code::Line, place(reached));
+        }
+        if let Some(dwell) = self.dwell(&words) {
+            let behind = moves.pause();
+            self.end(moves);
+            self.out.line(&dwell, from(words.block));
+            moves = Moves::new(from(words.block), place(deep)).resumed(behind);
+        }
+        self.go(&mut moves, Code::Rapid, place(0));
+        self.go(&mut moves, Code::Rapid, [x, start[1]]);
+        if let Some((feed, _)) = words.number(b'F') {
+            (self.state.feed, self.unsure_feed) = (Some(feed), false);
+        }
+        self.end(moves);
+        self.state.motion = Motion::Unknown;
+        Ok(())
+    }
+
+    /// How the control pecks, and by how much it stays off what is drilled, millionths of the unit.
+    fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<(DrillPecks, i64), Fault> {
+        let cycles = &self.turning.cycles;
+        let Some(style) = cycles.drill_pecks else {
+            return Err(words.parameter_fault(span, "how far a peck goes back", "drill_pecks", "\"full\""));
+        };
+        let Some(back) = cycles.drill_return_mm else {
+            return Err(words.parameter_fault(
+                span,
+                "by how much pecks go back, or stay off what is drilled",
+                "drill_return_mm",
+                "0.5",
+            ));
+        };
+        Ok((style, self.millionths_of(back)))
+    }
+
+    /// The dwell at the bottom, as a block.
+    fn dwell(&self, words: &Words<'_, '_>) -> Option<Vec<u8>> {
+        let is_p = |item: &&Item| matches!(item.kind, ItemKind::Word { letter: b'P', value: Value::Number(number) } if number.to_f64() != 0.0);
+        let item = words.block.items.iter().find(is_p)?;
+        Some([b"G4 ", words.block.text(item.span)].concat())
+    }
+}
