@@ -7,7 +7,7 @@ use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, Questions, Setup};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, MCode, Macros, PointFree, TipSwitch, TurningParameters};
+use nc_syntax::dialect::{DrillPecks, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters};
 use rewrite::{Guards, Job};
 
 use crate::flow::Flow;
@@ -229,6 +229,10 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         thread_chamfer_deg,
         roughing_escape_mm,
         groove_return_mm,
+        thread_finishing_passes,
+        thread_least_mm,
+        thread_allowance_mm,
+        thread_flank_from,
         drill_chips,
         drill_return_mm,
         nose_in_finishing,
@@ -239,6 +243,14 @@ fn declare_cycles(profile: &Profile, dialect: &mut Dialect) {
         thread_chamfer_deg,
         roughing_escape_mm,
         groove_return_mm,
+        thread_finishing_passes,
+        thread_least_mm,
+        thread_allowance_mm,
+        thread_flank_from: thread_flank_from.map(|from| match from {
+            machine_profile::FlankFrom::Start => FlankFrom::Start,
+            machine_profile::FlankFrom::FirstPass => FlankFrom::FirstPass,
+            machine_profile::FlankFrom::LastPass => FlankFrom::LastPass,
+        }),
         drill_pecks: drill_chips.map(|chips| if chips { DrillPecks::Chip } else { DrillPecks::Full }),
         drill_return_mm,
         nose_in_finishing,

@@ -439,6 +439,18 @@ pub(crate) struct Program {
     /// By how much pecks (G74, G75) go back (parameter 5139).
     #[schemars(with = "Option<f64>")]
     pub(crate) groove_return_mm: Option<Spanned<Finite>>,
+    /// Finishing passes of G76 in one block (parameter 5142).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) thread_finishing_passes: Option<Spanned<Finite>>,
+    /// Its least infeed, radius (parameter 5140).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) thread_least_mm: Option<Spanned<Finite>>,
+    /// Its finishing allowance, radius (parameter 5141).
+    #[schemars(with = "Option<f64>")]
+    pub(crate) thread_allowance_mm: Option<Spanned<Finite>>,
+    /// Which pass of a thread cut by one edge begins where the cycle starts: "start" (one without depth would),
+    /// "first-pass" or "last-pass".
+    pub(crate) thread_flank_from: Option<FlankName>,
     /// How far pecks of G83 go back: "full" (to R) or "chip" (by `drill_return_mm`); parameter 5101.2.
     pub(crate) drill_pecks: Option<PecksName>,
     /// By how much pecks of G83 go back, or stay off what is drilled (parameter 5114).
@@ -446,6 +458,14 @@ pub(crate) struct Program {
     pub(crate) drill_return_mm: Option<Spanned<Finite>>,
     /// Where G41 and G42 between P and Q of G70 to G73 hold: "finishing" (G70 alone).
     pub(crate) contour_compensation: Option<ContourCompensation>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FlankName {
+    Start,
+    FirstPass,
+    LastPass,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

@@ -18,7 +18,7 @@ pub use effects::EngineError;
 pub use error::ProfileError;
 pub use load::{Read, load};
 pub use profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, LatheParts,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,
     MeasuringFrame, Nose, Outside, Profile, ProgramRules, TurningRules,
 };
 pub use show::schema;

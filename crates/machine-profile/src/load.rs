@@ -14,12 +14,12 @@ use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
 use crate::format::{
-    self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, InterpolationName, OutsideName,
-    PecksName, ToolChange, XName,
+    self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, FlankName, InterpolationName,
+    OutsideName, PecksName, ToolChange, XName,
 };
 use crate::profile::{
-    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, Kinematics, MeasuringFrame,
-    Outside, Profile, ProgramRules, TurningRules,
+    AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics,
+    MeasuringFrame, Outside, Profile, ProgramRules, TurningRules,
 };
 use crate::tables::{ErrorRows, error_rows, traverse};
 use crate::toml_error;
@@ -64,6 +64,8 @@ const MOST_CHAMFER_LEADS: f64 = 12.7;
 const MOST_CHAMFER_DEG: f64 = 89.0;
 /// Parameters 5133 and 5139 are clearances; more is a slip of the unit.
 const MOST_ESCAPE_MM: f64 = 50.0;
+/// Finishing passes of a thread: P of the first block has two digits for them.
+const MOST_FINISHING_PASSES: f64 = 99.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
 const COARSEST_MM: f64 = 0.1;
 /// The finest step that decimals are counted for, mm.
@@ -348,6 +350,25 @@ impl Loader<'_> {
                 "mm",
             ),
             groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
+            thread_finishing_passes: number(
+                &program.thread_finishing_passes,
+                "thread_finishing_passes",
+                MOST_FINISHING_PASSES,
+                "passes",
+            )
+            .map(f64::round),
+            thread_least_mm: number(&program.thread_least_mm, "thread_least_mm", MOST_ESCAPE_MM, "mm"),
+            thread_allowance_mm: number(
+                &program.thread_allowance_mm,
+                "thread_allowance_mm",
+                MOST_ESCAPE_MM,
+                "mm",
+            ),
+            thread_flank_from: program.thread_flank_from.map(|name| match name {
+                FlankName::Start => FlankFrom::Start,
+                FlankName::FirstPass => FlankFrom::FirstPass,
+                FlankName::LastPass => FlankFrom::LastPass,
+            }),
             drill_chips: program.drill_pecks.map(|name| matches!(name, PecksName::Chip)),
             drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", MOST_ESCAPE_MM, "mm"),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),

@@ -88,6 +88,17 @@ pub struct ProgramRules {
     pub turning: TurningRules,
 }
 
+/// Which pass of a thread cut by one edge begins where the cycle starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlankFrom {
+    /// None: one without depth would.
+    Start,
+    /// The first.
+    FirstPass,
+    /// The last.
+    LastPass,
+}
+
 /// Parameters of a lathe's control that decide how its cycles move; `None`: not said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurningRules {
@@ -99,6 +110,14 @@ pub struct TurningRules {
     pub roughing_escape_mm: Option<f64>,
     /// By how much pecks go back, mm.
     pub groove_return_mm: Option<f64>,
+    /// Finishing passes of a thread in one block.
+    pub thread_finishing_passes: Option<f64>,
+    /// Its least infeed, radius, mm.
+    pub thread_least_mm: Option<f64>,
+    /// Its finishing allowance, radius, mm.
+    pub thread_allowance_mm: Option<f64>,
+    /// Which pass of a thread cut by one edge begins where the cycle starts.
+    pub thread_flank_from: Option<FlankFrom>,
     /// Pecks of a drilling cycle go back by the return alone; false: to R; `None`: not said.
     pub drill_chips: Option<bool>,
     /// By how much they do, or stay off what is drilled, mm.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use machine_model::{Axis, EngineId};
 
 use crate::format::Document;
-use crate::profile::{AfterChange, BareLengths, Outside, Profile};
+use crate::profile::{AfterChange, BareLengths, FlankFrom, Outside, Profile};
 
 /// The JSON Schema of `format = 1`.
 #[must_use]
@@ -188,12 +188,22 @@ impl Profile {
             ("its angle", turning.thread_chamfer_deg, "degrees"),
             ("escape of roughing", turning.roughing_escape_mm, "mm"),
             ("return of pecks", turning.groove_return_mm, "mm"),
+            ("finishing passes of threads", turning.thread_finishing_passes, ""),
+            ("their least infeed", turning.thread_least_mm, "mm"),
+            ("their allowance", turning.thread_allowance_mm, "mm"),
             ("return in drilling", turning.drill_return_mm, "mm"),
         ];
         let mut said: Vec<String> = said
             .into_iter()
             .filter_map(|(what, value, unit)| Some(format!("{what} {} {unit}", value?)))
             .collect();
+        if let Some(from) = turning.thread_flank_from {
+            said.push(match from {
+                FlankFrom::Start => "flanks count from the start".to_owned(),
+                FlankFrom::FirstPass => "flanks count from the first pass".to_owned(),
+                FlankFrom::LastPass => "flanks count from the last pass".to_owned(),
+            });
+        }
         if let Some(chips) = turning.drill_chips {
             said.push(if chips { "pecks break the chip" } else { "pecks go back to R" }.to_owned());
         }

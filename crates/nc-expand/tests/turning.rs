@@ -5,7 +5,7 @@ mod common;
 use common::blocks;
 use nc_expand::{Environment, Expanded, Limits, Refusal, expand};
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{DrillPecks, TurningParameters};
+use nc_syntax::dialect::{DrillPecks, FlankFrom, TurningParameters};
 
 const START: &str = "G0 X60. Z2.\n";
 
@@ -299,8 +299,43 @@ fn a_thread_of_several_passes() {
         ["F2. G0 X51. Z2.", "G0 X50.585786 Z2.", "G0 X50.26795 Z2.", "G0 X50.2 Z2.", "G0 X50. Z2."]
     );
     assert_eq!(passes[1..4], ["G32 Z-30.", "G0 X60. Z-30.", "G0 X60. Z2."]);
-    assert_eq!(refused(&dialect("A"), "G76 P010060 Q100 R0.1\nG76 X50. Z-30. P1000 Q500 F2.\n").0, 143);
     assert_eq!(refused(&dialect("A"), "G76 X50. Z-30. P1000 Q500 F2.\n").0, 143);
+}
+
+/// A tip of 60 degrees goes on along the flank by 0.57735 of the depth: of depths 0.5, 0.707107, 0.866025, 0.9 and 1.0 by
+/// 0.288675, 0.408248, 0.5, 0.519615 and 0.57735, counted from where the profile says.
+#[test]
+fn a_thread_cut_by_one_edge_goes_along_the_flank() {
+    let mut lathe = dialect("A");
+    let two = "G76 P010060 Q100 R0.1\nG76 X50. Z-30. P1000 Q500 F2.\n";
+    assert_eq!(refused(&lathe, two).0, 145);
+    let starts = |lathe: &Dialect, program: &str| -> Vec<String> {
+        let passes = lines(lathe, program);
+        passes
+            .iter()
+            .filter(|line| line.contains("G0 X5"))
+            .map(|line| line.rsplit('Z').next().unwrap().to_owned())
+            .collect()
+    };
+    for (from, wanted) in [
+        (FlankFrom::Start, ["1.711325", "1.591752", "1.5", "1.480385", "1.42265"]),
+        (FlankFrom::FirstPass, ["2.", "1.880427", "1.788675", "1.76906", "1.711325"]),
+        (FlankFrom::LastPass, ["2.288675", "2.169102", "2.077351", "2.057735", "2."]),
+    ] {
+        lathe.turning.as_mut().unwrap().cycles.thread_flank_from = Some(from);
+        assert_eq!(starts(&lathe, two), wanted, "{from:?}");
+    }
+    // The same in one block: what the first one says, parameters do.
+    let one = "G76 X50. Z-30. K1. D500 A60 F2.\n";
+    assert_eq!(refused(&lathe, one).0, 145);
+    let cycles = &mut lathe.turning.as_mut().unwrap().cycles;
+    (cycles.thread_finishing_passes, cycles.thread_least_mm) = (Some(1.0), Some(0.1));
+    cycles.thread_allowance_mm = Some(0.1);
+    let comments = |program: &str| lines(&lathe, program);
+    assert_eq!(comments(one), comments(two));
+    for words in ["P2", "Q100", "A150"] {
+        assert_eq!(refused(&lathe, &one.replace("A60", words)).0, 143, "{words}");
+    }
 }
 
 /// What `rs274` of LinuxCNC 2.9 makes of the same block, X as a diameter.

@@ -776,6 +776,18 @@ pub struct Turning {
     pub systems: Vec<System>,
 }
 
+/// Which depth of a thread's passes begins where its cycle starts; deeper ones begin further along the thread, by what they
+/// are deeper times the tangent of half the tip's angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlankFrom {
+    /// None: as if it had no depth.
+    Start,
+    /// That of the first pass.
+    FirstPass,
+    /// That of the last pass.
+    LastPass,
+}
+
 /// How far a peck of a lathe's drilling cycle goes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrillPecks {
@@ -802,6 +814,14 @@ pub struct TurningParameters {
     pub roughing_escape_mm: Option<f64>,
     /// By how much G74 and G75 go back behind a peck, mm (parameter 5139).
     pub groove_return_mm: Option<f64>,
+    /// Finishing passes of a thread in one block (parameter 5142), a whole number.
+    pub thread_finishing_passes: Option<f64>,
+    /// Its least infeed, radius, mm (5140).
+    pub thread_least_mm: Option<f64>,
+    /// Its finishing allowance, radius, mm (5141).
+    pub thread_allowance_mm: Option<f64>,
+    /// From where passes move along the flank.
+    pub thread_flank_from: Option<FlankFrom>,
     /// How far a peck of G83 goes back (parameter 5101.2).
     pub drill_pecks: Option<DrillPecks>,
     /// By how much it does, or stays off what is drilled, mm (parameter 5114).

@@ -6,14 +6,21 @@
 //! n-th pass lies the first infeed times the root of n deep, and at least the least infeed below the one before, down to the
 //! finishing allowance above the root; then the finishing passes, at the root.
 //!
-//! With a tip of zero degrees the tool feeds straight in. Of other angles one edge cuts, and the start of each pass moves
-//! along Z; from where the manual counts that way is a figure and no sentence, so that it is refused.
+//! In one block (the format of series 10 and 11, and Haas's) K is the height, D the first infeed, I the taper, A the angle;
+//! the rest parameters say.
+//!
+//! With a tip of zero degrees the tool feeds straight in. Of other angles one edge cuts: each pass starts further along Z, by
+//! its depth times the tangent of half the angle. From where that counts the manual shows in a figure and says in no
+//! sentence; the profile has to say it ([`FlankFrom`]).
 
 use nc_syntax::Span;
+use nc_syntax::dialect::FlankFrom;
+use units::math;
 
 use super::emit::Code;
 use super::state::Motion;
 use super::{Fault, Spot, Writer};
+use crate::shorthand::Words;
 
 /// Passes of one thread; more are a wrong infeed.
 const MOST_PASSES: usize = 1000;
@@ -23,7 +30,7 @@ const MOST_PASSES: usize = 1000;
 pub(super) struct Settings {
     finishing_passes: i64,
     chamfer_leads: f64,
-    tip_deg: i64,
+    tip_deg: f64,
     least: i64,
     allowance: i64,
 }
@@ -38,35 +45,41 @@ impl Writer<'_, '_> {
         let start = self.standing(&words, span)?;
         let refuse =
             |message: &str, label: &str, help: &str| Err(words.cycle_fault(span, message, label, help));
-        let Some(settings) = self.first_blocks.thread.filter(|_| words.number(b'K').is_none()) else {
+        let in_one_block = words.number(b'K').is_some();
+        let settings = if in_one_block {
+            self.settings_of_control(&words, span)?
+        } else if let Some(settings) = self.first_blocks.thread {
+            settings
+        } else {
             return refuse(
                 "a thread of several passes without its first block",
                 "finishing passes, chamfer, angle and infeeds are parameters of the control then",
                 "write the first block, as in `G76 P020000 Q100 R0.05`",
             );
         };
-        if settings.tip_deg != 0 {
-            return refuse(
-                &format!("a thread cut with one edge, tip of {} degrees", settings.tip_deg),
-                "from where the control moves the start of each pass along Z is not certain",
-                "write 00 as the last digits of P in the first block, or let the CAM write the passes",
-            );
-        }
         let [Some(x), Some(z)] = self.state.target(&words) else {
             return refuse("where the thread ends is not known", "X and Z were expected", "write X and Z");
         };
-        let (height, first) = (self.state.depth(&words, b'P'), self.state.depth(&words, b'Q'));
+        let (height, first) = if in_one_block {
+            (self.state.length(&words, b'K'), self.state.depth(&words, b'D'))
+        } else {
+            (self.state.depth(&words, b'P'), self.state.depth(&words, b'Q'))
+        };
         let (Some(height), Some(first)) = (height.filter(|h| *h > 0), first.filter(|q| *q > 0)) else {
             return refuse(
                 "a thread without its height or its first infeed",
-                "P and Q above zero were expected",
-                "write P, the height of the thread, and Q, the first infeed, both of the radius",
+                if in_one_block {
+                    "K and D above zero were expected"
+                } else {
+                    "P and Q above zero were expected"
+                },
+                "write the height of the thread and the first infeed, both of the radius",
             );
         };
         let Some((feed, _)) = words.number(b'F') else {
             return refuse("a thread without its lead", "F was expected", "write F, the lead, in this block");
         };
-        let taper = self.state.length(&words, b'R').unwrap_or_default();
+        let taper = self.state.length(&words, if in_one_block { b'I' } else { b'R' }).unwrap_or_default();
         let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
         // Outside threads start above their root.
         let outwards = (start[0] - (x + twice * taper)).signum();
@@ -81,12 +94,14 @@ impl Writer<'_, '_> {
         let Some(depths) = depths else {
             return refuse("more than 1000 passes", "the infeeds are too small", "correct Q of both blocks");
         };
-        let mut moves = self.begin(&words, start, b"XZUWPQRI")?;
+        let flank = self.flank(&words, span, &settings, &depths)?;
+        let own: &[u8] = if in_one_block { b"XZUWIKDA" } else { b"XZUWPQR" };
+        let mut moves = self.begin(&words, start, own)?;
         self.state.feed = Some(feed);
         self.unsure_feed = false;
         for depth in depths {
             let above = outwards * twice * (height - depth);
-            let from: Spot = [x + twice * taper + above, start[1]];
+            let from: Spot = [x + twice * taper + above, start[1] + (z - start[1]).signum() * flank(depth)];
             self.go(&mut moves, Code::Rapid, from);
             self.chamfered(&mut moves, &words, [x + above, z], start[0], b"", settings.chamfer_leads)?;
             self.go(&mut moves, Code::Rapid, [start[0], z]);
@@ -95,6 +110,70 @@ impl Writer<'_, '_> {
         self.end(moves);
         self.state.motion = Motion::Unknown;
         Ok(())
+    }
+
+    /// How far along the thread a pass of some depth starts, millionths.
+    fn flank(
+        &self,
+        words: &Words<'_, '_>,
+        span: Span,
+        settings: &Settings,
+        depths: &[i64],
+    ) -> Result<impl Fn(i64) -> i64 + use<>, Fault> {
+        let zero = if settings.tip_deg == 0.0 {
+            0
+        } else {
+            match self.turning.cycles.thread_flank_from {
+                Some(FlankFrom::Start) => 0,
+                Some(FlankFrom::FirstPass) => depths.first().copied().unwrap_or_default(),
+                Some(FlankFrom::LastPass) => depths.last().copied().unwrap_or_default(),
+                None => {
+                    return Err(words.parameter_fault(
+                        span,
+                        "from where the start of each pass moves along the flank",
+                        "thread_flank_from",
+                        "\"first-pass\"",
+                    ));
+                }
+            }
+        };
+        let slope = math::tan(0.5 * settings.tip_deg.to_radians());
+        Ok(move |depth: i64| units::decimal::round((depth - zero) as f64 * slope))
+    }
+
+    /// What parameters of the control say of a thread in one block.
+    fn settings_of_control(&self, words: &Words<'_, '_>, span: Span) -> Result<Settings, Fault> {
+        let cycles = &self.turning.cycles;
+        let said = |value: Option<f64>, what: &str, key: &str, like: &str| {
+            value.ok_or_else(|| words.parameter_fault(span, what, key, like))
+        };
+        let passes = said(
+            cycles.thread_finishing_passes,
+            "how many finishing passes",
+            "thread_finishing_passes",
+            "1",
+        )?;
+        let least = said(cycles.thread_least_mm, "the least infeed", "thread_least_mm", "0.05")?;
+        let allowance =
+            said(cycles.thread_allowance_mm, "the finishing allowance", "thread_allowance_mm", "0")?;
+        let chamfer =
+            said(cycles.thread_chamfer_leads, "the chamfer at the end", "thread_chamfer_leads", "1")?;
+        let tip_deg = words.number(b'A').map_or(0.0, |(number, _)| number.to_f64());
+        if !(0.0..=120.0).contains(&tip_deg) {
+            return Err(words.cycle_fault(
+                span,
+                &format!("a tip of {tip_deg} degrees"),
+                "0 to 120 were expected",
+                "correct A",
+            ));
+        }
+        Ok(Settings {
+            finishing_passes: passes as i64,
+            chamfer_leads: chamfer,
+            tip_deg,
+            least: self.millionths_of(least),
+            allowance: self.millionths_of(allowance),
+        })
     }
 
     /// The first block.
@@ -120,7 +199,7 @@ impl Writer<'_, '_> {
         self.first_blocks.thread = Some(Settings {
             finishing_passes: (digits / 10_000).max(1),
             chamfer_leads: (digits / 100 % 100) as f64 * 0.1,
-            tip_deg: digits % 100,
+            tip_deg: (digits % 100) as f64,
             least: least.abs(),
             allowance: allowance.abs(),
         });
