@@ -732,6 +732,9 @@ def play_linuxcnc(text, spec):
             player.line = int(m.group(1))
             if name == "USE_LENGTH_UNITS":
                 scale = 25.4 if "INCH" in arguments else 1.0
+                if scale != 1.0:
+                    # 2.5 um a step: coarser than the tolerance
+                    raise Unreadable("rs274 prints four decimals of an inch")
             elif name == "SET_FEED_RATE":
                 player.feed = numbers[0]
             elif name == "SET_FEED_MODE":
