@@ -272,7 +272,11 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
 
 #[test]
 fn russian_pages_have_the_same_commands_outputs_and_pictures() {
-    for (english, russian) in [("README.md", "README.ru.md"), ("docs/tutorial.md", "docs/tutorial.ru.md")] {
+    for (english, russian) in [
+        ("README.md", "README.ru.md"),
+        ("docs/tutorial.md", "docs/tutorial.ru.md"),
+        ("docs/how-to/turn-straight.md", "docs/how-to/turn-straight.ru.md"),
+    ] {
         let blocks = |name: &str| {
             let kept = |fence: &Fence| (fence.info.clone(), fence.text.clone());
             fences(&read(name)).iter().map(kept).collect::<Vec<_>>()
