@@ -1,7 +1,7 @@
 //! The fuzz targets without libFuzzer: every seed; and where a time is given, mutations of seeds by chance.
 //!
 //! `VPOST_FUZZ_SECONDS=120` gives a time, `VPOST_FUZZ_SEED=2` other mutations, `VPOST_FUZZ_RUNS=1000` an end,
-//! `VPOST_FUZZ_TARGETS=parse,tables` some targets. What is found is printed
+//! `VPOST_FUZZ_TARGETS=parse,tables` some targets, `VPOST_FUZZ_DIALECT=fanuc-lathe` the seeds of one dialect. What is found is printed
 //! with its bytes. The long runs, which learn from coverage: `tests/fuzz/run`.
 
 mod common;
@@ -55,9 +55,17 @@ fn programs() -> Vec<Vec<u8>> {
         }
     }
     SAMPLES.iter().for_each(|(sample, dialect)| take(dialect, &root().join(sample)));
+    for dialect in targets::DIALECTS {
+        let folder = root().join("tests/fuzz/lathes").join(dialect);
+        files(&folder, &["nc"]).iter().for_each(|path| take(dialect, path));
+    }
     // What fuzzing found, the smallest program each, with its letter.
     let found = files(&root().join("tests/fuzz/found"), &["txt"]);
     seeds.extend(found.iter().map(|path| std::fs::read(path).expect("readable")));
+    if let Ok(dialect) = std::env::var("VPOST_FUZZ_DIALECT") {
+        seeds
+            .retain(|seed| seed.first().is_some_and(|b| b.to_ascii_lowercase() == targets::letter(&dialect)));
+    }
     seeds
 }
 
@@ -105,7 +113,7 @@ fn mutated(seeds: &[Vec<u8>], random: &mut ChaCha8Rng) -> Vec<u8> {
                 bytes.splice(at..end, part.iter().copied());
             }
             _ => {
-                let digit = b"0123456789.-#[]GXYZIJR,%/;( \n"[random.random_range(0..29)];
+                let digit = b"0123456789.-#[]GXYZIJR,%/;( \nUWPQDK"[random.random_range(0..35)];
                 bytes.insert(at, digit);
             }
         }

@@ -8,8 +8,18 @@ use vpost::session::Session;
 use super::LIMITS;
 
 /// Every shipped dialect, each with the letter that chooses it: small for one machine, capital for the other.
-pub const DIALECTS: [&str; 6] = ["fanuc", "linuxcnc", "perspektiva", "sinumerik", "balt-system", "centroid"];
-const LETTERS: [u8; 6] = *b"flpsbc";
+pub const DIALECTS: [&str; 9] = [
+    "fanuc",
+    "linuxcnc",
+    "perspektiva",
+    "sinumerik",
+    "balt-system",
+    "centroid",
+    "fanuc-lathe",
+    "linuxcnc-lathe",
+    "sinumerik-turn",
+];
+const LETTERS: [u8; 9] = *b"flpsbctmn";
 
 /// For whom a program is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +37,8 @@ pub enum Machine {
 pub fn split(bytes: &[u8]) -> (&'static str, Machine, &[u8]) {
     let Some((first, rest)) = bytes.split_first() else { return (DIALECTS[0], Machine::Crooked, bytes) };
     let small = first.to_ascii_lowercase();
-    let index = LETTERS.iter().position(|letter| *letter == small).unwrap_or(usize::from(first % 6));
+    let index =
+        LETTERS.iter().position(|letter| *letter == small).unwrap_or(usize::from(*first) % LETTERS.len());
     let machine = if first.is_ascii_uppercase() { Machine::Backlash } else { Machine::Crooked };
     (DIALECTS[index], machine, rest)
 }
@@ -35,7 +46,7 @@ pub fn split(bytes: &[u8]) -> (&'static str, Machine, &[u8]) {
 /// The session of a dialect and machine, loaded once.
 pub(crate) fn session(dialect: &str, machine: Machine) -> &'static Session {
     thread_local! {
-        static LOADED: [OnceCell<&'static Session>; 18] = const { [const { OnceCell::new() }; 18] };
+        static LOADED: [OnceCell<&'static Session>; 27] = const { [const { OnceCell::new() }; 27] };
     }
     let row = DIALECTS.iter().position(|known| *known == dialect).expect("a shipped dialect");
     LOADED.with(|loaded| {
@@ -50,7 +61,16 @@ fn load(dialect: &str, machine: Machine) -> Session {
     // Coarse: the number of pieces goes with the root of the tolerance, and shows nothing new.
     let tolerance = ["--tolerance", "4", "-d", dialect];
     let offsets = ["--work-offset", "G54=100,80,40", "--work-offset", "G55=110,75,41"];
+    let is_lathe = nc_dialect::builtin(dialect).is_some_and(|dialect| dialect.turning.is_some());
     let options = match machine {
+        _ if is_lathe => {
+            let profile = file(match machine {
+                Machine::Crooked => "tests/profiles/lathe.toml",
+                Machine::Backlash => "machine-profiles/generic_lathe.toml",
+                Machine::Perfect => "tests/profiles/perfect_lathe.toml",
+            });
+            [&["-m", &profile][..], &tolerance].concat().into_iter().map(str::to_owned).collect()
+        }
         Machine::Crooked => {
             let profile = file("tests/profiles/corpus.toml");
             [&["-m", &profile, "--start-at", "100,80,300"][..], &tolerance]
