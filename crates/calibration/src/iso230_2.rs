@@ -37,6 +37,8 @@ pub struct Uncertain {
     pub value: f64,
     /// Expanded uncertainty.
     pub expanded: f64,
+    /// Positions of the targets that make it: of the upper limit, of the lower; one and the same where one target does.
+    pub at: [f64; 2],
 }
 
 /// Results at one target.
@@ -165,6 +167,48 @@ fn scatters(all: &[Option<(Approach, usize)>]) -> Vec<Variance> {
     if chance < UNEQUAL { each } else { vec![Variance { value: pooled, freedom }; all.len()] }
 }
 
+/// How far single readings spread, before and after each run was corrected by the mean of the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOut {
+    /// Largest minus smallest reading, over all targets, runs and directions.
+    pub before: f64,
+    /// The same of what the correction leaves.
+    pub after: f64,
+    /// Root mean square of what it leaves.
+    pub after_rms: f64,
+}
+
+/// What a correction by target and direction leaves of runs that it was not made of: equation (79).
+///
+/// `None` where a direction was run once: then no run is left to correct it by.
+#[must_use]
+pub fn held_out(runs: &Runs) -> Option<HeldOut> {
+    let read: Vec<&Vec<Vec<f64>>> =
+        [&runs.positive, &runs.negative].into_iter().filter(|all| !all.is_empty()).collect();
+    if read.is_empty() || read.iter().any(|all| all.len() < 2) {
+        return None;
+    }
+    let range = |values: &[f64]| {
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        high - values.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let before: Vec<f64> = read.iter().flat_map(|all| all.iter().flatten()).copied().collect();
+    let mut after = Vec::with_capacity(before.len());
+    for all in read {
+        let others = (all.len() - 1) as f64;
+        for target in 0..runs.targets.len() {
+            let sum: f64 = all.iter().map(|run| run[target]).sum();
+            after.extend(all.iter().map(|run| run[target] - (sum - run[target]) / others));
+        }
+    }
+    let squares: f64 = after.iter().map(|v| v * v).sum();
+    Some(HeldOut {
+        before: range(&before),
+        after: range(&after),
+        after_rms: (squares / after.len() as f64).sqrt(),
+    })
+}
+
 /// A limit of a range: its value, the variance of what it is made of, and where it is.
 #[derive(Clone, Copy)]
 struct Limit {
@@ -189,7 +233,11 @@ fn range(limits: &[(Limit, Limit)], relative: f64) -> Option<Uncertain> {
     } else {
         Variance::sum(&[top.variance, bottom.variance, known])
     };
-    Some(Uncertain { value: top.value - bottom.value, expanded: variance.half_width_95() })
+    Some(Uncertain {
+        value: top.value - bottom.value,
+        expanded: variance.half_width_95(),
+        at: [top.position, bottom.position],
+    })
 }
 
 /// Evaluates runs: equation (38); the uncertainties are equation (39).
@@ -287,6 +335,11 @@ impl<'t> Passes<'t> {
         Self { targets, counts, scatter: [positive, negative] }
     }
 
+    /// A result of one target.
+    fn target(&self, i: usize) -> [f64; 2] {
+        [self.targets[i].position; 2]
+    }
+
     /// s²/n
     fn of_mean(&self, side: usize, i: usize) -> Variance {
         self.scatter[side][i].times(1.0 / self.counts[side].max(1) as f64)
@@ -326,7 +379,7 @@ impl<'t> Passes<'t> {
         let (i, worst) = read.max_by(|a, b| a.1.deviation.total_cmp(&b.1.deviation))?;
         let expanded = self.of_deviation(side, i).times(16.0).half_width_95();
         Some(Direction {
-            repeatability: Uncertain { value: worst.repeatability, expanded },
+            repeatability: Uncertain { value: worst.repeatability, expanded, at: self.target(i) },
             systematic: range(&self.limits(&[side], 0.0), relative)?,
             accuracy: range(&self.limits(&[side], 2.0), relative)?,
         })
@@ -337,7 +390,7 @@ impl<'t> Passes<'t> {
         let read = self.targets.iter().enumerate().filter_map(|(i, t)| Some((i, t.reversal?)));
         let (i, reversal) = read.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         let variance = Variance::sum(&[self.of_mean(0, i), self.of_mean(1, i)]);
-        Some(Uncertain { value: reversal.abs(), expanded: variance.half_width_95() })
+        Some(Uncertain { value: reversal.abs(), expanded: variance.half_width_95(), at: self.target(i) })
     }
 
     /// The worst bi-directional repeatability: of one direction 4s, of both 2s↑ + 2s↓ + |B|.
@@ -356,7 +409,7 @@ impl<'t> Passes<'t> {
                 self.of_mean(1, i),
             ]),
         };
-        Some(Uncertain { value: worst.repeatability, expanded: variance.half_width_95() })
+        Some(Uncertain { value: worst.repeatability, expanded: variance.half_width_95(), at: self.target(i) })
     }
 
     /// The mean bi-directional deviations.

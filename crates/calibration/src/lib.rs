@@ -1,12 +1,13 @@
 //! Measurements to machine profiles: what an instrument read becomes error functions with their uncertainty.
 //!
 //! Millimetres and radians throughout, as in [`machine_model`]; no files, no text formats, no clock. Every result
-//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40), (47) to (51) and (71) to (73) of
+//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40), (47) to (51), (71) to (73), (79) and (80) of
 //! `docs/equations.md`.
 
 pub mod adjustment;
 mod ballbar;
 pub mod change;
+pub mod circular_test;
 mod error;
 mod field;
 pub mod functions;

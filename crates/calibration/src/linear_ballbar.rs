@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
 use crate::ballbar::{RESOLVED_MM, changed, each_changed, field_u95_mm, no_outlier, open_error, too_few};
+use crate::circular_test::{self, Cause, CircularTest, Known, Measured};
 use crate::error::{CalibrationError, LETTERS};
 use crate::field;
 use crate::student::quantile;
@@ -56,6 +57,8 @@ pub struct CircleCalibration {
     pub backlash_mm: [Option<Term>; 3],
     /// What the deviation keeps at 95 % of the places of the base's volume, by what was fitted, mm.
     pub uncertainty_mm: f64,
+    /// The planes as circular tests, with what each cause does in them.
+    pub tests: Vec<CircularTest>,
     /// The adjustment behind them.
     pub estimate: Estimate,
 }
@@ -180,6 +183,8 @@ pub fn calibrate(
             own().map(|r| machine.error_mm(&r.command)).sum::<Vector>() / own().count() as f64
         })
         .collect();
+    let nominal = |r: &CircleReading| r.command.linear_mm + machines[r.run].base().nominal_tool(&r.command);
+    let arms_mm: Vec<Vector> = readings.iter().map(|r| nominal(r) - r.centre_mm).collect();
     // Two thirds of the parameters are set-up, which the machine does not know: its errors are kept.
     let kept: RefCell<Option<(DVector<f64>, Vec<Vector>)>> = RefCell::new(None);
     let forward = |x: &DVector<f64>| {
@@ -194,11 +199,10 @@ pub fn calibrate(
         };
         let lengths = DVector::from_iterator(
             readings.len(),
-            readings.iter().zip(&errors).map(|(r, error_mm)| {
+            readings.iter().zip(&arms_mm).zip(&errors).map(|((r, arm), error_mm)| {
                 let plane = planes[r.run];
                 let [u, v] = PLANES[plane];
-                let nominal = r.command.linear_mm + machines[r.run].base().nominal_tool(&r.command);
-                let mut arm = nominal - r.centre_mm;
+                let mut arm = *arm;
                 let half = 0.5 * layout.mismatch[plane].map_or(0.0, |k| x[k]);
                 let stretched = [half * arm[u], -half * arm[v]];
                 arm += error_mm - carried[r.run];
@@ -240,16 +244,100 @@ pub fn calibrate(
     let backlash_mm =
         [0, 1, 2].map(|axis| layout.play[axis].map(|k| term(k, base.reversal_mm(axis, &middle))));
     let closure = closure(&estimate, layout.mismatch);
+    let causes = layout.causes(&squareness_rad, &mismatch, &backlash_mm);
+    let tests = tests(readings, &arms_mm, &planes, &causes, &forward, &layout, &estimate.values);
     let calibration = CircleCalibration {
         squareness_rad,
         mismatch,
         closure,
         backlash_mm,
         uncertainty_mm: uncertainty_mm(&estimate, &layout, base),
+        tests,
         estimate,
     };
     calibration.is_possible()?;
     Ok(calibration)
+}
+
+/// A cause with its place among the parameters and the value at which it does nothing.
+struct OfPlane {
+    plane: Option<usize>,
+    known: Known,
+    parameter: usize,
+    nothing: f64,
+}
+
+impl Layout {
+    /// Every cause that was fitted; of play, in every plane of its axis.
+    fn causes(
+        &self,
+        squareness: &[Option<Term>; 3],
+        mismatch: &[Option<Term>; 3],
+        play: &[Option<Term>; 3],
+    ) -> Vec<OfPlane> {
+        let mut all = Vec::new();
+        let mut put = |cause: Cause, plane: Option<usize>, parameter: Option<usize>, term: &Option<Term>| {
+            let (Some(parameter), Some(term)) = (parameter, term) else { return };
+            let share = if term.value == 0.0 { 0.0 } else { term.half_width_95 / term.value.abs() };
+            all.push(OfPlane { plane, known: (cause, share), parameter, nothing: -term.base });
+        };
+        for k in 0..3 {
+            put(Cause::Squareness, Some(k), self.squareness[k], &squareness[k]);
+            put(Cause::Mismatch, Some(k), self.mismatch[k], &mismatch[k]);
+            put(Cause::Backlash(k), None, self.play[k], &play[k]);
+        }
+        all
+    }
+}
+
+impl OfPlane {
+    fn is_in(&self, plane: usize) -> bool {
+        match self.known.0 {
+            Cause::Backlash(axis) => PLANES[plane].contains(&axis),
+            _ => self.plane == Some(plane),
+        }
+    }
+}
+
+/// The planes one by one: what a cause does is the fitted length less the one that the machine would have without it.
+fn tests(
+    readings: &[CircleReading],
+    arms_mm: &[Vector],
+    planes: &[usize],
+    causes: &[OfPlane],
+    forward: &dyn Fn(&DVector<f64>) -> DVector<f64>,
+    layout: &Layout,
+    x: &DVector<f64>,
+) -> Vec<CircularTest> {
+    let fitted = forward(x);
+    let parts: Vec<DVector<f64>> = causes
+        .iter()
+        .map(|cause| {
+            let mut without = x.clone();
+            without[cause.parameter] = cause.nothing;
+            &fitted - forward(&without)
+        })
+        .collect();
+    let of_plane = |plane: usize| {
+        let own: Vec<usize> = (0..causes.len()).filter(|k| causes[*k].is_in(plane)).collect();
+        let rows: Vec<usize> = (0..readings.len()).filter(|i| planes[readings[*i].run] == plane).collect();
+        let [u, v] = PLANES[plane];
+        let measured = |i: &usize| Measured {
+            reading: *i,
+            run: readings[*i].run,
+            arm_mm: [arms_mm[*i][u], arms_mm[*i][v]],
+            commanded_mm: arms_mm[*i].norm(),
+            direction: [u, v].map(|axis| readings[*i].command.direction[axis]),
+            length_mm: readings[*i].length_mm,
+            fitted_mm: fitted[*i],
+            causes_mm: own.iter().map(|k| parts[*k][*i]).collect(),
+        };
+        let all: Vec<Measured> = rows.iter().map(measured).collect();
+        let known: Vec<Known> = own.iter().map(|k| causes[*k].known).collect();
+        let centre = |run: usize| [x[layout.setup + 3 * run], x[layout.setup + 3 * run + 1]];
+        circular_test::evaluate(plane, &all, &known, &centre)
+    };
+    (0..3).filter(|plane| planes.contains(plane)).map(of_plane).collect()
 }
 
 /// Sum of the three mismatches.

@@ -6,7 +6,7 @@
 
 use calibration::CalibrationError;
 use calibration::functions::{FunctionReading, runs};
-use calibration::iso230_2::{Evaluation, Runs, evaluate};
+use calibration::iso230_2::{Evaluation, Runs, evaluate, held_out};
 
 fn readings(name: &str) -> Vec<FunctionReading> {
     let path = format!("{}/../../samples/calibration/iso230_2_{name}.csv", env!("CARGO_MANIFEST_DIR"));
@@ -207,4 +207,29 @@ fn runs_with_other_targets_are_named() {
     assert!(
         matches!(runs(&all).unwrap_err(), CalibrationError::Runs(m) if m.contains("has no reading at the target"))
     );
+}
+
+#[test]
+fn each_result_says_which_targets_make_it() {
+    let found = evaluate(&runs(&readings("psi_2021")).unwrap(), 0.0).unwrap();
+    // The target at 15 mm scatters most; the reversal value is largest at the last; up reaches from 35.4 to 55.8 mm.
+    assert_eq!(found.accuracy.at, [15.0, 15.0]);
+    assert_eq!(found.repeatability.at, [15.0, 15.0]);
+    assert_eq!(found.reversal.unwrap().at, [55.8, 55.8]);
+    assert_eq!(found.positive.unwrap().systematic.at, [55.8, 35.4]);
+}
+
+#[test]
+fn a_run_is_corrected_by_the_mean_of_the_others() {
+    let data = Runs {
+        targets: vec![0.0, 10.0],
+        positive: vec![vec![1.0, 10.0], vec![3.0, 10.0], vec![5.0, 10.0]],
+        negative: Vec::new(),
+    };
+    // At 0: 1 - 4, 3 - 3, 5 - 2; at 10 nothing is left.
+    let found = held_out(&data).unwrap();
+    assert_eq!((found.before, found.after), (9.0, 6.0));
+    assert!((found.after_rms - 3.0_f64.sqrt()).abs() < 1e-12);
+    let once = Runs { negative: vec![vec![0.0, 0.0]], ..data };
+    assert_eq!(held_out(&once), None, "the run downwards has no other");
 }
