@@ -3,20 +3,24 @@
 //! Each takes numbers and texts and gives an `svg` element that says what it shows (`title`, `desc`) and takes its colours
 //! from the page's styles.
 
+mod bands;
 mod bars;
 mod cells;
 mod curves;
 mod dots;
 mod lines;
+mod polar;
 pub mod solid;
 
 use maud::{Markup, html};
 
+pub use bands::{Band, Bands, bands};
 pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
 pub use curves::{Curves, Histogram, curves, histogram};
 pub use dots::{Panel, Points, panels};
 pub use lines::{Arrow, View, cumulative, views};
+pub use polar::{Magnification, Polar, Round, polar};
 
 use crate::scale::{Scale, px};
 use crate::text::shown;
@@ -28,6 +32,17 @@ pub const WIDTH: f64 = 720.0;
 fn svg(height: f64, title: &str, description: &str, body: &Markup) -> Markup {
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(WIDTH)) " " (px(height)) } role="img" {
+            title { (shown(title)) }
+            desc { (shown(description)) }
+            (body)
+        }
+    }
+}
+
+/// A drawing that is legible as wide as a telephone; several stand side by side where there is room.
+fn narrow((width, height): (f64, f64), title: &str, description: &str, body: &Markup) -> Markup {
+    html! {
+        svg.narrow xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (px(width)) " " (px(height)) } role="img" {
             title { (shown(title)) }
             desc { (shown(description)) }
             (body)
