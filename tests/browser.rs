@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use crate::common::{messages, root, run};
 
 /// The browser.
-fn chromium() -> Option<&'static str> {
+pub(crate) fn chromium() -> Option<&'static str> {
     let there = Command::new("chromium")
         .arg("--version")
         .stderr(Stdio::null())
@@ -20,9 +20,9 @@ fn chromium() -> Option<&'static str> {
 }
 
 /// What the browser said about a page.
-struct Visit {
+pub(crate) struct Visit {
     /// The document after everything had its chance to run.
-    dom: String,
+    pub(crate) dom: String,
     /// Lines of the console.
     console: Vec<String>,
     /// Everything that was requested except the page itself.
@@ -30,7 +30,7 @@ struct Visit {
 }
 
 impl Visit {
-    fn was_quiet(&self) {
+    pub(crate) fn was_quiet(&self) {
         assert!(
             self.console.is_empty() && self.requests.is_empty(),
             "{:?} {:?}",
@@ -56,7 +56,7 @@ const QUIET: [&str; 12] = [
 ];
 
 /// One run of the browser with an empty profile.
-fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
+pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
     let profile = tempfile::tempdir().expect("a temporary folder");
     let ran = Command::new(browser)
         .args(QUIET)
@@ -69,7 +69,7 @@ fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
     (String::from_utf8_lossy(&ran.stdout).into_owned(), messages(&ran))
 }
 
-fn visit(browser: &str, page: &Path) -> Visit {
+pub(crate) fn visit(browser: &str, page: &Path) -> Visit {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let log = folder.path().join("net.json");
     let more = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
@@ -98,9 +98,9 @@ fn requests(log: &str, page: &Path) -> Vec<String> {
 }
 
 /// A report in a folder of its own.
-struct Report {
-    folder: tempfile::TempDir,
-    page: PathBuf,
+pub(crate) struct Report {
+    pub(crate) folder: tempfile::TempDir,
+    pub(crate) page: PathBuf,
 }
 
 fn report(measurements: &str, profile: &str, more: &[&str]) -> Report {
@@ -262,7 +262,7 @@ fn pictures_of_a_report() {
 }
 
 /// Light, dark and print.
-fn pictures(browser: &str, report: &Report, what: &str) {
+pub(crate) fn pictures(browser: &str, report: &Report, what: &str) {
     // Paper has no command line option: its styles are given to the screen.
     let paper = report.folder.path().join("paper.html");
     std::fs::write(&paper, text(&report.page).replace("@media print", "@media all")).expect("writable");

@@ -174,15 +174,7 @@ pub fn calibrate(
     let planes: Vec<usize> = (0..machines.len()).map(|run| plane(readings, run)).collect::<Result<_, _>>()?;
     let layout = Layout::new(readings, &planes);
     too_few(readings.len(), layout.names.len())?;
-    // Where the base's errors move the circle as a whole, its fixed ball has moved with it.
-    let carried: Vec<Vector> = machines
-        .iter()
-        .enumerate()
-        .map(|(run, machine)| {
-            let own = || readings.iter().filter(|r| r.run == run);
-            own().map(|r| machine.error_mm(&r.command)).sum::<Vector>() / own().count() as f64
-        })
-        .collect();
+    let carried = carried(readings, machines);
     let nominal = |r: &CircleReading| r.command.linear_mm + machines[r.run].base().nominal_tool(&r.command);
     let arms_mm: Vec<Vector> = readings.iter().map(|r| nominal(r) - r.centre_mm).collect();
     // Two thirds of the parameters are set-up, which the machine does not know: its errors are kept.
@@ -257,6 +249,15 @@ pub fn calibrate(
     };
     calibration.is_possible()?;
     Ok(calibration)
+}
+
+/// Where the base's errors move the circle of each run as a whole, its fixed ball has moved with it, mm.
+fn carried(readings: &[CircleReading], machines: &[WithEffects]) -> Vec<Vector> {
+    let of_run = |(run, machine): (usize, &WithEffects)| {
+        let own = || readings.iter().filter(|r| r.run == run);
+        own().map(|r| machine.error_mm(&r.command)).sum::<Vector>() / own().count() as f64
+    };
+    machines.iter().enumerate().map(of_run).collect()
 }
 
 /// A cause with its place among the parameters and the value at which it does nothing.

@@ -107,9 +107,13 @@ pub fn figure(drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Marku
         figure {
             div.scroll tabindex="0" role="region" aria-label="Drawing" { (drawing) }
             figcaption { (shown(caption)) }
-            @if let Some(numbers) = numbers {
-                details { summary { "Numbers" } (numbers) }
-            }
+            @if let Some(numbers) = numbers { (folded(&numbers)) }
         }
     }
+}
+
+/// The numbers of drawings, behind a fold.
+#[must_use]
+pub fn folded(numbers: &Markup) -> Markup {
+    html! { details { summary { "Numbers" } (numbers) } }
 }

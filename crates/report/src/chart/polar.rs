@@ -58,7 +58,7 @@ impl Magnification {
         let most = (REACH / largest) * (radius / CIRCLE);
         let above = nice(most);
         let times = if above > 1.001 * most { nice(above / 2.5) } else { above };
-        Self { times, ring: nice(0.5 * REACH * radius / (CIRCLE * times)) }
+        Self { times, ring: nice(0.3 * REACH * radius / (CIRCLE * times)) }
     }
 
     /// Drawing units for a deviation.
@@ -97,10 +97,10 @@ pub fn polar(title: &str, described: &str, p: &Polar, m: Magnification, unit: &s
     narrow((SIDE, SIDE + KEY * p.keys.len() as f64), title, described, &body)
 }
 
-/// Two inside and two outside of no deviation, where there is room.
+/// Inside and outside of no deviation, as far as deviations are drawn.
 fn rings(m: Magnification, radius: f64) -> Vec<f64> {
     let there = |k: i32| f64::from(k) * m.ring;
-    (-2..=2).map(there).filter(|v| (m.times * v * CIRCLE / radius).abs() <= REACH + 4.0).collect()
+    (-3..=3).map(there).filter(|v| (m.times * v * CIRCLE / radius).abs() <= REACH + 4.0).collect()
 }
 
 fn curve_path(curve: &Round, m: Magnification, radius: f64) -> String {

@@ -23,6 +23,7 @@ use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
 use super::codes::{AXES, CONTRADICTED, OUTLIER, UNSAID, failure, question};
 use super::output::{Output, Target, warn};
+use super::page::{Bars, Facts, Shown};
 
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -39,6 +40,8 @@ pub struct Ballbar {
     /// The same tests after a compensation: a table before and after.
     #[arg(long, value_name = "READINGS.csv")]
     pub after: Option<PathBuf>,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// The machine that readings are predicted with, before any change.
@@ -256,12 +259,23 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
         rotary = Some(found);
     }
     let circles = circles(&base, &readings, target, shared)?;
-    if let Some(found) = &circles {
+    if let Some((found, _)) = &circles {
         let _ = circle_report(&mut out, found);
     }
+    let temperatures: Vec<f64> = readings.temperatures_c().collect();
+    let temperature_c =
+        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
+    let show = |uncertainty_mm: Option<f64>| {
+        let circles = circles.as_ref().map(|(found, names)| (found, names.as_slice()));
+        let found = Bars { circles, rotary: rotary.as_ref() };
+        show(arguments, shared, &found, temperature_c, uncertainty_mm)
+    };
+    let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
+    let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
     file::print(out.as_bytes())?;
     if target.output.is_none() && target.against.is_none() {
-        return Ok(());
+        // What stays of a base is as uncertain as it says, which is asked where a profile is made.
+        return show(base.profile.is_none().then_some(found_mm));
     }
     let mut output = Output::start(target, shared)?;
     if base.profile.is_none() {
@@ -271,20 +285,15 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     if let Some(found) = &rotary {
         write_locations(&mut output, found, &base);
     }
-    if let Some(found) = &circles {
+    if let Some((found, _)) = &circles {
         write_circles(&mut output, found, messages);
     }
     let sigma = rotary
         .iter()
         .map(|r| r.estimate.sigma)
-        .chain(circles.iter().map(|c| c.estimate.sigma))
+        .chain(circles.iter().map(|(c, _)| c.estimate.sigma))
         .fold(0.0, f64::max);
-    let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|c| c.uncertainty_mm)];
-    let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
     let uncertainty_mm = output.with_base_mm(found_mm, messages);
-    let temperatures: Vec<f64> = readings.temperatures_c().collect();
-    let temperature_c =
-        (!temperatures.is_empty()).then(|| temperatures.iter().sum::<f64>() / temperatures.len() as f64);
     output.calibrated(
         target,
         messages,
@@ -295,15 +304,34 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
             ..Calibrated::default()
         },
     )?;
-    output.write(target, messages)
+    output.write(target, messages)?;
+    show(Some(uncertainty_mm))
 }
 
+/// Page, JSON and CSV, where they are asked for.
+fn show(
+    arguments: &Ballbar,
+    shared: &Shared,
+    found: &Bars<'_>,
+    temperature_c: Option<f64>,
+    uncertainty_mm: Option<f64>,
+) -> Result<(), Failure> {
+    if !arguments.shown.is_asked() {
+        return Ok(());
+    }
+    let target = &arguments.target;
+    let temperature_c = target.temperature.or(temperature_c);
+    let facts = Facts::new(target, shared, &arguments.files, temperature_c, uncertainty_mm)?;
+    arguments.shown.write(found, &facts)
+}
+
+/// The adjustment of the circles, with the names of their runs.
 fn circles(
     base: &Base,
     readings: &Readings,
     target: &Target,
     shared: &Shared,
-) -> Result<Option<CircleCalibration>, Failure> {
+) -> Result<Option<(CircleCalibration, Vec<String>)>, Failure> {
     let body = base.machine_without_effects()?;
     let circles = readings.circles(base.tool_mm, &|command| body.nominal_tool(command));
     if circles.what.is_empty() {
@@ -313,9 +341,9 @@ fn circles(
     for reading in &circles.what {
         base.knows(&circles.names[reading.run], &machines[reading.run], &reading.command)?;
     }
-    linear_ballbar::calibrate(&circles.what, &machines)
-        .map(Some)
-        .map_err(|error| located(&error, readings, |reading| circles.place(reading)))
+    let found = linear_ballbar::calibrate(&circles.what, &machines)
+        .map_err(|error| located(&error, readings, |reading| circles.place(reading)))?;
+    Ok(Some((found, circles.names)))
 }
 
 /// What to say of readings that give no profile; an outlier where it stands.

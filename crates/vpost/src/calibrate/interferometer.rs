@@ -1,6 +1,7 @@
 //! `vpost calibrate interferometer`.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
@@ -18,6 +19,7 @@ use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
 use super::options::{Between, Directions, Interferometer, Reference, Slopes};
 use super::output::{Output, warn};
+use super::page::{Facts, Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
 use crate::number::short;
@@ -34,30 +36,37 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     }
     let mut out = String::new();
     let mut axes: [Functions; 3] = Default::default();
+    let mut found = Vec::new();
     for series in &all {
         plausibility::units(series, messages)?;
         let fail = |error: &calibration::CalibrationError| failure(&series.source, &[], error);
         let readings = sources::readings(series);
         let function = functions::function(&readings).map_err(|e| fail(&e))?;
+        let runs = functions::runs(&readings).map_err(|e| fail(&e))?;
+        let mut evaluation = None;
         if function.count > 1 {
-            let runs = functions::runs(&readings).map_err(|e| fail(&e))?;
             plausibility::copies(series, &runs, &function, messages)?;
             if function.scatter.is_some() && series.function == series.axis.direction() {
-                let found = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
-                out.push_str(&iso_report::lines(&series.name(), &found, 1e3, "um"));
-                plausibility::conditions_of_the_standard(&series.name(), &found, messages);
+                let e = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
+                out.push_str(&iso_report::lines(&series.name(), &e, 1e3, "um"));
+                plausibility::conditions_of_the_standard(&series.name(), &e, messages);
+                evaluation = Some(e);
             }
         }
         if writes {
             plausibility::reversal(series, &function)?;
         }
+        found.push(Read::new(series, &function, runs, evaluation));
         axes[series.axis.direction()][series.function] = Some(function);
     }
+    let found = Positions(found);
     let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
     summary(&mut out, &axes);
     if !writes {
+        show(arguments, shared, &found, mean_temperature(&all), None)?;
         return file::print(out.as_bytes());
     }
+    let temperature_c = mean_temperature(&all);
     let mut output = Output::start(&arguments.target, shared)?;
     let chain = output.chain(&arguments.target)?;
     to_the_line(arguments, &chain, &mut all)?;
@@ -73,13 +82,33 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         &arguments.target,
         messages,
         Calibrated {
-            temperature_c: mean_temperature(&all),
+            temperature_c,
             repeatability_um: scatter.map(|s| s * 1e3),
             uncertainty_um: uncertainty_mm.map(|u| u * 1e3),
             ..Calibrated::default()
         },
     )?;
-    output.write(&arguments.target, messages)
+    output.write(&arguments.target, messages)?;
+    show(arguments, shared, &found, temperature_c, uncertainty_mm)
+}
+
+/// Page, JSON and CSV, where they are asked for.
+fn show(
+    arguments: &Interferometer,
+    shared: &Shared,
+    found: &Positions,
+    temperature_c: Option<f64>,
+    uncertainty_mm: Option<f64>,
+) -> Result<(), Failure> {
+    if !arguments.shown.is_asked() {
+        return Ok(());
+    }
+    let target = &arguments.target;
+    let files: Vec<PathBuf> =
+        arguments.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect();
+    let temperature_c = target.temperature.or(temperature_c);
+    let facts = Facts::new(target, shared, &files, temperature_c, uncertainty_mm)?;
+    arguments.shown.write(found, &facts)
 }
 
 /// Every function of every file, and the angles between axes that a file gives.

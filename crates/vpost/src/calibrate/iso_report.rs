@@ -4,6 +4,36 @@ use std::fmt::Write;
 
 use calibration::iso230_2::{Evaluation, Uncertain};
 
+/// One of the standard's figures.
+pub(super) struct Figure {
+    /// `A↑`
+    pub(super) symbol: &'static str,
+    pub(super) name: &'static str,
+    pub(super) found: Uncertain,
+}
+
+/// The figures that the runs give, in the order in which they are printed.
+pub(super) fn figures(e: &Evaluation) -> Vec<Figure> {
+    let of = |symbol, name, found: Option<Uncertain>| found.map(|found| Figure { symbol, name, found });
+    let (up, down) = (e.positive, e.negative);
+    [
+        of("A", "accuracy, both directions", Some(e.accuracy)),
+        of("A↑", "accuracy, up", up.map(|d| d.accuracy)),
+        of("A↓", "accuracy, down", down.map(|d| d.accuracy)),
+        of("E", "systematic deviation, both directions", Some(e.systematic)),
+        of("E↑", "systematic deviation, up", up.map(|d| d.systematic)),
+        of("E↓", "systematic deviation, down", down.map(|d| d.systematic)),
+        of("M", "range of the bidirectional means", Some(e.mean_range)),
+        of("R", "repeatability, both directions", Some(e.repeatability)),
+        of("R↑", "repeatability, up", up.map(|d| d.repeatability)),
+        of("R↓", "repeatability, down", down.map(|d| d.repeatability)),
+        of("B", "largest reversal value", e.reversal),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
 /// Lines of one axis. Deviations in mm or rad; shown in µm or µrad.
 pub(super) fn lines(title: &str, found: &Evaluation, scale: f64, unit: &str) -> String {
     let mut out = String::new();
@@ -37,33 +67,8 @@ fn write(out: &mut String, title: &str, e: &Evaluation, scale: f64, unit: &str) 
             v(t.repeatability)
         )?;
     }
-    let line = |out: &mut String, symbol: &str, name: &str, u: Uncertain| {
-        writeln!(out, "  {symbol:<3} {} ± {:<8.3} {name}", v(u.value), u.expanded * scale)
-    };
-    line(out, "A", "accuracy, both directions", e.accuracy)?;
-    if let Some(d) = e.positive {
-        line(out, "A↑", "accuracy, up", d.accuracy)?;
-    }
-    if let Some(d) = e.negative {
-        line(out, "A↓", "accuracy, down", d.accuracy)?;
-    }
-    line(out, "E", "systematic deviation, both directions", e.systematic)?;
-    if let Some(d) = e.positive {
-        line(out, "E↑", "systematic deviation, up", d.systematic)?;
-    }
-    if let Some(d) = e.negative {
-        line(out, "E↓", "systematic deviation, down", d.systematic)?;
-    }
-    line(out, "M", "range of the bidirectional means", e.mean_range)?;
-    line(out, "R", "repeatability, both directions", e.repeatability)?;
-    if let Some(d) = e.positive {
-        line(out, "R↑", "repeatability, up", d.repeatability)?;
-    }
-    if let Some(d) = e.negative {
-        line(out, "R↓", "repeatability, down", d.repeatability)?;
-    }
-    if let Some(b) = e.reversal {
-        line(out, "B", "largest reversal value", b)?;
+    for Figure { symbol, name, found } in figures(e) {
+        writeln!(out, "  {symbol:<3} {} ± {:<8.3} {name}", v(found.value), found.expanded * scale)?;
     }
     if let Some(b) = e.mean_reversal {
         writeln!(out, "  B̄   {}            mean reversal value", v(b))?;

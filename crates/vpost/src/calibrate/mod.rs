@@ -12,6 +12,7 @@ mod interferometer;
 mod iso_report;
 mod options;
 mod output;
+mod page;
 mod plausibility;
 mod sources;
 mod squareness;
@@ -26,6 +27,8 @@ use clap::{Args, Subcommand};
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
+
+use page::Shown;
 
 /// `vpost calibrate`
 #[derive(Debug, Args)]
@@ -61,10 +64,14 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),
         CalibrateCommand::Turning(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
     };
-    Roles::default()
-        .reads_all("a measurement", &files)
-        .writes("--output", target.output.as_deref())
-        .are_apart()?;
+    let shown = match &arguments.command {
+        CalibrateCommand::Interferometer(a) => a.shown.clone(),
+        CalibrateCommand::Ballbar(a) => a.shown.clone(),
+        _ => Shown::default(),
+    };
+    let roles =
+        Roles::default().reads_all("a measurement", &files).writes("--output", target.output.as_deref());
+    shown.roles(roles).are_apart()?;
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
         CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),

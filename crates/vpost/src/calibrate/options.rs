@@ -6,6 +6,7 @@ use machine_model::Interpolation;
 use measurement_files::series::Values;
 
 use super::output::Target;
+use super::page::Shown;
 use crate::values::{Given, Point3, SquarenessReadings};
 
 /// `vpost calibrate interferometer FILES… -o PROFILE`
@@ -49,6 +50,8 @@ pub struct Interferometer {
     /// Relative standard uncertainty of the instrument, µm/m.
     #[arg(long, value_name = "UM_PER_M", default_value_t = 0.5, value_parser = crate::arguments::size_or_zero)]
     pub u_um_per_m: f64,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// What a positive squareness means.

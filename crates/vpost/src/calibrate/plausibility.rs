@@ -126,8 +126,8 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
 /// A reversal value below this is none, mm.
 const LEAST_MM: f64 = 1e-4;
 
-/// What ISO 230-2 asks of a test.
-pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
+/// What ISO 230-2 asks of a test and these runs are not.
+pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<String> {
     let length = found.targets[found.targets.len() - 1].position - found.targets[0].position;
     let mut missing = Vec::new();
     if found.runs.iter().any(|n| *n < 5) {
@@ -138,6 +138,12 @@ pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluatio
     if (found.targets.len() as f64) < least {
         missing.push(format!("{} targets over {length} mm instead of {least:.0}", found.targets.len()));
     }
+    missing
+}
+
+/// Warns of what ISO 230-2 asks of a test.
+pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
+    let missing = missing_of_the_standard(found);
     if !missing.is_empty() {
         let message =
             format!("{name} is evaluated after ISO 230-2 but was not measured so: {}", missing.join("; "));

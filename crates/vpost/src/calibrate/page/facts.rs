@@ -1,0 +1,170 @@
+//! What a page is about besides its figures: files, machine, instrument, command.
+
+use std::path::PathBuf;
+
+use maud::{Markup, html};
+use report::text::shown;
+use serde_json::{Value, json};
+
+use crate::arguments::Shared;
+use crate::figures::round;
+use crate::message::Failure;
+use crate::{file, profile};
+
+use super::super::output::Target;
+
+/// What the JSON is called.
+pub(super) const SCHEMA: &str = "vpost.calibration/1";
+
+/// A file by name and content.
+struct Named {
+    name: String,
+    hash: String,
+}
+
+/// What the page says of where it comes from.
+pub(in super::super) struct Facts {
+    files: Vec<Named>,
+    base: Option<(String, Named)>,
+    /// The profile that was written.
+    pub(super) written: Option<PathBuf>,
+    written_hash: Option<String>,
+    instrument: Option<String>,
+    date: Option<String>,
+    temperature_c: Option<f64>,
+    uncertainty_um: Option<f64>,
+    command: String,
+}
+
+impl Facts {
+    /// Of a calibration that is finished, its profile written where that was asked.
+    ///
+    /// * `temperature_c` – of the machine, as the options or the files say it
+    /// * `uncertainty_mm` – what the deviation keeps at 95 % of the places of the volume, where that is known
+    pub(in super::super) fn new(
+        target: &Target,
+        shared: &Shared,
+        files: &[PathBuf],
+        temperature_c: Option<f64>,
+        uncertainty_mm: Option<f64>,
+    ) -> Result<Self, Failure> {
+        let named = |path: &PathBuf| -> Result<Named, Failure> {
+            Ok(Named { name: file::name(path), hash: blake3::hash(&file::read(path)?).to_string() })
+        };
+        let base = match &shared.job.machine {
+            Some(path) => {
+                let loaded = profile::load(path)?;
+                let named = Named { name: file::name(path), hash: loaded.hash.to_string() };
+                Some((loaded.profile.name, named))
+            }
+            None => None,
+        };
+        let written_hash = match &target.output {
+            Some(path) => Some(profile::load(path)?.hash.to_string()),
+            None => None,
+        };
+        Ok(Self {
+            files: files.iter().map(named).collect::<Result<_, _>>()?,
+            base,
+            written: target.output.clone(),
+            written_hash,
+            instrument: target.instrument.clone(),
+            date: target.date.clone(),
+            temperature_c,
+            uncertainty_um: uncertainty_mm.map(|u| round(u * 1e3, 3)),
+            command: command(),
+        })
+    }
+
+    /// Names of the files, without their folders.
+    pub(super) fn names(&self) -> String {
+        let last = |f: &Named| f.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let names: Vec<String> = self.files.iter().map(last).collect();
+        names.join(", ")
+    }
+
+    /// Figures with what they come from.
+    pub(super) fn with(&self, mut found: Value) -> Value {
+        let file = |f: &Named| json!({ "name": f.name, "blake3": f.hash });
+        let made = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "command": self.command,
+            "files": self.files.iter().map(file).collect::<Vec<_>>(),
+            "base": self.base.as_ref().map(|(_, base)| file(base)),
+            "profile": self.written.as_ref().map(|path| json!({
+                "name": file::name(path),
+                "blake3": self.written_hash,
+            })),
+            "instrument": self.instrument,
+            "date": self.date,
+            "temperature_c": self.temperature_c.map(|t| round(t, 3)),
+            "uncertainty_um": self.uncertainty_um,
+        });
+        found["schema"] = json!(SCHEMA);
+        found["made"] = made;
+        found
+    }
+
+    /// The section at the end of the page.
+    pub(super) fn section(&self) -> Markup {
+        let said = |value: &Option<String>, option: &str| {
+            html! {
+                @match value {
+                    Some(value) => (shown(value)),
+                    None => span.muted { "not stated (" (option) ")" },
+                }
+            }
+        };
+        let named = |f: &Named| html! { (shown(&f.name)) " " span.muted { "BLAKE3 " (f.hash) } };
+        let temperature = self.temperature_c.map(|t| format!("{} \u{b0}C", crate::number::short(t, 2)));
+        html! {
+            dl {
+                @for file in &self.files { dt { "measurements" } dd { (named(file)) } }
+                @if let Some((machine, base)) = &self.base {
+                    dt { "machine" } dd { (shown(machine)) }
+                    dt { "base profile and its tables" } dd { (named(base)) }
+                }
+                @if let (Some(path), Some(hash)) = (&self.written, &self.written_hash) {
+                    dt { "profile written, with its tables" }
+                    dd { (shown(&file::name(path))) " " span.muted { "BLAKE3 " (hash) } }
+                }
+                dt { "instrument" } dd { (said(&self.instrument, "--instrument")) }
+                dt { "date" } dd { (said(&self.date, "--date")) }
+                dt { "temperature" } dd { (said(&temperature, "--temperature")) }
+                @if let Some(u) = self.uncertainty_um {
+                    dt { "uncertainty" }
+                    dd { (report::text::number_of_digits(u, 3)) " \u{b5}m, which 95 % of the places of the volume keep" }
+                }
+                dt { "made by" } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", " (SCHEMA) }
+                dt { "command" } dd { code { (shown(&self.command)) } }
+            }
+        }
+    }
+}
+
+/// The command as it was typed, quoted for a shell.
+fn command() -> String {
+    let typed: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
+    quoted(&typed)
+}
+
+fn quoted(typed: &[String]) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-./,:=+@%".contains(c);
+    let word = |word: &String| {
+        if !word.is_empty() && word.chars().all(plain) {
+            word.clone()
+        } else {
+            format!("'{}'", word.replace('\'', "'\\''"))
+        }
+    };
+    std::iter::once("vpost".to_owned()).chain(typed.iter().map(word)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_command_can_be_typed_again() {
+        let typed = ["a b.csv", "--chain", "[w X b Z t]", "it's", "", "-m=x.toml"].map(str::to_owned);
+        assert_eq!(super::quoted(&typed), "vpost 'a b.csv' --chain '[w X b Z t]' 'it'\\''s' '' -m=x.toml");
+    }
+}
