@@ -42,7 +42,7 @@ fn calibrations_open_print_and_fit_a_telephone() {
         println!("skipped: chromium is not installed");
         return;
     };
-    for (report, sections, drawings) in [(positioning(), 2, 1), (circles(), 5, 15)] {
+    for (report, sections, drawings) in [(positioning(), 2, 1), (circles(), 5, 18)] {
         let visit = visit(browser, &report.page);
         visit.was_quiet();
         assert_eq!(visit.dom.matches("<section ").count(), sections);

@@ -235,7 +235,7 @@ fn circles_of_a_sample_have_figures_for_every_plane() {
             let keys = ["range_um", "u95_um", "without_um"].map(|key| format!("{:.2}", number(&cause[key])));
             assert_eq!([&cells[1], &cells[2], &cells[4]], keys.each_ref(), "{name}");
         }
-        assert_eq!(section.matches("<svg").count(), 5, "the circle and four causes");
+        assert_eq!(section.matches("<svg").count(), 6, "the circle, four causes, the set-up");
     }
     // Play of Y, as it is printed: one way round it moves the ball by half of it, back by the other half.
     let play = number(&all.json["circles"]["backlash_um"]["Y"]["value"]);
@@ -344,6 +344,34 @@ fn the_page_names_the_profile_that_was_written() {
         format!("{:.3}", stated.expect("stated").parse::<f64>().expect("a number"))
     );
     assert!(all.folder.path().is_dir());
+}
+
+#[test]
+fn curves_of_the_base_are_told_from_the_causes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A screw that the base knows: 6 µm ahead at the circle's right and left, right in its middle.
+    let table = "position_mm,EXX_um\n0,0\n100,6\n200,0\n300,6\n400,0\n";
+    file(folder.path(), "x.csv", table);
+    let profile = "format = 1\nname = \"m\"\ncontrol = \"linuxcnc\"\nchain = \"[w X Y b Z t]\"\n[axis.X]\ntravel_mm = [0, 400]\nresolution_mm = 0.001\nerrors = \"x.csv\"\n[axis.Y]\ntravel_mm = [0, 400]\nresolution_mm = 0.001\n[axis.Z]\ntravel_mm = [-10, 10]\nresolution_mm = 0.001\n";
+    let profile = file(folder.path(), "m.toml", profile);
+    let curve_um = |x: f64| 6.0 * (1.0 - ((x.abs() - 100.0).abs() / 100.0));
+    let made = |a: f64, s: f64| {
+        let cos = units::math::cos(a);
+        curve_um(100.0 * cos) * cos + 2.0 * units::math::sin(2.0 * a) + noise(a, s)
+    };
+    let text = circles(folder.path(), "c.csv", "c", 360, &made);
+    let all = shown("ballbar", &[&text], &["-m", &profile]);
+    let plane = &all.json["circles"]["planes"][0];
+    assert_eq!(plane["causes"][0]["cause"], "squareness EC0Y", "{plane}");
+    assert!((number(&plane["causes"][0]["range_um"]) - 4.0).abs() < 0.05, "{plane}");
+    // 6 |cos φ| cos φ about its own circle: 6 (4/3π)² to either side.
+    assert!((number(&plane["curves_of_base_um"]) - 2.16).abs() < 0.03, "{plane}");
+    assert!(number(&plane["left_um"]) < 0.1, "{plane}");
+    assert!(number(&plane["corrected_um"]) < 0.1, "{plane}");
+    assert!(
+        all.html.contains("the base's own curves corrected")
+            || all.html.contains("own curves and effects make")
+    );
 }
 
 #[test]

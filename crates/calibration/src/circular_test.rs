@@ -47,6 +47,14 @@ pub struct CirclePoint {
     pub causes_mm: Vec<f64>,
 }
 
+impl CirclePoint {
+    /// What the set-up makes of it: a ball beside its place, a bar of another length, mm.
+    #[must_use]
+    pub fn set_up_mm(&self) -> f64 {
+        self.read_mm - self.deviation_mm
+    }
+}
+
 /// The readings of one run in one sense, by angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -105,10 +113,14 @@ pub struct CircularTest {
     pub radial_mm: [f64; 2],
     /// What makes it, the largest first.
     pub patterns: Vec<Pattern>,
-    /// Largest minus smallest deviation without what a profile can hold: squareness and play, mm.
+    /// Largest minus smallest deviation without what a profile can hold: all that was fitted but the mismatch, mm.
     pub corrected_mm: f64,
+    /// The same of what the base has besides the causes: its curves and effects.
+    pub curves_mm: f64,
     /// The same of what no cause explains.
     pub left_mm: f64,
+    /// Largest minus smallest deviation that the set-up of the runs makes.
+    pub set_up_mm: f64,
 }
 
 /// What a circular test is evaluated from.
@@ -161,7 +173,9 @@ pub(crate) fn evaluate(
         radial_mm: radial(&traces),
         patterns: Vec::new(),
         corrected_mm: 0.0,
+        curves_mm: 0.0,
         left_mm: 0.0,
+        set_up_mm: 0.0,
         traces,
     };
     let both = [Sense::CounterClockwise, Sense::Clockwise];
@@ -169,11 +183,14 @@ pub(crate) fn evaluate(
         test.bidirectional_mm = Some(test.range(&|p| p.deviation_mm));
     }
     test.left_mm = test.range(&|p| p.deviation_mm - p.fitted_mm);
-    let held = |p: &CirclePoint| {
-        let parts = causes.iter().zip(&p.causes_mm).filter(|((cause, _), _)| *cause != Cause::Mismatch);
-        p.deviation_mm - parts.map(|(_, part)| part).sum::<f64>()
+    test.set_up_mm = test.range(&CirclePoint::set_up_mm);
+    let of = |p: &CirclePoint, kept: &dyn Fn(Cause) -> bool| {
+        let parts = causes.iter().zip(&p.causes_mm).filter(|((cause, _), _)| kept(*cause));
+        parts.map(|(_, part)| part).sum::<f64>()
     };
-    test.corrected_mm = test.range(&held);
+    test.corrected_mm =
+        test.range(&|p| p.deviation_mm - p.fitted_mm + of(p, &|cause| cause == Cause::Mismatch));
+    test.curves_mm = test.range(&|p| p.fitted_mm - of(p, &|_| true));
     let pattern = |(k, (cause, uncertain)): (usize, &Known)| {
         let range_mm = test.range(&|p| p.causes_mm[k]);
         Pattern {
@@ -382,6 +399,8 @@ mod tests {
         }
         assert!((test.radial_mm[1] - 0.005).abs() < 2e-6 && (test.radial_mm[0] - 0.001).abs() < 2e-6);
         assert!(test.hysteresis.is_some_and(|h| h.value_mm < 1e-9));
+        // The ball 1.118 mm off: twice that from its side to the other.
+        assert!((test.set_up_mm - 2.0 * 1.25_f64.sqrt()).abs() < 0.002, "{}", test.set_up_mm);
     }
 
     #[test]

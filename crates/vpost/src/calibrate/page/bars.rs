@@ -116,7 +116,9 @@ fn plane(test: &CircularTest, names: &[String]) -> Value {
         "F_max_um": um(test.radial_mm[1]),
         "causes": test.patterns.iter().map(pattern).collect::<Vec<_>>(),
         "corrected_um": um(test.corrected_mm),
+        "curves_of_base_um": um(test.curves_mm),
         "left_um": um(test.left_mm),
+        "set_up_um": um(test.set_up_mm),
         "runs": test.traces.iter().map(trace).collect::<Vec<_>>(),
     })
 }

@@ -133,6 +133,18 @@ impl<'t> Verdict<'t> {
     }
 }
 
+/// Curves of the base below this are rounding, mm.
+const CURVES_MM: f64 = 5e-5;
+
+/// What a profile holds of a plane's causes.
+fn held(test: &CircularTest) -> &'static str {
+    if test.curves_mm > CURVES_MM {
+        "squareness, play and the base's own curves"
+    } else {
+        "squareness and play"
+    }
+}
+
 /// The first screen.
 fn head(bars: &Bars<'_>, facts: &Facts) -> Markup {
     html! {
@@ -147,7 +159,7 @@ fn head(bars: &Bars<'_>, facts: &Facts) -> Markup {
             }
             p { (verdict.remedy()) }
             p {
-                "With squareness and play corrected, which is what a profile holds, circles in " (PLANES[test.plane].0)
+                "With " (held(test)) " corrected, which is what a profile holds, circles in " (PLANES[test.plane].0)
                 " would deviate by " (um(test.corrected_mm)) " \u{b5}m; no cause explains " (um(test.left_mm))
                 " \u{b5}m of them. This is said by the same circles: measure again after the correction to prove it."
             }
@@ -320,6 +332,22 @@ fn figures(test: &CircularTest) -> Markup {
     }
 }
 
+/// What a ball beside its place and a bar of another length make: on a scale of its own, for it may be of any size.
+fn set_up(test: &CircularTest) -> Markup {
+    let (_, axes) = PLANES[test.plane];
+    let radius = test.radius_mm * 1e3;
+    let m =
+        Magnification::of(points(test).fold(0.0, |most: f64, p| most.max(p.set_up_mm().abs())) * 1e3, radius);
+    let curves = test.traces.iter().map(|t| curve(t, class(t.sense).0, &CirclePoint::set_up_mm)).collect();
+    let drawn = Polar { axes, radius, curves, keys: Vec::new() };
+    let caption = format!(
+        "no cause in the machine: the set-up's centre and length, {} \u{b5}m, drawn {} times larger",
+        um(test.set_up_mm),
+        number(m.times)
+    );
+    figure(&polar("Set-up: centre and length", &caption, &drawn, m, "\u{b5}m"), &caption, None)
+}
+
 /// Each cause as a plot of its own, all on one scale, and their sizes.
 fn patterns(test: &CircularTest) -> Markup {
     let (_, axes) = PLANES[test.plane];
@@ -348,12 +376,18 @@ fn patterns(test: &CircularTest) -> Markup {
     let rows: Vec<Vec<String>> = test.patterns.iter().map(row).collect();
     let header = ["cause", "makes, \u{b5}m", "\u{b1} 95 %, \u{b5}m", "share", "G(b) without it, \u{b5}m"];
     html! {
-        div.side { @for part in test.patterns.iter().enumerate() { (one(part)) } }
+        div.side {
+            @for part in test.patterns.iter().enumerate() { (one(part)) }
+            (set_up(test))
+        }
         p.muted {
-            "All drawn " (number(m.times)) " times larger than the circle; a ring is " (number(m.ring))
+            "Causes are drawn " (number(m.times)) " times larger than the circle; a ring is " (number(m.ring))
             " \u{b5}m. Shares are of the sum of what the causes make."
         }
         (table(&header, &[1, 2, 3, 4], &rows))
+        @if test.curves_mm > CURVES_MM {
+            p.muted { "The base's own curves and effects make " (um(test.curves_mm)) " \u{b5}m." }
+        }
         p.muted { (um(test.left_mm)) " \u{b5}m of the deviations, noise with it, no cause explains." }
     }
 }

@@ -118,8 +118,12 @@ impl Lead {
 
 /// The axis with the largest accuracy; without figures there is none.
 fn worst(all: &[Read]) -> Option<(&Read, &Evaluation)> {
-    let evaluated = positions(all).filter_map(|r| Some((r, r.evaluation.as_ref()?)));
-    evaluated.max_by(|a, b| a.1.accuracy.value.total_cmp(&b.1.accuracy.value))
+    evaluated(all).max_by(|a, b| a.1.accuracy.value.total_cmp(&b.1.accuracy.value))
+}
+
+/// The axes of which runs were repeated.
+fn evaluated(all: &[Read]) -> impl Iterator<Item = (&Read, &Evaluation)> {
+    positions(all).filter_map(|r| Some((r, r.evaluation.as_ref()?)))
 }
 
 /// The first screen.
@@ -134,6 +138,9 @@ fn head(all: &[Read], facts: &Facts) -> Markup {
                 h1 {
                     (read.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} "
                     (um(e.accuracy.expanded)) ", 95\u{a0}%)"
+                }
+                @for (other, e) in evaluated(all).filter(|(other, _)| other.axis != read.axis) {
+                    p { (other.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} " (um(e.accuracy.expanded)) ")." }
                 }
                 p { (lead.says()) }
                 p { (correction(read)) }
