@@ -375,6 +375,23 @@ fn curves_of_the_base_are_told_from_the_causes() {
 }
 
 #[test]
+fn standard_input_has_no_hash() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bars = std::fs::File::open(circles(folder.path(), "c.csv", "c", 360, &noise)).expect("there");
+    let json = folder.path().join("p.json");
+    let made = vpost()
+        .args(["calibrate", "ballbar", "-", "--json"])
+        .arg(&json)
+        .stdin(bars)
+        .output()
+        .expect("vpost starts");
+    assert!(made.status.success(), "{}", messages(&made));
+    let text = std::fs::read_to_string(json).expect("written");
+    let found: Value = serde_json::from_str(&text).expect("JSON");
+    assert!(found["made"]["files"][0]["blake3"].is_null(), "{text}");
+}
+
+#[test]
 fn a_page_never_replaces_what_it_is_made_of() {
     let folder = tempfile::tempdir().expect("a folder");
     let bars = circles(folder.path(), "bars.csv", "c", 360, &noise);

@@ -71,7 +71,7 @@ pub fn bands(title: &str, d: &Bands, unit: &str) -> Markup {
             path class={ "dots s" (k % 2) } style="stroke-width:6" d=(dots(&d.at, &band.mean, &x, &y)) {}
         }
         (span(d, &y))
-        (text(LEFT, TOP - 6.0, "m e", unit))
+        (text(4.0, TOP - 6.0, "m", unit))
         (text(0.5 * (LEFT + RIGHT), TOP + HEIGHT + 31.0, "m c", &d.label))
     };
     let described = format!("from {} to {} {unit}", number(low), number(high));

@@ -19,7 +19,8 @@ pub(super) const SCHEMA: &str = "vpost.calibration/1";
 /// A file by name and content.
 struct Named {
     name: String,
-    hash: String,
+    /// None of standard input, which was read once.
+    hash: Option<String>,
 }
 
 /// What the page says of where it comes from.
@@ -49,12 +50,16 @@ impl Facts {
         uncertainty_mm: Option<f64>,
     ) -> Result<Self, Failure> {
         let named = |path: &PathBuf| -> Result<Named, Failure> {
-            Ok(Named { name: file::name(path), hash: blake3::hash(&file::read(path)?).to_string() })
+            let hash = match path.as_os_str() == "-" {
+                true => None,
+                false => Some(blake3::hash(&file::read(path)?).to_string()),
+            };
+            Ok(Named { name: file::name(path), hash })
         };
         let base = match &shared.job.machine {
             Some(path) => {
                 let loaded = profile::load(path)?;
-                let named = Named { name: file::name(path), hash: loaded.hash.to_string() };
+                let named = Named { name: file::name(path), hash: Some(loaded.hash.to_string()) };
                 Some((loaded.profile.name, named))
             }
             None => None,
@@ -115,7 +120,12 @@ impl Facts {
                 }
             }
         };
-        let named = |f: &Named| html! { (shown(&f.name)) " " span.muted { "BLAKE3 " (f.hash) } };
+        let named = |f: &Named| {
+            html! {
+                (shown(&f.name))
+                @if let Some(hash) = &f.hash { " " span.muted { "BLAKE3 " (hash) } }
+            }
+        };
         let temperature = self.temperature_c.map(|t| format!("{} \u{b0}C", crate::number::short(t, 2)));
         html! {
             dl {

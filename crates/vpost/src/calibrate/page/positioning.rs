@@ -139,11 +139,11 @@ fn head(all: &[Read], facts: &Facts) -> Markup {
                     (read.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} "
                     (um(e.accuracy.expanded)) ", 95\u{a0}%)"
                 }
+                p { (lead.says()) }
+                p { (correction(read)) }
                 @for (other, e) in evaluated(all).filter(|(other, _)| other.axis != read.axis) {
                     p { (other.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} " (um(e.accuracy.expanded)) ")." }
                 }
-                p { (lead.says()) }
-                p { (correction(read)) }
             }
             None => {
                 p { span.verdict { "NOT EVALUATED" } }
