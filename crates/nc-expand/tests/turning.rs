@@ -277,8 +277,8 @@ fn a_hole_is_drilled_on_the_axis() {
         "G0 X0 Z2.\nG83 Z-28. F0.1\n",
         "G0 X0 Z2.\nG83 Z-2. R-5. F0.1\n",
         "G0 X0 Z2.\nG83 Z-28. R-3. F0.1\nZ-30.\n",
-        // 20 in a lathe's program without points are 20 increments.
-        "G0 X0 Z2.\nG83 Z-28. R-3. Q20 F0.1\n",
+        // 5 in a program without points are 5 increments.
+        "G0 X0 Z2.\nG83 Z-28. R-3. Q5 F0.1\n",
     ] {
         assert_eq!(refused(&lathe, program).0, 143, "{program}");
     }

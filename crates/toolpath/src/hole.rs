@@ -92,8 +92,8 @@ pub struct Hole {
     pub rate: FeedRate,
 }
 
-/// More pecks than this in one hole are a mistake, and would be millions of blocks: a metre deep in steps of a tenth.
-pub const MOST_PECKS: f64 = 10_000.0;
+/// More pecks than this in one hole are a mistake, Q without its point: a hundred millimetres deep in steps of a twentieth.
+pub const MOST_PECKS: f64 = 2_000.0;
 
 impl Hole {
     /// Where the axes are after the hole, as programmed.

@@ -14,7 +14,7 @@ use super::{Fault, Spot, Writer};
 use crate::shorthand::{Words, from};
 
 /// Pecks of one hole; more are a wrong step.
-const MOST: i64 = 1_000;
+const MOST: i64 = 2_000;
 
 impl Writer<'_, '_> {
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
@@ -62,7 +62,7 @@ impl Writer<'_, '_> {
         let peck = if peck == 0 { deep } else { peck };
         if deep / peck > MOST {
             return refuse(
-                "a hole of more than 1000 pecks",
+                "a hole of more than 2000 pecks",
                 "Q counts least increments where it has no point",
                 "correct Z and Q",
             );
