@@ -167,7 +167,9 @@ impl ToldApart {
         let is_timed =
             readings.rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
         for term in [Term::Growth, Term::Wear] {
-            let is_told = self.terms.contains(&term) && !self.unnamed.contains(&term);
+            if !self.terms.contains(&term) || self.unnamed.contains(&term) {
+                continue;
+            }
             let rival = if term == Term::Wear && !is_timed {
                 "growth"
             } else if readings.goes_with_the_diameter(term, ALIKE) {
@@ -175,9 +177,6 @@ impl ToldApart {
             } else {
                 continue;
             };
-            if !is_told {
-                continue;
-            }
             self.pairs.push([term.name(), rival]);
             match term {
                 Term::Wear => {
@@ -190,11 +189,8 @@ impl ToldApart {
         }
     }
 
-    /// What parts have in common is told by at least one part more than there are sizes and changes of them.
-    fn by_parts(&mut self, readings: &Readings<'_>) -> Result<(), CalibrationError> {
-        if readings.tells_parts_apart(&self.terms)? {
-            return Ok(());
-        }
+    /// Where no part is left that tells by how much parts differ beside their sizes and changes.
+    fn without_scatter_of_parts(&mut self) {
         // A change from part to part is then how parts differ: the sizes' intervals hold it.
         self.terms.retain(|term| *term != Term::PartToPart);
         for term in [Term::Growth, Term::Wear] {
@@ -203,7 +199,6 @@ impl ToldApart {
                 self.pairs.push([term.name(), "what else differs from part to part"]);
             }
         }
-        Ok(())
     }
 }
 
@@ -239,8 +234,11 @@ pub fn calibrate(
             ),
         });
     }
-    told.by_parts(&readings)?;
     let mut adjusted = readings.adjusted(&told.terms)?;
+    if adjusted.shared_mm.is_none() {
+        told.without_scatter_of_parts();
+        adjusted = readings.adjusted(&told.terms)?;
+    }
     let mut not_there = Vec::new();
     loop {
         let removable = |k: &usize| match told.terms[*k] {

@@ -20,6 +20,8 @@ const SETTLED_MM: f64 = 1e-9;
 const WEIGHINGS: usize = 3;
 /// No reading is finer, mm: weights of readings without noise stay finite.
 const LEAST_NOISE_MM: f64 = 1e-9;
+/// What rounding does to a fit lies within so many of its standard deviations, where few readings ask for more.
+const MOST_OF_ROUNDING: f64 = 6.0;
 /// Shares below this are rounding.
 const NOTHING: f64 = 1e-9;
 
@@ -250,10 +252,7 @@ impl<'r> Readings<'r> {
 
     /// Standard deviation of the readings of a feature by what is left, mm.
     pub(super) fn noise_mm(&self, within: &Estimate, feature: Feature) -> f64 {
-        let own = || (0..self.rows.len()).filter(|k| self.is(*k, feature));
-        let squares: f64 = own().map(|k| within.residuals[k] * within.residuals[k]).sum();
-        let free: f64 = own().map(|k| within.redundancy_numbers[k]).sum();
-        if free > NOTHING { (squares / free).sqrt() } else { 0.0 }
+        self.left(within, feature, |_| 1.0).value.sqrt()
     }
 
     /// Mean square of what is left of a feature, in squares of the weights.
@@ -261,13 +260,23 @@ impl<'r> Readings<'r> {
         if self.is_known {
             return MeanSquare { value: 1.0, freedom: f64::INFINITY };
         }
+        self.left(within, feature, |k| self.weights[k])
+    }
+
+    /// The same in squares of any unit.
+    fn left(&self, within: &Estimate, feature: Feature, unit: impl Fn(usize) -> f64) -> MeanSquare {
         let own = || (0..self.rows.len()).filter(|k| self.is(*k, feature));
-        let squares: f64 = own().map(|k| (within.residuals[k] / self.weights[k]).powi(2)).sum();
+        let squares: f64 = own().map(|k| (within.residuals[k] / unit(k)).powi(2)).sum();
         let freedom: f64 = own().map(|k| within.redundancy_numbers[k]).sum();
         MeanSquare {
             value: if freedom > NOTHING { squares / freedom } else { 0.0 },
             freedom: freedom.max(1.0),
         }
+    }
+
+    /// Weighted sum of squares.
+    fn squares(&self, found: &Estimate) -> f64 {
+        found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w)).sum()
     }
 
     /// Columns of Z: the diameters of a part, weighted.
@@ -289,23 +298,14 @@ impl<'r> Readings<'r> {
         shared: &[DVector<f64>],
     ) -> Result<Between, CalibrationError> {
         let of_tools = self.fit(terms, &self.tools)?;
-        let squares = |found: &Estimate| -> f64 {
-            found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w)).sum()
-        };
         let design = self.weighted(self.jacobian(terms, &self.tools, &of_tools.values));
         let columns: Vec<DVector<f64>> = design.column_iter().map(|column| column.into_owned()).collect();
         let basis = orthonormal(&columns, &[]);
         Ok(Between {
-            squares: (squares(&of_tools) - squares(within)).max(0.0),
+            squares: (self.squares(&of_tools) - self.squares(within)).max(0.0),
             freedom: of_tools.redundancy.saturating_sub(within.redundancy) as f64,
             share: shared.iter().map(|column| without(column, &basis).norm_squared()).sum(),
         })
-    }
-
-    /// True where a degree of freedom is left that tells how parts differ.
-    pub(super) fn tells_parts_apart(&self, terms: &[Term]) -> Result<bool, CalibrationError> {
-        let within = self.within(terms)?;
-        Ok(self.between(terms, &within, &self.shared())?.is_seen())
     }
 
     /// Generalised least squares (30) with the covariance of [`super::strata`].
@@ -314,8 +314,7 @@ impl<'r> Readings<'r> {
         let shared = self.shared();
         let between = self.between(terms, &within, &shared)?;
         let noise = [Feature::Diameter, Feature::Face].map(|feature| self.mean_square(&within, feature));
-        let largest = shared.iter().map(DVector::norm_squared).fold(f64::MIN_POSITIVE, f64::max);
-        let variance = between.variance(noise[0].value, largest);
+        let variance = between.variance(noise[0].value, &shared);
         // Weights need not be the variances: below nought they are those of parts that share nothing.
         let theta = variance.max(0.0) / noise[0].value.max(LEAST_NOISE_MM * LEAST_NOISE_MM);
         let whitening = Whitening::new(&shared, theta);
@@ -338,7 +337,7 @@ impl<'r> Readings<'r> {
         let design = whitening.apply_to(&self.weighted(self.jacobian(terms, &self.tools, &found.values)));
         let gains = whitening.apply_to(&(design * &found.covariance)).transpose();
         let is_face: Vec<bool> = (0..self.rows.len()).map(|k| self.is(k, Feature::Face)).collect();
-        let spread = Spread::new(&gains, &is_face, &shared, noise, &between);
+        let spread = Spread::new(&gains, &is_face, &shared, noise, &between, variance);
         let residuals = self.readings() - self.forward(terms, &self.tools, &found.values);
         let shared_mm = between.is_seen().then(|| variance.max(0.0).sqrt());
         Ok(Adjusted { values: found.values, spread, residuals, shared_mm })
@@ -352,7 +351,7 @@ impl<'r> Readings<'r> {
         within.outlier(chance).filter(|found| {
             let own = within.redundancy_numbers[found.reading].sqrt();
             found.residual.abs() > finest_mm
-                && found.residual.abs() > found.limit.min(6.0) * rounding_mm * own
+                && found.residual.abs() > found.limit.min(MOST_OF_ROUNDING) * rounding_mm * own
         })
     }
 
@@ -364,8 +363,7 @@ impl<'r> Readings<'r> {
         1.4826 * sizes[sizes.len() / 2] * widened
     }
 
-    /// What else may change the size from part to part: an error that goes with the diameter where the parts' order (or time)
-    /// does. `None` where nothing else is in sight.
+    /// True where the parts' order (or time) goes with their diameter: an error of X that does may be what changes their size.
     pub(super) fn goes_with_the_diameter(&self, term: Term, alike: f64) -> bool {
         let diameters: Vec<usize> = (0..self.rows.len()).filter(|k| self.is(*k, Feature::Diameter)).collect();
         let centred = |value: &dyn Fn(usize) -> f64| {
@@ -413,11 +411,7 @@ impl<'r> Readings<'r> {
                 .map_err(|error| CalibrationError::Contradicted(error.to_string()))
         };
         let (alike, apart) = (fitted(&design)?, fitted(&wide)?);
-        let squares = |found: &Estimate| {
-            let weighted = found.residuals.iter().zip(&self.weights).map(|(r, w)| (r / w) * (r / w));
-            weighted.sum::<f64>()
-        };
-        let (all, left) = (squares(&alike), squares(&apart));
+        let (all, left) = (self.squares(&alike), self.squares(&apart));
         let free = apart.redundancy.max(1);
         let variance = if self.is_known { 1.0 } else { left / free as f64 };
         let ratio = (all - left) / more as f64 / variance;

@@ -35,10 +35,11 @@ pub(super) struct Between {
 }
 
 impl Between {
-    /// s_p², in squares of the weights; 0 where no degree of freedom tells it. Never so far below nought that the mean of a
-    /// part would have no variance: `largest` is the greatest square of a column of Z.
-    pub(super) fn variance(&self, noise: f64, largest: f64) -> f64 {
+    /// s_p², mm²; 0 where no degree of freedom tells it. Never so far below nought that the mean of a part would have no
+    /// variance.
+    pub(super) fn variance(&self, noise: f64, shared: &[DVector<f64>]) -> f64 {
         if self.is_seen() {
+            let largest = shared.iter().map(DVector::norm_squared).fold(f64::MIN_POSITIVE, f64::max);
             ((self.squares - self.freedom * noise) / self.share).max(-noise / largest)
         } else {
             0.0
@@ -77,12 +78,14 @@ impl Spread {
     /// * `gains` – unknowns × readings: what a weighted reading does to an unknown
     /// * `is_face` – of the readings
     /// * `shared` – columns of Z, weighted
+    /// * `variance` – s_p², [`Between::variance`]
     pub(super) fn new(
         gains: &DMatrix<f64>,
         is_face: &[bool],
         shared: &[DVector<f64>],
         [diameters, faces]: [MeanSquare; 2],
         between: &Between,
+        variance: f64,
     ) -> Self {
         let by = |faces: bool| {
             let own: Vec<usize> = (0..is_face.len()).filter(|k| is_face[*k] == faces).collect();
@@ -94,8 +97,6 @@ impl Spread {
             let gain = gains * column;
             by_parts += &gain * gain.transpose();
         }
-        let largest = shared.iter().map(DVector::norm_squared).fold(f64::MIN_POSITIVE, f64::max);
-        let variance = between.variance(diameters.value, largest);
         let mut parts = Vec::new();
         if between.is_seen() {
             // The mean square between parts is noise and parts together: s² + s_p² share / freedom.
@@ -177,7 +178,8 @@ mod tests {
         let noise = MeanSquare { value: 1.0, freedom: 8.0 };
         // Of sums of squares between parts: 3 s² + (12 − 3) s_p².
         let between = Between { squares: 30.0, freedom: 3.0, share: 9.0 };
-        let spread = Spread::new(&gains, &[false; 12], &shared, [noise; 2], &between);
+        let variance = between.variance(noise.value, &shared);
+        let spread = Spread::new(&gains, &[false; 12], &shared, [noise; 2], &between, variance);
         let mean = spread.of_unknown(0);
         assert!((mean.standard.powi(2) - 10.0 / 12.0).abs() < 1e-12, "{mean:?}");
         assert!((mean.freedom - 3.0).abs() < 1e-9, "{mean:?}");
