@@ -23,7 +23,7 @@ use super::bar_readings::{FAR, Measured, Readings};
 use super::bar_report::{before_and_after, circle_report, rotary_report};
 use super::codes::{AXES, CONTRADICTED, OUTLIER, UNSAID, failure, question};
 use super::output::{Output, Target, warn};
-use super::page::{Bars, Facts, Shown};
+use super::page::{Bars, Shown};
 
 /// `vpost calibrate ballbar FILES… -o PROFILE`
 #[derive(Debug, Args)]
@@ -268,7 +268,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     let show = |uncertainty_mm: Option<f64>| {
         let circles = circles.as_ref().map(|(found, names)| (found, names.as_slice()));
         let found = Bars { circles, rotary: rotary.as_ref() };
-        show(arguments, shared, &found, temperature_c, uncertainty_mm)
+        arguments.shown.write(&found, &arguments.files, target, shared, temperature_c, uncertainty_mm)
     };
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
     let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
@@ -306,23 +306,6 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     )?;
     output.write(target, messages)?;
     show(Some(uncertainty_mm))
-}
-
-/// Page, JSON and CSV, where they are asked for.
-fn show(
-    arguments: &Ballbar,
-    shared: &Shared,
-    found: &Bars<'_>,
-    temperature_c: Option<f64>,
-    uncertainty_mm: Option<f64>,
-) -> Result<(), Failure> {
-    if !arguments.shown.is_asked() {
-        return Ok(());
-    }
-    let target = &arguments.target;
-    let temperature_c = target.temperature.or(temperature_c);
-    let facts = Facts::new(target, shared, &arguments.files, temperature_c, uncertainty_mm)?;
-    arguments.shown.write(found, &facts)
 }
 
 /// The adjustment of the circles, with the names of their runs.

@@ -19,7 +19,7 @@ use super::axis_change::Session;
 use super::codes::{UNSAID, failure, question};
 use super::options::{Between, Directions, Interferometer, Reference, Slopes};
 use super::output::{Output, warn};
-use super::page::{Facts, Positions, Read};
+use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
 use super::{iso_report, plausibility, sources, squareness};
 use crate::number::short;
@@ -60,10 +60,15 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         axes[series.axis.direction()][series.function] = Some(function);
     }
     let found = Positions(found);
+    let show = |temperature_c: Option<f64>, uncertainty_mm: Option<f64>| {
+        let files: Vec<PathBuf> =
+            arguments.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect();
+        arguments.shown.write(&found, &files, &arguments.target, shared, temperature_c, uncertainty_mm)
+    };
     let asked = squareness::from_the_user(arguments, angles_read, &axes)?;
     summary(&mut out, &axes);
     if !writes {
-        show(arguments, shared, &found, mean_temperature(&all), None)?;
+        show(mean_temperature(&all), None)?;
         return file::print(out.as_bytes());
     }
     let temperature_c = mean_temperature(&all);
@@ -89,26 +94,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
         },
     )?;
     output.write(&arguments.target, messages)?;
-    show(arguments, shared, &found, temperature_c, uncertainty_mm)
-}
-
-/// Page, JSON and CSV, where they are asked for.
-fn show(
-    arguments: &Interferometer,
-    shared: &Shared,
-    found: &Positions,
-    temperature_c: Option<f64>,
-    uncertainty_mm: Option<f64>,
-) -> Result<(), Failure> {
-    if !arguments.shown.is_asked() {
-        return Ok(());
-    }
-    let target = &arguments.target;
-    let files: Vec<PathBuf> =
-        arguments.files.iter().map(|name| PathBuf::from(sources::path_of(name))).collect();
-    let temperature_c = target.temperature.or(temperature_c);
-    let facts = Facts::new(target, shared, &files, temperature_c, uncertainty_mm)?;
-    arguments.shown.write(found, &facts)
+    show(temperature_c, uncertainty_mm)
 }
 
 /// Every function of every file, and the angles between axes that a file gives.

@@ -16,13 +16,15 @@ use clap::Args;
 use report::page::{Page, Section};
 
 pub(super) use bars::Bars;
-pub(super) use facts::Facts;
 pub(super) use runs::{Positions, Read};
 
+use super::output::Target;
+use crate::arguments::Shared;
 use crate::file;
 use crate::message::Failure;
 use crate::roles::Roles;
 
+use facts::Facts;
 use found::Found;
 
 /// Where what was found is shown.
@@ -40,11 +42,6 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Whether anything is to be written.
-    pub(super) fn is_asked(&self) -> bool {
-        self.html.is_some() || self.json.is_some() || self.csv.is_some()
-    }
-
     /// The files that will be written.
     pub(super) fn roles<'a>(&'a self, roles: Roles<'a>) -> Roles<'a> {
         roles
@@ -53,8 +50,24 @@ impl Shown {
             .writes("--csv", self.csv.as_deref())
     }
 
-    /// Writes what is asked for.
-    pub(super) fn write(&self, found: &dyn Found, facts: &Facts) -> Result<(), Failure> {
+    /// Writes what is asked for of a calibration that is finished, its profile written where that was asked.
+    ///
+    /// * `temperature_c` – of the machine, as the files say it; `--temperature` goes before it
+    /// * `uncertainty_mm` – what the deviation keeps at 95 % of the places of the volume, where that is known
+    pub(super) fn write(
+        &self,
+        found: &dyn Found,
+        files: &[PathBuf],
+        target: &Target,
+        shared: &Shared,
+        temperature_c: Option<f64>,
+        uncertainty_mm: Option<f64>,
+    ) -> Result<(), Failure> {
+        if self.html.is_none() && self.json.is_none() && self.csv.is_none() {
+            return Ok(());
+        }
+        let temperature_c = target.temperature.or(temperature_c);
+        let facts = &Facts::new(target, shared, files, temperature_c, uncertainty_mm)?;
         let put = |path: &Option<PathBuf>, bytes: &dyn Fn() -> Vec<u8>| match path {
             Some(path) => file::write(path, &bytes()),
             None => Ok(()),
