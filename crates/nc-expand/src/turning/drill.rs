@@ -8,10 +8,10 @@
 use nc_syntax::dialect::DrillPecks;
 use nc_syntax::{Item, ItemKind, Span, Value};
 
-use super::emit::{Code, Moves};
+use super::emit::Code;
 use super::state::Motion;
 use super::{Fault, Spot, Writer};
-use crate::shorthand::{Words, from};
+use crate::shorthand::Words;
 
 /// Pecks of one hole; more are a wrong step.
 const MOST: i64 = 2_000;
@@ -85,10 +85,7 @@ impl Writer<'_, '_> {
             self.go(&mut moves, Code::Line, place(reached));
         }
         if let Some(dwell) = self.dwell(&words) {
-            let behind = moves.pause();
-            self.end(moves);
-            self.out.line(&dwell, from(words.block));
-            moves = Moves::new(from(words.block), place(deep)).resumed(behind);
+            self.between(&mut moves, &dwell);
         }
         self.go(&mut moves, Code::Rapid, place(0));
         self.go(&mut moves, Code::Rapid, [x, start[1]]);

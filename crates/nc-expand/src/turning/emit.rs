@@ -41,15 +41,6 @@ impl Moves {
     pub(super) const fn at(&self) -> Spot {
         self.at
     }
-
-    /// Words for the last move, where that is still to come.
-    pub(super) fn pause(&mut self) -> Vec<u8> {
-        std::mem::take(&mut self.behind)
-    }
-
-    pub(super) fn resumed(self, behind: Vec<u8>) -> Self {
-        Self { behind, ..self }
-    }
 }
 
 impl<'b> Writer<'b, '_> {
@@ -64,7 +55,7 @@ impl<'b> Writer<'b, '_> {
                         return Err(words.cycle_fault(
                             item.span,
                             "a number that is none of a cycle's",
-                            "more decimals than six, or 400 km",
+                            "above 400 km",
                             "correct it",
                         ));
                     }
@@ -126,6 +117,13 @@ impl<'b> Writer<'b, '_> {
         });
         self.line(&mut moves, last, true);
         self.state.stands_at(moves.at);
+    }
+
+    /// A block between two moves, which moves nothing.
+    pub(super) fn between(&mut self, moves: &mut Moves, block: &[u8]) {
+        let last = moves.last.take();
+        self.line(moves, last, false);
+        self.out.line(block, moves.from);
     }
 
     fn line(&mut self, moves: &mut Moves, line: Option<(Vec<u8>, From)>, last: bool) {
