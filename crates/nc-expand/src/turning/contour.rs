@@ -221,7 +221,7 @@ impl Writer<'_, '_> {
                 return Err(block.contour_fault(
                     block.whole(),
                     "where the contour leads here is not known",
-                    "another frame, or more decimals than six",
+                    "another frame, or above 400 km",
                 ));
             };
             if index == first {

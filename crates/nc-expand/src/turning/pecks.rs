@@ -53,8 +53,8 @@ impl Writer<'_, '_> {
             return Err(words.cycle_fault(
                 span,
                 "where the cycle leads is not known",
-                "more decimals than six",
-                "write X and Z with six decimals at most",
+                "above 400 km",
+                "correct X and Z",
             ));
         };
         let to = [x, z];
