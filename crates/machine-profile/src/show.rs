@@ -184,18 +184,18 @@ impl Profile {
         }
         let turning = &rules.turning;
         let said = [
-            ("chamfer of threads", turning.thread_chamfer_leads, "leads"),
-            ("its angle", turning.thread_chamfer_deg, "degrees"),
-            ("escape of roughing", turning.roughing_escape_mm, "mm"),
-            ("return of pecks", turning.groove_return_mm, "mm"),
+            ("chamfer of threads", turning.thread_chamfer_leads, " leads"),
+            ("its angle", turning.thread_chamfer_deg, " degrees"),
+            ("escape of roughing", turning.roughing_escape_mm, " mm"),
+            ("return of pecks", turning.groove_return_mm, " mm"),
             ("finishing passes of threads", turning.thread_finishing_passes, ""),
-            ("their least infeed", turning.thread_least_mm, "mm"),
-            ("their allowance", turning.thread_allowance_mm, "mm"),
-            ("return in drilling", turning.drill_return_mm, "mm"),
+            ("their least infeed", turning.thread_least_mm, " mm"),
+            ("their allowance", turning.thread_allowance_mm, " mm"),
+            ("return in drilling", turning.drill_return_mm, " mm"),
         ];
         let mut said: Vec<String> = said
             .into_iter()
-            .filter_map(|(what, value, unit)| Some(format!("{what} {} {unit}", value?)))
+            .filter_map(|(what, value, unit)| Some(format!("{what} {}{unit}", value?)))
             .collect();
         if let Some(from) = turning.thread_flank_from {
             said.push(match from {
