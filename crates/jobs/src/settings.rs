@@ -411,6 +411,8 @@ fn setup(options: &JobOptions, profile: &Profile) -> Result<Setup, Failure> {
     let mut setup = Setup {
         work_offsets: profile.work_offsets.clone(),
         tools: tools(options, profile),
+        tool_names: profile.tool_names.clone(),
+        edge_at_change: profile.program.edge_at_change,
         noses_mm: noses_mm(profile),
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),

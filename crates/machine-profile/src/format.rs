@@ -289,6 +289,10 @@ pub(crate) struct Tool {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Length>")]
     pub(crate) lengths_mm: BTreeMap<String, Spanned<Length>>,
+    /// Names that programs call tools by (T="MILL 12"), and the number of the length that each has: 1 for H1.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, u32>")]
+    pub(crate) names: BTreeMap<String, Spanned<u32>>,
     /// H number → nose of a turning tool.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Nose>")]
@@ -420,6 +424,9 @@ pub(crate) struct Program {
     /// Where a tool change (M6) leaves X, Y and Z; anywhere where left out.
     #[schemars(with = "Option<ToolChange>")]
     pub(crate) tool_change: Option<Spanned<ToolChange>>,
+    /// Edge of the tool that M6 brings in where the program writes no D (Sinumerik's MD20270): 1, or 0 for none.
+    #[schemars(with = "Option<u32>")]
+    pub(crate) edge_at_change: Option<Spanned<u32>>,
     /// Largest difference of an arc's radii that the control takes, mm; the dialect's where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) arc_tolerance_mm: Option<Spanned<Finite>>,

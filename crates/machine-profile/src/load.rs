@@ -123,6 +123,7 @@ impl Loader<'_> {
         let squareness = self.squareness(&document.squareness);
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
         let mut tools = self.tools(&document.tool);
+        let tool_names = self.tool_names(&document.tool, &tools);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
@@ -160,6 +161,7 @@ impl Loader<'_> {
             rows,
             traverses,
             default_tool_mm: triple(document.tool.default_mm),
+            tool_names,
             tools,
             work_offsets,
             correction,
@@ -311,6 +313,7 @@ impl Loader<'_> {
             bare_lengths,
             tool_change,
             arc_tolerance_mm,
+            edge_at_change: self.edge_at_change(program),
             harmless_m_codes,
             diameters: program.x.map(|x| matches!(x, XName::Diameter)),
             g_code_system: program.g_code_system.clone(),
@@ -618,6 +621,30 @@ impl Loader<'_> {
             all.push(bytes.and_then(|bytes| self.keep(traverse(name.get_ref(), &bytes, axis))));
         }
         all.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+    }
+
+    fn edge_at_change(&mut self, program: &format::Program) -> Option<u32> {
+        let written = program.edge_at_change.as_ref()?;
+        let edge = *written.get_ref();
+        if edge > 1 {
+            let diagnostic = Diagnostic::error(VALUE, format!("edge_at_change is {edge}"))
+                .help("1 where a tool change brings in the first edge, 0 where it brings in none (MD20270)");
+            self.refuse(written, diagnostic, "expected 0 or 1");
+        }
+        Some(edge)
+    }
+
+    /// Names of tools, each with a length that is given.
+    fn tool_names(&mut self, written: &format::Tool, tools: &[(u32, [f64; 3])]) -> Vec<(String, u32)> {
+        for (name, number) in &written.names {
+            if tools.iter().all(|(known, _)| known != number.get_ref()) {
+                let message = format!("the tool \"{name}\" has the length H{}", number.get_ref());
+                let diagnostic = Diagnostic::error(KEY, message)
+                    .help("add the length to `lengths_mm`, or correct the number");
+                self.refuse(number, diagnostic, "lengths_mm has no such length");
+            }
+        }
+        written.names.iter().map(|(name, number)| (name.clone(), *number.get_ref())).collect()
     }
 
     fn tools(&mut self, written: &format::Tool) -> Vec<(u32, [f64; 3])> {

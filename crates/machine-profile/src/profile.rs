@@ -76,6 +76,8 @@ pub struct ProgramRules {
     pub bare_lengths: Option<BareLengths>,
     /// X, Y, Z behind a tool change.
     pub tool_change: [AfterChange; 3],
+    /// The edge that a tool change brings in where no D says one, 0 for none; `None`: not said.
+    pub edge_at_change: Option<u32>,
     /// Numbers of M codes that move neither an axis nor the frame.
     pub harmless_m_codes: Vec<u16>,
     /// Largest difference of an arc's radii that the control takes, mm; `None`: the dialect's.
@@ -212,6 +214,8 @@ pub struct Profile {
     /// H number and length vector, mm, ordered by number. The axis command is program + work offset +
     /// vector; the tool vector is minus the vector.
     pub tools: Vec<(u32, [f64; 3])>,
+    /// Names of tools, and the H numbers of their lengths.
+    pub tool_names: Vec<(String, u32)>,
     /// Name (`G54`) and machine coordinate of that program zero, mm, ordered by name.
     pub work_offsets: Vec<(String, [f64; 3])>,
     /// How programs are corrected.

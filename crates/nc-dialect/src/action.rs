@@ -1,9 +1,11 @@
 //! What the words of a grammar's `does` mean.
 
-use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode, Side, TipSwitch, TurningCycle};
+use nc_syntax::dialect::{
+    Action, Called, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
+};
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 77] = [
+pub const ACTION_NAMES: [&str; 92] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -79,6 +81,21 @@ pub const ACTION_NAMES: [&str; 77] = [
     "peck-groove",
     "thread-passes",
     "drill-face",
+    "frame-shift",
+    "frame-shift-more",
+    "frame-rotation",
+    "frame-rotation-more",
+    "frame-mirror",
+    "frame-mirror-more",
+    "base-frame",
+    "call-drill",
+    "call-drill-dwell",
+    "call-drill-pecks",
+    "call-ream",
+    "call-modal",
+    "call-holes-row",
+    "call-holes-circle",
+    "arc-turns",
     "pass",
     "pass-with-words",
 ];
@@ -162,6 +179,21 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "peck-groove" => Action::Turning(TurningCycle::PeckGroove),
         "thread-passes" => Action::Turning(TurningCycle::ThreadPasses),
         "drill-face" => Action::Turning(TurningCycle::DrillFace),
+        "frame-shift" => Action::ProgramFrame { part: FramePart::Shift, adds: false },
+        "frame-shift-more" => Action::ProgramFrame { part: FramePart::Shift, adds: true },
+        "frame-rotation" => Action::ProgramFrame { part: FramePart::Rotation, adds: false },
+        "frame-rotation-more" => Action::ProgramFrame { part: FramePart::Rotation, adds: true },
+        "frame-mirror" => Action::ProgramFrame { part: FramePart::Mirror, adds: false },
+        "frame-mirror-more" => Action::ProgramFrame { part: FramePart::Mirror, adds: true },
+        "base-frame" => Action::BaseFrame,
+        "call-drill" => Action::Called(Called::Drill),
+        "call-drill-dwell" => Action::Called(Called::DrillDwell),
+        "call-drill-pecks" => Action::Called(Called::DrillPecks),
+        "call-ream" => Action::Called(Called::Ream),
+        "call-modal" => Action::Called(Called::Modal),
+        "call-holes-row" => Action::Called(Called::HolesRow),
+        "call-holes-circle" => Action::Called(Called::HolesCircle),
+        "arc-turns" => Action::Called(Called::Turns),
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         _ => return None,

@@ -145,6 +145,10 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
     let Rows { codes, m_codes, commands, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
     letters.sort_unstable();
+    let called = commands.iter().any(|command| matches!(command.action, Some(Action::Called(_))));
+    let mut long_words: Vec<(String, u8)> =
+        text.long_words.into_iter().map(|(name, letter)| (name, letter.into_inner() as u8)).collect();
+    long_words.sort();
     let polar_words = codes.iter().any(|entry| entry.action == Action::PolarOn);
     Dialect {
         name: name.to_owned(),
@@ -167,6 +171,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             ColonRule::Number => Colon::Number,
             ColonRule::Comment => Colon::Comment,
         },
+        long_words,
         equals_words: text.equals_words,
         letters,
         numbers: Numbers {
@@ -195,6 +200,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             full_circle_atan: flow.full_circle_atan,
             corner_words: flow.corner_words,
             polar_words,
+            called,
         },
         cycle_levels: match cycles.levels {
             Levels::Held => CycleLevels::Held,
@@ -214,6 +220,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             UnderG49::Unstated => LengthAfter::Unstated,
         },
         t_may_change_tool: tool_length.t_word == TWord::MayChange,
+        edge_in_d: tool_length.edge_in_d,
         frames: FrameRules {
             p_selects_numbered: frames.p_selects_numbered,
             l20: match frames.l20 {

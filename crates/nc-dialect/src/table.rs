@@ -43,6 +43,9 @@ pub(crate) struct Text {
     pub(crate) colon: ColonRule,
     #[serde(default)]
     pub(crate) equals_words: bool,
+    /// Names of several letters, and the letter that they stand for.
+    #[serde(default)]
+    pub(crate) long_words: BTreeMap<String, Spanned<char>>,
     pub(crate) letters: Spanned<String>,
 }
 
@@ -227,6 +230,8 @@ pub(crate) struct ToolLength {
     pub(crate) under_g49: UnderG49,
     #[serde(default)]
     pub(crate) t_word: TWord,
+    #[serde(default)]
+    pub(crate) edge_in_d: bool,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]

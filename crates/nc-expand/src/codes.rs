@@ -60,3 +60,6 @@ pub const CONTOUR: Code = Code(144);
 /// A parameter of the control decides how a cycle moves, and neither program nor profile says it.
 /// Remedy: the key under `[program]` that the message names.
 pub const CYCLE_PARAMETER: Code = Code(145);
+/// A call of a cycle by its name, or a dimension by AC and IC, that cannot be written out with certainty.
+/// Remedy: the words it lacks, or its moves.
+pub const CALLED_CYCLE: Code = Code(146);

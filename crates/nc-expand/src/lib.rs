@@ -17,7 +17,8 @@
 //!
 //! * Corners (`,R5.`, `,C2.`) and polar words (G16): the line as a comment, then the points, arcs and lines they
 //!   stand for.
-//! * Cycles of lathes (G90, G71 and their like): the line as a comment, then the moves.
+//! * Cycles of lathes (G90, G71 and their like) and cycles called by name (CYCLE81): the line as a comment, then the
+//!   moves.
 //!
 //! # What is refused
 //!
@@ -30,6 +31,7 @@
 //! refused, naming the variable it came from.
 
 mod call;
+mod called;
 pub mod codes;
 mod evaluate;
 mod expression;
@@ -209,7 +211,11 @@ pub fn expand<'a>(
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let write_out = if dialect.turning.is_some() { turning::write_out } else { shorthand::write_out };
+        let write_out = match () {
+            () if dialect.turning.is_some() => turning::write_out,
+            () if dialect.flow.called => called::write_out,
+            () => shorthand::write_out,
+        };
         let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
             let settled = expanded.settle(vec![*fault]);
             let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
@@ -229,7 +235,7 @@ pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
 
 /// True where a block has shorthand: of drawings, or a cycle of a lathe.
 fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
-    shorthand::needed(block, dialect) || turning::needed(block, dialect)
+    shorthand::needed(block, dialect) || turning::needed(block, dialect) || called::needed(block, dialect)
 }
 
 /// What a program asks for.
@@ -245,7 +251,10 @@ impl Work {
     fn of(text: &[u8], dialect: &Dialect) -> Self {
         let mut work = Self::default();
         let may_flow = dialect.flow.macros != Macros::None;
-        let may_be_short = dialect.flow.corner_words || dialect.flow.polar_words || dialect.turning.is_some();
+        let may_be_short = dialect.flow.corner_words
+            || dialect.flow.polar_words
+            || dialect.flow.called
+            || dialect.turning.is_some();
         if !may_flow && !may_be_short {
             return work;
         }

@@ -20,7 +20,7 @@ use crate::codes;
 use crate::output::{From, Output, Segment, Style, word};
 
 /// X, Y, Z.
-const AXES: [u8; 3] = *b"XYZ";
+pub(crate) const AXES: [u8; 3] = *b"XYZ";
 /// Below this the two lines of a corner are one line, or run back on each other, rad. Controls treat such a corner
 /// as none.
 const STRAIGHT_RAD: f64 = 0.0175;
@@ -49,7 +49,7 @@ fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
 
 /// The motion code in force.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Motion {
+pub(crate) enum Motion {
     Rapid,
     Line,
     Arc,
@@ -59,13 +59,13 @@ enum Motion {
 
 /// What has to be known of the program between two blocks; lengths in units of the program.
 #[derive(Clone)]
-struct State {
-    motion: Motion,
+pub(crate) struct State {
+    pub(crate) motion: Motion,
     /// First and second axis of the plane, and its normal.
-    plane: [usize; 3],
-    absolute: bool,
-    inch: bool,
-    at: [Option<f64>; 3],
+    pub(crate) plane: [usize; 3],
+    pub(crate) absolute: bool,
+    pub(crate) inch: bool,
+    pub(crate) at: [Option<f64>; 3],
     /// G16: radius and angle in degrees, once named.
     polar: Option<[Option<f64>; 2]>,
 }
@@ -109,6 +109,14 @@ impl Words<'_, '_> {
             _ => None,
         })
     }
+    /// No command of the block moves the frame, or the axes by other words than the block's.
+    pub(crate) fn commands_keep_places(&self) -> bool {
+        self.block.items.iter().filter(|item| item.kind == ItemKind::BracketCommand).all(|item| {
+            let row = self.dialect.command(self.block.text(item.span));
+            row.and_then(|row| row.action.as_ref())
+                .is_none_or(|action| action.keeps_places() || matches!(action, Action::Called(_)))
+        })
+    }
     fn comma(&self) -> Option<&Item> {
         self.block.items.iter().find(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
     }
@@ -135,7 +143,7 @@ impl Words<'_, '_> {
 }
 
 impl State {
-    fn initial(dialect: &Dialect) -> Self {
+    pub(crate) fn initial(dialect: &Dialect) -> Self {
         let mut state = Self {
             motion: Motion::None,
             plane: [0, 1, 2],
@@ -151,7 +159,7 @@ impl State {
     }
 
     /// Whose words the block has: true where they are the motion's.
-    fn set(&mut self, action: &Action) -> bool {
+    pub(crate) fn set(&mut self, action: &Action) -> bool {
         match action {
             Action::Rapid => self.motion = Motion::Rapid,
             Action::Line => self.motion = Motion::Line,
@@ -187,7 +195,7 @@ impl State {
     }
 
     /// After the block as it stands.
-    fn step(&mut self, words: &Words<'_, '_>) {
+    pub(crate) fn step(&mut self, words: &Words<'_, '_>) {
         let mut owned = true;
         // G80 beside a motion ends the cycle first.
         for cancels in [true, false] {
@@ -199,7 +207,10 @@ impl State {
             let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
             row.is_some_and(|row| row.loses_position != [false; 3])
         };
-        if words.number(b'M').is_some_and(|(number, _)| machine(number)) || words.skipped() {
+        let moved = words.block.words().any(|word| word.letter == b'M' && word.number().is_some_and(machine));
+        // A tool's edge shifts what its axes' places are called.
+        let edge = words.dialect.edge_in_d && words.number(b'D').is_some();
+        if moved || edge || words.skipped() || !words.commands_keep_places() {
             self.at = [None; 3];
         } else if owned {
             for (axis, letter) in AXES.into_iter().enumerate() {
@@ -567,11 +578,11 @@ impl Shape {
 }
 
 /// As it will be read back.
-fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
+pub(crate) fn number(line: &mut Vec<u8>, letter: u8, value: f64) {
     // Fifteen digits hold whatever a program's own numbers make.
     let _ = word(line, letter, value, Style::Decimals(6));
 }

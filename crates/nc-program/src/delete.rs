@@ -59,6 +59,7 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         units: executed.stated.units && skipped.stated.units,
     };
     both.speed_limited = executed.speed_limited && skipped.speed_limited;
+    both.edge_unsaid = executed.edge_unsaid || skipped.edge_unsaid;
     both.feed_is_inverse_time = executed.feed_is_inverse_time || skipped.feed_is_inverse_time;
     both.unsettled = [0, 1, 2].map(|i| executed.unsettled[i] || skipped.unsettled[i]);
     // `/M30` ends the program or not: what follows is executed or not, and must be right where it is.

@@ -4,13 +4,13 @@
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
 use nc_syntax::Span;
-use nc_syntax::dialect::{Action, OffsetL20};
+use nc_syntax::dialect::{Action, FramePart, OffsetL20};
 use toolpath::{Frame, Kinematics};
 
 use crate::codes;
 use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
-use crate::settings::{Demand, Environment};
+use crate::settings::{BASE_FRAME, Demand, Environment};
 use crate::tilted;
 use crate::transform::Transform;
 use crate::words::{
@@ -76,8 +76,14 @@ pub(crate) fn execute(
         return Err(refuse(words, span, "beside another offset", "in which order? controls differ")
             .help("write the two codes in two blocks"));
     }
-    let turns =
-        matches!(action, Action::RotationOn | Action::ScalingOn | Action::MirrorOn | Action::MirrorOff);
+    let turns = matches!(
+        action,
+        Action::RotationOn
+            | Action::ScalingOn
+            | Action::MirrorOn
+            | Action::MirrorOff
+            | Action::ProgramFrame { .. }
+    );
     if !turns && !state.transform.is_none() {
         let under = format!("under {}", state.transform.name());
         return Err(refuse(words, span, &under, "its words may be turned, scaled or not")
@@ -115,6 +121,7 @@ pub(crate) fn execute(
             unsettle(state, transform);
         }
         Action::MirrorOff => mirror_off(words, span, state)?,
+        Action::ProgramFrame { part, adds } => program_frame(words, span, *part, *adds, state)?,
         Action::TiltedPlane => tilted::define(env, words, span, state)?,
         Action::AlignTool => tilted::align(env, words, span, state)?,
         _ => {}
@@ -385,7 +392,117 @@ pub(crate) fn active_name(env: &Environment<'_>, state: &Modal) -> Option<String
     match (number, env.dialect.code(code?).map(|entry| &entry.action)) {
         (Some(number), _) => Some(numbered(number)),
         (None, Some(Action::WorkOffset(name))) => Some(name.clone()),
+        (None, Some(Action::BaseFrame)) => Some(BASE_FRAME.to_owned()),
         _ => None,
+    }
+}
+
+/// TRANS, ROT, MIRROR and their additive forms (840D Programming Manual Fundamentals, chapter Coordinate
+/// transformations): place = work offset + shift + T·words, the shift along the work offset's axes.
+///
+/// One that does not add takes the place of all that were in force; an additive one works in the frame that they make.
+fn program_frame(
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    part: FramePart,
+    adds: bool,
+    state: &mut Modal,
+) -> Outcome<()> {
+    let allowed = match part {
+        FramePart::Rotation => AXIS_LETTERS.or(R),
+        FramePart::Shift | FramePart::Mirror => LINEAR_LETTERS,
+    };
+    let others = words.letters.without(allowed).without(Letters::of(b"NO"));
+    if words.has(others) || !words.codes.is_empty() || !words.m_codes.is_empty() {
+        let at = if words.has(others) { words.span(others) } else { span };
+        return Err(words
+            .refuse(
+                codes::FRAME,
+                format!("{} beside something else", words.text(span)),
+                at,
+                "a block of its own was expected",
+            )
+            .help("write it in a block of its own"));
+    }
+    let none = !words.has(allowed);
+    if none && adds {
+        return Err(refuse(words, span, "without words", "adds what to the frame?")
+            .help("write the axes and their values, or remove it"));
+    }
+    let (mut shift, mut transform) =
+        if adds { (state.shifts.local_mm, state.transform) } else { ([0.0; 3], Transform::None) };
+    match part {
+        _ if none => {}
+        FramePart::Shift => {
+            let by = shift_words(words, span, state)?.map(|mm| mm.unwrap_or(0.0));
+            // Along the axes that the frame in force has.
+            let turned =
+                transform.frame([0.0; 3]).map(|frame| (frame.to_machine(by), frame.to_machine([0.0; 3])));
+            let Some((end, start)) = turned else {
+                return Err(refuse(words, span, "in a frame without inverse", "leads nowhere")
+                    .help("cancel the frame with TRANS alone before it"));
+            };
+            (0..3).for_each(|i| shift[i] += end[i] - start[i]);
+        }
+        FramePart::Rotation => {
+            let angle = rotation_words(words, span, state)?;
+            let before = match transform {
+                Transform::None => 0.0,
+                Transform::Rotation { plane, angle_deg, .. } if plane == state.plane => angle_deg,
+                _ => return Err(in_which_order(words, span, &transform)),
+            };
+            let angle_deg = before + angle;
+            transform = Transform::Rotation { plane: state.plane, centre_mm: [0.0; 2], angle_deg };
+        }
+        FramePart::Mirror => {
+            let mut about = match transform {
+                Transform::None => [None; 3],
+                Transform::Mirror(about) => about,
+                _ => return Err(in_which_order(words, span, &transform)),
+            };
+            for i in 0..3 {
+                let Some(value) = words.coordinate(LINEAR[i], false) else { continue };
+                if value != 0.0 {
+                    let at = words.span(Letters::of(&[LINEAR[i]]));
+                    return Err(words
+                        .refuse(codes::FRAME, "a mirror about a place that is not zero", at, "0 was expected")
+                        .help("shift the zero with ATRANS before it, and write 0"));
+                }
+                // Twice is none.
+                about[i] = if about[i].is_some() { None } else { Some(0.0) };
+            }
+            transform = if about == [None; 3] { Transform::None } else { Transform::Mirror(about) };
+        }
+    }
+    state.shifts.local_mm = shift;
+    if transform != state.transform {
+        unsettle(state, transform);
+    }
+    Ok(())
+}
+
+fn in_which_order(
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    transform: &Transform,
+) -> Box<diagnostic::Diagnostic> {
+    let under = format!("under {}", transform.name());
+    refuse(words, span, &under, "the two together are neither").help("write one of the two in the CAM")
+}
+
+/// The angle of ROT in the plane, degrees: `RPL=`, or the word of the axis that stands upright on the plane.
+fn rotation_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<f64> {
+    let normal = LINEAR[state.plane.axes()[2]];
+    let out = words.letters.and(AXIS_LETTERS).without(Letters::of(&[normal]));
+    if !out.is_empty() {
+        return Err(words
+            .refuse(codes::FRAME, "a rotation out of the plane", words.span(out), "tilts the frame")
+            .help("post without tilted planes"));
+    }
+    match (words.coordinate(b'R', false), words.coordinate(normal, false)) {
+        (Some(angle), None) | (None, Some(angle)) => Ok(angle),
+        _ => Err(refuse(words, span, "by two angles", "RPL= or the plane's normal was expected")
+            .help("write RPL= alone")),
     }
 }
 

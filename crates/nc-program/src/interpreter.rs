@@ -144,6 +144,7 @@ impl<'d> Interpreter<'d> {
             stated: Stated::default(),
             tool_selected: None,
             tool_loaded: None,
+            edge_unsaid: false,
             progress: Progress::Leader,
             aside: None,
         };

@@ -446,6 +446,8 @@ pub struct Modal {
     pub tool_selected: Option<u32>,
     /// The T that the last M6 brought into the spindle.
     pub tool_loaded: Option<u32>,
+    /// M6 has brought in a tool, and which of its edges counts nobody has said.
+    pub edge_unsaid: bool,
     /// How far the program is.
     pub progress: Progress,
     /// Blocks that may be skipped are under way; all else here is as where they are executed.

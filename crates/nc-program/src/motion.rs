@@ -49,6 +49,9 @@ pub(crate) fn execute(
     match demand.owner {
         Owner::Motion => {
             known_axes(env, words)?;
+            if words.has(AXIS_LETTERS) {
+                tool_length::edge_is_said(words, state)?;
+            }
             by_mode(env, words, before, state, moved)?;
         }
         Owner::DwellP => {
@@ -369,6 +372,18 @@ fn machine_coordinates(
     }
     if words.has(ARC_LETTERS) {
         return Err(stray(words, "this block is no arc"));
+    }
+    let lengths = state.tool_length.applied_mm().map(|mm| mm != 0.0);
+    let along = Letters::of_axes(if state.edge_unsaid { [true; 3] } else { lengths });
+    if env.dialect.edge_in_d && words.has(along) {
+        return Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                "machine coordinates while a tool length is in force",
+                words.span(along),
+                "the place of the tip, or of the spindle?",
+            )
+            .help("write D0 in this block, or before it"));
     }
     if state.distance == Distance::Incremental {
         // Some controls ignore G53 under G91, some refuse it, some obey: the end is not known.

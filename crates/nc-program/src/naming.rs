@@ -9,7 +9,7 @@
 //! Where controls also differ in whether the axis moves (a tool length that changes without a motion of the axis in the
 //! same block), its position is unknown.
 
-use nc_syntax::dialect::{Action, CodeEntry, GCode};
+use nc_syntax::dialect::{Action, GCode};
 use toolpath::Kinematics;
 
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
@@ -55,8 +55,9 @@ pub(crate) fn disturb(
     if !said && !words.has(Letters::of(b"DHT")) {
         return;
     }
-    for code in &words.codes {
-        if let Some((axes, why)) = disturbed_by(code.entry, words, before, state) {
+    let actions = words.codes.iter().map(|code| &code.entry.action);
+    for action in actions.chain(words.commands.iter().map(|(action, _)| *action)) {
+        if let Some((axes, why)) = disturbed_by(action, words, before, state) {
             forget(words, state, axes, why);
         }
     }
@@ -84,7 +85,7 @@ pub(crate) fn disturb(
 
 /// The axes that a code concerns. A work offset and a unit that the program says again change nothing.
 fn disturbed_by(
-    code: &CodeEntry,
+    action: &Action,
     words: &Words<'_, '_, '_>,
     before: &Modal,
     state: &mut Modal,
@@ -92,8 +93,9 @@ fn disturbed_by(
     let stated = &mut state.stated;
     // Some controls end a tool length with it.
     let own_and_length = either(written(words), state.tool_length.applied_mm().map(|mm| mm != 0.0));
-    let axes = match &code.action {
-        Action::WorkOffset(_) | Action::WorkOffsetNumbered => {
+    let axes = match action {
+        Action::ProgramFrame { .. } => ALL,
+        Action::WorkOffset(_) | Action::WorkOffsetNumbered | Action::BaseFrame => {
             let again = std::mem::replace(&mut stated.work_offset, true)
                 && before.work_offset == state.work_offset
                 && before.shifts == Shifts::default();
@@ -144,10 +146,13 @@ fn length(
         .codes
         .iter()
         .any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff | TipLengthOn));
-    let by_tool = env.dialect.turning.as_ref().is_some_and(|turning| {
+    let by_turret = env.dialect.turning.as_ref().is_some_and(|turning| {
         (turning.offset_in_t && words.has(Letters::of(b"T")))
             || (turning.offset_in_d && words.has(Letters::of(b"DT")))
     });
+    let by_edge =
+        env.dialect.edge_in_d && (words.has(Letters::of(b"D")) || before.edge_unsaid != state.edge_unsaid);
+    let by_tool = by_turret || by_edge;
     let says = says || by_tool;
     if !says && !words.has(Letters::of(b"H")) {
         return;

@@ -6,7 +6,7 @@ use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
 
 use crate::modal::{Axes, Axis, Distance, Lost, Modal, Units, Why};
-use crate::settings::{Environment, missing_offset};
+use crate::settings::{BASE_FRAME, Environment, missing_offset};
 use crate::words::{AXIS_LETTERS, LINEAR, Outcome, ROTARY, ROTARY_LETTERS, Words};
 use crate::{codes, frames};
 use nc_syntax::Letters;
@@ -36,6 +36,7 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
     }
     match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {
         Some(Action::WorkOffset(name)) => missing_offset(words, name, span),
+        Some(Action::BaseFrame) => missing_offset(words, BASE_FRAME, span),
         _ => words
             .refuse(codes::WORK_OFFSET, "no work offset is in force", span, "coordinates of which zero?")
             .help("program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`"),

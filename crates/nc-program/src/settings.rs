@@ -76,6 +76,8 @@ struct Wanted<'d> {
     cancel_group: Option<u8>,
     probe_group: Option<u8>,
     offset: Option<(GCode, Option<&'d str>, Span)>,
+    /// The work offset is the base frame, which may be unknown as long as nothing moves in it.
+    base: bool,
     /// G69, G50.
     transform_off: Option<(&'d Action, Span)>,
     /// G92.1, G92.2, G92.3 where they take no words.
@@ -84,6 +86,9 @@ struct Wanted<'d> {
     /// G40.
     compensation_off: Option<Span>,
 }
+
+/// The base frame's name in the profile.
+pub(crate) const BASE_FRAME: &str = "G500";
 
 /// Applies the codes of a block to the state.
 ///
@@ -101,27 +106,29 @@ pub(crate) fn apply<'d>(
         return Ok(demand);
     }
     let mut wanted = Wanted::default();
-    for code in &words.codes {
-        let action = &code.entry.action;
+    let rows = words.codes.iter().map(|row| (&row.entry.action, row.entry.code, row.entry.group, row.span));
+    // What a command does, it does like a code of no group.
+    let commands = words.commands.iter().map(|(action, span)| (*action, GCode(0), 0, *span));
+    for (action, code, group, span) in rows.chain(commands) {
         let owner = match (action, &env.dialect.frames) {
             (Action::LimitOrPreset, _) => {
                 if words.has(LINEAR_LETTERS) {
                     demand.frame = Some(&Action::Preset);
                     demand.owner = Owner::Frame;
-                    demand.owner_span = Some(code.span);
+                    demand.owner_span = Some(span);
                 }
                 continue;
             }
             (Action::PresetCancel, rules) if rules.local_is_preset => {
-                wanted.shift = Some((action, code.span));
+                wanted.shift = Some((action, span));
                 Owner::Motion
             }
-            _ => set(action, code.entry.code, code.entry.group, code.span, state, &mut wanted),
+            _ => set(action, code, group, span, state, &mut wanted),
         };
         match owner {
             Owner::Motion => {
                 if wanted.motion.is_some() || wanted.cycle.is_some() {
-                    demand.written_motion.get_or_insert(code.span);
+                    demand.written_motion.get_or_insert(span);
                 }
             }
             owner => {
@@ -129,42 +136,43 @@ pub(crate) fn apply<'d>(
                     let message = format!(
                         "{} and {} both take the words of this block",
                         words.text(other),
-                        words.text(code.span)
+                        words.text(span)
                     );
                     return Err(words
-                        .refuse(codes::WORDS_OF_TWO, message, code.span, "whose are the axis words?")
+                        .refuse(codes::WORDS_OF_TWO, message, span, "whose are the axis words?")
                         .help("write the two codes in two blocks"));
                 }
                 demand.owner = owner;
-                demand.owner_span = Some(code.span);
+                demand.owner_span = Some(span);
                 if owner == Owner::Frame {
                     demand.frame = Some(action);
                 }
             }
         }
-        if code.entry.action == Action::PolarOn {
-            let message = format!("{} was not written out", words.text(code.span));
-            return Err(words
-                .refuse(codes::REFUSED_CODE, message, code.span, "its words are radius and angle")
-                .help("write the points in X and Y, G15 in force"));
+        let unwritten = match action {
+            Action::PolarOn => {
+                Some(("its words are radius and angle", "write the points in X and Y, G15 in force"))
+            }
+            Action::Turning(_) | Action::Called(_) => {
+                Some(("a cycle of the control", "let the CAM write the moves"))
+            }
+            _ => None,
+        };
+        if let Some((label, help)) = unwritten {
+            let message = format!("{} was not written out", words.text(span));
+            return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
         }
-        if let Action::Turning(_) = code.entry.action {
-            let message = format!("{} was not written out", words.text(code.span));
+        if let Action::Refuse { reason, help } = action {
+            let message = format!("{} is refused: {reason}", words.text(span));
             return Err(words
-                .refuse(codes::REFUSED_CODE, message, code.span, "a cycle of the control")
-                .help("let the CAM write the moves"));
-        }
-        if let Action::Refuse { reason, help } = &code.entry.action {
-            let message = format!("{} is refused: {reason}", words.text(code.span));
-            return Err(words
-                .refuse(codes::REFUSED_CODE, message, code.span, "not understood")
+                .refuse(codes::REFUSED_CODE, message, span, "not understood")
                 .help(help.as_str()));
         }
     }
     tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
         let other = takes_p(env, words, state, &demand, &wanted);
-        work_offset(env, words, state, offset, other)?;
+        work_offset(env, words, state, offset, wanted.base, other)?;
     }
     tool_length::length(env, words, state, wanted.length)?;
     tip::switch(env, words, before, state)?;
@@ -207,6 +215,7 @@ fn work_offset(
     words: &Words<'_, '_, '_>,
     state: &mut Modal,
     (code, name, span): (GCode, Option<&str>, Span),
+    base: bool,
     other: bool,
 ) -> Outcome<()> {
     const P: Letters = Letters::of(b"P");
@@ -250,7 +259,7 @@ fn work_offset(
         (None, name) => name.unwrap_or_default().to_owned(),
     };
     let zero_mm = frames::offset(env, state, &name);
-    if zero_mm.is_none() {
+    if zero_mm.is_none() && !base {
         return Err(missing_offset(words, &name, span));
     }
     state.work_offset = WorkOffset { code: Some(code), number, zero_mm, rewritten: false };
@@ -356,6 +365,10 @@ fn set<'d>(
         Action::LengthOff => wanted.length = Some((Length::Off, span)),
         Action::WorkOffset(name) => wanted.offset = Some((code, Some(name), span)),
         Action::WorkOffsetNumbered => wanted.offset = Some((code, None, span)),
+        Action::BaseFrame => {
+            wanted.offset = Some((code, Some(BASE_FRAME), span));
+            wanted.base = true;
+        }
         Action::RotationOff | Action::ScalingOff => {
             // Several may stand together; the one that ends what is in force counts.
             let ends = matches!(
@@ -379,7 +392,8 @@ fn set<'d>(
         | Action::RotationOn
         | Action::ScalingOn
         | Action::MirrorOn
-        | Action::MirrorOff => return Owner::Frame,
+        | Action::MirrorOff
+        | Action::ProgramFrame { .. } => return Owner::Frame,
         Action::LengthFromWords => return Owner::Length,
         Action::DwellP => return Owner::DwellP,
         Action::Cycle(kind) => wanted.cycle = Some((*kind, code, group)),
@@ -397,7 +411,7 @@ fn set<'d>(
         // Switched behind the tool length.
         Action::Tip(_) => {}
         // Written out before; where they are not, refused below.
-        Action::PolarOn | Action::Turning(_) => {}
+        Action::PolarOn | Action::Turning(_) | Action::Called(_) => {}
         // Read before, since X words of the same block are of the new kind.
         Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute | Action::SpeedLimit => {}
         Action::LimitOrPreset | Action::Pass { takes_words: true } => return Owner::Arguments,

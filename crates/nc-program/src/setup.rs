@@ -56,6 +56,10 @@ pub struct Setup {
     /// H number and length vector, mm: the axis command is program + work offset + vector, and the tool
     /// vector (gauge point to tip) is minus the vector. `H1 = 120` is `(1, [0, 0, 120])`.
     pub tools: Vec<(u32, [f64; 3])>,
+    /// Name of a tool and the H number of its length.
+    pub tool_names: Vec<(String, u32)>,
+    /// The edge that a tool change brings in where no D says one: 0 for none; `None`: not said (MD20270).
+    pub edge_at_change: Option<u32>,
     /// H number and radius of the nose of a turning tool, mm, above zero.
     pub noses_mm: Vec<(u32, f64)>,
     /// Tool vector without G43: from the gauge point to the tip, mm.

@@ -27,6 +27,9 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     if env.dialect.turning.as_ref().is_some_and(|turning| turning.offset_in_d) {
         return edge(env, words, state);
     }
+    if env.dialect.edge_in_d {
+        return edge_of_loaded(env, words, state);
+    }
     if words.has(T) {
         if env.dialect.t_may_change_tool {
             let message = format!("{} may change the tool at once", words.text(words.span(T)));
@@ -108,6 +111,89 @@ fn edge(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> 
     }
 }
 
+/// T, M6 and D of a mill's Sinumerik: T selects, M6 brings in, D1 is the offset of the tool that is in, D0 none.
+///
+/// Which edge M6 brings in where no D stands behind it is the control's affair (MD20270); until one is said, or the
+/// setup says it, nothing moves in program coordinates ([`edge_is_said`]).
+fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()> {
+    const T: Letters = Letters::of(b"T");
+    const D: Letters = Letters::of(b"D");
+    if words.has(T) {
+        state.tool_selected = match words.quoted(b'T') {
+            Some(name) => Some(named(env, words, words.span(T), &name)?),
+            None => words.whole(b'T')?,
+        };
+    }
+    let changes = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
+    let changed = words.m_codes.iter().find(|(number, _)| changes(*number)).map(|(_, span)| *span);
+    if let Some(span) = changed {
+        if state.tool_selected.is_none() {
+            return Err(words
+                .refuse(
+                    codes::TOOL_LENGTH,
+                    "a tool change, and no tool was called before",
+                    span,
+                    "which tool?",
+                )
+                .help("write T before it"));
+        }
+        state.tool_loaded = state.tool_selected;
+        state.edge_unsaid = true;
+    }
+    let edge = match (words.whole(b'D')?, changed, env.setup.edge_at_change) {
+        // Whose edge is it that stands beside a tool which is not in yet?
+        (Some(1..), None, _) if words.has(T) || state.tool_loaded.is_none() => {
+            state.edge_unsaid = true;
+            return Ok(());
+        }
+        (Some(edge), ..) | (None, Some(_), Some(edge)) => edge,
+        _ => return Ok(()),
+    };
+    state.edge_unsaid = false;
+    let span = changed.unwrap_or_else(|| words.span(D));
+    match (edge, state.tool_loaded) {
+        (0, _) | (_, Some(0)) => take(env, words, span, 0, state),
+        (1, Some(tool)) => take(env, words, span, tool, state),
+        (edge, _) => Err(words
+            .refuse(
+                codes::TOOL_LENGTH,
+                format!("D{edge} is a further edge of the tool"),
+                span,
+                "the profile has one offset for each tool",
+            )
+            .help("write D1, or give the edge a tool of its own")),
+    }
+}
+
+/// The number of a tool that the program calls by its name.
+fn named(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, name: &str) -> Outcome<u32> {
+    let known = env.setup.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+    known.map(|(_, number)| *number).ok_or_else(|| {
+        words
+            .refuse(codes::TOOL_LENGTH, format!("the tool \"{name}\" is not given"), span, "which length has it?")
+            .help(format!(
+                "write `names = {{ \"{name}\" = 1 }}` and its length `lengths_mm = {{ H1 = 120.0 }}` under `[tool]` in the profile"
+            ))
+    })
+}
+
+/// Refuses a motion in program coordinates while nobody has said which edge of the tool counts.
+#[inline]
+pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
+    if !state.edge_unsaid {
+        return Ok(());
+    }
+    let axes = LINEAR_LETTERS.or(ROTARY_LETTERS);
+    Err(words
+        .refuse(
+            codes::TOOL_LENGTH,
+            "which edge of the tool counts behind M6 is not said",
+            words.span(axes),
+            "moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)",
+        )
+        .help("write D1 behind M6; or `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1"))
+}
+
 /// Brings in the offset of a number; 0 is none.
 fn take(
     env: &Environment<'_>,
@@ -128,9 +214,15 @@ fn take(
                 span,
                 "neither in the profile nor on the command line",
             )
-            .help(format!(
-                "`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile"
-            )));
+            .help(if env.dialect.turning.is_some() {
+                format!(
+                    "`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile"
+                )
+            } else {
+                format!(
+                    "`--tool H{offset}=120` for a length of 120 mm, or `lengths_mm = {{ H{offset} = 120.0 }}` under `[tool]` in the profile"
+                )
+            }));
     };
     state.tool_length = ToolLength::On { number: offset, negative: false, applied_mm };
     Ok(())

@@ -82,6 +82,11 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     b'M' => words.miscellaneous(number, item.span)?,
                     _ => words.letter(letter, index, item.span)?,
                 },
+                ItemKind::Word { letter: b'T', value: Value::Expression }
+                    if words.dialect.edge_in_d && block.text(item.span).ends_with(b"\"") =>
+                {
+                    words.letter(b'T', index, item.span)?;
+                }
                 ItemKind::Word { letter, value: Value::Expression } => {
                     return Err(words.not_static(item.span, &format!("the value of {}", letter as char)));
                 }
@@ -179,6 +184,16 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             }
             _ => None,
         }
+    }
+
+    /// What stands between the quotation marks of `T="MILL 12"`.
+    pub(crate) fn quoted(&self, letter: u8) -> Option<String> {
+        let at = self.at[usize::from(letter - b'A')];
+        let item = self.block.items.get((at as usize).checked_sub(1)?)?;
+        let text = self.block.text(item.span);
+        let open = text.iter().position(|byte| *byte == b'"')?;
+        let name = text.get(open + 1..text.len() - 1)?;
+        Some(String::from_utf8_lossy(name).into_owned())
     }
 
     /// Value of a length or angle word in the unit it is written in.

@@ -184,6 +184,17 @@ pub enum Action {
     AlignTool,
     /// TRAORI, M428 and TRAFOOF, M429: the control moves the tip, or the axes again.
     Tip(TipSwitch),
+    /// TRANS, ROT, MIRROR and their additive forms: the frame between the work offset and the words.
+    ProgramFrame {
+        /// What it does to the frame.
+        part: FramePart,
+        /// On top of the one in force (ATRANS); else in its place, and without words in place of all of them.
+        adds: bool,
+    },
+    /// G500: no work offset but the base frame, `G500` in the profile.
+    BaseFrame,
+    /// Calls of cycles and what else is written out before anything else, or refused.
+    Called(Called),
     /// G54–G59: the name in the profile.
     WorkOffset(String),
     /// G54.1, G154: the work offset that P numbers, `G54.1P1` in the profile.
@@ -307,6 +318,54 @@ pub enum TipSwitch {
     On,
     /// They say where the axes are.
     Off,
+}
+
+/// What of the program's own frame a command says.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, FramePart};
+///
+/// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
+/// let shift = Action::ProgramFrame { part: FramePart::Shift, adds: true };
+/// assert_eq!(sinumerik.command(b"ATRANS X1").unwrap().action, Some(shift));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FramePart {
+    /// TRANS: X, Y, Z of the new zero.
+    Shift,
+    /// ROT: the angle in the plane.
+    Rotation,
+    /// MIRROR: the axes that change their direction.
+    Mirror,
+}
+
+/// What a name of Siemens stands for, written out as plain blocks.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, Called};
+///
+/// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
+/// let row = sinumerik.command(b"CYCLE83(10,0,2,-30)").unwrap();
+/// assert_eq!(row.action, Some(Action::Called(Called::DrillPecks)));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Called {
+    /// CYCLE81
+    Drill,
+    /// CYCLE82
+    DrillDwell,
+    /// CYCLE83
+    DrillPecks,
+    /// CYCLE85
+    Ream,
+    /// MCALL: the cycle behind it at the end of each motion that follows.
+    Modal,
+    /// HOLES1
+    HolesRow,
+    /// HOLES2
+    HolesCircle,
+    /// TURN=: turns of a helix beside the one that its words say.
+    Turns,
 }
 
 /// On which side of its way a tool is led whose radius the control compensates.
@@ -747,6 +806,8 @@ pub struct Flow {
     pub corner_words: bool,
     /// Some code is [`Action::PolarOn`].
     pub polar_words: bool,
+    /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
+    pub called: bool,
 }
 
 /// What a lathe's programs have and a mill's have not.
@@ -874,6 +935,8 @@ pub struct Dialect {
     pub skip: Option<u8>,
     /// What `:` means.
     pub colon: Colon,
+    /// Names of several letters that are a word's, as `CR=` is R; upper case, sorted.
+    pub long_words: Vec<(String, u8)>,
     /// `X=10.5` and `X=R1+2` are words too; a value other than a number runs to the next white space.
     pub equals_words: bool,
     /// Letters of words, upper case; others are invalid.
@@ -911,6 +974,8 @@ pub struct Dialect {
     pub length_under_g49: LengthAfter,
     /// A T word may bring in the tool, and its length, at once.
     pub t_may_change_tool: bool,
+    /// D1 is the offset of the tool that M6 brought in, D0 none (Sinumerik).
+    pub edge_in_d: bool,
     /// Codes that move the frame.
     pub frames: FrameRules,
     /// Output.

@@ -18,6 +18,7 @@ pub(crate) struct Lexer<'d> {
     pub(crate) spaces_inside: bool,
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
     pub(crate) letters: u32,
+    long_words: &'d [(String, u8)],
     commands: &'d [Command],
 }
 
@@ -62,6 +63,7 @@ impl<'d> Lexer<'d> {
             equals_words: dialect.equals_words,
             spaces_inside: dialect.numbers.spaces_inside,
             letters,
+            long_words: &dialect.long_words,
             commands: &dialect.commands,
         }
     }
@@ -158,10 +160,20 @@ impl<'d> Lexer<'d> {
         if !self.has_letter(letter) {
             return (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at));
         }
-        match self.value(line, at + 1) {
+        let numbered = self.numbered(line, at).unwrap_or(at + 1);
+        match self.value(line, numbered) {
             (Ok(value), end) => (ItemKind::Word { letter, value }, end),
             (Err(why), end) => (ItemKind::Invalid(why), end),
         }
+    }
+
+    /// `M1=3` and `S2=500` are M3 of the first spindle and S500 of the second: where their `=` stands.
+    fn numbered(&self, line: &[u8], at: usize) -> Option<usize> {
+        if !self.equals_words || !matches!(line[at].to_ascii_uppercase(), b'M' | b'S') {
+            return None;
+        }
+        let digits = line[at + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        (digits > 0 && line.get(at + 1 + digits) == Some(&b'=')).then_some(at + 1 + digits)
     }
 
     /// Several letters in a row: a statement, a command, a function as value, or nothing a control reads.
@@ -173,6 +185,15 @@ impl<'d> Lexer<'d> {
         let name = &line[at..at + run];
         if is_flow_word(name) {
             return Some(self.flow(line, at, at + run));
+        }
+        if line.get(at + run) == Some(&b'=')
+            && let Some((_, letter)) =
+                self.long_words.iter().find(|(known, _)| known.as_bytes().eq_ignore_ascii_case(name))
+        {
+            return Some(match self.value(line, at + run) {
+                (Ok(value), end) => (ItemKind::Word { letter: *letter, value }, end),
+                (Err(why), end) => (ItemKind::Invalid(why), end),
+            });
         }
         if let Some(command) = self.commands.iter().find(|command| names(command, &line[at..])) {
             return Some((ItemKind::BracketCommand, end_of_command(command, line, at)));

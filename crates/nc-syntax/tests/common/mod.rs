@@ -15,6 +15,7 @@ pub(crate) fn dialect() -> Dialect {
         semicolon: Semicolon::Comment,
         skip: Some(b'/'),
         colon: Colon::Number,
+        long_words: Vec::new(),
         equals_words: false,
         letters: (b'A'..=b'Z').collect(),
         numbers: Numbers {
@@ -35,6 +36,7 @@ pub(crate) fn dialect() -> Dialect {
         length_under_g40: LengthAfter::Stays,
         length_under_g49: LengthAfter::Ends,
         t_may_change_tool: false,
+        edge_in_d: false,
         cycle_levels: CycleLevels::Unstated,
         flow: nc_syntax::dialect::Flow::default(),
         length_of_loaded_tool: false,

@@ -1,0 +1,91 @@
+//! What stands in the brackets of a called cycle.
+
+use nc_syntax::Span;
+
+use super::Fault;
+use crate::codes;
+use crate::shorthand::Words;
+
+/// The arguments of a call, by place; one that is left out is none.
+#[derive(Clone, Debug)]
+pub(super) struct Arguments {
+    /// In the words of the program, for messages.
+    pub(super) name: String,
+    pub(super) span: Span,
+    values: Vec<Option<f64>>,
+}
+
+impl Arguments {
+    /// Reads `NAME(1,,2.5)`.
+    pub(super) fn read(words: &Words<'_, '_>, span: Span) -> Result<Self, Fault> {
+        let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
+        let (name, inside) = match text.split_once('(') {
+            Some((name, rest)) => {
+                (name.trim().to_ascii_uppercase(), rest.trim_end().trim_end_matches(')').to_owned())
+            }
+            None => (text.trim().to_ascii_uppercase(), String::new()),
+        };
+        let mut values = Vec::new();
+        for written in inside.split(',').map(str::trim) {
+            values.push(match (written, number(written)) {
+                ("", _) => None,
+                (_, Some(value)) => Some(value),
+                (_, None) => {
+                    return Err(words.fault(
+                        codes::CALLED_CYCLE,
+                        span,
+                        &format!("`{written}` in the brackets of {name}"),
+                        "plain numbers were expected",
+                        "write the numbers in the place of expressions and texts",
+                    ));
+                }
+            });
+        }
+        Ok(Self { name, span, values })
+    }
+
+    /// The argument at a place, from 0.
+    pub(super) fn at(&self, place: usize) -> Option<f64> {
+        self.values.get(place).copied().flatten()
+    }
+
+    /// The same; one that is left out is zero, as on the control.
+    pub(super) fn or_zero(&self, place: usize) -> f64 {
+        self.at(place).unwrap_or(0.0)
+    }
+
+    /// One without which there is no cycle.
+    pub(super) fn needed(&self, words: &Words<'_, '_>, place: usize, what: &str) -> Result<f64, Fault> {
+        self.at(place).ok_or_else(|| {
+            self.fault(
+                words,
+                &format!("{} without {what}", self.name),
+                &format!("argument {} was expected", place + 1),
+            )
+        })
+    }
+
+    /// Those from a place on choose ways of reading the others, which this room knows for none but zero.
+    pub(super) fn nothing_behind(&self, words: &Words<'_, '_>, place: usize) -> Result<(), Fault> {
+        match (place..self.values.len()).find(|place| self.or_zero(*place) != 0.0) {
+            None => Ok(()),
+            Some(place) => Err(self.fault(
+                words,
+                &format!("{} with {} as argument {}", self.name, self.or_zero(place), place + 1),
+                "chooses how the control reads the others",
+            )),
+        }
+    }
+
+    pub(super) fn fault(&self, words: &Words<'_, '_>, message: &str, label: &str) -> Fault {
+        words.fault(codes::CALLED_CYCLE, self.span, message, label, "write the holes as G0 and G1")
+    }
+}
+
+/// A plain decimal number; nothing else that a library would take for one.
+pub(super) fn number(text: &str) -> Option<f64> {
+    let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.')
+        && digits.bytes().any(|byte| byte.is_ascii_digit());
+    plain.then(|| text.parse().ok()).flatten()
+}

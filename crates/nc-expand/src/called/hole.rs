@@ -1,0 +1,260 @@
+//! One hole of a called cycle as moves along the axis of drilling.
+//!
+//! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82), 2.1.4
+//! (CYCLE83) and 2.1.7 (CYCLE85). Lengths in units of the program, along the axis that stands upright on the plane.
+
+use nc_syntax::dialect::Called;
+
+use super::Fault;
+use super::arguments::Arguments;
+use crate::shorthand::Words;
+
+/// Pecks of one hole; more are a wrong depth.
+const MOST_PECKS: usize = 2_000;
+/// How far chip breaking goes back where no argument says it, mm.
+const CHIP_MM: f64 = 1.0;
+/// How far above the depth reached the feed begins again in a hole of up to 30 mm, mm.
+const SHALLOW_MM: f64 = 0.6;
+const SHALLOW_DEPTH_MM: f64 = 30.0;
+/// In deeper ones, of the depth; and never more than so much, mm.
+const DEEP_SHARE: f64 = 1.0 / 50.0;
+const DEEP_MOST_MM: f64 = 7.0;
+/// A peck below this is none: the last bits of a sum, in units of the program.
+const NOTHING: f64 = 1e-9;
+
+/// What the spindle does along its axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Move {
+    Rapid(f64),
+    Feed(f64),
+    /// Above zero seconds, below it turns of the spindle.
+    Dwell(f64),
+}
+
+/// A hole, wherever it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Hole(pub(super) Vec<Move>);
+
+/// Planes of a hole.
+struct Planes {
+    /// Retraction plane.
+    out: f64,
+    /// Reference plane.
+    reference: f64,
+    /// The reference plane brought forward by the safety distance.
+    near: f64,
+    /// Final depth.
+    bottom: f64,
+    /// From the reference plane to the bottom: 1 or -1.
+    inwards: f64,
+}
+
+impl Planes {
+    /// RTP, RFP, SDIS, DP, DPR.
+    fn read(words: &Words<'_, '_>, call: &Arguments) -> Result<Self, Fault> {
+        let out = call.needed(words, 0, "the retraction plane")?;
+        let reference = call.or_zero(1);
+        let safety = call.or_zero(2).abs();
+        let bottom = match (call.at(3), call.or_zero(4).abs()) {
+            (Some(bottom), 0.0) => bottom,
+            (None, 0.0) => {
+                return Err(call.fault(
+                    words,
+                    &format!("{} without a depth", call.name),
+                    "argument 4 or 5 was expected",
+                ));
+            }
+            (bottom, deep) => {
+                // The retraction plane lies on the side that the tool comes from.
+                let relative = reference - deep * (out - reference).signum();
+                if bottom.is_some_and(|bottom| bottom != 0.0 && (bottom - relative).abs() > NOTHING) {
+                    return Err(call.fault(
+                        words,
+                        &format!("{} with two depths", call.name),
+                        "arguments 4 and 5 contradict each other",
+                    ));
+                }
+                relative
+            }
+        };
+        let inwards = (bottom - reference).signum();
+        let near = reference - inwards * safety;
+        if bottom == reference || (out - near) * inwards > NOTHING {
+            return Err(call.fault(
+                words,
+                &format!("{} whose planes are out of order", call.name),
+                "retraction plane, reference plane with its safety distance and depth were expected in this order",
+            ));
+        }
+        Ok(Self { out, reference, near, bottom, inwards })
+    }
+}
+
+impl Hole {
+    /// The moves of a cycle's call; `unit_mm` is one unit of the program, `axis` the number of the axis drilled along.
+    pub(super) fn read(
+        words: &Words<'_, '_>,
+        cycle: Called,
+        call: &Arguments,
+        unit_mm: f64,
+        axis: usize,
+    ) -> Result<Self, Fault> {
+        let planes = Planes::read(words, call)?;
+        let Planes { out, near, bottom, .. } = planes;
+        let mut moves = vec![Move::Rapid(near)];
+        match cycle {
+            Called::DrillPecks => pecks(words, call, &planes, unit_mm, axis, &mut moves)?,
+            _ => {
+                moves.push(Move::Feed(bottom));
+                // CYCLE81 has the argument since it shares its mask with CYCLE82.
+                dwell(call.or_zero(5), &mut moves);
+                call.nothing_behind(words, 6)?;
+            }
+        }
+        moves.push(Move::Rapid(out));
+        Ok(Self(moves))
+    }
+}
+
+fn dwell(time: f64, moves: &mut Vec<Move>) {
+    if time != 0.0 {
+        moves.push(Move::Dwell(time));
+    }
+}
+
+/// CYCLE83 from its first peck to its last: behind RTP, RFP, SDIS, DP, DPR stand FDEP, FDPR, DAM, DTB, DTS, FRF, VARI,
+/// _AXN, _MDEP, _VRT, _DTD, _DIS1.
+fn pecks(
+    words: &Words<'_, '_>,
+    call: &Arguments,
+    planes: &Planes,
+    unit_mm: f64,
+    axis: usize,
+    moves: &mut Vec<Move>,
+) -> Result<(), Fault> {
+    let Planes { reference, near, bottom, inwards, .. } = *planes;
+    let whole = (bottom - reference).abs();
+    let first = match (call.at(5), call.or_zero(6).abs()) {
+        (_, deep) if deep > 0.0 => deep,
+        (Some(at), _) => (at - reference) * inwards,
+        (None, _) => whole,
+    };
+    let less = call.or_zero(7);
+    if first <= 0.0 || less < 0.0 {
+        return Err(call.fault(
+            words,
+            "CYCLE83 with pecks that shrink by a factor, or a first peck that leads out",
+            "arguments 6, 7 and 8: a first depth inside the hole, and what each next peck is shorter by",
+        ));
+    }
+    let factor = call.at(10).unwrap_or(1.0);
+    if factor != 0.0 && factor != 1.0 {
+        return Err(call.fault(
+            words,
+            "CYCLE83 with a feed factor",
+            "argument 11: the feed of the first peck alone",
+        ));
+    }
+    let along = call.or_zero(12);
+    if along != 0.0 && along != (axis + 1) as f64 {
+        return Err(call.fault(
+            words,
+            "CYCLE83 along another axis",
+            "argument 13: the axis upright on the plane was expected",
+        ));
+    }
+    let chips_out = match call.or_zero(11) {
+        0.0 => false,
+        1.0 => true,
+        _ => {
+            return Err(call.fault(
+                words,
+                "CYCLE83 of an unknown kind",
+                "argument 12: 0 breaks chips, 1 removes them",
+            ));
+        }
+    };
+    call.nothing_behind(words, 17)?;
+    let (at_bottom, at_start) = (call.or_zero(8), call.or_zero(9));
+    let last = match call.or_zero(15) {
+        0.0 => at_bottom,
+        own => own,
+    };
+    let back = match call.or_zero(14) {
+        0.0 => CHIP_MM / unit_mm,
+        own => own.abs(),
+    };
+    let whole_mm = whole * unit_mm;
+    let deep_mm =
+        if whole_mm <= SHALLOW_DEPTH_MM { SHALLOW_MM } else { (whole_mm * DEEP_SHARE).min(DEEP_MOST_MM) };
+    let ahead = match call.or_zero(16) {
+        0.0 => deep_mm / unit_mm,
+        own => own.abs(),
+    };
+    let strokes = strokes(whole, first.min(whole), less).ok_or_else(|| {
+        call.fault(words, &format!("CYCLE83 of more than {MOST_PECKS} pecks"), "arguments 6 to 8")
+    })?;
+    let mut reached = reference;
+    for (index, stroke) in strokes.iter().enumerate() {
+        if index > 0 {
+            if chips_out {
+                moves.push(Move::Rapid(near));
+                dwell(at_start, moves);
+                // Never out of the hole on the way in.
+                moves.push(Move::Rapid(reached - inwards * ahead.min((reached - near).abs())));
+            } else {
+                moves.push(Move::Feed(reached - inwards * back.min((reached - near).abs())));
+            }
+        }
+        let end = index + 1 == strokes.len();
+        reached = if end { bottom } else { reached + inwards * stroke };
+        moves.push(Move::Feed(reached));
+        dwell(if end { last } else { at_bottom }, moves);
+    }
+    Ok(())
+}
+
+/// Strokes of a hole: each shorter than the one before it by `less` until it is no longer than that; the last two share
+/// what is left where the strokes shrink.
+fn strokes(whole: f64, first: f64, less: f64) -> Option<Vec<f64>> {
+    let mut strokes = vec![first];
+    let mut left = whole - first;
+    let mut stroke = first;
+    while left > NOTHING {
+        if strokes.len() >= MOST_PECKS {
+            return None;
+        }
+        if stroke - less > less {
+            stroke -= less;
+        } else if less > 0.0 {
+            stroke = less;
+        }
+        if left <= stroke + NOTHING {
+            strokes.push(left);
+            break;
+        }
+        if less > 0.0 && left < 2.0 * stroke {
+            strokes.extend([0.5 * left, 0.5 * left]);
+            break;
+        }
+        strokes.push(stroke);
+        left -= stroke;
+    }
+    Some(strokes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_shrink_to_the_degression_and_the_last_two_share_the_rest() {
+        // The manual's own example: 150 mm, first 50, less 20: 50, 30, then 20 as long as more than 40 are left, the rest halved.
+        let found = strokes(150.0, 50.0, 20.0).unwrap();
+        assert_eq!(found, [50.0, 30.0, 20.0, 20.0, 15.0, 15.0]);
+        assert_eq!(found.iter().sum::<f64>(), 150.0);
+        assert_eq!(strokes(10.0, 4.0, 0.0).unwrap(), [4.0, 4.0, 2.0]);
+        assert_eq!(strokes(10.0, 10.0, 0.0).unwrap(), [10.0]);
+        assert!(strokes(10.0, 1e-4, 0.0).is_none());
+    }
+}
