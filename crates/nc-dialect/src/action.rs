@@ -5,7 +5,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 92] = [
+pub const ACTION_NAMES: [&str; 91] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -91,7 +91,6 @@ pub const ACTION_NAMES: [&str; 92] = [
     "call-drill",
     "call-drill-dwell",
     "call-drill-pecks",
-    "call-ream",
     "call-modal",
     "call-holes-row",
     "call-holes-circle",
@@ -189,7 +188,6 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "call-drill" => Action::Called(Called::Drill),
         "call-drill-dwell" => Action::Called(Called::DrillDwell),
         "call-drill-pecks" => Action::Called(Called::DrillPecks),
-        "call-ream" => Action::Called(Called::Ream),
         "call-modal" => Action::Called(Called::Modal),
         "call-holes-row" => Action::Called(Called::HolesRow),
         "call-holes-circle" => Action::Called(Called::HolesCircle),

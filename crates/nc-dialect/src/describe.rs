@@ -1,7 +1,7 @@
 //! The code-by-code list of a dialect, for people.
 
 use nc_syntax::Dialect;
-use nc_syntax::dialect::{Action, CycleCode, GCode, LengthAfter, MCode, Macros};
+use nc_syntax::dialect::{Action, CycleCode, FramePart, GCode, LengthAfter, MCode, Macros};
 
 use crate::action_name;
 
@@ -77,7 +77,7 @@ pub const fn treatment(action: &Action) -> Treatment {
         Action::Reference | Action::MachineCoordinates | Action::Probe => Treatment::NotCorrected,
         Action::Dwell | Action::DwellBySetting | Action::DwellP | Action::Pass { .. } => Treatment::Passed,
         Action::Refuse { .. } => Treatment::Refused,
-        Action::PolarOn | Action::PolarOff | Action::Turning(_) => Treatment::Executed,
+        Action::PolarOn | Action::PolarOff | Action::Turning(_) | Action::Called(_) => Treatment::Executed,
         _ => Treatment::Followed,
     }
 }
@@ -112,8 +112,10 @@ pub fn rows(dialect: &Dialect) -> Rows {
     });
     let commands = dialect.commands.iter().map(|entry| {
         let (treatment, note) = match &entry.refuse {
-            None if entry.action.is_some() => (Treatment::Followed, String::new()),
-            None => (Treatment::Passed, String::new()),
+            None => match &entry.action {
+                Some(action) => (treatment(action), note(action)),
+                None => (Treatment::Passed, String::new()),
+            },
             Some((reason, help)) => {
                 let most = entry.passes_with.map(|most| format!("with more than {most} argument(s): "));
                 (Treatment::Refused, format!("{}{reason}; {help}", most.unwrap_or_default()))
@@ -160,7 +162,18 @@ fn note(action: &Action) -> String {
             "kept as arcs where one or a few hold the tolerance".to_owned()
         }
         Action::Thread => "one block in step with the spindle; never split".to_owned(),
-        Action::Turning(_) => "written out as moves".to_owned(),
+        Action::Turning(_) | Action::Called(_) => "written out as moves".to_owned(),
+        Action::ProgramFrame { part, adds } => {
+            let what = match part {
+                FramePart::Shift => "shifts by the words",
+                FramePart::Rotation => "rotates in the plane",
+                FramePart::Mirror => "mirrors the axes named",
+            };
+            let which = if *adds { "on top of the program's frame" } else { "in place of the program's frame" };
+            format!("{what}, {which}")
+        }
+        Action::BaseFrame => "`G500` in the profile; without it nothing may move in it".to_owned(),
+        Action::Tip(_) => String::new(),
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
         Action::Dwell => "X, U and P are a time".to_owned(),

@@ -123,6 +123,8 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
             Some(name) => Some(named(env, words, words.span(T), &name)?),
             None => words.whole(b'T')?,
         };
+        // Before the first M6 it may be that T changes the tool itself (MD22550 is 0).
+        state.edge_unsaid |= state.tool_loaded.is_none();
     }
     let changes = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
     let changed = words.m_codes.iter().find(|(number, _)| changes(*number)).map(|(_, span)| *span);
@@ -187,11 +189,11 @@ pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<
     Err(words
         .refuse(
             codes::TOOL_LENGTH,
-            "which edge of the tool counts behind M6 is not said",
+            "which tool is in, and which of its edges counts, is not said",
             words.span(axes),
             "moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)",
         )
-        .help("write D1 behind M6; or `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1"))
+        .help("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1"))
 }
 
 /// Brings in the offset of a number; 0 is none.

@@ -356,8 +356,6 @@ pub enum Called {
     DrillDwell,
     /// CYCLE83
     DrillPecks,
-    /// CYCLE85
-    Ream,
     /// MCALL: the cycle behind it at the end of each motion that follows.
     Modal,
     /// HOLES1
@@ -678,14 +676,14 @@ pub struct LatheSign {
     pub mill: String,
 }
 
-/// A command by name: a word of letters (Sinumerik `TRANS`) or the first word in brackets (Balt-System `(UAO,1)`).
+/// A command by name: a word of letters (Sinumerik `SCALE`) or the first word in brackets (Balt-System `(UAO,1)`).
 ///
 /// A command that is not in the table is refused: it may move the frame.
 ///
 /// ```
 /// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
-/// // TRANS moves the frame; what is not in the table may, and is refused as well.
-/// assert!(sinumerik.command(b"TRANS X10").unwrap().refusal(b"TRANS X10").is_some());
+/// // SCALE moves the frame; what is not in the table may, and is refused as well.
+/// assert!(sinumerik.command(b"SCALE X2").unwrap().refusal(b"SCALE X2").is_some());
 /// assert!(sinumerik.command(b"NOBODYKNOWS").is_none());
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

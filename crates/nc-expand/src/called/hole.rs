@@ -1,7 +1,7 @@
 //! One hole of a called cycle as moves along the axis of drilling.
 //!
-//! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82), 2.1.4
-//! (CYCLE83) and 2.1.7 (CYCLE85). Lengths in units of the program, along the axis that stands upright on the plane.
+//! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82) and 2.1.4
+//! (CYCLE83). Lengths in units of the program, along the axis that stands upright on the plane.
 
 use nc_syntax::dialect::Called;
 

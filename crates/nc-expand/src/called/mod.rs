@@ -129,7 +129,7 @@ impl Writer<'_> {
                         codes::CALLED_CYCLE,
                         *span,
                         "a call that stays of something unknown",
-                        "CYCLE81, CYCLE82, CYCLE83 or CYCLE85 was expected behind MCALL",
+                        "CYCLE81, CYCLE82 or CYCLE83 was expected behind MCALL",
                         "let the CAM write the holes as G0 and G1",
                     ));
                 }
@@ -184,7 +184,7 @@ impl Writer<'_> {
     }
 
     fn drills(&self, cycle: Called) -> bool {
-        matches!(cycle, Called::Drill | Called::DrillDwell | Called::DrillPecks | Called::Ream)
+        matches!(cycle, Called::Drill | Called::DrillDwell | Called::DrillPecks)
     }
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {

@@ -1,6 +1,7 @@
 %_N_PART_MPF
-;expect VP0202
+;expect VP0215: whose edge?
 G17 G40 G54 G71 G90
 G0 X10 Y10 Z60
-G1 X=IC(5) F200
+D1
+G1 X20 F200
 M30

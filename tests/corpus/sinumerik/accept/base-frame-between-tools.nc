@@ -1,0 +1,10 @@
+%_N_PART_MPF
+;G500 while nothing moves in it
+G500
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+X60
+G500
+G0 SUPA Z0
+M30

@@ -1,0 +1,8 @@
+%_N_PART_MPF
+;CYCLE83: back by 1 mm, in G1 as before behind it
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 X12 F200
+CYCLE83(15,0,2,-40,,,12,4,,,1,0)
+X30
+M30

@@ -1,0 +1,8 @@
+%_N_PART_MPF
+;CYCLE83: 12, then 4 shorter each time
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+F200
+CYCLE83(15,0,2,-40,,-12,,4,0.5,,1,1)
+G0 X30
+M30

@@ -1,0 +1,11 @@
+%_N_PART_MPF
+;IC and AC against G90 and G91, centres too
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+X=IC(5) Y=AC(20)
+G2 X=IC(20) Y20 I=AC(25) J=AC(20)
+G91
+G1 X=AC(60) Y5
+G90
+M30

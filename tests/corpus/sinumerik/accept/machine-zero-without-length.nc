@@ -1,0 +1,12 @@
+%_N_PART_MPF
+;SUPA with D0 is a place of the machine
+G17 G40 G54 G71 G90
+T1
+M6
+G0 SUPA Z0 D0
+D1
+G0 X10 Y10 Z60
+G1 Z50 F200
+X60
+G0 SUPA Z0 D0
+M30

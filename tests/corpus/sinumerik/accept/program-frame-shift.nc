@@ -1,0 +1,12 @@
+%_N_PART_MPF
+;TRANS is from the work offset, ATRANS from there, TRANS alone ends both
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+TRANS X10 Y20
+X20 Y5
+ATRANS X3 Z-2
+X20 Y5 Z50
+TRANS
+X20 Y5 Z50
+M30

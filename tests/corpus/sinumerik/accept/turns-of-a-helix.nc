@@ -1,0 +1,7 @@
+%_N_PART_MPF
+;two full circles and a half
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+G3 X50 Y10 Z40 I20 J0 TURN=2
+M30

@@ -1,0 +1,7 @@
+%_N_PART_MPF
+;expect VP0215
+G17 G40 G54 G71 G90
+T1
+M6
+D2
+M30

@@ -1,0 +1,5 @@
+%_N_PART_MPF
+;expect VP0146
+G17 G40 G54 G71 G90
+G0 X=IC(5)
+M30
