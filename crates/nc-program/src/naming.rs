@@ -9,7 +9,7 @@
 //! Where controls also differ in whether the axis moves (a tool length that changes without a motion of the axis in the
 //! same block), its position is unknown.
 
-use nc_syntax::dialect::{Action, GCode};
+use nc_syntax::dialect::{Action, FramePart, GCode};
 use toolpath::Kinematics;
 
 use crate::modal::{Axis, Compensation, Distance, Lost, Modal, Naming, ReturnLevel, Shifts, Why};
@@ -94,7 +94,11 @@ fn disturbed_by(
     // Some controls end a tool length with it.
     let own_and_length = either(written(words), state.tool_length.applied_mm().map(|mm| mm != 0.0));
     let axes = match action {
-        Action::ProgramFrame { .. } => ALL,
+        // What it takes the place of ends with it; a rotation or mirror is seen by its own axes.
+        Action::ProgramFrame { part, .. } => {
+            let shifted = before.shifts.local_mm.map(|mm| mm != 0.0);
+            if *part == FramePart::Shift { either(written(words), shifted) } else { shifted }
+        }
         Action::WorkOffset(_) | Action::WorkOffsetNumbered | Action::BaseFrame => {
             let again = std::mem::replace(&mut stated.work_offset, true)
                 && before.work_offset == state.work_offset
