@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn strokes_shrink_to_the_degression_and_the_last_two_share_the_rest() {
-        // The manual's own example: 150 mm, first 50, less 20: 50, 30, then 20 as long as more than 40 are left, the rest halved.
+        // 150 mm, first 50, less 20: 50, 30, then 20 as long as more than 40 are left, the rest halved.
         let found = strokes(150.0, 50.0, 20.0).unwrap();
         assert_eq!(found, [50.0, 30.0, 20.0, 20.0, 15.0, 15.0]);
         assert_eq!(found.iter().sum::<f64>(), 150.0);

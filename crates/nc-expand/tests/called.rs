@@ -1,0 +1,140 @@
+//! Cycles and dimensions called by name: what they are written out as, against moves worked out by hand from Siemens'
+//! Programming Guide Cycles.
+
+mod common;
+
+use common::{blocks, expanded};
+
+const START: &str = "G17 G54 G71 G90\nG0 X10 Y10 Z60\n";
+
+/// The lines that are no comments, behind the start.
+fn flat(program: &str) -> Vec<String> {
+    let text = common::flat("sinumerik", &format!("{START}{program}"), &[], &[]);
+    let lines = blocks(&text).into_iter().skip(2);
+    lines.filter(|line| !line.starts_with(';')).map(str::to_owned).collect()
+}
+
+fn refused(program: &str) -> u16 {
+    let refusal = expanded("sinumerik", &format!("{START}{program}"), &[], &[]).unwrap_err();
+    refusal.diagnostics[0].code.0
+}
+
+#[test]
+fn a_cycle_drills_where_the_axes_stand_and_leaves_the_motion_code() {
+    // Near plane: reference plane and safety distance; retraction plane behind it.
+    assert_eq!(flat("CYCLE81(15,0,2,-10)\nX20\n"), ["G0 Z2.", "G1 Z-10.", "G0 Z15.", "X20"]);
+    let lines = flat("G1 X12 F200\nCYCLE82(15,1,2,,10,0.5)\nX20\n");
+    assert_eq!(lines, ["G1 X12 F200", "G0 Z3.", "G1 Z-9.", "G4 F0.5", "G0 Z15.", "G1", "X20"]);
+    // Below zero the dwell counts turns of the spindle.
+    assert_eq!(flat("CYCLE82(15,0,2,-10,,-3)\n"), ["G0 Z2.", "G1 Z-10.", "G4 S3.", "G0 Z15."]);
+    // From below, and along the axis upright on the plane.
+    assert_eq!(flat("G19\nCYCLE81(-60,-40,1,-20)\n"), ["G19", "G0 X-41.", "G1 X-20.", "G0 X-60."]);
+    // In inches as in millimetres.
+    assert_eq!(flat("G70\nCYCLE81(.5,0,.1,-.25)\n"), ["G70", "G0 Z0.1", "G1 Z-0.25", "G0 Z0.5"]);
+}
+
+#[test]
+fn deep_holes_are_pecked() {
+    // 40 deep, first 12, each 4 shorter: 12, 8, 4 …, the last two sharing the rest. The feed begins 40/50 above.
+    let lines = flat("CYCLE83(15,0,2,-30,,-12,,4,0,0,1,1)\n");
+    let depths: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("G1 Z")).collect();
+    assert_eq!(depths, ["-12.", "-20.", "-24.", "-27.", "-30."]);
+    // Up to 30 mm the feed begins 0.6 mm above what is drilled.
+    assert_eq!(lines[..5], ["G0 Z2.", "G1 Z-12.", "G0 Z2.", "G0 Z-11.4", "G1 Z-20."]);
+    let deep = flat("CYCLE83(15,0,2,-100,,,50,,0,0,1,1)\n");
+    assert_eq!(deep, ["G0 Z2.", "G1 Z-50.", "G0 Z2.", "G0 Z-48.", "G1 Z-100.", "G0 Z15."]);
+    // Chips broken: back by 1 mm at feed, or by what the call says, with both dwells.
+    let chips = flat("CYCLE83(15,0,2,-20,,,10,,0.2,,,0)\n");
+    assert_eq!(chips, ["G0 Z2.", "G1 Z-10.", "G4 F0.2", "G1 Z-9.", "G1 Z-20.", "G4 F0.2", "G0 Z15."]);
+    let own = flat("CYCLE83(15,0,2,-20,,,10,,0.2,,,0,3,,2.5,1.5)\n");
+    assert_eq!(own, ["G0 Z2.", "G1 Z-10.", "G4 F0.2", "G1 Z-7.5", "G1 Z-20.", "G4 F1.5", "G0 Z15."]);
+}
+
+#[test]
+fn mcall_drills_behind_each_motion_until_it_stands_alone() {
+    let lines = flat("MCALL CYCLE81(15,0,2,-10)\nX20 Y20\nM8\nX30\nMCALL\nX40\n");
+    let hole = ["G0 Z2.", "G1 Z-10.", "G0 Z15."];
+    let wanted: Vec<&str> =
+        [&["X20 Y20"][..], &hole, &["M8", "X30"], &hole, &["X40"]].into_iter().flatten().copied().collect();
+    assert_eq!(lines, wanted);
+    assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nTRANS X5\nX20\n"), 146);
+    assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\n/X20\n"), 134);
+    assert_eq!(refused("MCALL L100\n"), 146);
+}
+
+#[test]
+fn rows_and_circles_of_holes() {
+    let places = |program: &str| -> Vec<String> {
+        flat(program).into_iter().filter(|line| line.contains('X')).collect()
+    };
+    let circle = places("MCALL CYCLE81(15,0,2,-10)\nHOLES2(50,40,20,90,0,4)\nMCALL\n");
+    assert_eq!(circle, ["G0 X50. Y60.", "G0 X30. Y40.", "G0 X50. Y20.", "G0 X70. Y40."]);
+    let part = places("MCALL CYCLE81(15,0,2,-10)\nHOLES2(50,40,20,0,-90,2)\nMCALL\n");
+    assert_eq!(part, ["G0 X70. Y40.", "G0 X50. Y20."]);
+    // From X10 Y10 the near end is the first hole in one row and the last in the other.
+    let row = places("MCALL CYCLE81(15,0,2,-10)\nHOLES1(20,10,0,5,10,3)\nMCALL\n");
+    assert_eq!(row, ["G0 X25. Y10.", "G0 X35. Y10.", "G0 X45. Y10."]);
+    let back = places("MCALL CYCLE81(15,0,2,-10)\nHOLES1(20,10,0,25,-10,3)\nMCALL\n");
+    assert_eq!(back, ["G0 X25. Y10.", "G0 X35. Y10.", "G0 X45. Y10."]);
+    // Equally near, and a row of an unknown start.
+    assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nHOLES1(10,0,90,0,20,2)\n"), 146);
+    assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nHOLES2(50,40,20,0,0,2.5)\n"), 146);
+}
+
+#[test]
+fn places_and_increments_by_name() {
+    let lines =
+        flat("G1 X=IC(5) Y=AC(20) F200\nG2 X=IC(20) Y20 I=AC(25) J=AC(20)\nG91\nX=AC(60) Y5\nX=IC(1)\n");
+    assert_eq!(lines, ["G1 X15. Y20. F200", "G2 X35. Y20 I10. J0.", "G91", "X25. Y5", "X1."]);
+    assert_eq!(refused("TRANS X5\nX=IC(5)\n"), 146);
+    assert_eq!(refused("X=IC(R1)\n"), 146);
+    assert_eq!(refused("/X=IC(5)\n"), 134);
+    // M8 M6: any M code of the block may move the axes.
+    assert_eq!(refused("T1\nM8 M6\nX=IC(5)\n"), 146);
+}
+
+#[test]
+fn turns_are_full_circles_before_the_arc() {
+    // Half a turn is left: 2.5 turns for 25 mm.
+    let lines = flat("G1 Z50\nG3 X50 Y10 Z25 I20 J0 F200 TURN=2\nX60\n");
+    assert_eq!(
+        lines,
+        [
+            "G1 Z50",
+            "G3 F200 X10. Y10. Z40. I20. J0.",
+            "G3 X10. Y10. Z30. I20. J0.",
+            "G3 X50. Y10. Z25. I20. J0.",
+            "X60"
+        ]
+    );
+    assert_eq!(refused("G1 Z50\nG3 X10 Y10 Z25 I20 J0 TURN=2\n"), 146);
+    assert_eq!(refused("G1 Z50 TURN=2\n"), 146);
+}
+
+#[test]
+fn arguments_that_choose_how_others_are_read_are_refused() {
+    for call in [
+        "CYCLE81(15,0,2)",
+        "CYCLE81()",
+        "CYCLE81(15,0,2,-10,12)",
+        "CYCLE81(15,0,2,-10,,0,0,1,11)",
+        "CYCLE81(1,0,2,-10)",
+        "CYCLE81(15,0,2,0)",
+        "CYCLE81(R1,0,2,-10)",
+        "CYCLE81(15,0,2,1E1)",
+        "CYCLE83(15,0,2,-30,,-12,,-0.5,0,0,1,1)",
+        "CYCLE83(15,0,2,-30,,-12,,4,0,0,0.5,1)",
+        "CYCLE83(15,0,2,-30,,-12,,4,0,0,1,2)",
+        "CYCLE83(15,0,2,-30,,-12,,4,0,0,1,1,1)",
+        "CYCLE83(15,0,2,-30,,5,,4,0,0,1,1)",
+        "CYCLE83(15,0,2,-30,,,0.001,,0,0,1,1)",
+        "G1 CYCLE81(15,0,2,-10)",
+        "X20 CYCLE81(15,0,2,-10)",
+        "CYCLE81(15,0,2,-10) CYCLE81(15,0,2,-10)",
+        "HOLES1(20,10,0,5,10,3)",
+    ] {
+        assert_eq!(refused(&format!("{call}\n")), 146, "{call}");
+    }
+    assert_eq!(refused("G91\nCYCLE81(15,0,2,-10)\n"), 146);
+    assert_eq!(refused("G2 X30 I10\nCYCLE81(15,0,2,-10)\n"), 146);
+}
