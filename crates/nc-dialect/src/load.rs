@@ -195,6 +195,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
                 MacroLanguage::None => Macros::None,
                 MacroLanguage::Fanuc => Macros::Fanuc,
                 MacroLanguage::Linuxcnc => Macros::LinuxCnc,
+                MacroLanguage::Siemens => Macros::Siemens,
             },
             packed_repeats: flow.packed_repeats,
             full_circle_atan: flow.full_circle_atan,

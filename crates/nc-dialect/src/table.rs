@@ -187,6 +187,7 @@ pub(crate) enum MacroLanguage {
     None,
     Fanuc,
     Linuxcnc,
+    Siemens,
 }
 
 /// Drilling cycles.

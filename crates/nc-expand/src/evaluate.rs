@@ -50,7 +50,7 @@ pub(crate) struct Rules {
 
 impl Rules {
     const fn fanuc(self) -> bool {
-        matches!(self.flow.macros, Macros::Fanuc)
+        matches!(self.flow.macros, Macros::Fanuc | Macros::Siemens)
     }
 
     /// The value of an expression.

@@ -2,6 +2,7 @@
 
 use nc_syntax::dialect::Macros;
 
+use crate::siemens;
 use crate::value::{NameId, Names, Variable};
 
 /// Brackets, functions and `#` inside one another; controls take 5 (Fanuc) or a line's worth.
@@ -115,6 +116,7 @@ impl Operator {
             Self::Power | Self::Atan2 => 6,
             Self::Multiply | Self::Divide | Self::Modulo => 5,
             Self::And if fanuc => 5,
+            Self::Or if matches!(macros, Macros::Siemens) => 1,
             Self::Add | Self::Subtract => 4,
             Self::Or | Self::Xor if fanuc => 4,
             Self::Equal
@@ -138,13 +140,15 @@ pub(crate) struct Parser<'t, 'n> {
     pub(crate) macros: Macros,
     pub(crate) names: &'n mut Names,
     depth: u32,
+    /// Comparisons, and AND or OR, between the brackets that are open.
+    kinds: [bool; 2],
     /// Parts read so far: what it costs to evaluate them.
     pub(crate) cost: u32,
 }
 
 impl<'t, 'n> Parser<'t, 'n> {
     pub(crate) fn new(text: &'t [u8], macros: Macros, names: &'n mut Names) -> Self {
-        Self { text, at: 0, macros, names, depth: 0, cost: 0 }
+        Self { text, at: 0, macros, names, depth: 0, kinds: [false; 2], cost: 0 }
     }
 
     /// The next byte that is not blank, upper case.
@@ -185,8 +189,14 @@ impl<'t, 'n> Parser<'t, 'n> {
 
     /// Operands with operators between them.
     pub(crate) fn expression(&mut self) -> Result<Expression, Fault> {
+        let outside = std::mem::take(&mut self.kinds);
         let first = self.operand()?;
-        self.operators(first, 0)
+        let found = self.operators(first, 0)?;
+        let inside = std::mem::replace(&mut self.kinds, outside);
+        if self.macros == Macros::Siemens && inside == [true; 2] {
+            return Err("comparisons beside AND or OR need brackets around each".to_owned());
+        }
+        Ok(found)
     }
 
     /// Precedence climbing; every operator takes its left neighbours first.
@@ -197,6 +207,7 @@ impl<'t, 'n> Parser<'t, 'n> {
                 break;
             }
             self.at += length;
+            self.kinds[usize::from(rank < 3)] |= rank <= 3;
             let mut right = self.operand()?;
             while let Some((next, _)) = self.operator() {
                 if next.rank(self.macros) <= rank {
@@ -213,6 +224,9 @@ impl<'t, 'n> Parser<'t, 'n> {
     fn operator(&mut self) -> Option<(Operator, usize)> {
         self.peek()?;
         let rest = &self.text[self.at..];
+        if self.macros == Macros::Siemens {
+            return siemens::operator(rest);
+        }
         let (name, operator) = OPERATORS
             .iter()
             .find(|(name, _)| rest.get(..name.len()).is_some_and(|text| text.eq_ignore_ascii_case(name)))?;
@@ -236,6 +250,9 @@ impl<'t, 'n> Parser<'t, 'n> {
 
     fn operand_inside(&mut self) -> Result<Expression, Fault> {
         match self.peek() {
+            Some(b'(' | b'A'..=b'Z' | b'_' | b'$') if self.macros == Macros::Siemens => {
+                siemens::operand(self)
+            }
             Some(b'[') => self.bracketed(),
             Some(b'#') => self.variable(),
             Some(b'0'..=b'9' | b'.') => self.number().map(Expression::Number),

@@ -56,7 +56,11 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
         (Variable::Numbered(number), _) => number > 5000,
         (Variable::Named(_), _) => false,
     };
-    let local = matches!(variable, Variable::Named(id) if !names.is_global(id));
+    let local = match variable {
+        Variable::Named(id) if macros == Macros::Siemens => names.is_declared(id),
+        Variable::Named(id) => !names.is_global(id),
+        Variable::Numbered(_) => false,
+    };
     let why = if local {
         "it is read before anything sets it"
     } else if system {
@@ -129,6 +133,10 @@ pub(crate) fn too_deep(limit: usize) -> Stop {
         "one call too many",
         "a program that calls itself without end? controls refuse it too",
     )
+}
+
+pub(crate) fn named_label(shown: &str, why: &str) -> Stop {
+    say(codes::LABEL, format!("the jump leads to {shown}: {why}"), "leads nowhere", "correct the label")
 }
 
 pub(crate) fn label(number: u64, why: &str) -> Stop {
@@ -237,10 +245,10 @@ pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names)
     }
 }
 
-pub(crate) fn lost_assignment(span: Range<u64>, number: u32) -> Diagnostic {
+pub(crate) fn lost_assignment(span: Range<u64>, shown: &str) -> Diagnostic {
     Diagnostic::warning(
         codes::LOST_ASSIGNMENT,
-        format!("#{number} keeps its value after the program, and the expanded program does not write it"),
+        format!("{shown} keeps its value after the program, and the expanded program does not write it"),
     )
     .at(span, "the first such variable")
     .help("if another program or the operator reads it, set it on the control")

@@ -6,7 +6,7 @@ use crate::expression::Expression;
 use crate::faults::{self, Stop};
 use crate::program::{Found, Source};
 use crate::run::{Place, Run};
-use crate::statement::Statement;
+use crate::statement::{Direction, Statement};
 use crate::value::{NameId, Value};
 use crate::variables::Saved;
 
@@ -46,6 +46,25 @@ impl<'a> Run<'a, '_> {
             }
             Found::Missing => Err(faults::label(number, "there is no such block in this program")),
             Found::Twice => Err(faults::label(number, "the number stands before more than one block")),
+        }
+    }
+
+    /// GOTOF, GOTOB and GOTO.
+    pub(crate) fn jump(
+        &mut self,
+        source: &Source<'a>,
+        place: Place,
+        to: NameId,
+        direction: Direction,
+    ) -> Result<(), Stop> {
+        let shown = self.names.name(to).to_ascii_uppercase();
+        match source.named(to, place.statement, direction) {
+            Found::Statement(statement) => {
+                self.at.statement = statement;
+                Ok(())
+            }
+            Found::Missing => Err(faults::named_label(&shown, "there is no such label in this direction")),
+            Found::Twice => Err(faults::named_label(&shown, "the label stands before more than one block")),
         }
     }
 

@@ -43,6 +43,7 @@ mod output;
 mod program;
 mod run;
 mod shorthand;
+mod siemens;
 mod statement;
 mod turning;
 mod value;

@@ -9,7 +9,7 @@ use nc_syntax::{Block, ItemKind, Reader};
 
 use crate::codes;
 use crate::o_word::{Label, OStatement, OWord};
-use crate::statement::{Compiler, Control, Flags, Kind, Statement};
+use crate::statement::{Compiler, Control, Direction, Flags, Kind, Statement};
 use crate::value::{NameId, Names};
 
 /// A file.
@@ -21,6 +21,8 @@ pub(crate) struct Source<'a> {
     pub(crate) statements: Vec<Statement>,
     /// (section, N number, statement), sorted.
     labels: Vec<(u32, u64, u32)>,
+    /// Names of labels and the statements they stand before, in order; block numbers are `n100`.
+    names: Vec<(NameId, u32)>,
     /// O-word subroutines by name.
     pub(crate) subroutines: BTreeMap<NameId, u32>,
     /// O-number programs.
@@ -45,6 +47,7 @@ impl<'a> Source<'a> {
     ) -> Result<Self, (Box<Diagnostic>, Vec<u8>)> {
         let mut statements = Vec::new();
         let mut labels = Vec::new();
+        let mut named = Vec::new();
         let mut programs = BTreeMap::new();
         let mut section = 0;
         {
@@ -79,6 +82,12 @@ impl<'a> Source<'a> {
                 {
                     labels.push((section, u64::try_from(number).unwrap_or(u64::MAX), at));
                 }
+                if dialect.flow.macros == Macros::Siemens {
+                    named.extend(label(&block, compiler.names).map(|name| (name, at)));
+                    if let Some(number) = block.word(b'N').and_then(|word| word.number()?.integer()) {
+                        named.push((compiler.names.id(format!("n{number}").as_bytes()), at));
+                    }
+                }
                 statements.push(Statement {
                     offset: block.offset,
                     length: u32::try_from(block.bytes.len()).unwrap_or(u32::MAX),
@@ -94,7 +103,8 @@ impl<'a> Source<'a> {
             }
         }
         labels.sort_unstable();
-        let mut source = Self { name, text, statements, labels, subroutines: BTreeMap::new(), programs };
+        let mut source =
+            Self { name, text, statements, labels, names: named, subroutines: BTreeMap::new(), programs };
         match source.link(names) {
             Ok(()) => Ok(source),
             Err(diagnostic) => Err((diagnostic, source.text.into_owned())),
@@ -109,6 +119,27 @@ impl<'a> Source<'a> {
             (None, _) => Found::Missing,
             (Some(_), Some(_)) => Found::Twice,
             (Some((_, _, statement)), None) => Found::Statement(*statement),
+        }
+    }
+
+    /// The statement with a label, looked for from another one.
+    pub(crate) fn named(&self, name: NameId, from: u32, direction: Direction) -> Found {
+        let behind = |at: u32| at > from;
+        let pick = |forward: bool| {
+            let mut found = self.names.iter().filter(|(known, at)| *known == name && behind(*at) == forward);
+            match (found.next(), found.next()) {
+                (None, _) => Found::Missing,
+                (Some(_), Some(_)) => Found::Twice,
+                (Some((_, at)), None) => Found::Statement(*at),
+            }
+        };
+        match direction {
+            Direction::Forward => pick(true),
+            Direction::Back => pick(false),
+            Direction::Either => match pick(true) {
+                Found::Missing => pick(false),
+                found => found,
+            },
         }
     }
 
@@ -151,6 +182,18 @@ impl<'a> Source<'a> {
                     }
                     if let Some(Control::EndWhile { start: back, .. }) = control(&mut self.statements[at]) {
                         *back = start;
+                    }
+                }
+                Some(Control::For { .. }) => open.push(Open::new(NameId(u32::MAX), Construct::For, index)),
+                Some(Control::EndFor { .. }) => {
+                    let Some(head) = open.pop_if(|top| top.kind == Construct::For).map(|top| top.head) else {
+                        return Err(self.unmatched(index, "this ENDFOR closes no FOR that is open here"));
+                    };
+                    if let Some(Control::For { end, .. }) = control(&mut self.statements[head as usize]) {
+                        *end = index;
+                    }
+                    if let Some(Control::EndFor { start }) = control(&mut self.statements[at]) {
+                        *start = head;
                     }
                 }
                 Some(Control::O(o)) => {
@@ -252,6 +295,14 @@ impl<'a> Source<'a> {
     }
 }
 
+/// The name of a block's label.
+fn label(block: &Block<'_>, names: &mut Names) -> Option<NameId> {
+    block.items.iter().filter(|item| item.kind == ItemKind::Name).find_map(|item| {
+        let name = block.text(item.span).strip_suffix(b":")?;
+        Some(names.id(name))
+    })
+}
+
 fn control(statement: &mut Statement) -> Option<&mut Control> {
     if let Kind::Complex(complex) = &mut statement.kind { complex.control.as_mut() } else { None }
 }
@@ -280,6 +331,7 @@ enum Construct {
     While,
     Do,
     Repeat,
+    For,
 }
 
 impl Construct {

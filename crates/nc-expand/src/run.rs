@@ -36,6 +36,8 @@ pub(crate) struct Run<'a, 'e> {
     pub(crate) frames: Vec<Frame>,
     /// Running `repeat` loops of the running program: head and turns left.
     pub(crate) repeats: Vec<(u32, u64)>,
+    /// Running `FOR` loops: head and last value.
+    counts: Vec<(u32, f64)>,
     pub(crate) at: Place,
     pub(crate) previous: Option<Place>,
     steps: u64,
@@ -51,7 +53,7 @@ pub(crate) struct Run<'a, 'e> {
     /// File names that were looked for, and what was found.
     pub(crate) externals: BTreeMap<String, Option<usize>>,
     first_output: Option<std::ops::Range<u64>>,
-    first_kept: Option<(std::ops::Range<u64>, u32)>,
+    first_kept: Option<(std::ops::Range<u64>, Variable)>,
 }
 
 /// Whether the program goes on.
@@ -68,6 +70,7 @@ pub(crate) fn run<'a>(
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
     let mut names = Names::default();
+    names.bare = dialect.flow.macros == Macros::Siemens;
     let main = Source::read(String::new(), Cow::Borrowed(text), dialect, &mut names)
         .map_err(|(diagnostic, _)| Refusal { diagnostics: vec![*diagnostic], file: None })?;
     let mut store = Store::new(dialect.flow.macros, &mut names, environment.variables);
@@ -84,6 +87,7 @@ pub(crate) fn run<'a>(
         out: Output::new(dialect, text),
         frames: Vec::new(),
         repeats: Vec::new(),
+        counts: Vec::new(),
         at: Place { file: 0, statement: 0 },
         previous: None,
         steps: 0,
@@ -354,8 +358,49 @@ impl<'a> Run<'a, '_> {
             Control::Call(call) => self.call(source, statement, call, place),
             Control::Return { to } => self.return_by_number(source, statement, to.as_ref()),
             Control::O(o) => self.o_word(source, statement, o, place),
+            Control::Jump { condition, to, direction } => {
+                let goes = match condition {
+                    Some(condition) => self.holds(condition)?,
+                    None => true,
+                };
+                if goes { self.jump(source, place, *to, *direction) } else { Ok(()) }
+            }
+            Control::For { variable, from, to, end } => {
+                let (first, last) = (self.known(from)?, self.known(to)?);
+                self.assign(*variable, Value::Number(first), source, statement, place)?;
+                if first > last {
+                    self.at.statement = end + 1;
+                } else {
+                    self.counts.retain(|(head, _)| *head != place.statement);
+                    self.counts.push((place.statement, last));
+                }
+                Ok(())
+            }
+            Control::EndFor { start } => self.count(source, statement, *start, place),
             Control::IfThen(..) | Control::Output => Ok(()),
         }
+    }
+
+    /// ENDFOR: one more, and back while that is not above the last value.
+    fn count(
+        &mut self,
+        source: &Source<'a>,
+        statement: &Statement,
+        start: u32,
+        place: Place,
+    ) -> Result<(), Stop> {
+        let head = source.statements.get(start as usize).map(|statement| &statement.kind);
+        let last = self.counts.iter().rev().find(|(head, _)| *head == start).map(|(_, last)| *last);
+        let (Some(Kind::Complex(complex)), Some(last)) = (head, last) else {
+            return Err(faults::no_call("ENDFOR of a loop that was not entered by its FOR"));
+        };
+        let Some(Control::For { variable, .. }) = complex.control else { return Ok(()) };
+        let next = self.known(&Expression::Variable(variable))? + 1.0;
+        self.assign(variable, Value::Number(next), source, statement, place)?;
+        if next <= last {
+            self.at.statement = start + 1;
+        }
+        Ok(())
     }
 
     pub(crate) fn evaluate(&self, expression: &Expression) -> Result<Value, Stop> {
@@ -401,8 +446,20 @@ impl<'a> Run<'a, '_> {
         statement: &Statement,
         place: Place,
     ) -> Result<(), Stop> {
+        if let (Variable::Named(id), Value::Number(v) | Value::Rounded(v)) = (variable, value)
+            && self.names.is_whole(id)
+            && v.fract() != 0.0
+        {
+            return Err(Stop::Fault(crate::evaluate::Fault::NotWhole("a variable of DEF INT", v)));
+        }
         // A variable that does not exist is found out by reading it.
         self.store.value(variable).map_err(Stop::Fault)?;
+        if let Variable::Named(id) = variable
+            && self.names.bare
+            && !self.names.is_declared(id)
+        {
+            self.store.kept = Some(variable);
+        }
         self.store
             .set(variable, value)
             .map_err(|protected| faults::protected(protected, variable, &self.names))?;
@@ -429,7 +486,7 @@ impl<'a> Run<'a, '_> {
         }
         let mut warnings = Vec::new();
         if let Some((span, number)) = self.first_kept {
-            warnings.push(faults::lost_assignment(span, number));
+            warnings.push(faults::lost_assignment(span, &self.names.show(number)));
         }
         if let Some(span) = self.first_output {
             warnings.push(faults::lost_output(span));

@@ -8,7 +8,8 @@ use crate::codes;
 use crate::expression::{Expression, Parser};
 use crate::flow::{Taken, assignment, call_of, fanuc_flow, skip_word};
 use crate::o_word::{self, OStatement};
-use crate::value::Names;
+use crate::siemens::{self, Said};
+use crate::value::{NameId, Names, Variable};
 
 /// A block of a program.
 #[derive(Clone, Debug)]
@@ -84,6 +85,8 @@ pub(crate) struct ComputedWord {
     pub(crate) comma: bool,
     pub(crate) span: Span,
     pub(crate) value: Expression,
+    /// Bytes of the word before and behind its number, where these are not the letter alone: `CR=`, `X=IC(` and `)`.
+    pub(crate) around: Option<(Box<[u8]>, Box<[u8]>)>,
 }
 
 /// Where the program goes on.
@@ -108,8 +111,34 @@ pub(crate) enum Control {
         to: Option<Expression>,
     },
     O(Box<OStatement>),
+    /// To a label.
+    Jump {
+        condition: Option<Expression>,
+        to: NameId,
+        direction: Direction,
+    },
+    /// `FOR I=1 TO 5`; the place of ENDFOR.
+    For {
+        variable: Variable,
+        from: Expression,
+        to: Expression,
+        end: u32,
+    },
+    /// The place of its FOR.
+    EndFor {
+        start: u32,
+    },
     /// DPRNT and the like.
     Output,
+}
+
+/// Where a label is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Direction {
+    Forward,
+    Back,
+    /// Forward, then from the start.
+    Either,
 }
 
 /// M98 and G65.
@@ -133,15 +162,26 @@ impl Compiler<'_, '_> {
     /// What a block is.
     pub(crate) fn kind(&mut self, block: &Block<'_>) -> (Kind, Flags) {
         let flags = self.flags(&block.items, block.bytes);
+        let siemens = self.dialect.flow.macros == Macros::Siemens;
+        let reads = |item: &&Item| {
+            item.kind == ItemKind::BracketCommand && siemens::names_something(block.text(item.span))
+        };
         let kind = if block.items.iter().any(|item| item.kind == ItemKind::Percent) {
             Kind::Percent
+        } else if let Some(item) = block.items.iter().find(reads).filter(|_| siemens) {
+            Kind::Broken(wrong(
+                block,
+                item.span,
+                "plain numbers were expected, since the flat program sets no variables",
+            ))
         } else if needs_work(block, self.dialect) {
             match self.complex(block) {
                 Ok(complex) => Kind::Complex(Box::new(complex)),
                 Err(diagnostic) => Kind::Broken(diagnostic),
             }
         } else {
-            match block.word(b'O').and_then(|word| word.number()?.integer()) {
+            // `:10` is a main block there.
+            match block.word(b'O').filter(|_| !siemens).and_then(|word| word.number()?.integer()) {
                 Some(number) => Kind::Program(u32::try_from(number).unwrap_or(u32::MAX)),
                 None => Kind::Copy,
             }
@@ -224,7 +264,8 @@ impl Compiler<'_, '_> {
         if complex.control.is_some() && !complex.assignments.is_empty() {
             return Err(wrong(block, whole(block), "an assignment beside flow cannot be read"));
         }
-        if self.dialect.flow.macros == Macros::Fanuc && complex.has_words && !complex.assignments.is_empty() {
+        let apart = matches!(self.dialect.flow.macros, Macros::Fanuc | Macros::Siemens);
+        if apart && complex.has_words && !complex.assignments.is_empty() {
             let message = "an assignment and words stand in one block";
             return Err(Box::new(
                 Diagnostic::error(codes::COMBINATION, message)
@@ -260,10 +301,11 @@ impl Compiler<'_, '_> {
                 continue;
             }
             complex.has_words |= letter != b'N';
-            if value == WordValue::Expression {
+            if value == WordValue::Expression && !self.is_plain(rest.text(item.span)) {
                 let value = self.word_value(rest.text(item.span), comma, complex);
                 let value = value.map_err(|fault| wrong_at(block, rest, item.span, &fault))?;
-                complex.words.push(ComputedWord { letter, comma, span: item.span, value });
+                let around = self.around(rest.text(item.span));
+                complex.words.push(ComputedWord { letter, comma, span: item.span, value, around });
             }
         }
         if !cut.is_empty() {
@@ -283,6 +325,14 @@ impl Compiler<'_, '_> {
 
     /// The expression of a word, behind its letter.
     fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, String> {
+        if self.dialect.flow.macros == Macros::Siemens {
+            let (from, to) = siemens::value_of(text).ok_or("a value was expected")?;
+            let mut parser = Parser::new(&text[from..to], Macros::Siemens, self.names);
+            let value = parser.expression()?;
+            parser.end()?;
+            complex.cost += parser.cost;
+            return Ok(value);
+        }
         let letter =
             if comma { 1 + text[1..].iter().position(u8::is_ascii_alphabetic).unwrap_or(0) + 1 } else { 1 };
         let mut parser = Parser::new(&text[letter..], self.dialect.flow.macros, self.names);
@@ -292,6 +342,16 @@ impl Compiler<'_, '_> {
         Ok(value)
     }
 
+    /// What stands around the number of a word of Siemens.
+    fn around(&self, text: &[u8]) -> Option<(Box<[u8]>, Box<[u8]>)> {
+        let (from, to) = siemens::value_of(text).filter(|_| self.dialect.flow.macros == Macros::Siemens)?;
+        Some((text[..from].into(), text[to..].into()))
+    }
+
+    fn is_plain(&self, text: &[u8]) -> bool {
+        self.dialect.flow.macros == Macros::Siemens && siemens::is_plain(text)
+    }
+
     /// M98, M99, G65: notes the call, and says which words are its own.
     fn call_words(
         &mut self,
@@ -299,7 +359,9 @@ impl Compiler<'_, '_> {
         block: &Block<'_>,
         complex: &mut Complex,
     ) -> Result<Option<Taken>, Fault> {
-        let Some(kind) = call_of(rest) else { return Ok(None) };
+        let Some(kind) = call_of(rest).filter(|_| self.dialect.flow.macros != Macros::Siemens) else {
+            return Ok(None);
+        };
         let conflict = |message: &str, help: &str| {
             Err(Box::new(
                 Diagnostic::error(codes::COMBINATION, message.to_owned())
@@ -408,6 +470,16 @@ impl Compiler<'_, '_> {
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
         let mut parser = Parser::new(text, self.dialect.flow.macros, self.names);
         let mut read = || -> Result<Option<Control>, String> {
+            if parser.macros == Macros::Siemens {
+                cut.push(span);
+                return Ok(match siemens::statement(&mut parser)? {
+                    Said::Assignments(found) => {
+                        complex.assignments.extend(found);
+                        None
+                    }
+                    Said::Control(control) => Some(control),
+                });
+            }
             if parser.peek() == Some(b'#') {
                 while parser.peek() == Some(b'#') {
                     let start = parser.at;
@@ -453,6 +525,13 @@ impl Compiler<'_, '_> {
 /// True where a block is more than bytes to copy.
 pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
     let linuxcnc = dialect.flow.macros == Macros::LinuxCnc;
+    if dialect.flow.macros == Macros::Siemens {
+        return block.items.iter().any(|item| match item.kind {
+            ItemKind::Flow => true,
+            ItemKind::Word { value: WordValue::Expression, .. } => !siemens::is_plain(block.text(item.span)),
+            _ => false,
+        });
+    }
     block.items.iter().any(|item| match item.kind {
         ItemKind::Flow => true,
         ItemKind::Word { value: WordValue::Expression, .. }

@@ -36,6 +36,10 @@ pub(crate) struct NameId(pub(crate) u32);
 /// Names of variables and O-words: lower case, without blanks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
+    /// Names of Siemens' language, which stand without `#`.
+    pub(crate) bare: bool,
+    /// Variables that the program declares, and whether they hold whole numbers.
+    declared: std::collections::BTreeMap<NameId, bool>,
     names: Vec<String>,
     places: std::collections::BTreeMap<String, NameId>,
 }
@@ -66,10 +70,25 @@ impl Names {
         self.name(id).starts_with('_')
     }
 
+    /// DEF
+    pub(crate) fn declare(&mut self, id: NameId, whole: bool) {
+        self.declared.insert(id, whole);
+    }
+
+    pub(crate) fn is_declared(&self, id: NameId) -> bool {
+        self.declared.contains_key(&id)
+    }
+
+    /// It holds whole numbers.
+    pub(crate) fn is_whole(&self, id: NameId) -> bool {
+        self.declared.get(&id) == Some(&true)
+    }
+
     /// As it is written in a program.
     pub(crate) fn show(&self, variable: Variable) -> String {
         match variable {
             Variable::Numbered(number) => format!("#{number}"),
+            Variable::Named(id) if self.bare => self.name(id).to_ascii_uppercase(),
             Variable::Named(id) => format!("#<{}>", self.name(id)),
         }
     }

@@ -26,7 +26,13 @@ impl Preset {
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let (name, value) = text.split_once('=')?;
-        let name = name.trim().strip_prefix('#')?.trim();
+        let name = name.trim();
+        // Siemens' names stand alone.
+        if name.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '_' | '$')) {
+            let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?;
+            return Some(Self { variable: Name::Name(name.to_owned()), value: Some(value) });
+        }
+        let name = name.strip_prefix('#')?.trim();
         let variable = match name.strip_prefix('<').and_then(|name| name.strip_suffix('>')) {
             Some(name) if !name.trim().is_empty() => Name::Name(name.to_owned()),
             Some(_) => return None,
@@ -73,7 +79,7 @@ pub(crate) struct Store {
     /// Which names are global.
     is_global: Vec<bool>,
     /// Variables that outlive the program and were written.
-    pub(crate) kept: Option<u32>,
+    pub(crate) kept: Option<Variable>,
 }
 
 const FANUC_FIRST_SYSTEM: u32 = 1000;
@@ -149,7 +155,7 @@ impl Store {
                     _ => number > 30,
                 };
                 if outlives && self.kept.is_none() {
-                    self.kept = Some(number);
+                    self.kept = Some(variable);
                 }
             }
         }

@@ -99,6 +99,10 @@ impl Run<'_, '_> {
         };
         for style in styles {
             if output::word(text, word.letter, value, *style).is_some() {
+                if let Some((before, behind)) = &word.around {
+                    text.splice(length..=length, before.iter().copied());
+                    text.extend_from_slice(behind);
+                }
                 return Ok(());
             }
             text.truncate(length);

@@ -373,8 +373,14 @@ fn machine_coordinates(
     if words.has(ARC_LETTERS) {
         return Err(stray(words, "this block is no arc"));
     }
-    let lengths = state.tool_length.applied_mm().map(|mm| mm != 0.0);
-    let along = Letters::of_axes(if state.edge_unsaid { [true; 3] } else { lengths });
+    let lengths = if state.edge_unsaid {
+        // It may be that of any tool, and one that no profile gives lies along Z.
+        let any = |all: [bool; 3], mm: [f64; 3]| [0, 1, 2].map(|i| all[i] || mm[i] != 0.0);
+        env.setup.tools.iter().map(|(_, mm)| *mm).fold([false, false, true], any)
+    } else {
+        state.tool_length.applied_mm().map(|mm| mm != 0.0)
+    };
+    let along = Letters::of_axes(lengths);
     if env.dialect.edge_in_d && words.has(along) {
         return Err(words
             .refuse(

@@ -782,6 +782,8 @@ pub enum Macros {
     Fanuc,
     /// LinuxCNC's parameters and O-words; M98 and M99.
     LinuxCnc,
+    /// Siemens' R parameters, variables of DEF, IF and loops, jumps to labels.
+    Siemens,
 }
 
 /// Variables, program flow and subprograms.

@@ -1,10 +1,10 @@
 //! Items inside one block.
 
-use crate::dialect::{Colon, Command, Paren, Semicolon};
+use crate::dialect::{Colon, Command, Macros, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
-    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, nested_comment,
-    o_statement,
+    angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_siemens_word,
+    nested_comment, o_statement,
 };
 use crate::{Dialect, Invalid, Item, ItemKind, Span, Value};
 
@@ -20,6 +20,8 @@ pub(crate) struct Lexer<'d> {
     pub(crate) letters: u32,
     long_words: &'d [(String, u8)],
     commands: &'d [Command],
+    /// Statements and labels are Siemens'.
+    siemens: bool,
 }
 
 /// What may stand between items: white space, and what punches, serial lines and DOS left in files.
@@ -65,6 +67,7 @@ impl<'d> Lexer<'d> {
             letters,
             long_words: &dialect.long_words,
             commands: &dialect.commands,
+            siemens: dialect.flow.macros == Macros::Siemens,
         }
     }
 
@@ -126,7 +129,7 @@ impl<'d> Lexer<'d> {
             _ => {
                 let function = text.get(run) == Some(&b'[') && is_function(&text[1..run]);
                 let command = self.commands.iter().any(|command| names(command, text));
-                !(function || command || is_flow_word(&text[..run]))
+                !(function || command || is_flow_word(&text[..run]) || self.statement(text, 0).is_some())
             }
         }
     }
@@ -145,6 +148,11 @@ impl<'d> Lexer<'d> {
     /// An item that starts with a letter.
     fn letter(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let letter = line[at].to_ascii_uppercase();
+        if self.siemens
+            && let Some(found) = self.statement(line, at)
+        {
+            return found;
+        }
         if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
             if let Some(found) = self.letters(line, at) {
                 return found;
@@ -174,6 +182,34 @@ impl<'d> Lexer<'d> {
         }
         let digits = line[at + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
         (digits > 0 && line.get(at + 1 + digits) == Some(&b'=')).then_some(at + 1 + digits)
+    }
+
+    /// Siemens: a label (`NAME:`), a statement (`IF R1>5 GOTOF NAME`) or assignments (`R1=5 R2=R1*2`).
+    #[cold]
+    fn statement(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
+        if !self.siemens {
+            return None;
+        }
+        let length = identifier(&line[at..]);
+        let name = &line[at..at + length];
+        if is_siemens_word(name) {
+            return Some(self.flow(line, at, at + length));
+        }
+        let number = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'R'))
+            && length > 1
+            && name[1..].iter().all(u8::is_ascii_digit);
+        let long = length > 1 && !name[1].is_ascii_digit();
+        let known = self.commands.iter().any(|command| command.name.as_bytes().eq_ignore_ascii_case(name))
+            || self.long_words.iter().any(|(word, _)| word.as_bytes().eq_ignore_ascii_case(name));
+        if known || !(number || long) {
+            return None;
+        }
+        let behind = skip_spaces(line, at + length);
+        match (line.get(behind), line.get(behind + 1)) {
+            (Some(b':'), next) if next != Some(&b'=') && long => Some((ItemKind::Name, behind + 1)),
+            (Some(b'='), next) if next != Some(&b'=') => Some(self.flow(line, at, at + length)),
+            _ => None,
+        }
     }
 
     /// Several letters in a row: a statement, a command, a function as value, or nothing a control reads.
@@ -282,6 +318,9 @@ impl<'d> Lexer<'d> {
                 (Ok(plain), end) => (ItemKind::Word { letter: b'O', value: Value::Number(plain) }, end),
                 (Err(_), _) => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
             },
+            b'_' | b'$' if self.siemens => self
+                .statement(line, at)
+                .unwrap_or_else(|| (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at))),
             b'#' => self.flow(line, at, at + 1),
             b',' => self.comma_word(line, at),
             b'<' => match angle_name(&line[at..]) {
@@ -355,6 +394,15 @@ impl<'d> Lexer<'d> {
         let length = rest.iter().take_while(|byte| !is_blank(**byte) && !self.starts_comment(**byte)).count();
         at + 1 + length
     }
+}
+
+/// How many bytes of a name of Siemens stand at the start: letters, digits, `_`; `$` first.
+fn identifier(text: &[u8]) -> usize {
+    let starts = |byte: &u8| byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$');
+    if !text.first().is_some_and(starts) {
+        return 0;
+    }
+    1 + text[1..].iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count()
 }
 
 /// How many ASCII letters stand at the start.

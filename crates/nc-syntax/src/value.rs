@@ -93,6 +93,17 @@ pub(crate) fn is_flow_word(name: &[u8]) -> bool {
     FLOW.iter().any(|word| word.as_bytes().eq_ignore_ascii_case(name))
 }
 
+/// Words that start a statement of Siemens' language.
+const SIEMENS: [&str; 15] = [
+    "DEF", "ELSE", "ENDFOR", "ENDIF", "ENDLOOP", "ENDWHILE", "FOR", "GOTO", "GOTOB", "GOTOF", "IF", "LOOP",
+    "REPEAT", "UNTIL", "WHILE",
+];
+
+/// True where a name starts a statement of Siemens' language.
+pub(crate) fn is_siemens_word(name: &[u8]) -> bool {
+    SIEMENS.iter().any(|word| word.as_bytes().eq_ignore_ascii_case(name))
+}
+
 /// Words behind the `O` of LinuxCNC's O-codes.
 const O_WORDS: [&str; 15] = [
     "SUB",

@@ -1,0 +1,291 @@
+//! Siemens' statements and expressions: text to what they do.
+//!
+//! Source: SINUMERIK 840D sl Programming Manual Job Planning, chapter 1 (R parameters, variables, operators, jumps and
+//! control structures). Comparisons rank below AND and OR there, which few programs mean: where both stand at one level
+//! brackets are asked for.
+
+use crate::expression::{Expression, Function, Operator, Parser};
+use crate::o_word::{Label, OStatement, OWord};
+use crate::statement::{Control, Direction};
+use crate::value::{NameId, Variable};
+
+const FUNCTIONS: [(&[u8], Function); 10] = [
+    (b"ABS", Function::Abs),
+    (b"ACOS", Function::Acos),
+    (b"ASIN", Function::Asin),
+    (b"COS", Function::Cos),
+    (b"EXP", Function::Exp),
+    (b"LN", Function::Ln),
+    (b"ROUND", Function::Round),
+    (b"SIN", Function::Sin),
+    (b"SQRT", Function::Sqrt),
+    (b"TAN", Function::Tan),
+];
+
+const OPERATORS: [(&[u8], Operator); 12] = [
+    (b"+", Operator::Add),
+    (b"-", Operator::Subtract),
+    (b"*", Operator::Multiply),
+    (b"/", Operator::Divide),
+    (b"AND", Operator::And),
+    (b"OR", Operator::Or),
+    (b"==", Operator::Equal),
+    (b"<>", Operator::NotEqual),
+    (b">=", Operator::GreaterOrEqual),
+    (b"<=", Operator::LessOrEqual),
+    (b">", Operator::Greater),
+    (b"<", Operator::Less),
+];
+
+/// What a statement makes of the block.
+pub(crate) enum Said {
+    Assignments(Vec<(Expression, Expression)>),
+    Control(Control),
+}
+
+fn is_name(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+/// The operator that stands next, and its length.
+pub(crate) fn operator(rest: &[u8]) -> Option<(Operator, usize)> {
+    let (name, operator) = OPERATORS.iter().find(|(name, _)| {
+        let word = name[0].is_ascii_alphabetic();
+        rest.get(..name.len()).is_some_and(|text| text.eq_ignore_ascii_case(name))
+            && !(word && rest.get(name.len()).is_some_and(|next| is_name(*next)))
+    })?;
+    Some((*operator, name.len()))
+}
+
+/// A name: letters, digits, `_`, after `$` or a letter.
+fn name<'t>(parser: &mut Parser<'t, '_>) -> Option<&'t [u8]> {
+    let first = parser.peek()?;
+    if !(first.is_ascii_alphabetic() || matches!(first, b'_' | b'$')) {
+        return None;
+    }
+    let start = parser.at;
+    let length = 1 + parser.text[start + 1..].iter().take_while(|byte| is_name(**byte)).count();
+    parser.at += length;
+    Some(&parser.text[start..start + length])
+}
+
+/// A value: number, variable, function, bracket, NOT.
+pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, String> {
+    if parser.take(b'(') {
+        let inside = parser.expression()?;
+        parser.expect(b')')?;
+        return Ok(inside);
+    }
+    let Some(found) = name(parser) else { return Err("a value was expected".to_owned()) };
+    let upper = found.to_ascii_uppercase();
+    let shown = String::from_utf8_lossy(&upper).into_owned();
+    match &upper[..] {
+        b"TRUE" => return Ok(Expression::Number(1.0)),
+        b"FALSE" => return Ok(Expression::Number(0.0)),
+        b"NOT" => {
+            let inside = Box::new(parser.operand()?);
+            return Ok(Expression::Binary(Operator::Equal, inside, Box::new(Expression::Number(0.0))));
+        }
+        _ => {}
+    }
+    if parser.peek() == Some(b'[') {
+        return Err(format!("`{shown}[`: no fields of variables are known"));
+    }
+    if parser.peek() != Some(b'(') {
+        return Ok(Expression::Variable(Variable::Named(parser.names.id(found))));
+    }
+    parser.expect(b'(')?;
+    let first = parser.expression()?;
+    let value = match &upper[..] {
+        b"ATAN2" => {
+            parser.expect(b',')?;
+            let second = parser.expression()?;
+            Expression::Binary(Operator::Atan2, Box::new(first), Box::new(second))
+        }
+        b"POT" => Expression::Binary(Operator::Multiply, Box::new(first.clone()), Box::new(first)),
+        b"TRUNC" => Expression::Unary(Function::Fix, Box::new(first)),
+        _ => match FUNCTIONS.iter().find(|(known, _)| *known == &upper[..]) {
+            Some((_, function)) => Expression::Unary(*function, Box::new(first)),
+            None => return Err(format!("`{shown}` is no function that is known")),
+        },
+    };
+    parser.expect(b')')?;
+    Ok(value)
+}
+
+/// A label: a name, or a block number as `N100`.
+pub(crate) fn label(parser: &mut Parser<'_, '_>) -> Result<NameId, String> {
+    let found = name(parser).ok_or("a label was expected")?;
+    Ok(parser.names.id(found))
+}
+
+fn jump(parser: &mut Parser<'_, '_>) -> Option<Direction> {
+    // Longer words first.
+    [(&b"GOTOF"[..], Direction::Forward), (b"GOTOB", Direction::Back), (b"GOTO", Direction::Either)]
+        .into_iter()
+        .find_map(|(word, direction)| parser.word(word).then_some(direction))
+}
+
+/// One flow item of a block.
+pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
+    let start = parser.at;
+    let word = name(parser).map(<[u8]>::to_ascii_uppercase).unwrap_or_default();
+    let said = match &word[..] {
+        b"DEF" => definition(parser).map(Said::Assignments)?,
+        b"IF" => {
+            let condition = parser.expression()?;
+            match jump(parser) {
+                Some(direction) => {
+                    let to = label(parser)?;
+                    Said::Control(Control::Jump { condition: Some(condition), to, direction })
+                }
+                None => o_word(parser, b"if", OWord::If(condition)),
+            }
+        }
+        b"ELSE" => o_word(parser, b"if", OWord::Else),
+        b"ENDIF" => o_word(parser, b"if", OWord::EndIf),
+        b"WHILE" => {
+            let condition = parser.expression()?;
+            o_word(parser, b"while", OWord::While(condition))
+        }
+        b"LOOP" => o_word(parser, b"loop", OWord::While(Expression::Number(1.0))),
+        b"ENDWHILE" => o_word(parser, b"while", OWord::EndWhile),
+        b"ENDLOOP" => o_word(parser, b"loop", OWord::EndWhile),
+        b"REPEAT" if parser.peek().is_none() => o_word(parser, b"repeat", OWord::Do),
+        b"REPEAT" => return Err("REPEAT with a label repeats a part of the program".to_owned()),
+        b"UNTIL" => {
+            let condition = Box::new(parser.expression()?);
+            let goes_on = Expression::Binary(Operator::Equal, condition, Box::new(Expression::Number(0.0)));
+            o_word(parser, b"repeat", OWord::While(goes_on))
+        }
+        b"FOR" => {
+            let found = name(parser).ok_or("a variable was expected")?;
+            let variable = Variable::Named(parser.names.id(found));
+            parser.expect(b'=')?;
+            let from = parser.expression()?;
+            if !parser.word(b"TO") {
+                return Err("TO was expected".to_owned());
+            }
+            let to = parser.expression()?;
+            Said::Control(Control::For { variable, from, to, end: 0 })
+        }
+        b"ENDFOR" => Said::Control(Control::EndFor { start: 0 }),
+        b"GOTO" | b"GOTOB" | b"GOTOF" => {
+            let direction = match &word[..] {
+                b"GOTOF" => Direction::Forward,
+                b"GOTOB" => Direction::Back,
+                _ => Direction::Either,
+            };
+            Said::Control(Control::Jump { condition: None, to: label(parser)?, direction })
+        }
+        _ => {
+            parser.at = start;
+            assignments(parser).map(Said::Assignments)?
+        }
+    };
+    parser.end()?;
+    Ok(said)
+}
+
+fn o_word(parser: &mut Parser<'_, '_>, kind: &[u8], word: OWord) -> Said {
+    let label = Label::Known(parser.names.id(kind));
+    Said::Control(Control::O(Box::new(OStatement { label, word, next: 0, end: 0, foot: false })))
+}
+
+/// `R1=5 R2=R1*2`
+fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
+    let mut found = Vec::new();
+    while parser.peek().is_some() {
+        let target = name(parser).ok_or("a variable was expected")?.to_vec();
+        let id = parser.names.id(&target);
+        if !is_parameter(&target) && !parser.names.is_declared(id) {
+            let shown = String::from_utf8_lossy(&target).to_ascii_uppercase();
+            return Err(format!("{shown} is not declared: `DEF REAL {shown}` was expected before it"));
+        }
+        parser.expect(b'=')?;
+        let value = parser.expression()?;
+        if found.iter().any(|(set, _)| reads(&value, set)) {
+            return Err(
+                "it reads a variable that the same block sets: write it in a block of its own".to_owned()
+            );
+        }
+        found.push((Expression::Variable(Variable::Named(id)), value));
+    }
+    Ok(found)
+}
+
+/// True where an expression reads a variable.
+fn reads(expression: &Expression, variable: &Expression) -> bool {
+    match expression {
+        Expression::Negative(inside) | Expression::Indirect(inside) | Expression::Unary(_, inside) => {
+            reads(inside, variable)
+        }
+        Expression::Binary(_, left, right) => reads(left, variable) || reads(right, variable),
+        Expression::Number(_) | Expression::Variable(_) | Expression::Exists(_) => expression == variable,
+    }
+}
+
+/// R and digits.
+pub(crate) fn is_parameter(name: &[u8]) -> bool {
+    name.len() > 1 && name[0].eq_ignore_ascii_case(&b'R') && name[1..].iter().all(u8::is_ascii_digit)
+}
+
+/// `DEF REAL A=5, B`: variables that begin with a value, or with zero.
+fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
+    let kind = name(parser).map(<[u8]>::to_ascii_uppercase).unwrap_or_default();
+    let whole = match &kind[..] {
+        b"REAL" => false,
+        b"INT" | b"BOOL" => true,
+        _ => return Err("DEF takes REAL, INT or BOOL here".to_owned()),
+    };
+    let mut found = Vec::new();
+    loop {
+        let target = name(parser).ok_or("the name of a variable was expected")?.to_vec();
+        if is_parameter(&target) || target.len() < 2 {
+            return Err("R parameters and single letters cannot be declared".to_owned());
+        }
+        let id = parser.names.id(&target);
+        parser.names.declare(id, whole);
+        let value = if parser.take(b'=') { parser.expression()? } else { Expression::Number(0.0) };
+        found.push((Expression::Variable(Variable::Named(id)), value));
+        if !parser.take(b',') {
+            return Ok(found);
+        }
+    }
+}
+
+/// Where the expression of a word stands in its text, and what comes behind it: `X=R1`, `X=IC(R1)`, `CR=R5/2`.
+pub(crate) fn value_of(text: &[u8]) -> Option<(usize, usize)> {
+    let equals = text.iter().position(|byte| *byte == b'=')? + 1;
+    let rest = &text[equals..];
+    let wrapped = [&b"AC("[..], b"IC("].iter().any(|name| {
+        rest.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(name)) && rest.ends_with(b")")
+    });
+    Some(if wrapped { (equals + 3, text.len() - 1) } else { (equals, text.len()) })
+}
+
+/// True where a word's value is no number that is computed: a text, or a function of Siemens around a plain number.
+pub(crate) fn is_plain(text: &[u8]) -> bool {
+    if text.ends_with(b"\"") {
+        return true;
+    }
+    let Some(equals) = text.iter().position(|byte| *byte == b'=') else { return false };
+    let rest = &text[equals + 1..];
+    let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+    let inside = rest.get(letters..).and_then(|rest| rest.strip_prefix(b"(")?.strip_suffix(b")"));
+    letters > 1
+        && inside.is_some_and(|inside| {
+            inside.iter().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b' '))
+        })
+}
+
+/// True where the arguments of a command name anything: a variable of the program would be read that the flat one never
+/// sets.
+pub(crate) fn names_something(text: &[u8]) -> bool {
+    let behind = text.iter().take_while(|byte| is_name(**byte)).count();
+    let mut quoted = false;
+    text[behind..].iter().any(|byte| {
+        quoted ^= *byte == b'"';
+        !quoted && (byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$'))
+    })
+}
