@@ -128,6 +128,7 @@ impl<'d> Emitter<'d> {
         let in_force = self.modes.motion_for(self.dialect, block);
         self.modes.read(self.dialect, block);
         let style = Style {
+            long_words: &self.dialect.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),
@@ -197,6 +198,7 @@ impl<'d> Emitter<'d> {
     ) -> Result<(), Diagnostic> {
         let separator = self.habits.learn_line(line);
         let style = Style {
+            long_words: &self.dialect.long_words,
             habits: &self.habits,
             separator: separator.unwrap_or(self.habits.separator),
             increments: Increments::new(&self.dialect.numbers, self.modes.inch),

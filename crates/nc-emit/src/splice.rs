@@ -43,6 +43,8 @@ pub(crate) fn letters(letters: impl Iterator<Item = u8>) -> u32 {
 #[derive(Clone, Copy)]
 pub(crate) struct Style<'h> {
     pub(crate) habits: &'h Habits,
+    /// Names of letters that do not stand alone: `CR` of R.
+    pub(crate) long_words: &'h [(String, u8)],
     /// What stands between two words: the block's own, where it has any.
     pub(crate) separator: &'static [u8],
     pub(crate) increments: Increments,
@@ -50,7 +52,13 @@ pub(crate) struct Style<'h> {
 
 impl Style<'_> {
     pub(crate) fn write_letter(&self, letter: u8, out: &mut Vec<u8>) {
-        out.push(if self.habits.lower_case { letter.to_ascii_lowercase() } else { letter });
+        match self.long_words.iter().find(|(_, known)| *known == letter) {
+            Some((name, _)) => {
+                out.extend_from_slice(name.as_bytes());
+                out.push(b'=');
+            }
+            None => out.push(if self.habits.lower_case { letter.to_ascii_lowercase() } else { letter }),
+        }
     }
 
     #[inline]
@@ -346,9 +354,11 @@ fn is_cancel(dialect: &Dialect, code: GCode) -> bool {
 
 /// The number of a word: what follows the letter, blanks, and the `=` of `X=10.5`.
 pub(crate) fn number_span(block: &Block<'_>, word: Span) -> Span {
-    let blanks =
-        block.text(word)[1..].iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'=')).count() as u32;
-    Span { start: word.start + 1 + blanks, end: word.end }
+    let text = block.text(word);
+    // `CR=5` and `S2=500` have more than a letter before it.
+    let name = text.iter().position(|byte| *byte == b'=').map_or(1, |at| at + 1);
+    let blanks = text[name..].iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+    Span { start: word.start + (name + blanks) as u32, end: word.end }
 }
 
 /// Where a new word goes: before the first later coordinate, else after the last earlier one, else after

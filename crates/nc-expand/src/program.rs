@@ -107,7 +107,14 @@ impl<'a> Source<'a> {
             Self { name, text, statements, labels, names: named, subroutines: BTreeMap::new(), programs };
         match source.link(names) {
             Ok(()) => Ok(source),
-            Err(diagnostic) => Err((diagnostic, source.text.into_owned())),
+            Err(diagnostic) => {
+                // A statement that cannot be read may be the partner that is missing.
+                let broken = source.statements.iter().find_map(|statement| match &statement.kind {
+                    Kind::Broken(diagnostic) => Some(diagnostic.clone()),
+                    _ => None,
+                });
+                Err((broken.unwrap_or(diagnostic), source.text.into_owned()))
+            }
         }
     }
 

@@ -273,7 +273,8 @@ pub(crate) fn is_plain(text: &[u8]) -> bool {
     let rest = &text[equals + 1..];
     let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     let inside = rest.get(letters..).and_then(|rest| rest.strip_prefix(b"(")?.strip_suffix(b")"));
-    letters > 1
+    let says = [&b"AC"[..], b"IC", b"DC", b"ACP", b"ACN"];
+    says.iter().any(|name| rest[..letters].eq_ignore_ascii_case(name))
         && inside.is_some_and(|inside| {
             inside.iter().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b' '))
         })

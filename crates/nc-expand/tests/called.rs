@@ -87,7 +87,7 @@ fn places_and_increments_by_name() {
         flat("G1 X=IC(5) Y=AC(20) F200\nG2 X=IC(20) Y20 I=AC(25) J=AC(20)\nG91\nX=AC(60) Y5\nX=IC(1)\n");
     assert_eq!(lines, ["G1 X15. Y20. F200", "G2 X35. Y20 I10. J0.", "G91", "X25. Y5", "X1."]);
     assert_eq!(refused("TRANS X5\nX=IC(5)\n"), 146);
-    assert_eq!(refused("X=IC(R1)\n"), 146);
+    assert_eq!(refused("X=IC(R1)\n"), 121);
     assert_eq!(refused("/X=IC(5)\n"), 134);
     // M8 M6: any M code of the block may move the axes.
     assert_eq!(refused("T1\nM8 M6\nX=IC(5)\n"), 146);

@@ -409,7 +409,7 @@ fn program_frame(
     state: &mut Modal,
 ) -> Outcome<()> {
     let allowed = match part {
-        FramePart::Rotation => AXIS_LETTERS.or(R),
+        FramePart::Rotation => AXIS_LETTERS.or(L),
         FramePart::Shift | FramePart::Mirror => LINEAR_LETTERS,
     };
     let others = words.letters.without(allowed).without(Letters::of(b"NO"));
@@ -499,7 +499,8 @@ fn rotation_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outco
             .refuse(codes::FRAME, "a rotation out of the plane", words.span(out), "tilts the frame")
             .help("post without tilted planes"));
     }
-    match (words.coordinate(b'R', false), words.coordinate(normal, false)) {
+    // RPL= is a word of L.
+    match (words.coordinate(b'L', false), words.coordinate(normal, false)) {
         (Some(angle), None) | (None, Some(angle)) => Ok(angle),
         _ => Err(refuse(words, span, "by two angles", "RPL= or the plane's normal was expected")
             .help("write RPL= alone")),

@@ -1,0 +1,9 @@
+%_N_PART_MPF
+;expect VP0120: comparisons rank below AND
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+R1=1
+IF R1>0 AND R1<5 GOTOF ENDE
+X20
+ENDE:
+M30

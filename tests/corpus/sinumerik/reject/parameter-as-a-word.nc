@@ -1,0 +1,7 @@
+%_N_PART_MPF
+;expect VP0105: R12 is a parameter, not a radius
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+G2 X30 Y10 R12
+M30
