@@ -78,6 +78,9 @@ impl Complex {
     }
 }
 
+/// Bytes of a word before and behind its number.
+pub(crate) type Around = (Box<[u8]>, Box<[u8]>);
+
 /// A word whose number is computed.
 #[derive(Clone, Debug)]
 pub(crate) struct ComputedWord {
@@ -86,7 +89,7 @@ pub(crate) struct ComputedWord {
     pub(crate) span: Span,
     pub(crate) value: Expression,
     /// Bytes of the word before and behind its number, where these are not the letter alone: `CR=`, `X=IC(` and `)`.
-    pub(crate) around: Option<(Box<[u8]>, Box<[u8]>)>,
+    pub(crate) around: Option<Around>,
 }
 
 /// Where the program goes on.
@@ -343,7 +346,7 @@ impl Compiler<'_, '_> {
     }
 
     /// What stands around the number of a word of Siemens.
-    fn around(&self, text: &[u8]) -> Option<(Box<[u8]>, Box<[u8]>)> {
+    fn around(&self, text: &[u8]) -> Option<Around> {
         let (from, to) = siemens::value_of(text).filter(|_| self.dialect.flow.macros == Macros::Siemens)?;
         Some((text[..from].into(), text[to..].into()))
     }

@@ -15,7 +15,7 @@ fn flat(program: &str) -> Vec<String> {
 }
 
 fn refused(program: &str) -> u16 {
-    let refusal = expanded("sinumerik", &format!("{START}{program}"), &[], &[]).unwrap_err();
+    let refusal = expanded("sinumerik", &format!("{START}{program}"), &[], &[]).expect_err("refused");
     refusal.diagnostics[0].code.0
 }
 

@@ -11,7 +11,7 @@ fn flat(program: &str) -> Vec<String> {
 }
 
 fn refused(program: &str) -> u16 {
-    expanded("sinumerik", program, &[], &[]).unwrap_err().diagnostics[0].code.0
+    expanded("sinumerik", program, &[], &[]).expect_err("refused").diagnostics[0].code.0
 }
 
 #[test]

@@ -69,6 +69,7 @@ impl Plain {
             && modal.transform.is_none()
             && modal.unsettled == [false; 3]
             && !modal.feed_is_inverse_time
+            && !modal.edge_unsaid
             && modal.named == [Naming::Named; 3]
             && modal.frame.as_ref().is_some_and(Frame::is_shift)
             && known(&modal.axes.linear);

@@ -15,7 +15,7 @@ fn ends_with(setup: &Setup, program: &str) -> [f64; 3] {
     if let Some((line, refused)) = &run.refused {
         panic!("line {line} of {program:?}: {refused:#?}");
     }
-    run.modal.axes.linear.map(|axis| (axis.known().unwrap() * 1e9).round() / 1e9)
+    run.modal.axes.linear.map(|axis| (axis.known().expect("known") * 1e9).round() / 1e9)
 }
 
 fn refused(program: &str) -> (u64, u16) {

@@ -118,7 +118,7 @@ impl Writer<'_> {
         let comment = shown(block).to_vec();
         match calls.as_slice() {
             [(Called::Modal, span)] => {
-                let more = words.block.text(*span).iter().any(|byte| *byte == b'(');
+                let more = words.block.text(*span).contains(&b'(');
                 if more
                     || block
                         .items
@@ -546,7 +546,7 @@ fn circle(words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Faul
 
 fn count(words: &Words<'_, '_>, call: &Arguments, place: usize) -> Result<usize, Fault> {
     let count = call.needed(words, place, "a number of holes")?;
-    if count < 1.0 || count > MOST_HOLES || count.fract() != 0.0 {
+    if !(1.0..=MOST_HOLES).contains(&count) || count.fract() != 0.0 {
         return Err(call.fault(
             words,
             &format!("{} of {count} holes", call.name),
