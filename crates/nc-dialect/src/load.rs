@@ -231,6 +231,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             local_is_preset: frames.local_is_preset,
             scaling_step: frames.scaling_step.into_inner(),
             arc_turns: frames.arc_turns,
+            machine_words_stand_alone: frames.machine_words_stand_alone,
         },
         output: Output {
             decimals_inch: output.decimals_inch.into_inner(),

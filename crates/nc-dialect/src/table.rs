@@ -278,6 +278,7 @@ pub(crate) struct Frames {
     pub(crate) local_is_preset: bool,
     pub(crate) scaling_step: Spanned<f64>,
     pub(crate) arc_turns: bool,
+    pub(crate) machine_words_stand_alone: bool,
 }
 
 impl Default for Frames {
@@ -288,6 +289,7 @@ impl Default for Frames {
             local_is_preset: false,
             scaling_step: Spanned::new(0..0, 0.001),
             arc_turns: false,
+            machine_words_stand_alone: false,
         }
     }
 }

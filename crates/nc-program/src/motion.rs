@@ -86,7 +86,9 @@ pub(crate) fn execute(
         }
         Owner::MachineCoordinates => {
             known_axes(env, words)?;
-            untransformed(words, state, demand, false)?;
+            if !env.dialect.frames.machine_words_stand_alone {
+                untransformed(words, state, demand, false)?;
+            }
             if words.has(AXIS_LETTERS) {
                 machine_coordinates(env, words, state, demand)?;
                 tip::lose(words, state, Why::MachineWords);

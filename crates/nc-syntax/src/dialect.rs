@@ -531,6 +531,8 @@ pub struct FrameRules {
     pub local_is_preset: bool,
     /// The factor of G51 that a P without a point counts.
     pub scaling_step: f64,
+    /// Machine coordinates are those of the axes whatever rotation, scaling or mirror is in force.
+    pub machine_words_stand_alone: bool,
     /// P of an arc counts its turns (LinuxCNC).
     pub arc_turns: bool,
 }

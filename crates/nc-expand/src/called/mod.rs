@@ -159,6 +159,9 @@ impl Writer<'_> {
                     let mut line = b"G0 ".to_vec();
                     self.point(&mut line, place);
                     self.out.line(&line, from(block));
+                    for (axis, value) in self.state.plane.into_iter().zip(place) {
+                        self.state.at[axis] = Some(rounded(value));
+                    }
                     self.drill(&words, &hole)?;
                 }
                 self.restore(&words)?;

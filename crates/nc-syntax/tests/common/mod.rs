@@ -46,6 +46,7 @@ pub(crate) fn dialect() -> Dialect {
             local_is_preset: false,
             scaling_step: 0.001,
             arc_turns: false,
+            machine_words_stand_alone: false,
         },
         output: Output {
             decimals_inch: 4,
