@@ -5,7 +5,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 91] = [
+pub const ACTION_NAMES: [&str; 92] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -88,6 +88,7 @@ pub const ACTION_NAMES: [&str; 91] = [
     "frame-mirror",
     "frame-mirror-more",
     "base-frame",
+    "plane-reset",
     "call-drill",
     "call-drill-dwell",
     "call-drill-pecks",
@@ -185,6 +186,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "frame-mirror" => Action::ProgramFrame { part: FramePart::Mirror, adds: false },
         "frame-mirror-more" => Action::ProgramFrame { part: FramePart::Mirror, adds: true },
         "base-frame" => Action::BaseFrame,
+        "plane-reset" => Action::PlaneReset,
         "call-drill" => Action::Called(Called::Drill),
         "call-drill-dwell" => Action::Called(Called::DrillDwell),
         "call-drill-pecks" => Action::Called(Called::DrillPecks),

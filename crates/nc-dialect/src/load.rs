@@ -368,7 +368,9 @@ fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnosti
         return Err(Diagnostic::error(Code(802), format!("`{name}` is not a command's name"))
             .at(wide(key.span()), "expected capital letters, at least two"));
     }
-    let refuse = refusal(key, row.does.is_some(), row.refuse.as_deref(), row.help.as_deref())?;
+    // With few arguments it does something, with more it is refused.
+    let does = row.does.is_some() && row.passes_with.is_none();
+    let refuse = refusal(key, does, row.refuse.as_deref(), row.help.as_deref())?;
     let action = match &row.does {
         None => None,
         Some(does) => Some(action_named(does.get_ref(), GCode(0)).ok_or_else(|| {

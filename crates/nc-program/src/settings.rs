@@ -162,6 +162,13 @@ pub(crate) fn apply<'d>(
             let message = format!("{} was not written out", words.text(span));
             return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
         }
+        let framed = state.shifts.local_mm != [0.0; 3] || !state.transform.is_none();
+        if *action == Action::PlaneReset && framed {
+            let message = format!("{} while a frame of the program is in force", words.text(span));
+            return Err(words
+                .refuse(codes::FRAME, message, span, "does it end the frame too?")
+                .help("end the frame with TRANS alone before it"));
+        }
         if let Action::Refuse { reason, help } = action {
             let message = format!("{} is refused: {reason}", words.text(span));
             return Err(words
@@ -410,6 +417,8 @@ fn set<'d>(
         Action::Pass { takes_words: false } | Action::PolarOff | Action::Refuse { .. } => {}
         // Switched behind the tool length.
         Action::Tip(_) => {}
+        // Asked below whether there is anything that it may end.
+        Action::PlaneReset => {}
         // Written out before; where they are not, refused below.
         Action::PolarOn | Action::Turning(_) | Action::Called(_) => {}
         // Read before, since X words of the same block are of the new kind.

@@ -534,7 +534,6 @@ class Machine:
             h = math.sqrt(max(0.0, r * r - chord * chord / 4))
             side = 1 if (clockwise == (r < 0)) else -1
             # Left of the chord for counter-clockwise below half a turn.
-            c = ((a[0] + b[0]) / 2 - side * h * dy / chord * -1 * -1, (a[1] + b[1]) / 2 + side * h * dx / chord)
             c = ((a[0] + b[0]) / 2 - side * h * dy / chord, (a[1] + b[1]) / 2 + side * h * dx / chord)
         else:
             c = []
@@ -670,12 +669,12 @@ def along(mine, theirs):
     at, worst = 0, 0.0
     for p in points(mine):
         best, where = math.inf, at
-        # In order: never back by more than a leg.
+        # In order: never back by more than a leg, and to the first leg that is near, since paths cross themselves.
         for k in range(max(0, at - 1), len(legs)):
             d = distance(p, *legs[k])
-            if d < best - 1e-9:
+            if d < best:
                 best, where = d, k
-            if best < NEAR_MM and k > where + 3:
+            if best < NEAR_MM:
                 break
         worst, at = max(worst, best), where
     return worst
@@ -739,7 +738,7 @@ def generate(rng):
     def move(depth=0):
         nonlocal frame
         kind = rng.choice(["line", "line", "rapid", "ic", "ac", "cr", "ij", "ijac", "turn", "cycle", "mcall", "holes", "frame",
-                           "g91", "flow", "dwell", "words", "plane"])
+                           "g91", "flow", "dwell", "words", "plane", "tool", "inch", "across", "preset"])
         if kind == "line":
             add(f"G1 X{value(5, 70)} Y{value(5, 70)} Z{num(-6, 6)}")
         elif kind == "rapid":
@@ -842,6 +841,32 @@ def generate(rng):
             add(rng.choice(["G4 F0.5", "G4 S3"]))
         elif kind == "words":
             add(rng.choice(["COMPCAD", "M8", "MSG(\"PASS 1; NEXT\")", "ADIS=0.02", "G641", "G64", "SPOS=90", "S2=500 M2=3", "M1=8"]))
+        elif kind == "tool" and depth == 0:
+            add("TRANS")
+            add("G0 SUPA Z200 D0")
+            add(f"N{10 * len(lines)} T{rng.choice(['1', '2', '7'])}")
+            add("M6")
+            add(rng.choice(["D1", "D0", "S900 M3 D1"]))
+            add(rng.choice(["G54", "G55", "G500"]))
+            add(rng.choice(["G54", "G505", "G599"]))
+            add(f"G0 X{num(5, 60)} Y{num(5, 60)} Z30")
+            add(f"T{rng.choice(['1', '2'])}")
+        elif kind == "inch" and depth == 0:
+            add(rng.choice(["G70", "G700"]))
+            add("G0 X1.5 Y1 Z1.2")
+            add(f"G1 X=IC({num(-0.3, 0.3)}) Y{num(0.5, 2)}")
+            add(f"CYCLE83(1,0.1,0.05,,{num(0.3, 1.4)},,0.25,{rng.choice(['', '0.02'])},,,1,{rng.choice('01')})")
+            add(rng.choice(["G71", "G710"]))
+            add("G0 X30 Y20 Z30")
+        elif kind == "across" and depth == 0:
+            add("TRANS")
+            add("G0 X40 Y20 Z20")
+            add(rng.choice(["G19", "G18"]))
+            add(f"CYCLE82({num(60, 70)},{num(45, 50)},{num(0.5, 3)},{num(20, 40)},,{rng.choice(['', '0.3'])})")
+            add("G17")
+            add("G0 X30 Y20 Z30")
+        elif kind == "preset" and variables and depth == 0:
+            add(f"R{rng.randint(20, 40)}=R1*{num(1, 3)} WIDE={num(5, 20)}")
         elif kind == "plane" and not frame and depth == 0:
             add("G0 X20 Y20 Z20")
             add("TRANS")

@@ -1,0 +1,8 @@
+%_N_PART_MPF
+;CYCLE800() ends what is not there
+G17 G40 G54 G71 G90
+CYCLE800()
+G0 X10 Y10 Z60
+G1 Z50 F200
+X60
+M30
