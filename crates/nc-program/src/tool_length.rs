@@ -100,14 +100,7 @@ fn edge(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> 
                 "of which tool?",
             )
             .help("write T before it")),
-        (Some(edge), Some(_)) => Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                format!("D{edge} is a further edge of the tool"),
-                span,
-                "the profile has one offset for each tool",
-            )
-            .help("write D1, or give the edge a tool of its own")),
+        (Some(edge), Some(_)) => Err(further_edge(words, edge, span)),
     }
 }
 
@@ -156,15 +149,19 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
     match (edge, state.tool_loaded) {
         (0, _) | (_, Some(0)) => take(env, words, span, 0, state),
         (1, Some(tool)) => take(env, words, span, tool, state),
-        (edge, _) => Err(words
-            .refuse(
-                codes::TOOL_LENGTH,
-                format!("D{edge} is a further edge of the tool"),
-                span,
-                "the profile has one offset for each tool",
-            )
-            .help("write D1, or give the edge a tool of its own")),
+        (edge, _) => Err(further_edge(words, edge, span)),
     }
+}
+
+fn further_edge(words: &Words<'_, '_, '_>, edge: u32, span: Span) -> Box<diagnostic::Diagnostic> {
+    words
+        .refuse(
+            codes::TOOL_LENGTH,
+            format!("D{edge} is a further edge of the tool"),
+            span,
+            "the profile has one offset for each tool",
+        )
+        .help("write D1, or give the edge a tool of its own")
 }
 
 /// The number of a tool that the program calls by its name.
