@@ -446,8 +446,8 @@ pub(crate) struct Program {
     /// By how much pecks (G74, G75) go back (parameter 5139).
     #[schemars(with = "Option<f64>")]
     pub(crate) groove_return_mm: Option<Spanned<Finite>>,
-    /// Finishing passes of G76 in one block (parameter 5142).
-    #[schemars(with = "Option<f64>")]
+    /// Finishing passes of G76 in one block (parameter 5142), a whole number.
+    #[schemars(with = "Option<u32>")]
     pub(crate) thread_finishing_passes: Option<Spanned<Finite>>,
     /// Its least infeed, radius (parameter 5140).
     #[schemars(with = "Option<f64>")]

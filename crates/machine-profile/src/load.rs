@@ -322,6 +322,7 @@ impl Loader<'_> {
     }
 
     fn turning_rules(&mut self, program: &format::Program) -> TurningRules {
+        let thread_finishing_passes = self.finishing_passes(program);
         let mut number = |written: &Option<Spanned<Finite>>, name: &str, most: f64, unit: &str| {
             let written = written.as_ref()?;
             let Finite(value) = *written.get_ref();
@@ -353,13 +354,7 @@ impl Loader<'_> {
                 "mm",
             ),
             groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
-            thread_finishing_passes: number(
-                &program.thread_finishing_passes,
-                "thread_finishing_passes",
-                MOST_FINISHING_PASSES,
-                "passes",
-            )
-            .map(f64::round),
+            thread_finishing_passes,
             thread_least_mm: number(&program.thread_least_mm, "thread_least_mm", MOST_ESCAPE_MM, "mm"),
             thread_allowance_mm: number(
                 &program.thread_allowance_mm,
@@ -621,6 +616,21 @@ impl Loader<'_> {
             all.push(bytes.and_then(|bytes| self.keep(traverse(name.get_ref(), &bytes, axis))));
         }
         all.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+    }
+
+    fn finishing_passes(&mut self, program: &format::Program) -> Option<f64> {
+        let written = program.thread_finishing_passes.as_ref()?;
+        let Finite(passes) = *written.get_ref();
+        if !(1.0..=MOST_FINISHING_PASSES).contains(&passes) || passes.fract() != 0.0 {
+            let diagnostic = Diagnostic::error(VALUE, format!("thread_finishing_passes is {passes}"))
+                .help("give the control's value (parameter 5142)");
+            self.refuse(
+                written,
+                diagnostic,
+                format!("expected a whole number from 1 to {MOST_FINISHING_PASSES}"),
+            );
+        }
+        Some(passes)
     }
 
     fn edge_at_change(&mut self, program: &format::Program) -> Option<u32> {

@@ -326,6 +326,36 @@ fn tool_length_of_two_numbers() {
 }
 
 #[test]
+fn tool_name_without_its_length() {
+    let text = format!("{}\n[tool]\nnames = {{ \"MILL 12\" = 7 }}\n", base());
+    assert_snapshot!(told(&text), @r####"
+    error[VP0302]: the tool "MILL 12" has the length H7
+      line 13: `7` lengths_mm has no such length
+    help: add the length to `lengths_mm`, or correct the number
+    "####);
+}
+
+#[test]
+fn edge_that_is_neither_the_first_nor_none() {
+    let text = format!("{}\n[program]\nedge_at_change = 2\n", base());
+    assert_snapshot!(told(&text), @r####"
+    error[VP0303]: edge_at_change is 2
+      line 13: `2` expected 0 or 1
+    help: 1 where a tool change brings in the first edge, 0 where it brings in none (MD20270)
+    "####);
+}
+
+#[test]
+fn finishing_passes_are_whole() {
+    let text = format!("{}\n[program]\nthread_finishing_passes = 1.5\n", base());
+    assert_snapshot!(told(&text), @r####"
+    error[VP0303]: thread_finishing_passes is 1.5
+      line 13: `1.5` expected a whole number from 1 to 99
+    help: give the control's value (parameter 5142)
+    "####);
+}
+
+#[test]
 fn work_offset_without_name() {
     assert_snapshot!(told(&format!("{}\n[work_offsets_mm]\noffset = [0, 0, 0]\n", base())), @r####"
     error[VP0302]: `offset` is no work offset
