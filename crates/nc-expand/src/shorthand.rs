@@ -194,8 +194,8 @@ impl State {
         true
     }
 
-    /// After the block as it stands.
-    pub(crate) fn step(&mut self, words: &Words<'_, '_>) {
+    /// The codes of a block: true where its words are the motion's.
+    pub(crate) fn codes(&mut self, words: &Words<'_, '_>) -> bool {
         let mut owned = true;
         // G80 beside a motion ends the cycle first.
         for cancels in [true, false] {
@@ -203,6 +203,12 @@ impl State {
                 owned &= self.set(action);
             }
         }
+        owned
+    }
+
+    /// After the block as it stands: true where its words are the motion's.
+    pub(crate) fn step(&mut self, words: &Words<'_, '_>) -> bool {
+        let owned = self.codes(words);
         let machine = |number: Number| {
             let row = number.integer().and_then(|m| words.dialect.m_code(u16::try_from(m).ok()?));
             row.is_some_and(|row| row.loses_position != [false; 3])
@@ -223,6 +229,7 @@ impl State {
                 };
             }
         }
+        owned
     }
 }
 

@@ -4,6 +4,8 @@
 //! control structures). Comparisons rank below AND and OR there, which few programs mean: where both stand at one level
 //! brackets are asked for.
 
+use std::ops::Range;
+
 use crate::expression::{Expression, Function, Operator, Parser};
 use crate::o_word::{Label, OStatement, OWord};
 use crate::statement::{Control, Direction};
@@ -119,27 +121,34 @@ pub(crate) fn label(parser: &mut Parser<'_, '_>) -> Result<NameId, String> {
     Ok(parser.names.id(found))
 }
 
-fn jump(parser: &mut Parser<'_, '_>) -> Option<Direction> {
-    // Longer words first.
-    [(&b"GOTOF"[..], Direction::Forward), (b"GOTOB", Direction::Back), (b"GOTO", Direction::Either)]
-        .into_iter()
-        .find_map(|(word, direction)| parser.word(word).then_some(direction))
+/// Which way a word of jumps looks.
+fn direction(word: &[u8]) -> Option<Direction> {
+    match word {
+        b"GOTOF" => Some(Direction::Forward),
+        b"GOTOB" => Some(Direction::Back),
+        b"GOTO" => Some(Direction::Either),
+        _ => None,
+    }
+}
+
+/// The name that stands next, upper case; empty where none does.
+fn keyword(parser: &mut Parser<'_, '_>) -> Vec<u8> {
+    name(parser).map(<[u8]>::to_ascii_uppercase).unwrap_or_default()
 }
 
 /// One flow item of a block.
 pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
     let start = parser.at;
-    let word = name(parser).map(<[u8]>::to_ascii_uppercase).unwrap_or_default();
+    let word = keyword(parser);
     let said = match &word[..] {
         b"DEF" => definition(parser).map(Said::Assignments)?,
         b"IF" => {
             let condition = parser.expression()?;
-            match jump(parser) {
-                Some(direction) => {
-                    let to = label(parser)?;
-                    Said::Control(Control::Jump { condition: Some(condition), to, direction })
-                }
-                None => o_word(parser, b"if", OWord::If(condition)),
+            if parser.peek().is_none() {
+                o_word(parser, b"if", OWord::If(condition))
+            } else {
+                let direction = direction(&keyword(parser)).ok_or("GOTOF or GOTOB was expected")?;
+                Said::Control(Control::Jump { condition: Some(condition), to: label(parser)?, direction })
             }
         }
         b"ELSE" => o_word(parser, b"if", OWord::Else),
@@ -170,18 +179,15 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
             Said::Control(Control::For { variable, from, to, end: 0 })
         }
         b"ENDFOR" => Said::Control(Control::EndFor { start: 0 }),
-        b"GOTO" | b"GOTOB" | b"GOTOF" => {
-            let direction = match &word[..] {
-                b"GOTOF" => Direction::Forward,
-                b"GOTOB" => Direction::Back,
-                _ => Direction::Either,
-            };
-            Said::Control(Control::Jump { condition: None, to: label(parser)?, direction })
-        }
-        _ => {
-            parser.at = start;
-            assignments(parser).map(Said::Assignments)?
-        }
+        word => match direction(word) {
+            Some(direction) => {
+                Said::Control(Control::Jump { condition: None, to: label(parser)?, direction })
+            }
+            None => {
+                parser.at = start;
+                assignments(parser).map(Said::Assignments)?
+            }
+        },
     };
     parser.end()?;
     Ok(said)
@@ -232,8 +238,7 @@ pub(crate) fn is_parameter(name: &[u8]) -> bool {
 
 /// `DEF REAL A=5, B`: variables that begin with a value, or with zero.
 fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
-    let kind = name(parser).map(<[u8]>::to_ascii_uppercase).unwrap_or_default();
-    let whole = match &kind[..] {
+    let whole = match &keyword(parser)[..] {
         b"REAL" => false,
         b"INT" | b"BOOL" => true,
         _ => return Err("DEF takes REAL, INT or BOOL here".to_owned()),
@@ -254,30 +259,42 @@ fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression
     }
 }
 
-/// Where the expression of a word stands in its text, and what comes behind it: `X=R1`, `X=IC(R1)`, `CR=R5/2`.
-pub(crate) fn value_of(text: &[u8]) -> Option<(usize, usize)> {
-    let equals = text.iter().position(|byte| *byte == b'=')? + 1;
-    let rest = &text[equals..];
-    let wrapped = [&b"AC("[..], b"IC("].iter().any(|name| {
-        rest.get(..3).is_some_and(|start| start.eq_ignore_ascii_case(name)) && rest.ends_with(b")")
-    });
-    Some(if wrapped { (equals + 3, text.len() - 1) } else { (equals, text.len()) })
+/// The one function that a word's value is, as in `X=IC(5)`: its name, and where what is in its brackets stands.
+pub(crate) fn function_of(text: &[u8]) -> Option<(&[u8], Range<usize>)> {
+    let start = value_start(text)?;
+    let length = text[start..].iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+    let closes = length > 1 && text.get(start + length) == Some(&b'(') && text.ends_with(b")");
+    closes.then(|| (&text[start..start + length], start + length + 1..text.len() - 1))
 }
 
-/// True where a word's value is no number that is computed: a text, or a function of Siemens around a plain number.
-pub(crate) fn is_plain(text: &[u8]) -> bool {
-    if text.ends_with(b"\"") {
-        return true;
+/// Where a word's value starts, behind `=`.
+fn value_start(text: &[u8]) -> Option<usize> {
+    let equals = text.iter().position(|byte| *byte == b'=')? + 1;
+    Some(equals + text[equals..].iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count())
+}
+
+/// Where the expression of a word stands in its text: `X=R1`, `X=IC(R1)`, `CR=R5/2`.
+pub(crate) fn value_of(text: &[u8]) -> Option<Range<usize>> {
+    match function_of(text) {
+        Some((name, inside)) if says(&[b"AC", b"IC"], name) => Some(inside),
+        _ => Some(value_start(text)?..text.len()),
     }
-    let Some(equals) = text.iter().position(|byte| *byte == b'=') else { return false };
-    let rest = &text[equals + 1..];
-    let letters = rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
-    let inside = rest.get(letters..).and_then(|rest| rest.strip_prefix(b"(")?.strip_suffix(b")"));
-    let says = [&b"AC"[..], b"IC", b"DC", b"ACP", b"ACN"];
-    says.iter().any(|name| rest[..letters].eq_ignore_ascii_case(name))
-        && inside.is_some_and(|inside| {
-            inside.iter().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b' '))
-        })
+}
+
+/// True where a word's value is no number that is computed: a text, or a way of saying an axis' place around a plain
+/// number.
+pub(crate) fn is_plain(text: &[u8]) -> bool {
+    let number = |inside: &[u8]| {
+        inside.iter().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b' '))
+    };
+    let place = |(name, inside): (&[u8], Range<usize>)| {
+        says(&[b"AC", b"IC", b"DC", b"ACP", b"ACN"], name) && number(&text[inside])
+    };
+    text.ends_with(b"\"") || function_of(text).is_some_and(place)
+}
+
+fn says(names: &[&[u8]], found: &[u8]) -> bool {
+    names.iter().any(|name| name.eq_ignore_ascii_case(found))
 }
 
 /// True where the arguments of a command name anything: a variable of the program would be read that the flat one never

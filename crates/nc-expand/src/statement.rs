@@ -329,8 +329,8 @@ impl Compiler<'_, '_> {
     /// The expression of a word, behind its letter.
     fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, String> {
         if self.dialect.flow.macros == Macros::Siemens {
-            let (from, to) = siemens::value_of(text).ok_or("a value was expected")?;
-            let mut parser = Parser::new(&text[from..to], Macros::Siemens, self.names);
+            let value = siemens::value_of(text).ok_or("a value was expected")?;
+            let mut parser = Parser::new(&text[value], Macros::Siemens, self.names);
             let value = parser.expression()?;
             parser.end()?;
             complex.cost += parser.cost;
@@ -347,8 +347,8 @@ impl Compiler<'_, '_> {
 
     /// What stands around the number of a word of Siemens.
     fn around(&self, text: &[u8]) -> Option<Around> {
-        let (from, to) = siemens::value_of(text).filter(|_| self.dialect.flow.macros == Macros::Siemens)?;
-        Some((text[..from].into(), text[to..].into()))
+        let value = siemens::value_of(text).filter(|_| self.dialect.flow.macros == Macros::Siemens)?;
+        Some((text[..value.start].into(), text[value.end..].into()))
     }
 
     fn is_plain(&self, text: &[u8]) -> bool {

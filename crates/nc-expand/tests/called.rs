@@ -60,6 +60,11 @@ fn mcall_drills_behind_each_motion_until_it_stands_alone() {
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nTRANS X5\nX20\n"), 146);
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\n/X20\n"), 134);
     assert_eq!(refused("MCALL L100\n"), 146);
+    // A rotary axis moves too; words that are arguments move nothing.
+    let turned = flat("MCALL CYCLE81(15,0,2,-10)\nA90\nG25 X5\nMCALL\n");
+    assert_eq!(turned, ["A90", "G0 Z2.", "G1 Z-10.", "G0 Z15.", "G25 X5"]);
+    // So does a full circle, behind which the cycle's own moves would be arcs.
+    assert_eq!(refused("G1 X20\nMCALL CYCLE81(15,0,2,-10)\nG2 I10\n"), 146);
 }
 
 #[test]
@@ -86,6 +91,7 @@ fn places_and_increments_by_name() {
     let lines =
         flat("G1 X=IC(5) Y=AC(20) F200\nG2 X=IC(20) Y20 I=AC(25) J=AC(20)\nG91\nX=AC(60) Y5\nX=IC(1)\n");
     assert_eq!(lines, ["G1 X15. Y20. F200", "G2 X35. Y20 I10. J0.", "G91", "X25. Y5", "X1."]);
+    assert_eq!(flat("X= IC( 5 )\n"), ["X15."]);
     assert_eq!(refused("TRANS X5\nX=IC(5)\n"), 146);
     assert_eq!(refused("X=IC(R1)\n"), 121);
     assert_eq!(refused("/X=IC(5)\n"), 134);
@@ -116,6 +122,7 @@ fn arguments_that_choose_how_others_are_read_are_refused() {
     for call in [
         "CYCLE81(15,0,2)",
         "CYCLE81()",
+        "CYCLE81(15,0,2,-10,,0.5)",
         "CYCLE81(15,0,2,-10,12)",
         "CYCLE81(15,0,2,-10,,0,0,1,11)",
         "CYCLE81(1,0,2,-10)",

@@ -104,11 +104,14 @@ impl Hole {
         let mut moves = vec![Move::Rapid(near)];
         match cycle {
             Called::DrillPecks => pecks(words, call, &planes, unit_mm, axis, &mut moves)?,
-            _ => {
+            Called::DrillDwell => {
                 moves.push(Move::Feed(bottom));
-                // CYCLE81 has the argument since it shares its mask with CYCLE82.
                 dwell(call.or_zero(5), &mut moves);
                 call.nothing_behind(words, 6)?;
+            }
+            _ => {
+                moves.push(Move::Feed(bottom));
+                call.nothing_behind(words, 5)?;
             }
         }
         moves.push(Move::Rapid(out));

@@ -22,6 +22,7 @@ use units::math;
 use crate::codes;
 use crate::output::{Output, Segment};
 use crate::shorthand::{AXES, Motion, State, Words, from, number, rounded, shown};
+use crate::siemens;
 use arguments::Arguments;
 use hole::{Hole, Move};
 
@@ -53,16 +54,11 @@ fn called(block: &Block<'_>, dialect: &Dialect, item: &Item) -> Option<Called> {
 
 /// What is in the brackets of `X=AC(…)` or `X=IC(…)`, and whether it is an increment.
 fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
-    if !b"XYZIJK".contains(&letter) {
-        return None;
-    }
-    let text = std::str::from_utf8(text).ok()?;
-    let (_, value) = text.split_once('=')?;
-    let value = value.trim();
-    let inside = value.get(2..)?.trim().strip_prefix('(')?.strip_suffix(')')?;
-    match value.get(..2)?.to_ascii_uppercase().as_str() {
-        "AC" => Some((inside.trim(), false)),
-        "IC" => Some((inside.trim(), true)),
+    let (name, inside) = siemens::function_of(text).filter(|_| b"XYZIJK".contains(&letter))?;
+    let inside = std::str::from_utf8(&text[inside]).ok()?.trim();
+    match &name.to_ascii_uppercase()[..] {
+        b"AC" => Some((inside, false)),
+        b"IC" => Some((inside, true)),
         _ => None,
     }
 }
@@ -92,9 +88,9 @@ impl Writer<'_> {
         let words = Words { block, dialect: self.dialect };
         if !needed(block, self.dialect) {
             let before = self.state.at;
-            self.state.step(&words);
+            let moves = self.state.step(&words) && names_axes(&words);
             self.out.copy(block.bytes, from(block));
-            return self.behind(&words, names_axes(&words), before);
+            return self.behind(&words, moves, before);
         }
         if words.skipped() {
             return Err(words.fault(
@@ -273,7 +269,7 @@ impl Writer<'_> {
     /// The hole behind a block that moves, while MCALL is in force.
     ///
     /// * `at` – the block of the source
-    /// * `moves` – it has words for X, Y or Z
+    /// * `moves` – it has words of a motion
     /// * `before` – where the axes stood
     fn behind(&mut self, at: &Words<'_, '_>, moves: bool, before: [Option<f64>; 3]) -> Result<(), Fault> {
         let Some(hole) = self.modal.clone() else { return Ok(()) };
@@ -310,11 +306,8 @@ impl Writer<'_> {
     fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
         let block = words.block;
         let start = self.state.at;
-        let mut probe = self.state.clone();
-        let owned = words
-            .actions()
-            .filter(|(action, _)| **action != Action::PolarOn)
-            .fold(true, |owned, (action, _)| owned & probe.set(action));
+        let mut here = self.state.clone();
+        let owned = here.codes(words);
         let refuse = |span: Span, label: &str| {
             words.fault(
                 codes::CALLED_CYCLE,
@@ -330,29 +323,18 @@ impl Writer<'_> {
         for item in &block.items {
             let (letter, place) = match item.kind {
                 ItemKind::Word { letter, value: Value::Expression } => {
-                    match dimension(letter, block.text(item.span)) {
-                        Some((inside, by)) => {
-                            let Some(value) = arguments::number(inside) else {
-                                return Err(refuse(item.span, "a plain number was expected in the brackets"));
-                            };
-                            if !owned {
-                                return Err(refuse(
-                                    item.span,
-                                    "beside a code that owns the words of its block",
-                                ));
-                            }
-                            (
-                                letter,
-                                self.place(&probe, letter, value, by).ok_or_else(|| {
-                                    refuse(
-                                        item.span,
-                                        "where the axis stands is not known: name it before, in G90",
-                                    )
-                                })?,
-                            )
-                        }
-                        None => continue,
+                    let Some((inside, by)) = dimension(letter, block.text(item.span)) else { continue };
+                    let Some(value) = arguments::number(inside) else {
+                        return Err(refuse(item.span, "a plain number was expected in the brackets"));
+                    };
+                    if !owned {
+                        return Err(refuse(item.span, "beside a code that owns the words of its block"));
                     }
+                    let Some(place) = place(&here, letter, value, by) else {
+                        let label = "where the axis stands is not known: name it before, in G90";
+                        return Err(refuse(item.span, label));
+                    };
+                    (letter, place)
                 }
                 ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
                     let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
@@ -380,25 +362,12 @@ impl Writer<'_> {
             return Ok(());
         }
         let plain_words = Words { block: &plain_block, dialect: self.dialect };
-        self.state.step(&plain_words);
+        let moves = self.state.step(&plain_words) && names_axes(&plain_words);
         match turns {
             Some((count, span)) if count > 0 => self.helix(words, &plain_words, start, count, span)?,
             _ => self.out.write(&text, from(block)),
         }
-        self.behind(words, names_axes(&plain_words), start)
-    }
-
-    /// The number that a word without AC and IC needs.
-    fn place(&self, state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
-        if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
-            return match (by, state.absolute) {
-                (false, true) | (true, false) => Some(value),
-                (true, true) => Some(state.at[axis]? + value),
-                (false, false) => Some(value - state.at[axis]?),
-            };
-        }
-        let axis = usize::from(letter - b'I');
-        if by { Some(value) } else { Some(value - state.at[axis]?) }
+        self.behind(words, moves, start)
     }
 
     /// Full circles and the rest of a helix.
@@ -573,6 +542,20 @@ fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
     line
 }
 
+/// The number that a word without AC and IC needs.
+fn place(state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
+    if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
+        return match (by, state.absolute) {
+            (false, true) | (true, false) => Some(value),
+            (true, true) => Some(state.at[axis]? + value),
+            (false, false) => Some(value - state.at[axis]?),
+        };
+    }
+    let axis = usize::from(letter - b'I');
+    if by { Some(value) } else { Some(value - state.at[axis]?) }
+}
+
+/// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.
 fn names_axes(words: &Words<'_, '_>) -> bool {
-    AXES.iter().any(|letter| words.number(*letter).is_some())
+    b"XYZABCUVWIJK".iter().any(|letter| words.number(*letter).is_some())
 }
