@@ -162,8 +162,8 @@ pub(crate) fn apply<'d>(
             let message = format!("{} was not written out", words.text(span));
             return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
         }
-        let framed = state.shifts.local_mm != [0.0; 3] || !state.transform.is_none();
-        if *action == Action::PlaneReset && framed {
+        if *action == Action::PlaneReset && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none())
+        {
             let message = format!("{} while a frame of the program is in force", words.text(span));
             return Err(words
                 .refuse(codes::FRAME, message, span, "does it end the frame too?")

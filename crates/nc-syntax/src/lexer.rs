@@ -199,12 +199,18 @@ impl<'d> Lexer<'d> {
             && length > 1
             && name[1..].iter().all(u8::is_ascii_digit);
         let long = length > 1 && !name[1].is_ascii_digit();
-        let known = self.commands.iter().any(|command| command.name.as_bytes().eq_ignore_ascii_case(name))
-            || self.long_words.iter().any(|(word, _)| word.as_bytes().eq_ignore_ascii_case(name));
-        if known || !(number || long) {
+        if !(number || long) {
             return None;
         }
         let behind = skip_spaces(line, at + length);
+        if !matches!(line.get(behind), Some(b':' | b'=')) {
+            return None;
+        }
+        let known = self.commands.iter().any(|command| command.name.as_bytes().eq_ignore_ascii_case(name))
+            || self.long_words.iter().any(|(word, _)| word.as_bytes().eq_ignore_ascii_case(name));
+        if known {
+            return None;
+        }
         match (line.get(behind), line.get(behind + 1)) {
             (Some(b':'), next) if next != Some(&b'=') && long => Some((ItemKind::Name, behind + 1)),
             (Some(b'='), next) if next != Some(&b'=') => Some(self.flow(line, at, at + length)),
