@@ -64,7 +64,7 @@ pub struct JobOptions {
     pub start_at: Option<Given<Point3>>,
     /// Variable that the program does not set.
     ///
-    /// Repeatable: `#500=12.5`, `#<depth>=2`, `#1=#0` for empty. Quote it for the shell.
+    /// Repeatable: `#500=12.5`, `#<depth>=2`, `R5=12.5` (Sinumerik), `#1=#0` for empty. Quote it for the shell.
     #[arg(
         long,
         value_name = "#N=VALUE",

@@ -177,7 +177,7 @@ fn note(action: &Action) -> String {
         Action::Tip(_) => String::new(),
         Action::Cycle(CycleCode::Synchronised) => "hole by hole; never written as moves".to_owned(),
         Action::Cycle(_) => "hole by hole".to_owned(),
-        Action::Dwell => "X, U and P are a time".to_owned(),
+        Action::Dwell => "X, U, P, F and S are a time".to_owned(),
         Action::DwellBySetting => "no word is a time, none beside it may be a position".to_owned(),
         Action::DwellP => "P is a time; axis words belong to the motion".to_owned(),
         Action::WorkOffsetNumbered => "the work offset that P numbers: `G54.1P1` in the profile".to_owned(),

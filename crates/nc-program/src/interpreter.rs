@@ -15,7 +15,7 @@ use crate::modal::{
 use crate::motion::{self, Moved};
 use crate::naming;
 use crate::plain::Plain;
-use crate::settings::{self, Environment};
+use crate::settings::{self, Environment, Owner};
 use crate::setup::{AfterChange, Setup};
 use crate::tilted;
 use crate::tip;
@@ -259,7 +259,7 @@ fn run<'d>(
         turning::check(words, &demand, state)?;
     }
     state.feed_is_inverse_time = state.feed_mode == FeedMode::InverseTime
-        || (state.feed_is_inverse_time && !words.has(Letters::of(b"F")));
+        || (state.feed_is_inverse_time && (demand.owner == Owner::Dwell || !words.has(Letters::of(b"F"))));
     tip::check(words, &demand, before, state)?;
     tilted::check(env, words, &demand, before, state)?;
     naming::disturb(env, words, &demand, before, state);

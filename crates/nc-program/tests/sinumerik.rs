@@ -3,7 +3,9 @@
 mod common;
 
 use common::{dialect, run, run_with, setup};
-use nc_program::Setup;
+use nc_program::process::{Said, said};
+use nc_program::{Interpreter, Setup};
+use nc_syntax::{Block, Reader};
 
 /// Axis commands at the end of a program, mm.
 fn ends(program: &str) -> [f64; 3] {
@@ -104,4 +106,22 @@ fn the_base_frame_may_be_unknown_while_nothing_moves_in_it() {
     let given =
         Setup { work_offsets: vec![("G500".to_owned(), [7.0; 3]), ("G54".to_owned(), [0.0; 3])], ..setup() };
     assert_eq!(ends_with(&given, "G500\nG0 X1 Y2 Z3\n"), [8.0, 9.0, 10.0]);
+}
+
+#[test]
+fn the_time_of_a_dwell_is_no_feed() {
+    let feeds = |block: &str| {
+        let (sinumerik, setup) = (dialect("sinumerik"), setup());
+        let mut interpreter = Interpreter::new(sinumerik, &setup);
+        let (mut reader, mut read) = (Reader::new(block.as_bytes(), sinumerik), Block::default());
+        assert!(reader.next(&mut read));
+        let step = interpreter.step(&read).expect("a right block");
+        let says = said(&read, sinumerik, &step);
+        says.before.iter().filter(|said| matches!(said, Said::Feed(_))).count()
+    };
+    assert_eq!((feeds("G4 F0.5\n"), feeds("G1 F500\n")), (0, 1));
+    // Nor does it end the doubt about an F of G93.
+    let program = "G0 X1 Y2 Z3\nG93 G1 X2 F5\nG94\nG4 F0.5\nX3\n";
+    assert_eq!(refused(program).0, 5);
+    assert_eq!(ends("G0 X1 Y2 Z3\nG93 G1 X2 F5\nG94\nF500\nX3\n"), [3.0, 2.0, 3.0]);
 }
