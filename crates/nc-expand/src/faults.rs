@@ -135,16 +135,13 @@ pub(crate) fn too_deep(limit: usize) -> Stop {
     )
 }
 
-pub(crate) fn named_label(shown: &str, why: &str) -> Stop {
-    say(codes::LABEL, format!("the jump leads to {shown}: {why}"), "leads nowhere", "correct the label")
-}
-
-pub(crate) fn label(number: u64, why: &str) -> Stop {
+/// * `what` – block number or label, as it is corrected
+pub(crate) fn label(shown: &str, what: &str, why: &str) -> Stop {
     say(
         codes::LABEL,
-        format!("N{number} cannot be gone to: {why}"),
+        format!("{shown} cannot be gone to: {why}"),
         "leads there",
-        "correct the block number",
+        format!("correct the {what}"),
     )
 }
 

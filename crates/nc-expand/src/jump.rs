@@ -39,13 +39,14 @@ impl<'a> Run<'a, '_> {
     pub(crate) fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {
         let value = self.known(label)?;
         let number = faults::whole("a block number", value)?;
+        let refuse = |why| faults::label(&format!("N{number}"), "block number", why);
         match source.label(section, number) {
             Found::Statement(statement) => {
                 self.at.statement = statement;
                 Ok(())
             }
-            Found::Missing => Err(faults::label(number, "there is no such block in this program")),
-            Found::Twice => Err(faults::label(number, "the number stands before more than one block")),
+            Found::Missing => Err(refuse("there is no such block in this program")),
+            Found::Twice => Err(refuse("the number stands before more than one block")),
         }
     }
 
@@ -57,14 +58,14 @@ impl<'a> Run<'a, '_> {
         to: NameId,
         direction: Direction,
     ) -> Result<(), Stop> {
-        let shown = self.names.name(to).to_ascii_uppercase();
+        let refuse = |why| faults::label(&self.names.name(to).to_ascii_uppercase(), "label", why);
         match source.named(to, place.statement, direction) {
             Found::Statement(statement) => {
                 self.at.statement = statement;
                 Ok(())
             }
-            Found::Missing => Err(faults::named_label(&shown, "there is no such label in this direction")),
-            Found::Twice => Err(faults::named_label(&shown, "the label stands before more than one block")),
+            Found::Missing => Err(refuse("there is no such label in this direction")),
+            Found::Twice => Err(refuse("the label stands before more than one block")),
         }
     }
 

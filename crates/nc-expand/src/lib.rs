@@ -212,10 +212,12 @@ pub fn expand<'a>(
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let write_out = match () {
-            () if dialect.turning.is_some() => turning::write_out,
-            () if dialect.flow.called => called::write_out,
-            () => shorthand::write_out,
+        let write_out = if dialect.turning.is_some() {
+            turning::write_out
+        } else if dialect.flow.called {
+            called::write_out
+        } else {
+            shorthand::write_out
         };
         let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
             let settled = expanded.settle(vec![*fault]);

@@ -21,7 +21,7 @@ pub(crate) struct Source<'a> {
     pub(crate) statements: Vec<Statement>,
     /// (section, N number, statement), sorted.
     labels: Vec<(u32, u64, u32)>,
-    /// Names of labels and the statements they stand before, in order; block numbers are `n100`.
+    /// Names of labels and the statements they stand before, sorted; block numbers are `n100`.
     names: Vec<(NameId, u32)>,
     /// O-word subroutines by name.
     pub(crate) subroutines: BTreeMap<NameId, u32>,
@@ -103,6 +103,7 @@ impl<'a> Source<'a> {
             }
         }
         labels.sort_unstable();
+        named.sort_unstable();
         let mut source =
             Self { name, text, statements, labels, names: named, subroutines: BTreeMap::new(), programs };
         match source.link(names) {
@@ -131,15 +132,16 @@ impl<'a> Source<'a> {
 
     /// The statement with a label, looked for from another one.
     pub(crate) fn named(&self, name: NameId, from: u32, direction: Direction) -> Found {
-        let behind = |at: u32| at > from;
-        let pick = |forward: bool| {
-            let mut found = self.names.iter().filter(|(known, at)| *known == name && behind(*at) == forward);
-            match (found.next(), found.next()) {
-                (None, _) => Found::Missing,
-                (Some(_), Some(_)) => Found::Twice,
-                (Some((_, at)), None) => Found::Statement(*at),
-            }
-        };
+        let start = self.names.partition_point(|label| *label < (name, 0));
+        let behind = self.names.partition_point(|label| *label <= (name, from));
+        let end = self.names.partition_point(|label| *label <= (name, u32::MAX));
+        let pick =
+            |forward: bool| match if forward { &self.names[behind..end] } else { &self.names[start..behind] }
+            {
+                [] => Found::Missing,
+                [(_, at)] => Found::Statement(*at),
+                _ => Found::Twice,
+            };
         match direction {
             Direction::Forward => pick(true),
             Direction::Back => pick(false),

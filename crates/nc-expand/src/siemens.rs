@@ -168,9 +168,7 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
             o_word(parser, b"repeat", OWord::While(goes_on))
         }
         b"FOR" => {
-            let found = name(parser).ok_or("a variable was expected")?;
-            let variable = Variable::Named(parser.names.id(found));
-            parser.expect(b'=')?;
+            let variable = target(parser)?;
             let from = parser.expression()?;
             if !parser.word(b"TO") {
                 return Err("TO was expected".to_owned());
@@ -202,22 +200,28 @@ fn o_word(parser: &mut Parser<'_, '_>, kind: &[u8], word: OWord) -> Said {
 fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
     let mut found = Vec::new();
     while parser.peek().is_some() {
-        let target = name(parser).ok_or("a variable was expected")?.to_vec();
-        let id = parser.names.id(&target);
-        if !is_parameter(&target) && !parser.names.is_declared(id) {
-            let shown = String::from_utf8_lossy(&target).to_ascii_uppercase();
-            return Err(format!("{shown} is not declared: `DEF REAL {shown}` was expected before it"));
-        }
-        parser.expect(b'=')?;
+        let target = Expression::Variable(target(parser)?);
         let value = parser.expression()?;
         if found.iter().any(|(set, _)| reads(&value, set)) {
             return Err(
                 "it reads a variable that the same block sets: write it in a block of its own".to_owned()
             );
         }
-        found.push((Expression::Variable(Variable::Named(id)), value));
+        found.push((target, value));
     }
     Ok(found)
+}
+
+/// A variable that may be set, and `=`.
+fn target(parser: &mut Parser<'_, '_>) -> Result<Variable, String> {
+    let found = name(parser).ok_or("a variable was expected")?;
+    let id = parser.names.id(found);
+    if !is_parameter(found) && !parser.names.is_declared(id) {
+        let shown = String::from_utf8_lossy(found).to_ascii_uppercase();
+        return Err(format!("{shown} is not declared: `DEF REAL {shown}` was expected before it"));
+    }
+    parser.expect(b'=')?;
+    Ok(Variable::Named(id))
 }
 
 /// True where an expression reads a variable.

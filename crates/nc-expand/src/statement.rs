@@ -167,11 +167,13 @@ impl Compiler<'_, '_> {
         let flags = self.flags(&block.items, block.bytes);
         let siemens = self.dialect.flow.macros == Macros::Siemens;
         let reads = |item: &&Item| {
-            item.kind == ItemKind::BracketCommand && siemens::names_something(block.text(item.span))
+            siemens
+                && item.kind == ItemKind::BracketCommand
+                && siemens::names_something(block.text(item.span))
         };
         let kind = if block.items.iter().any(|item| item.kind == ItemKind::Percent) {
             Kind::Percent
-        } else if let Some(item) = block.items.iter().find(reads).filter(|_| siemens) {
+        } else if let Some(item) = block.items.iter().find(reads) {
             Kind::Broken(wrong(
                 block,
                 item.span,

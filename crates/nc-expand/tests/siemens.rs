@@ -93,6 +93,7 @@ fn what_is_not_certain_is_refused() {
         ("ENDFOR\n", 126),
         ("IF R1==1\nX1\n", 126),
         ("REPEAT AGAIN P=2\n", 120),
+        ("FOR XY=1 TO 2\nENDFOR\n", 120),
         ("R1=1\n/R1=2\n", 134),
     ] {
         assert_eq!(refused(program), code, "{program}");
