@@ -49,7 +49,7 @@ pub(crate) fn execute(
     match demand.owner {
         Owner::Motion => {
             known_axes(env, words)?;
-            if words.has(AXIS_LETTERS) {
+            if words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
                 tool_length::edge_is_said(words, state)?;
             }
             by_mode(env, words, before, state, moved)?;

@@ -68,8 +68,7 @@ pub(crate) fn disturb(
     transformed(words, before, state);
     length(env, words, demand, before, state);
     // Some controls end a tool length with the tool, be it that its axes stay where they are.
-    let changes_tool = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
-    if let Some((code, _)) = words.m_codes.iter().copied().find(|(number, _)| changes_tool(*number)) {
+    if let Some((code, _)) = env.tool_change(words) {
         let with_length = state.tool_length.applied_mm().map(|mm| mm != 0.0);
         forget(words, state, with_length, Why::Miscellaneous { code, changes_tool: true });
     }

@@ -25,6 +25,12 @@ pub(crate) struct Environment<'d> {
 }
 
 impl Environment<'_> {
+    /// The M code of a block that changes the tool.
+    pub(crate) fn tool_change(&self, words: &Words<'_, '_, '_>) -> Option<(u16, Span)> {
+        let changes = |number: u16| self.dialect.m_code(number).is_some_and(|row| row.changes_tool);
+        words.m_codes.iter().copied().find(|(number, _)| changes(*number))
+    }
+
     /// False for the Y of a lathe, which stands at 0 whatever moves.
     pub(crate) fn moves_axis(&self, axis: usize) -> bool {
         axis != 1 || self.dialect.turning.is_none()
@@ -76,8 +82,6 @@ struct Wanted<'d> {
     cancel_group: Option<u8>,
     probe_group: Option<u8>,
     offset: Option<(GCode, Option<&'d str>, Span)>,
-    /// The work offset is the base frame, which may be unknown as long as nothing moves in it.
-    base: bool,
     /// G69, G50.
     transform_off: Option<(&'d Action, Span)>,
     /// G92.1, G92.2, G92.3 where they take no words.
@@ -179,7 +183,7 @@ pub(crate) fn apply<'d>(
     tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
         let other = takes_p(env, words, state, &demand, &wanted);
-        work_offset(env, words, state, offset, wanted.base, other)?;
+        work_offset(env, words, state, offset, other)?;
     }
     tool_length::length(env, words, state, wanted.length)?;
     tip::switch(env, words, before, state)?;
@@ -222,7 +226,6 @@ fn work_offset(
     words: &Words<'_, '_, '_>,
     state: &mut Modal,
     (code, name, span): (GCode, Option<&str>, Span),
-    base: bool,
     other: bool,
 ) -> Outcome<()> {
     const P: Letters = Letters::of(b"P");
@@ -266,7 +269,8 @@ fn work_offset(
         (None, name) => name.unwrap_or_default().to_owned(),
     };
     let zero_mm = frames::offset(env, state, &name);
-    if zero_mm.is_none() && !base {
+    // The base frame may be unknown as long as nothing moves in it.
+    if zero_mm.is_none() && name != BASE_FRAME {
         return Err(missing_offset(words, &name, span));
     }
     state.work_offset = WorkOffset { code: Some(code), number, zero_mm, rewritten: false };
@@ -372,10 +376,7 @@ fn set<'d>(
         Action::LengthOff => wanted.length = Some((Length::Off, span)),
         Action::WorkOffset(name) => wanted.offset = Some((code, Some(name), span)),
         Action::WorkOffsetNumbered => wanted.offset = Some((code, None, span)),
-        Action::BaseFrame => {
-            wanted.offset = Some((code, Some(BASE_FRAME), span));
-            wanted.base = true;
-        }
+        Action::BaseFrame => wanted.offset = Some((code, Some(BASE_FRAME), span)),
         Action::RotationOff | Action::ScalingOff => {
             // Several may stand together; the one that ends what is in force counts.
             let ends = matches!(

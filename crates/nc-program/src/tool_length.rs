@@ -8,7 +8,9 @@ use crate::frames;
 use crate::modal::{Modal, ToolLength, Units};
 use crate::motion::compensated;
 use crate::settings::{Demand, Environment};
-use crate::words::{ARC_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words};
+use crate::words::{
+    ARC_LETTERS, AXIS_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, SECONDARY_LETTERS, Words,
+};
 use nc_syntax::Letters;
 
 /// How the tool length is asked to change.
@@ -44,8 +46,7 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
         }
         state.tool_selected = words.whole(b'T').ok().flatten();
     }
-    let changes = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
-    if words.m_codes.iter().any(|(number, _)| changes(*number)) {
+    if env.tool_change(words).is_some() {
         state.tool_loaded = state.tool_selected;
     }
     Ok(())
@@ -119,8 +120,7 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
         // Before the first M6 it may be that T changes the tool itself (MD22550 is 0).
         state.edge_unsaid |= state.tool_loaded.is_none();
     }
-    let changes = |number: u16| env.dialect.m_code(number).is_some_and(|row| row.changes_tool);
-    let changed = words.m_codes.iter().find(|(number, _)| changes(*number)).map(|(_, span)| *span);
+    let changed = env.tool_change(words).map(|(_, span)| span);
     if let Some(span) = changed {
         if state.tool_selected.is_none() {
             return Err(words
@@ -182,12 +182,11 @@ pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<
     if !state.edge_unsaid {
         return Ok(());
     }
-    let axes = LINEAR_LETTERS.or(ROTARY_LETTERS);
     Err(words
         .refuse(
             codes::TOOL_LENGTH,
             "which tool is in, and which of its edges counts, is not said",
-            words.span(axes),
+            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
             "moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)",
         )
         .help("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1"))

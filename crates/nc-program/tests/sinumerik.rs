@@ -40,6 +40,8 @@ fn what_a_parameter_chooses_is_said_or_refused() {
     assert_eq!(refused("T1 D1\nM6\nG0 X1 Y2 Z3\n"), (3, 215));
     assert_eq!(refused("T1\nG0 X1 Y2 Z3\n"), (2, 215));
     assert_eq!(refused("D1\nG0 X1 Y2 Z3\n"), (2, 215));
+    // A full circle names its centre alone.
+    assert_eq!(refused("G0 X1 Y2 Z3\nT1\nG2 I5\n"), (3, 215));
     assert_eq!(refused("M6\n"), (1, 215));
     assert_eq!(refused("T1\nM6\nD2\n"), (3, 215));
     assert_eq!(refused("T3\nM6\nD1\n"), (3, 215));
