@@ -129,7 +129,8 @@ impl<'d> Lexer<'d> {
             _ => {
                 let function = text.get(run) == Some(&b'[') && is_function(&text[1..run]);
                 let command = self.commands.iter().any(|command| names(command, text));
-                !(function || command || is_flow_word(&text[..run]) || self.statement(text, 0).is_some())
+                let statement = self.siemens && self.statement(text, 0).is_some();
+                !(function || command || is_flow_word(&text[..run]) || statement)
             }
         }
     }
@@ -185,11 +186,7 @@ impl<'d> Lexer<'d> {
     }
 
     /// Siemens: a label (`NAME:`), a statement (`IF R1>5 GOTOF NAME`) or assignments (`R1=5 R2=R1*2`).
-    #[cold]
     fn statement(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
-        if !self.siemens {
-            return None;
-        }
         let length = identifier(&line[at..]);
         let name = &line[at..at + length];
         if is_siemens_word(name) {
