@@ -48,6 +48,7 @@ mod profile_new;
 mod real_machines;
 mod refusals;
 mod spreadsheets;
+mod tool_lengths;
 mod traps;
 mod turning;
 mod words;

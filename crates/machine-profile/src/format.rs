@@ -285,6 +285,10 @@ rotary!(RotaryC, shifts tilts, EX0C_um 0 EY0C_um 1, EA0C_urad 0 EB0C_urad 1);
 pub(crate) struct Tool {
     /// Without G43: from the point the tables were measured at to the tip.
     pub(crate) default_mm: Option<Triple>,
+    /// Where tools are touched off: what the control's length would be with the bare spindle nose touched off; tools are
+    /// as long as theirs lie above that. 0, which is the default: lengths count from the gauge point.
+    #[schemars(with = "Option<Finite>")]
+    pub(crate) spindle_nose_mm: Option<Spanned<Finite>>,
     /// H number → length along Z, or vector.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Length>")]

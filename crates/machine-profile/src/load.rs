@@ -124,6 +124,7 @@ impl Loader<'_> {
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
         let mut tools = self.tools(&document.tool);
         let tool_names = self.tool_names(&document.tool, &tools);
+        let spindle_nose_mm = self.spindle_nose(&document, is_lathe);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
@@ -161,6 +162,7 @@ impl Loader<'_> {
             rows,
             traverses,
             default_tool_mm: triple(document.tool.default_mm),
+            spindle_nose_mm,
             tool_names,
             tools,
             work_offsets,
@@ -642,6 +644,28 @@ impl Loader<'_> {
             self.refuse(written, diagnostic, "expected 0 or 1");
         }
         Some(edge)
+    }
+
+    /// Where lengths count from, where that is not the gauge point.
+    fn spindle_nose(&mut self, document: &Document, is_lathe: bool) -> f64 {
+        let Some(written) = &document.tool.spindle_nose_mm else { return 0.0 };
+        let conflict = if document.kinematics.is_some() {
+            Some((
+                "`spindle_nose_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point",
+                "give lengths from the gauge point, on the control and here, and leave `spindle_nose_mm` out",
+            ))
+        } else if is_lathe {
+            Some((
+                "`spindle_nose_mm` in the profile of a lathe",
+                "give `lengths_mm` from the point of the turret that the tables were measured at",
+            ))
+        } else {
+            None
+        };
+        if let Some((message, help)) = conflict {
+            self.refuse(written, Diagnostic::error(CONFLICT, message).help(help), "this key");
+        }
+        written.get_ref().0
     }
 
     /// Names of tools, each with a length that is given.

@@ -211,6 +211,8 @@ pub struct Profile {
     pub traverses: Option<[Traverse; 3]>,
     /// Tool vector without G43, gauge point to tip, mm.
     pub default_tool_mm: [f64; 3],
+    /// What the control's length of the bare spindle nose is, mm.
+    pub spindle_nose_mm: f64,
     /// H number and length vector, mm, ordered by number. The axis command is program + work offset +
     /// vector; the tool vector is minus the vector.
     pub tools: Vec<(u32, [f64; 3])>,
@@ -276,6 +278,17 @@ impl Profile {
             .filter(|axis| !axis.is_linear())
             .any(|axis| !self.description.rotary[axis.direction()].is_perfect());
         imperfect || (linear_errors && !self.chain().head().is_empty()) || self.kinematics.is_some()
+    }
+
+    /// True where the errors depend on how long the tool is: an axis turns what it carries.
+    #[must_use]
+    pub fn lever_matters(&self) -> bool {
+        let angles = |rows: &ErrorRows| rows.given[3..].contains(&true);
+        let both_ways = |axis: &machine_model::LinearAxis| axis.errors_negative.is_some();
+        self.rows.iter().flatten().any(angles)
+            || self.description.linear.iter().any(both_ways)
+            || self.chain().axes().any(|axis| !axis.is_linear())
+            || !self.effects.is_empty()
     }
 
     /// The rotary axes from the workpiece to the tool, as far as directions go.

@@ -375,12 +375,6 @@ fn miscellaneous(
 }
 
 pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, moved: &Moved) -> Context {
-    let tool_mm = match state.tool_length {
-        ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
-        // Where G44 subtracts the vector, the tool points the other way.
-        ToolLength::Written { applied_mm: [0.0, 0.0, 0.0] } => env.setup.default_tool_mm,
-        ToolLength::On { applied_mm, .. } | ToolLength::Written { applied_mm } => applied_mm.map(|v| 0.0 - v),
-    };
     Context {
         frame: state.frame.clone().unwrap_or_default(),
         unit_mm: state.units.mm(),
@@ -390,7 +384,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         by_increment: moved.by_increment,
         arc_centres_absolute: state.arc_centres == ArcCentres::Absolute,
         plane: state.plane,
-        tool_mm,
+        tool_mm: env.setup.tool_vector(&state.tool_length),
         kinematics: state.kinematics,
         motion_code: state.motion_code(),
         thread: matches!(state.motion, MotionMode::Thread(_)),

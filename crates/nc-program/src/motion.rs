@@ -60,7 +60,7 @@ pub(crate) fn execute(
             by_mode(env, words, before, state, moved)?;
         }
         Owner::Frame => moved.states_position = frames::execute(env, words, demand, before, state)?,
-        Owner::Length => tool_length::from_words(words, demand, before, state)?,
+        Owner::Length => tool_length::from_words(env, words, demand, before, state)?,
         Owner::Dwell => dwell(words, demand)?,
         Owner::DwellBySetting => dwell_by_setting(words, demand)?,
         Owner::Arguments => {

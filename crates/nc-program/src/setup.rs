@@ -1,5 +1,7 @@
 use toolpath::{AXIS_NAMES, RotaryChain, TiltRule};
 
+use crate::modal::ToolLength;
+
 /// Where a linear axis stands behind a tool change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AfterChange {
@@ -64,6 +66,10 @@ pub struct Setup {
     pub noses_mm: Vec<(u32, f64)>,
     /// Tool vector without G43: from the gauge point to the tip, mm.
     pub default_tool_mm: [f64; 3],
+    /// What the control's length of the bare spindle nose is, mm: 0 where lengths count from the gauge point.
+    pub spindle_nose_mm: f64,
+    /// What the axes must be told depends on how long the tool is.
+    pub lever_matters: bool,
     /// Which of A, B, C the machine has.
     pub has_rotary: [bool; 3],
     /// What the linear axes must be told depends on where the rotary axes stand. Where it does not, their
@@ -99,6 +105,19 @@ impl Setup {
             return Some([0.0; 3]);
         }
         self.tools.iter().find(|(known, _)| *known == number).map(|(_, vector)| *vector)
+    }
+
+    /// From the gauge point to the tip, mm, where this length shifts the axes: its other end, counted from the nose.
+    /// Where G44 subtracts it, the tool points the other way.
+    pub(crate) fn tool_vector(&self, length: &ToolLength) -> [f64; 3] {
+        match *length {
+            ToolLength::Off
+            | ToolLength::On { number: 0, .. }
+            | ToolLength::Written { applied_mm: [0.0, 0.0, 0.0] } => self.default_tool_mm,
+            ToolLength::On { applied_mm: [x, y, z], .. } | ToolLength::Written { applied_mm: [x, y, z] } => {
+                [0.0 - x, 0.0 - y, self.spindle_nose_mm - z]
+            }
+        }
     }
 
     /// The rotary axes as text: `A, C`, or `none`.

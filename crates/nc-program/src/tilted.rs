@@ -12,7 +12,7 @@ use toolpath::{AXIS_NAMES, Kinematics, Motion, NoAngles, TiltedPlane, unit};
 
 use crate::codes;
 use crate::frames::absolute;
-use crate::modal::{Axis, Lost, Modal, ToolLength, Units, Why};
+use crate::modal::{Axis, Lost, Modal, Units, Why};
 use crate::naming;
 use crate::position::{require_frame, require_rotary};
 use crate::settings::{Demand, Environment, Owner};
@@ -432,10 +432,7 @@ pub(crate) fn check_motions(
             .refuse(codes::PLANE_ANGLES, message, span, label)
             .help("write the angles that belong to the plane before G68.2, with as many decimals as the plane has, or G53.1 behind it"));
     }
-    let tool_mm = match state.tool_length {
-        ToolLength::Off | ToolLength::On { number: 0, .. } => env.setup.default_tool_mm,
-        ToolLength::On { applied_mm, .. } | ToolLength::Written { applied_mm } => applied_mm,
-    };
+    let tool_mm = env.setup.tool_vector(&state.tool_length);
     if tool_mm[0] != 0.0 || tool_mm[1] != 0.0 {
         return Err(refuse(
             words,

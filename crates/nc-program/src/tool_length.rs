@@ -222,8 +222,29 @@ fn take(
                 )
             }));
     };
+    points_down(env, words, span, &format!("tool offset {offset:02}"), applied_mm)?;
     state.tool_length = ToolLength::On { number: offset, negative: false, applied_mm };
     Ok(())
+}
+
+/// Refuses a length by which the tool would point into its spindle: it was touched off, and how long the tool is
+/// nobody has said, while errors of angle act along it.
+fn points_down(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    span: Span,
+    name: &str,
+    [_, _, applied_mm]: [f64; 3],
+) -> Outcome<()> {
+    let long_mm = applied_mm - env.setup.spindle_nose_mm;
+    if long_mm >= 0.0 || !env.setup.lever_matters || env.dialect.turning.is_some() {
+        return Ok(());
+    }
+    let long_mm = (long_mm * 1e3).round() / 1e3;
+    let message = format!("{name} shifts Z by {applied_mm} mm: a tool {long_mm} mm long");
+    Err(words
+        .refuse(codes::TOOL_LENGTH, message, span, "the machine's angles act along the tool: how long is it?")
+        .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `spindle_nose_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"))
 }
 
 /// The code that ends cutter compensation, where it may end a tool length too.
@@ -310,12 +331,16 @@ pub(crate) fn length(
         ));
     };
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
+    if number != 0 {
+        points_down(env, words, span, &format!("H{number}"), applied_mm)?;
+    }
     state.tool_length = ToolLength::On { number, negative, applied_mm };
     Ok(())
 }
 
 /// G43.1: the words are the length; axes left out keep what they had.
 pub(crate) fn from_words(
+    env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     demand: &Demand<'_>,
     before: &Modal,
@@ -334,6 +359,7 @@ pub(crate) fn from_words(
                 applied_mm[i] = value * state.units.mm();
             }
         }
+        points_down(env, words, span, "this length", applied_mm)?;
         state.tool_length = ToolLength::Written { applied_mm };
         frames::refresh(state);
         return Ok(());

@@ -532,3 +532,28 @@ fn counts_of_holes() {
         assert_eq!(refusal(name, &format!("{begin}{block}")), (217, 3), "{name} {block}");
     }
 }
+
+#[test]
+fn a_tool_that_would_point_into_its_spindle_was_touched_off() {
+    let touched = Setup { tools: vec![(1, [0.0, 0.0, -350.0]), (2, [0.0; 3])], ..setup() };
+    let matters = Setup { lever_matters: true, ..touched.clone() };
+    let said = Setup { spindle_nose_mm: -470.0, ..matters.clone() };
+    let tool_z = |setup: &Setup, text: &str| {
+        let run = run_with(dialect("fanuc"), setup, text);
+        match &run.refused {
+            None => Ok(run.steps.last().expect("a step").context.tool_mm[2]),
+            Some((line, diagnostics)) => Err((*line, diagnostics[0].code, diagnostics[0].message.clone())),
+        }
+    };
+    let text = "G90 G21 G54\nG43 H1 Z100.\n";
+    assert_eq!(tool_z(&touched, text), Ok(350.0), "nothing acts along the tool");
+    let message = "H1 shifts Z by -350 mm: a tool -350 mm long".to_owned();
+    assert_eq!(tool_z(&matters, text), Err((2, diagnostic::Code(215), message)));
+    assert_eq!(tool_z(&said, text), Ok(-120.0));
+    assert_eq!(tool_z(&said, "G90 G21 G54\nG43 H2 Z100.\n"), Ok(-470.0));
+    // H0, no length, written ones.
+    assert_eq!(tool_z(&said, "G90 G21 G54\nG43 H0 Z100.\n"), Ok(0.0));
+    assert_eq!(tool_z(&matters, "G90 G21 G54\nG44 H1 Z100.\n"), Ok(-350.0), "G44 subtracts it");
+    let beyond = Setup { tools: vec![(1, [0.0, 0.0, -480.0])], ..said };
+    assert!(tool_z(&beyond, text).is_err_and(|(_, _, message)| message.ends_with("a tool -10 mm long")));
+}
