@@ -100,7 +100,7 @@ fn a_tool_the_profile_lacks() {
      --> /part.nc:2:5
       |
     2 | G43 H7
-      |     ^^ neither in the profile nor on the command line
+      |     ^^ given by no profile, file or option
       |
     help: `--tool H7=120` for a length of 120 mm, or `lengths_mm = { H7 = 120.0 }` under `[tool]` in the profile
     ");
@@ -114,7 +114,7 @@ fn a_work_offset_the_profile_lacks() {
      --> /part.nc:1:9
       |
     1 | G21 G90 G57
-      |         ^^^ neither in the profile nor on the command line
+      |         ^^^ given by no profile, file or option
       |
     help: `--work-offset G57=X,Y,Z` with the machine coordinates of the program's zero, or `G57 = [X, Y, Z]` under `[work_offsets_mm]` in the profile
     ");

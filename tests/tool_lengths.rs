@@ -63,10 +63,7 @@ impl Place {
 #[test]
 fn touched_off_lengths_give_the_program_of_true_ones() {
     let place = Place::new();
-    let true_ones = place.machine(
-        "true.toml",
-        "work_offsets_mm = { G54 = [100, 80, 60] }\ntool = { lengths_mm = { H1 = 120, H2 = 95.5 } }",
-    );
+    let true_ones = place.machine("true.toml", TRUE_ONES);
     let touched =
         "work_offsets_mm = { G54 = [100, 80, 530] }\ntool = { lengths_mm = { H1 = -350, H2 = -374.5 }";
     let unsaid = place.machine("unsaid.toml", &format!("{touched} }}"));
@@ -82,4 +79,88 @@ fn touched_off_lengths_give_the_program_of_true_ones() {
     // A length does matter on this machine: what the refusal is for.
     let other = place.machine("other.toml", &format!("{touched}, spindle_nose_mm = -520 }}"));
     assert_ne!(place.corrected(&other, &[]).expect("corrected"), of_true_ones);
+}
+
+const TRUE_ONES: &str =
+    "work_offsets_mm = { G54 = [100, 80, 60] }\ntool = { lengths_mm = { H1 = 120, H2 = 95.5 } }";
+const OTHERS: &str =
+    "work_offsets_mm = { G54 = [1, 2, 3] }\ntool = { lengths_mm = { H1 = 50, H2 = 60, H9 = 70 } }";
+
+#[test]
+fn a_table_stands_for_the_lengths_of_the_profile() {
+    let place = Place::new();
+    let wanted = place.corrected(&place.machine("true.toml", TRUE_ONES), &[]).expect("corrected");
+    let machine = place.machine("others.toml", OTHERS);
+    place.write("t.csv", "Инструмент;Длина, мм\nH1;120\nH2;95,5\n");
+    place.write(
+        "t.txt",
+        "%\nO9000(OFFSETS)\nG21\nG10 L10 P1 R119.9\nG10 L11 P1 R0.1\nG10 L10 P2 R95.5\nM30\n%\n",
+    );
+    for name in ["t.csv", "t.txt"] {
+        let table = format!("--tool-table={}", place.path(name));
+        let of_table = place.corrected(&machine, &[&table, "--work-offset=G54=100,80,60"]);
+        assert_eq!(of_table.expect("corrected"), wanted, "{name}");
+    }
+    // The command line goes before it; what it lacks the profile does not lend.
+    place.write("t.csv", "tool,length_mm\n1,120\n2,1\n");
+    let [table, zero] =
+        [format!("--tool-table={}", place.path("t.csv")), "--work-offset=G54=100,80,60".to_owned()];
+    assert_eq!(place.corrected(&machine, &[&table, &zero, "--tool=H2=95.5"]).expect("corrected"), wanted);
+    place.write("in.nc", &PROGRAM.replace("H2", "H9"));
+    let refused = place.corrected(&machine, &[&table, &zero]).expect_err("the table has no H9");
+    assert!(refused.contains("tool length H9 is not given"), "{refused}");
+}
+
+#[test]
+fn a_linuxcnc_machine_says_its_zeros_and_lengths() {
+    let place = Place::new();
+    let linuxcnc = ["-d", "linuxcnc"];
+    let wanted = place.corrected(&place.machine("true.toml", TRUE_ONES), &linuxcnc).expect("corrected");
+    let machine = place.machine("others.toml", OTHERS);
+    std::fs::create_dir(place.path("config")).expect("writable");
+    let ini = format!("--linuxcnc-ini={}", place.path("config/m.ini"));
+    let with = [&linuxcnc[..], &[ini.as_str()]].concat();
+    for (unit, mm) in [("inch", 25.4), ("mm", 1.0)] {
+        place.write(
+            "config/m.ini",
+            &format!("[RS274NGC]\nPARAMETER_FILE = m.var\n[EMCIO]\nTOOL_TABLE = ../m.tbl\n[TRAJ]\nLINEAR_UNITS = {unit}\n"),
+        );
+        place.write("m.tbl", &format!("T1 P1 Z{:+.12} ;mill\nT2 P2 D6 Z{:.12}\n", 120.0 / mm, 95.5 / mm));
+        let var =
+            format!("5220 1\n5221 {:.12}\n5222 {:.12}\n5223 {:.12}\n", 100.0 / mm, 80.0 / mm, 60.0 / mm);
+        place.write("config/m.var", &var);
+        assert_eq!(place.corrected(&machine, &with).expect("corrected"), wanted, "{unit}");
+    }
+    // No zero of the profile's stands in for one that was never touched off.
+    place.write("config/m.ini", "[EMCIO]\nTOOL_TABLE = ../m.tbl\n[TRAJ]\nLINEAR_UNITS = mm\n");
+    let refused = place.corrected(&machine, &with).expect_err("no parameters");
+    assert!(refused.contains("VP0214"), "{refused}");
+    place.write("config/m.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[RS274NGC]\nPARAMETER_FILE = n.var\n");
+    let refused = place.corrected(&machine, &with).expect_err("no such file");
+    assert!(refused.contains("n.var") && refused.contains("VP0001"), "{refused}");
+    // Another control keeps no such files.
+    let refused = place.corrected(&machine, &[&ini]).expect_err("a Fanuc");
+    assert!(refused.contains("--linuxcnc-ini"), "{refused}");
+    // Without its INI file a table has no unit.
+    let table = format!("--tool-table={}", place.path("m.tbl"));
+    let refused = place.corrected(&machine, &[&linuxcnc[..], &[&table]].concat()).expect_err("which unit?");
+    assert!(refused.contains("VP0920") && refused.contains("--linuxcnc-ini FILE"), "{refused}");
+}
+
+#[test]
+fn a_batch_corrects_anew_where_its_table_changed() {
+    let place = Place::new();
+    let machine = place.machine("m.toml", TRUE_ONES);
+    std::fs::create_dir(place.path("in")).expect("writable");
+    place.write("in/a.nc", PROGRAM);
+    let table = format!("--tool-table={}", place.path("t.csv"));
+    let batch = |lengths: &str| {
+        place.write("t.csv", lengths);
+        let ran = run(&["batch", &place.path("in"), "-O", &place.path("out"), "-m", &machine, &table]);
+        assert!(ran.status.success(), "{}", messages(&ran));
+        std::fs::read_to_string(place.path("out/a.nc")).expect("written")
+    };
+    let first = batch("tool,length_mm\nH1,120\nH2,95.5\n");
+    assert_ne!(batch("tool,length_mm\nH1,220\nH2,95.5\n"), first);
+    assert_eq!(batch("tool,length_mm\nH1,120\nH2,95.5\n"), first);
 }

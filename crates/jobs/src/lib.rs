@@ -21,5 +21,6 @@ pub mod profile;
 pub mod settings;
 pub mod shown;
 pub mod solve;
+mod stored;
 pub mod summary;
 pub mod values;

@@ -51,6 +51,18 @@ pub struct JobOptions {
         allow_hyphen_values = true
     )]
     pub tool: Vec<Given<ToolLength>>,
+    /// Tool lengths: CSV, a dump of G10, or .tbl.
+    ///
+    /// Of the control or a presetter, instead of the profile's: tool,length_mm; G10 L10 P1 R120.5; LinuxCNC's.
+    #[arg(long = "tool-table", value_name = "FILE", global = true, help_heading = "Program")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tool_table: Option<PathBuf>,
+    /// Zeros and lengths of a LinuxCNC machine.
+    ///
+    /// Its parameters and its tool table, as they were written last, instead of the profile's.
+    #[arg(long = "linuxcnc-ini", value_name = "FILE", global = true, help_heading = "Program")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub linuxcnc_ini: Option<PathBuf>,
     /// Where the axes stand at the start, mm.
     ///
     /// Machine coordinates.

@@ -13,6 +13,7 @@ use rewrite::{Guards, Job};
 use crate::flow::Flow;
 use crate::message::{Failure, Report, Source};
 use crate::options::{self, JobOptions};
+use crate::stored::Stored;
 use crate::{conditions, lines, profile};
 
 /// Everything a job on a program needs.
@@ -60,7 +61,15 @@ impl Settings {
         let mut files = loaded.files;
         let tables = options.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
         files.extend(tables.map(PathBuf::from));
-        let mut setup = setup(options, &profile)?;
+        if options.linuxcnc_ini.is_some() && dialect.flow.macros != Macros::LinuxCnc {
+            return Err(Failure::option(
+                format!("`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}", dialect.name),
+                "leave it out, or give `--dialect linuxcnc`",
+            ));
+        }
+        let stored = Stored::load(options, &profile)?;
+        let mut setup = setup(options, &profile, &stored)?;
+        files.extend(stored.files);
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
         declare_switches(&profile, &mut dialect);
@@ -407,10 +416,10 @@ fn parse_dialect(stem: &str, file_name: &str, bytes: &[u8]) -> Result<Dialect, F
     })
 }
 
-fn setup(options: &JobOptions, profile: &Profile) -> Result<Setup, Failure> {
+fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Setup, Failure> {
     let mut setup = Setup {
-        work_offsets: profile.work_offsets.clone(),
-        tools: tools(options, profile),
+        work_offsets: stored.work_offsets.as_ref().unwrap_or(&profile.work_offsets).clone(),
+        tools: with_options(options, stored.lengths.as_ref().unwrap_or(&profile.tools)),
         tool_names: profile.tool_names.clone(),
         edge_at_change: profile.program.edge_at_change,
         noses_mm: noses_mm(profile),
@@ -459,7 +468,11 @@ fn noses_mm(profile: &Profile) -> Vec<(u32, f64)> {
 /// Length vectors of the H numbers: the profile's and the command line's.
 #[must_use]
 pub fn tools(options: &JobOptions, profile: &Profile) -> Vec<(u32, [f64; 3])> {
-    let mut tools = profile.tools.clone();
+    with_options(options, &profile.tools)
+}
+
+fn with_options(options: &JobOptions, known: &[(u32, [f64; 3])]) -> Vec<(u32, [f64; 3])> {
+    let mut tools = known.to_vec();
     for given in &options.tool {
         match tools.iter_mut().find(|(known, _)| *known == given.number) {
             Some(entry) => entry.1 = given.vector_mm,

@@ -34,10 +34,10 @@ pub const NO_MOTION_CODE: Code = Code(212);
 /// reference return, a tool change, a change of tool length without a word of its axis, a probe move or a
 /// skipped block. Remedy: a rapid that names the axis in absolute coordinates.
 pub const POSITION_UNKNOWN: Code = Code(213);
-/// The work offset in force is neither in the profile nor on the command line.
+/// The work offset in force is given by no profile, file or option.
 /// Remedy: `--work-offset G54=X,Y,Z`.
 pub const WORK_OFFSET: Code = Code(214);
-/// The tool length in force is neither in the profile nor on the command line, or G43 does not say
+/// The tool length in force is given by no profile, file or option, or G43 does not say
 /// which one. Remedy: `--tool H1=120`, or an H word.
 pub const TOOL_LENGTH: Code = Code(215);
 /// A drilling cycle has no depth Z or no level R. Remedy: both on the block that starts the cycle.

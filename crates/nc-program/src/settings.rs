@@ -511,7 +511,7 @@ pub(crate) fn missing_offset(
             codes::WORK_OFFSET,
             format!("work offset {name} is not given"),
             span,
-            "neither in the profile nor on the command line",
+            "given by no profile, file or option",
         )
         .help(format!(
             "`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile"

@@ -210,7 +210,7 @@ fn take(
                 codes::TOOL_LENGTH,
                 format!("tool offset {offset:02} is not given"),
                 span,
-                "neither in the profile nor on the command line",
+                "given by no profile, file or option",
             )
             .help(if env.dialect.turning.is_some() {
                 format!(
@@ -222,22 +222,23 @@ fn take(
                 )
             }));
     };
-    points_down(env, words, span, &format!("tool offset {offset:02}"), applied_mm)?;
+    stands_out(env, words, span, &format!("tool offset {offset:02}"), applied_mm)?;
     state.tool_length = ToolLength::On { number: offset, negative: false, applied_mm };
     Ok(())
 }
 
-/// Refuses a length by which the tool would point into its spindle: it was touched off, and how long the tool is
+/// Refuses a length by which the tool would not stand out of its spindle: it was touched off, and how long the tool is
 /// nobody has said, while errors of angle act along it.
-fn points_down(
+fn stands_out(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     span: Span,
     name: &str,
-    [_, _, applied_mm]: [f64; 3],
+    [x, y, applied_mm]: [f64; 3],
 ) -> Outcome<()> {
     let long_mm = applied_mm - env.setup.spindle_nose_mm;
-    if long_mm >= 0.0 || !env.setup.lever_matters || env.dialect.turning.is_some() {
+    let long_enough = long_mm > 0.0 || (long_mm == 0.0 && (x, y) != (0.0, 0.0));
+    if long_enough || !env.setup.lever_matters || env.dialect.turning.is_some() {
         return Ok(());
     }
     let long_mm = (long_mm * 1e3).round() / 1e3;
@@ -326,13 +327,13 @@ pub(crate) fn length(
     let Some(vector) = env.setup.tool(number) else {
         let message = format!("tool length H{number} is not given");
         let at = if words.has(H) { words.span(H) } else { span };
-        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "neither in the profile nor on the command line").help(
+        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "given by no profile, file or option").help(
             format!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile"),
         ));
     };
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
     if number != 0 {
-        points_down(env, words, span, &format!("H{number}"), applied_mm)?;
+        stands_out(env, words, span, &format!("H{number}"), applied_mm)?;
     }
     state.tool_length = ToolLength::On { number, negative, applied_mm };
     Ok(())
@@ -359,7 +360,9 @@ pub(crate) fn from_words(
                 applied_mm[i] = value * state.units.mm();
             }
         }
-        points_down(env, words, span, "this length", applied_mm)?;
+        if applied_mm != [0.0; 3] {
+            stands_out(env, words, span, "this length", applied_mm)?;
+        }
         state.tool_length = ToolLength::Written { applied_mm };
         frames::refresh(state);
         return Ok(());

@@ -73,12 +73,12 @@ fn positions() {
 fn frames() {
     insta::assert_snapshot!(message("fanuc", "G90 G56\n"), @r#"
     error[VP0214]: work offset G56 is not given
-      1: `G56` neither in the profile nor on the command line
+      1: `G56` given by no profile, file or option
       help: `--work-offset G56=X,Y,Z` with the machine coordinates of the program's zero, or `G56 = [X, Y, Z]` under `[work_offsets_mm]` in the profile
     "#);
     insta::assert_snapshot!(message("fanuc", "G43 H3\n"), @r#"
     error[VP0215]: tool length H3 is not given
-      1: `H3` neither in the profile nor on the command line
+      1: `H3` given by no profile, file or option
       help: `--tool H3=120` for a length of 120 mm, or `lengths_mm = { H3 = 120.0 }` under `[tool]` in the profile
     "#);
     insta::assert_snapshot!(message("fanuc", "G43 Z1.\n"), @r#"

@@ -551,7 +551,9 @@ fn a_tool_that_would_point_into_its_spindle_was_touched_off() {
     assert_eq!(tool_z(&matters, text), Err((2, diagnostic::Code(215), message)));
     assert_eq!(tool_z(&said, text), Ok(-120.0));
     assert_eq!(tool_z(&said, "G90 G21 G54\nG43 H2 Z100.\n"), Ok(-470.0));
-    // H0, no length, written ones.
+    // A table's 0 is no length; H0 is none by its meaning.
+    let message = "H2 shifts Z by 0 mm: a tool 0 mm long".to_owned();
+    assert_eq!(tool_z(&matters, "G90 G21 G54\nG43 H2 Z100.\n"), Err((2, diagnostic::Code(215), message)));
     assert_eq!(tool_z(&said, "G90 G21 G54\nG43 H0 Z100.\n"), Ok(0.0));
     assert_eq!(tool_z(&matters, "G90 G21 G54\nG44 H1 Z100.\n"), Ok(-350.0), "G44 subtracts it");
     let beyond = Setup { tools: vec![(1, [0.0, 0.0, -480.0])], ..said };

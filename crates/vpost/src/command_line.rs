@@ -67,11 +67,13 @@ pub enum Command {
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
 const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
-const OF_PROGRAM: [&str; 10] = [
+const OF_PROGRAM: [&str; 12] = [
     "dialect",
     "tolerance",
     "work_offset",
     "tool",
+    "tool_table",
+    "linuxcnc_ini",
     "start_at",
     "set",
     "include",

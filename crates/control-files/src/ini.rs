@@ -1,0 +1,92 @@
+//! The INI file of a LinuxCNC machine: its unit, and which files hold tools and parameters.
+
+use measurement_files::{Refusal, decoded};
+
+use crate::text::{Piece, refuse_whole};
+use crate::{BEYOND, UNREADABLE};
+
+/// What an INI file says of a machine's lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ini {
+    /// `[TRAJ] LINEAR_UNITS`: of tool table and parameters, mm.
+    pub unit_mm: f64,
+    /// `[EMCIO] TOOL_TABLE`, relative to the INI file.
+    pub tool_table: Option<String>,
+    /// `[RS274NGC] PARAMETER_FILE`, relative to the INI file.
+    pub parameters: Option<String>,
+}
+
+impl Ini {
+    /// Reads the INI file of a machine.
+    ///
+    /// # Errors
+    /// It has no LINEAR_UNITS, or an unknown one; tools are kept by a program; it is included in pieces.
+    pub fn read(name: &str, bytes: &[u8]) -> Result<Self, Box<Refusal>> {
+        let text = decoded(bytes);
+        let file = (name, text.as_ref());
+        let mut section = "";
+        let (mut unit, mut tool_table, mut parameters) = (None, None, None);
+        for line in Piece::lines(&text).map(Piece::trimmed) {
+            if line.text.starts_with("#INCLUDE") {
+                let help = "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name";
+                return Err(line.refuse(
+                    file,
+                    UNREADABLE,
+                    "this INI file takes in others",
+                    "what they say would be missed",
+                    help,
+                ));
+            }
+            if line.text.is_empty() || line.text.starts_with(['#', ';']) {
+                continue;
+            }
+            if let Some(rest) = line.text.strip_prefix('[') {
+                section = rest.split(']').next().unwrap_or_default().trim();
+                continue;
+            }
+            let Some(equals) = line.text.find('=') else { continue };
+            let key = line.before(&['=']).trimmed().text;
+            let value = line.behind(equals + 1).trimmed();
+            let is = |of: &str, name: &str| {
+                section.eq_ignore_ascii_case(of) && key.eq_ignore_ascii_case(name) && !value.text.is_empty()
+            };
+            if is("EMCIO", "DB_PROGRAM") {
+                return Err(value.refuse(
+                    file,
+                    BEYOND,
+                    "the tools of this machine are kept by a program of their own",
+                    "which lengths it holds this file does not say",
+                    "write them as CSV (tool,length_mm) and give that: `--tool-table FILE`, and the zeros with `--work-offset`",
+                ));
+            }
+            // Of a key that stands twice LinuxCNC takes the first.
+            if is("TRAJ", "LINEAR_UNITS") {
+                unit.get_or_insert(value);
+            } else if is("EMCIO", "TOOL_TABLE") {
+                tool_table.get_or_insert(value.text);
+            } else if is("RS274NGC", "PARAMETER_FILE") {
+                parameters.get_or_insert(value.text);
+            }
+        }
+        let Some(unit) = unit else {
+            return Err(refuse_whole(
+                file,
+                UNREADABLE,
+                "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
+                "give the file that LinuxCNC is started with",
+            ));
+        };
+        let unit_mm = match unit.text.to_ascii_lowercase().as_str() {
+            "mm" | "metric" => 1.0,
+            "in" | "inch" | "imperial" => 25.4,
+            _ => {
+                let label = "expected mm or inch";
+                let help = "write what the machine's axes count in: LINEAR_UNITS = mm, or inch";
+                let message = format!("LINEAR_UNITS is `{}`", unit.text);
+                return Err(unit.refuse(file, UNREADABLE, message, label, help));
+            }
+        };
+        let owned = |value: Option<&str>| value.map(str::to_owned);
+        Ok(Self { unit_mm, tool_table: owned(tool_table), parameters: owned(parameters) })
+    }
+}

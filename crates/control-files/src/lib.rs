@@ -1,0 +1,58 @@
+//! What controls keep in files: tool lengths and work offsets, bytes in, millimetres out.
+//!
+//! Three writers are known: LinuxCNC (its INI, which names a tool table and a file of parameters), controls whose offsets
+//! come out as a program (G10 L10 and L11), and people with a spreadsheet. What the file leaves open (a unit, an offset
+//! that vpost cannot follow) is refused: these numbers move axes.
+//!
+//! No files are opened here; a [`Refusal`] knows its place and what to write instead.
+//!
+//! ```
+//! use control_files::tool_lengths;
+//!
+//! let table = b"T1 P1 Z+4 D0.5 ;end mill\nT12 P3 X0.1 Z-2 ;probe\n";
+//! let lengths = tool_lengths("tool.tbl", table, Some(25.4)).expect("a tool table");
+//! assert_eq!(lengths, [(1, [0.0, 0.0, 101.6]), (12, [2.54, 0.0, -50.8])]);
+//! let refusal = tool_lengths("tool.tbl", table, None).expect_err("inches or millimetres?");
+//! assert!(refusal.diagnostic.message.contains("does not say in which unit"));
+//! ```
+
+mod ini;
+mod offset_dump;
+mod parameters;
+mod text;
+mod tool_list;
+mod tool_table;
+
+pub use ini::Ini;
+pub use measurement_files::Refusal;
+pub use parameters::{Kept, parameters};
+
+use diagnostic::Code;
+
+/// A file of the control that cannot be read.
+const UNREADABLE: Code = Code(920);
+/// A file of the control that holds what cannot be followed.
+const BEYOND: Code = Code(921);
+
+/// The number of a tool length, H1 is 1, and what it adds to X, Y and Z, mm.
+pub type Length = (u32, [f64; 3]);
+
+/// Tool lengths of a file, whoever wrote it, by ascending number.
+///
+/// * `name` – the file's, in messages; `.csv` is a spreadsheet's
+/// * `unit_mm` – of a LinuxCNC tool table, which does not say it: that of the machine
+///
+/// # Errors
+/// It is none of the three; a line that cannot be read; a unit that nobody says; a number twice.
+pub fn tool_lengths(name: &str, bytes: &[u8], unit_mm: Option<f64>) -> Result<Vec<Length>, Box<Refusal>> {
+    let text = measurement_files::decoded(bytes);
+    let mut lengths = if offset_dump::is_one(&text) {
+        offset_dump::lengths(name, &text)?
+    } else if tool_table::is_one(&text) {
+        tool_table::lengths(name, &text, unit_mm)?
+    } else {
+        tool_list::lengths(name, bytes)?
+    };
+    lengths.sort_by_key(|(number, _)| *number);
+    Ok(lengths)
+}

@@ -1,0 +1,111 @@
+//! LinuxCNC's file of parameters: work offsets, and what else holds when a program begins.
+//!
+//! Numbers: LinuxCNC's manual, "Numbered parameters". The file is written when a program ends, after each command by hand
+//! (touching off is one) and when LinuxCNC ends; lengths are in the machine's unit.
+
+use std::collections::BTreeMap;
+
+use measurement_files::{Refusal, decoded};
+
+use crate::text::{Piece, refuse_whole};
+use crate::{BEYOND, UNREADABLE};
+
+/// Nine systems: the code that selects each.
+const SYSTEMS: [&str; 9] = ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"];
+/// The first number of the first system: X, Y, Z, A, B, C, U, V, W, then the turn about Z.
+const FIRST: u32 = 5221;
+const BETWEEN: u32 = 20;
+/// Which system is in force, from 1.
+const SELECTED: u32 = 5220;
+/// Not 0: G92 is in force.
+const G92_HOLDS: u32 = 5210;
+
+/// What a file of parameters keeps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// Code and machine coordinates of its zero, mm; X of a lathe is a radius.
+    pub work_offsets: Vec<(String, [f64; 3])>,
+}
+
+/// Reads a file of parameters.
+///
+/// * `unit_mm` – the machine's, of its INI file
+/// * `has_rotary` – which of A, B, C the machine has: a zero of those must be 0
+///
+/// # Errors
+/// It is none; G92, a turn about Z or a zero of a rotary axis holds; another system than G54 is in force.
+pub fn parameters(
+    name: &str,
+    bytes: &[u8],
+    unit_mm: f64,
+    has_rotary: [bool; 3],
+) -> Result<Kept, Box<Refusal>> {
+    let text = decoded(bytes);
+    let file = (name, text.as_ref());
+    let mut kept = BTreeMap::new();
+    for line in Piece::lines(&text).map(Piece::trimmed).filter(|line| !line.text.is_empty()) {
+        let mut words = line.words();
+        let number = words.next().and_then(|word| word.text.parse::<u32>().ok());
+        let value = words.next();
+        let (Some(number), Some(value), None) = (number, value.and_then(Piece::number), words.next()) else {
+            let help = "give the file that the INI file names as PARAMETER_FILE, as LinuxCNC writes it";
+            let message = "this line is no parameter of LinuxCNC";
+            return Err(line.refuse(file, UNREADABLE, message, "expected a number and its value", help));
+        };
+        kept.insert(number, (value, line));
+    }
+    if !kept.contains_key(&FIRST) {
+        let help = "LinuxCNC writes it when it has run once; give the file that the INI file names as PARAMETER_FILE";
+        let message = "the file holds no work offset: #5221 is missing";
+        return Err(refuse_whole(file, UNREADABLE, message, help));
+    }
+    let value = |number: u32| kept.get(&number).map_or(0.0, |(value, _)| *value);
+    let refuse = |number: u32, message: String, label: &str, help: &str| match kept.get(&number) {
+        Some((_, line)) => line.refuse(file, BEYOND, message, label, help),
+        None => refuse_whole(file, BEYOND, message, help),
+    };
+    if value(G92_HOLDS) != 0.0 && (5211..=5219).any(|number| value(number) != 0.0) {
+        return Err(refuse(
+            G92_HOLDS,
+            "a shift by G92 was in force when this file was written".to_owned(),
+            "it would shift the program too",
+            "end it on the control (G92.1), and give the file anew",
+        ));
+    }
+    let selected = value(SELECTED);
+    if selected != 1.0 {
+        let code = SYSTEMS.get((selected - 1.0) as usize).filter(|_| selected >= 1.0);
+        return Err(refuse(
+            SELECTED,
+            format!("{} was in force when this file was written", code.unwrap_or(&"no work offset")),
+            "a program that names none would begin in it",
+            "select G54 on the control, and give the file anew",
+        ));
+    }
+    let mut work_offsets = Vec::new();
+    for (first, code) in (FIRST..).step_by(BETWEEN as usize).zip(SYSTEMS) {
+        if value(first + 9) != 0.0 {
+            return Err(refuse(
+                first + 9,
+                format!("{code} is turned by {} degrees about Z", value(first + 9)),
+                "a zero that is turned is no shift",
+                &format!(
+                    "end the turn on the control (G10 L2 P{} R0), and give the file anew",
+                    (first - FIRST) / BETWEEN + 1
+                ),
+            ));
+        }
+        for (at, axis) in (3u32..).zip(["A", "B", "C"]) {
+            if has_rotary[at as usize - 3] && value(first + at) != 0.0 {
+                return Err(refuse(
+                    first + at,
+                    format!("the zero of {axis} under {code} is {} degrees", value(first + at)),
+                    "rotary axes have no work offset here",
+                    "set it to 0 on the control, and program the machine's own angles",
+                ));
+            }
+        }
+        work_offsets.push((code.to_owned(), [0, 1, 2].map(|at| value(first + at) * unit_mm)));
+    }
+    Ok(Kept { work_offsets })
+}

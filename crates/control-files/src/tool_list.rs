@@ -1,0 +1,52 @@
+//! A spreadsheet of tool lengths: `tool,length_mm`, or a column for each of X, Y and Z.
+
+use measurement_files::{Codes, Kind, Refusal, Sheet};
+
+use crate::{Length, UNREADABLE};
+
+const KIND: Kind<'static> = Kind {
+    columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",
+    expected: "expected: tool,length_mm (a line for each: H1,120.5), a tool table of LinuxCNC (T1 P1 Z120.5), or a control's offsets (G10 L10 P1 R120.5)",
+    passes_over: None,
+    may_be_empty: false,
+    codes: Codes::all(UNREADABLE),
+};
+
+pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refusal>> {
+    let sheet = Sheet::read(name, bytes, &KIND, None)?;
+    sheet.need(&["tool"], "each length needs the number of its tool")?;
+    let by_axis = ["x_mm", "y_mm", "z_mm"].map(|column| sheet.has(column)).contains(&true);
+    if by_axis && sheet.has("length_mm") {
+        let message = "`length_mm` stands beside lengths along X, Y and Z";
+        let help = "keep length_mm, which is along Z, or x_mm, y_mm and z_mm";
+        return Err(sheet.refuse_column(UNREADABLE, "length_mm", message.to_owned(), help));
+    }
+    if !by_axis {
+        sheet.need(&["length_mm"], "a list of tools needs their lengths")?;
+    }
+    let mut lengths: Vec<Length> = Vec::new();
+    for row in sheet.rows() {
+        let written = row.text("tool");
+        let digits = written.trim_start_matches(['H', 'h', 'T', 't', 'Т']);
+        let number = digits.parse::<u32>().ok().filter(|number| *number > 0);
+        let Some(number) = number.filter(|_| written.len() - digits.len() <= 2) else {
+            let message = format!("`{written}` is no number of a length");
+            return Err(row.refuse(UNREADABLE, "tool", message, "write H1, T1 or 1"));
+        };
+        if lengths.iter().any(|(known, _)| *known == number) {
+            let message = format!("tool {number} stands twice");
+            return Err(row.refuse(UNREADABLE, "tool", message, "keep the line that is true"));
+        }
+        let vector = if by_axis {
+            let mut vector = [0.0; 3];
+            for (value, column) in vector.iter_mut().zip(["x_mm", "y_mm", "z_mm"]) {
+                *value = row.number(column)?.unwrap_or(0.0);
+            }
+            vector
+        } else {
+            [0.0, 0.0, row.needed("length_mm")?]
+        };
+        lengths.push((number, vector));
+    }
+    Ok(lengths)
+}
