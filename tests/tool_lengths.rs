@@ -67,7 +67,7 @@ fn touched_off_lengths_give_the_program_of_true_ones() {
     let touched =
         "work_offsets_mm = { G54 = [100, 80, 530] }\ntool = { lengths_mm = { H1 = -350, H2 = -374.5 }";
     let unsaid = place.machine("unsaid.toml", &format!("{touched} }}"));
-    let said = place.machine("said.toml", &format!("{touched}, spindle_nose_mm = -470 }}"));
+    let said = place.machine("said.toml", &format!("{touched}, gauge_point_mm = -470 }}"));
     let of_true_ones = place.corrected(&true_ones, &[]).expect("corrected");
     assert!(
         of_true_ones.contains("vpost") || of_true_ones.contains("VPOST"),
@@ -75,9 +75,9 @@ fn touched_off_lengths_give_the_program_of_true_ones() {
     );
     assert_eq!(place.corrected(&said, &[]).expect("corrected"), of_true_ones);
     let refused = place.corrected(&unsaid, &[]).expect_err("how long the tools are is not said");
-    assert!(refused.contains("VP0215") && refused.contains("spindle_nose_mm"), "{refused}");
+    assert!(refused.contains("VP0215") && refused.contains("gauge_point_mm"), "{refused}");
     // A length does matter on this machine: what the refusal is for.
-    let other = place.machine("other.toml", &format!("{touched}, spindle_nose_mm = -520 }}"));
+    let other = place.machine("other.toml", &format!("{touched}, gauge_point_mm = -520 }}"));
     assert_ne!(place.corrected(&other, &[]).expect("corrected"), of_true_ones);
 }
 

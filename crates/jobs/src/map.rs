@@ -103,7 +103,9 @@ pub fn tool(
         Some(ToolVector::Length(number)) => crate::settings::tools(options, profile)
             .iter()
             .find(|(known, _)| *known == number)
-            .map(|(_, length)| Vector::new(0.0, 0.0, profile.spindle_nose_mm) - Vector::from(*length))
+            .map(|(_, length)| {
+                Vector::new(0.0, 0.0, profile.gauge_point_mm.unwrap_or(0.0)) - Vector::from(*length)
+            })
             .ok_or_else(|| {
                 Failure::option(
                     format!("`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}"),

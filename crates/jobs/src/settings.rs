@@ -424,7 +424,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         edge_at_change: profile.program.edge_at_change,
         noses_mm: noses_mm(profile),
         default_tool_mm: profile.default_tool_mm,
-        spindle_nose_mm: profile.spindle_nose_mm,
+        gauge_point_mm: profile.gauge_point_mm,
         lever_matters: profile.lever_matters(),
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),

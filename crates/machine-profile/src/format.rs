@@ -285,10 +285,10 @@ rotary!(RotaryC, shifts tilts, EX0C_um 0 EY0C_um 1, EA0C_urad 0 EB0C_urad 1);
 pub(crate) struct Tool {
     /// Without G43: from the point the tables were measured at to the tip.
     pub(crate) default_mm: Option<Triple>,
-    /// Where tools are touched off: what the control's length would be with the bare spindle nose touched off; tools are
-    /// as long as theirs lie above that. 0, which is the default: lengths count from the gauge point.
+    /// Where tools are touched off: the length that the control would have of a tool that ends at the gauge point (with
+    /// tables measured from the spindle nose: of the bare nose). Not given: 0, and no length below 0 is taken.
     #[schemars(with = "Option<Finite>")]
-    pub(crate) spindle_nose_mm: Option<Spanned<Finite>>,
+    pub(crate) gauge_point_mm: Option<Spanned<Finite>>,
     /// H number → length along Z, or vector.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Length>")]

@@ -124,7 +124,7 @@ impl Loader<'_> {
         let traverses = document.tracker.as_ref().and_then(|tracker| self.traverses(tracker));
         let mut tools = self.tools(&document.tool);
         let tool_names = self.tool_names(&document.tool, &tools);
-        let spindle_nose_mm = self.spindle_nose(&document, is_lathe);
+        let gauge_point_mm = self.gauge_point(&document, is_lathe);
         let work_offsets = self.work_offsets(&document);
         let correction = self.correction(&document.correction);
         let program = self.program_rules(&document.program, &document.m_codes);
@@ -162,7 +162,7 @@ impl Loader<'_> {
             rows,
             traverses,
             default_tool_mm: triple(document.tool.default_mm),
-            spindle_nose_mm,
+            gauge_point_mm,
             tool_names,
             tools,
             work_offsets,
@@ -647,16 +647,16 @@ impl Loader<'_> {
     }
 
     /// Where lengths count from, where that is not the gauge point.
-    fn spindle_nose(&mut self, document: &Document, is_lathe: bool) -> f64 {
-        let Some(written) = &document.tool.spindle_nose_mm else { return 0.0 };
+    fn gauge_point(&mut self, document: &Document, is_lathe: bool) -> Option<f64> {
+        let written = document.tool.gauge_point_mm.as_ref()?;
         let conflict = if document.kinematics.is_some() {
             Some((
-                "`spindle_nose_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point",
-                "give lengths from the gauge point, on the control and here, and leave `spindle_nose_mm` out",
+                "`gauge_point_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point",
+                "give lengths from the gauge point, on the control and here, and leave `gauge_point_mm` out",
             ))
         } else if is_lathe {
             Some((
-                "`spindle_nose_mm` in the profile of a lathe",
+                "`gauge_point_mm` in the profile of a lathe",
                 "give `lengths_mm` from the point of the turret that the tables were measured at",
             ))
         } else {
@@ -665,7 +665,7 @@ impl Loader<'_> {
         if let Some((message, help)) = conflict {
             self.refuse(written, Diagnostic::error(CONFLICT, message).help(help), "this key");
         }
-        written.get_ref().0
+        Some(written.get_ref().0)
     }
 
     /// Names of tools, each with a length that is given.

@@ -211,8 +211,8 @@ pub struct Profile {
     pub traverses: Option<[Traverse; 3]>,
     /// Tool vector without G43, gauge point to tip, mm.
     pub default_tool_mm: [f64; 3],
-    /// What the control's length of the bare spindle nose is, mm.
-    pub spindle_nose_mm: f64,
+    /// The length that the control would have of a tool that ends at the gauge point, mm, where the profile says it.
+    pub gauge_point_mm: Option<f64>,
     /// H number and length vector, mm, ordered by number. The axis command is program + work offset +
     /// vector; the tool vector is minus the vector.
     pub tools: Vec<(u32, [f64; 3])>,

@@ -139,8 +139,8 @@ impl Profile {
         }
         let [x, y, z] = self.default_tool_mm;
         writeln!(out, "tool         default {x} {y} {z} mm")?;
-        if self.spindle_nose_mm != 0.0 {
-            writeln!(out, "  spindle nose {} mm", self.spindle_nose_mm)?;
+        if let Some(length_mm) = self.gauge_point_mm {
+            writeln!(out, "  gauge point  {length_mm} mm")?;
         }
         for (number, [x, y, z]) in &self.tools {
             writeln!(out, "  H{number}         {x} {y} {z} mm")?;

@@ -328,13 +328,13 @@ fn tool_length_of_two_numbers() {
 #[test]
 fn lengths_of_a_tip_control_count_from_the_gauge_point() {
     let text = format!(
-        "{}\n[tool]\nspindle_nose_mm = -470.0\n[kinematics]\nstraight = \"tip\"\ncentres_mm = {{}}\n",
+        "{}\n[tool]\ngauge_point_mm = -470.0\n[kinematics]\nstraight = \"tip\"\ncentres_mm = {{}}\n",
         base()
     );
     assert_snapshot!(told(&text), @r####"
-    error[VP0309]: `spindle_nose_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point
+    error[VP0309]: `gauge_point_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point
       line 13: `-470.0` this key
-    help: give lengths from the gauge point, on the control and here, and leave `spindle_nose_mm` out
+    help: give lengths from the gauge point, on the control and here, and leave `gauge_point_mm` out
     "####);
 }
 

@@ -66,8 +66,8 @@ pub struct Setup {
     pub noses_mm: Vec<(u32, f64)>,
     /// Tool vector without G43: from the gauge point to the tip, mm.
     pub default_tool_mm: [f64; 3],
-    /// What the control's length of the bare spindle nose is, mm: 0 where lengths count from the gauge point.
-    pub spindle_nose_mm: f64,
+    /// The length that the control would have of a tool that ends at the gauge point, mm; `None`: not said, and taken as 0.
+    pub gauge_point_mm: Option<f64>,
     /// What the axes must be told depends on how long the tool is.
     pub lever_matters: bool,
     /// Which of A, B, C the machine has.
@@ -107,7 +107,7 @@ impl Setup {
         self.tools.iter().find(|(known, _)| *known == number).map(|(_, vector)| *vector)
     }
 
-    /// From the gauge point to the tip, mm, where this length shifts the axes: its other end, counted from the nose.
+    /// From the gauge point to the tip, mm, where this length shifts the axes.
     /// Where G44 subtracts it, the tool points the other way.
     pub(crate) fn tool_vector(&self, length: &ToolLength) -> [f64; 3] {
         match *length {
@@ -115,7 +115,7 @@ impl Setup {
             | ToolLength::On { number: 0, .. }
             | ToolLength::Written { applied_mm: [0.0, 0.0, 0.0] } => self.default_tool_mm,
             ToolLength::On { applied_mm: [x, y, z], .. } | ToolLength::Written { applied_mm: [x, y, z] } => {
-                [0.0 - x, 0.0 - y, self.spindle_nose_mm - z]
+                [0.0 - x, 0.0 - y, self.gauge_point_mm.unwrap_or(0.0) - z]
             }
         }
     }

@@ -227,25 +227,28 @@ fn take(
     Ok(())
 }
 
-/// Refuses a length by which the tool would not stand out of its spindle: it was touched off, and how long the tool is
-/// nobody has said, while errors of angle act along it.
+/// Refuses a length by which the tip would be at the gauge point or above it, where nobody has said from where lengths
+/// count: it was touched off, and errors of angle act along the tool.
 fn stands_out(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     span: Span,
     name: &str,
-    [x, y, applied_mm]: [f64; 3],
+    [x, y, z]: [f64; 3],
 ) -> Outcome<()> {
-    let long_mm = applied_mm - env.setup.spindle_nose_mm;
-    let long_enough = long_mm > 0.0 || (long_mm == 0.0 && (x, y) != (0.0, 0.0));
-    if long_enough || !env.setup.lever_matters || env.dialect.turning.is_some() {
+    let beside = z == 0.0 && (x, y) != (0.0, 0.0);
+    if env.setup.gauge_point_mm.is_some()
+        || z > 0.0
+        || beside
+        || !env.setup.lever_matters
+        || env.dialect.turning.is_some()
+    {
         return Ok(());
     }
-    let long_mm = (long_mm * 1e3).round() / 1e3;
-    let message = format!("{name} shifts Z by {applied_mm} mm: a tool {long_mm} mm long");
+    let message = format!("{name} shifts Z by {z} mm: a tool {z} mm long");
     Err(words
         .refuse(codes::TOOL_LENGTH, message, span, "the machine's angles act along the tool: how long is it?")
-        .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `spindle_nose_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"))
+        .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"))
 }
 
 /// The code that ends cutter compensation, where it may end a tool length too.
