@@ -238,7 +238,7 @@ impl<'a> Assembly<'a> {
             carries: corner_um <= gap.rms_um,
             slow: self.noise.is_some_and(|n| n.is_slow()) || model.caution.lag(1) > SLOW_PHI,
             trifling: gap.rms_um - after_um < WORTH_NAMING * gap.rms_um,
-            swings: matches!(harm, Some(Harm::Swings(..))),
+            swings: matches!(harm, Some(Harm::Swings(..) | Harm::Cancels(..))),
             unseen: None,
         }
     }

@@ -61,6 +61,10 @@ pub(crate) fn rivals(model: &Explanation, place: usize) -> Vec<Rival> {
             .map(|variant| alike(model, &left, &contribution, Part { candidate, variant }))
             .fold(0.0, f64::max);
         let kind = model.library.candidates[candidate].kind;
+        let own_kind = model.library.candidates[own.candidate].kind;
+        // An instrument warms up as a machine does, in any shape: what creeps alike everywhere is either's.
+        let creeps = matches!(own_kind, EffectKind::Warmup(_)) && kind == EffectKind::InstrumentDrift;
+        let correlation = if creeps { 1.0 } else { correlation };
         found.push(Rival { kind, part: *part, behind, correlation });
     }
     found.sort_by(|a, b| a.behind.total_cmp(&b.behind));

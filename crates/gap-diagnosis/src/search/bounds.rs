@@ -35,7 +35,7 @@ pub(crate) struct Bounds {
     widest_um: f64,
     /// Components that were read; all where the readings are lengths.
     read: [bool; 3],
-    /// Longest reading, µm: all its components together, each from its median.
+    /// Longest reading, µm: all its components together, each from its median, or as they stand where that is less.
     longest_um: f64,
     /// Lengths of the ranges of the components together, µm.
     span_um: f64,
@@ -49,6 +49,8 @@ pub(crate) enum Harm {
     /// They shift: straight lines through machine zero, read on a short way far from it, move all of that way by so much,
     /// which the measuring frame took off the readings; and the range of the readings; µm.
     Shifts(f64, f64),
+    /// They cancel: with the first of them alone so much is left, and so much without any; RMS, µm.
+    Cancels(f64, f64),
 }
 
 impl Bounds {
@@ -74,7 +76,7 @@ impl Bounds {
         }
         let (mut largest_um, mut widest_um, mut span_square): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let mut read = [false; 3];
-        let mut squares = vec![0.0; data.rows.len()];
+        let (mut squares, mut as_read) = (vec![0.0; data.rows.len()], vec![0.0; data.rows.len()]);
         for class in 0..4 {
             let of_class = || scalars.iter().filter(|s| s.class == class);
             let gaps = || of_class().map(|s| s.gap_um);
@@ -83,14 +85,18 @@ impl Bounds {
                 let ends = gaps().fold((middle, middle), |(low, high), gap| (gap.min(low), gap.max(high)));
                 widest_um = widest_um.max(ends.1 - ends.0);
                 span_square += (ends.1 - ends.0) * (ends.1 - ends.0);
-                of_class().for_each(|s| squares[s.row] += (s.gap_um - middle) * (s.gap_um - middle));
+                of_class().for_each(|s| {
+                    squares[s.row] += (s.gap_um - middle) * (s.gap_um - middle);
+                    as_read[s.row] += s.gap_um * s.gap_um;
+                });
                 match read.get_mut(class) {
                     Some(component) => *component = true,
                     None => read = [true; 3],
                 }
             }
         }
-        let longest_um = squares.into_iter().fold(0.0, f64::max).sqrt();
+        let longest = |squares: Vec<f64>| squares.into_iter().fold(0.0, f64::max).sqrt();
+        let longest_um = longest(squares).min(longest(as_read));
         let span_um = span_square.sqrt();
         let places = [0, 1, 2].map(|axis| data.effective_places(axis));
         Self { probes, measured, places, largest_um, widest_um, read, longest_um, span_um }
@@ -114,8 +120,10 @@ impl Bounds {
         let farthest =
             |all: &[Vector], from: Vector| all.iter().map(|d| length(d - from)).fold(0.0, f64::max);
         let bent = moved(|kind| !is_straight(kind));
-        // What depends on the place alone has no zero but its own.
-        let of_places = moved(depends_on_place);
+        // What depends on the place alone has no zero but its own; a straight line beside a curve is a part of it.
+        let curved = causes.iter().any(|(kind, _)| depends_on_place(*kind));
+        let of_places =
+            if curved { moved(|kind| depends_on_place(kind) || is_straight(kind)) } else { Vec::new() };
         let swing_um = farthest(&bent, self.mean(&bent)).max(farthest(&of_places, Vector::zeros()));
         if swing_um > LARGEST * self.longest_um {
             return Some(Harm::Swings(swing_um, self.longest_um));
@@ -177,6 +185,7 @@ const fn depends_on_place(kind: EffectKind) -> bool {
             | EffectKind::Joint(_)
             | EffectKind::Pitch(_)
             | EffectKind::Angular { .. }
+            | EffectKind::Sag(_)
     )
 }
 

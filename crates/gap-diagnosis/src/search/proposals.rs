@@ -18,6 +18,8 @@ const FINE: f64 = 3.0;
 /// … and within these, mm.
 const SHORTEST_MM: f64 = 1.0;
 const LONGEST_MM: f64 = 60.0;
+/// Rows before and after a knock: of fewer at the end of a file nobody can tell it from a blunder or two.
+pub(crate) const STEP_ROWS: usize = 4;
 /// Equations that a scan over shapes looks at; more are thinned evenly.
 pub(crate) const SCAN_EQUATIONS: usize = 12_000;
 
@@ -162,7 +164,7 @@ pub(crate) fn knock(source: &Source<'_>, residuals_um: &[f64], axis: usize) -> O
         .filter(|(s, _)| s.along[axis].abs() > 0.3)
         .filter_map(|(s, r)| source.rows[s.row].conditions.time_s.map(|t| (t, r * s.along[axis])))
         .collect();
-    let mut jumps = Jumps::default();
+    let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
     jumps.look(&mut points, f64::MIN_POSITIVE);
     jumps.largest()
 }
@@ -173,6 +175,8 @@ struct Jumps {
     /// The place so far, and the square it explains.
     best: Option<(f64, f64)>,
     asked: usize,
+    /// Points on either side that a change needs.
+    least: usize,
 }
 
 impl Jumps {
@@ -184,7 +188,8 @@ impl Jumps {
         let mut before = 0.0;
         for (place, pair) in points.windows(2).enumerate() {
             before += pair[0].1;
-            if pair[1].0 - pair[0].0 < apart {
+            let side = (place + 1).min(points.len() - place - 1);
+            if pair[1].0 - pair[0].0 < apart || side < self.least {
                 continue;
             }
             self.asked += 1;

@@ -15,6 +15,7 @@ use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
 use crate::search::explanation::Refused;
 use crate::search::moves::without;
+use crate::search::proposals::STEP_ROWS;
 use crate::search::space::{FREE, Fit};
 use crate::search::state::State;
 
@@ -67,6 +68,9 @@ impl State<'_, '_> {
         if p > LEVEL {
             return refuse(UNPROVEN);
         }
+        if let Some(reason) = self.ill_placed(rest, part) {
+            return refuse(reason);
+        }
         let trifling = residual > (1.0 - WORTH) * (1.0 - WORTH) * tested;
         if self.setting.is_doubtful() && trifling && ratio < BEYOND_DOUBT * BEYOND_DOUBT {
             return refuse(
@@ -87,6 +91,43 @@ impl State<'_, '_> {
             return refuse(NOT_ELSEWHERE);
         }
         None
+    }
+
+    /// Why an effect cannot be told where it stands: a knock with hardly a row on its other side; damage on the flank of a
+    /// joint of rails, or a joint on the flank of damage, which is what the shape of the one leaves of the other.
+    fn ill_placed(&self, rest: &[Part], part: Part) -> Option<&'static str> {
+        let shape = |part: Part| {
+            let column = *self.library.form(part).columns.first()?;
+            match self.library.terms[column] {
+                Term::Effect { kind, shape, .. } => Some((kind, shape)),
+                _ => None,
+            }
+        };
+        let (kind, own) = shape(part)?;
+        match kind {
+            EffectKind::Step(_) => {
+                let times = || self.source.rows.iter().filter_map(|row| row.conditions.time_s);
+                let before = times().filter(|time| *time < own.time_s).count();
+                let fewest = before.min(times().count() - before);
+                (fewest < STEP_ROWS)
+                    .then_some("so few rows lie on one side of the knock that they could be blunders")
+            }
+            EffectKind::Local(axis) | EffectKind::Joint(axis) => {
+                let flank = |other: Part| {
+                    shape(other).is_some_and(|(other, at)| {
+                        let meet = match kind {
+                            EffectKind::Local(_) => other == EffectKind::Joint(axis),
+                            _ => other == EffectKind::Local(axis),
+                        };
+                        meet && (at.centre_mm - own.centre_mm).abs() < at.width_mm + own.width_mm
+                    })
+                };
+                rest.iter()
+                    .any(|other| flank(*other))
+                    .then_some("it stands where the shape of another leaves something")
+            }
+            _ => None,
+        }
     }
 
     /// True where the last of `with` is small only because the others took its part over: it explains most of what they

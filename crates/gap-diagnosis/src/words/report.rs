@@ -11,10 +11,19 @@ use crate::judgement::next::{next_measurement, once_more};
 use crate::judgement::unseen::residuals;
 use crate::judgement::verdict::{Unseen, verdict};
 use crate::options::Options;
+use crate::search::bounds::Harm;
 use crate::search::formula::formulas;
 use crate::words::cause::{DO_NOT_ACT, NO_PLAY};
 use crate::words::remedy::remedy;
 use crate::words::sentence::sentence;
+
+/// Causes of which the first leave more than there was: the others take off what they put on.
+fn cancelling(causes: &[Cause], gap_um: f64) -> Option<Harm> {
+    /// What two or three causes may leave on their way, by chance, as a factor of the gap.
+    const MORE: f64 = 1.5;
+    let most_um = causes.iter().map(|cause| cause.rms_after_um).fold(0.0, f64::max);
+    (most_um > MORE * gap_um).then_some(Harm::Cancels(most_um, gap_um))
+}
 
 impl Assembly<'_> {
     /// The answer. `kept_back` says what runs that a second search did not see make of its forecast; it is asked where
@@ -30,7 +39,7 @@ impl Assembly<'_> {
         let leftover = self.leftover();
         let causes = self.causes(holdout, gap.rms_um);
         let corner_um = self.uncertainty_in_corners_um(options.volume);
-        let harm = self.harm();
+        let harm = cancelling(&causes, gap.rms_um).or_else(|| self.harm());
         let mut evidence = self.evidence(&gap, &leftover, &causes, corner_um, harm);
         let held = holdout.map(|h| self.holdout(h));
         let believed = matches!(verdict(&evidence), Verdict::Named | Verdict::Ambiguous);
