@@ -136,7 +136,8 @@ impl State<'_, '_> {
     /// The first of some effects that passes its tests, or two that pass beside each other; else why the best did not.
     ///
     /// What few runs cannot prove (a knock between two of them explains their offsets) does not keep the next ones from
-    /// their tests. What does not hold on other lines ends the search: the structure is there, and has no name. But two
+    /// their tests, and neither does a form that breaks its bounds: two waves of a probe that cancel by tenths of a millimetre
+    /// say nothing of the play behind them. What does not hold on other lines ends the search: the structure is there, and has no name. But two
     /// faults may hide each other: on circles of either sense a lag adds to a squareness or takes off it, and neither alone
     /// foretells a circle that was left out.
     fn admitted(&mut self, proposed: &[(Part, Fit)]) -> Result<(Vec<Part>, Fit), Option<Refused>> {
@@ -154,7 +155,7 @@ impl State<'_, '_> {
                     return Ok(pair);
                 }
             }
-            if reason != UNPROVEN {
+            if reason != UNPROVEN && self.misfit(&self.parts, *part, fit.level).is_none() {
                 break;
             }
         }

@@ -4,7 +4,7 @@
 //! asked, keeps noise from being named; the least share keeps what no one would repair out of the answer; lines that were
 //! left out show whether the effect is one of the machine or of a single run.
 
-use machine_model::effects::EffectKind;
+use machine_model::effects::{EffectKind, Shape};
 
 use crate::equations::f_test::f_tail;
 use crate::equations::linear::{Products, explained};
@@ -24,7 +24,8 @@ use crate::search::state::State;
 pub(crate) const LEVEL: f64 = 3e-2;
 /// Least share of the reducible square that a cause must explain.
 pub(crate) const LEAST_SHARE: f64 = 0.02;
-/// Least share of a joint of rails: where curves are bent otherwise than in textbooks a step fits a little.
+/// Least share of a joint of rails, and of damage at one: where curves are bent otherwise than in textbooks a step fits a
+/// little, and a dent at the step.
 const LEAST_STEP: f64 = 0.15;
 
 /// Where the noise is not what the tests take for granted, an effect that takes less than this share off the RMS …
@@ -68,9 +69,6 @@ impl State<'_, '_> {
         if p > LEVEL {
             return refuse(UNPROVEN);
         }
-        if let Some(reason) = self.ill_placed(rest, part) {
-            return refuse(reason);
-        }
         let trifling = residual > (1.0 - WORTH) * (1.0 - WORTH) * tested;
         if self.setting.is_doubtful() && trifling && ratio < BEYOND_DOUBT * BEYOND_DOUBT {
             return refuse(
@@ -78,13 +76,14 @@ impl State<'_, '_> {
             );
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
-        if matches!(kind, EffectKind::Joint(_)) && gain / reducible < LEAST_STEP {
-            return refuse("so small a step is what a curve's own shape leaves");
+        let by_shape = matches!(kind, EffectKind::Joint(_)) || self.on_a_flank(rest, part);
+        if by_shape && gain / reducible < LEAST_STEP {
+            return refuse("so little is what the shape of another curve leaves");
         }
         if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
             return refuse("its share is below 2 % of what can be explained");
         }
-        if let Some(reason) = self.crowded(&with).or_else(|| self.out_of_bounds(&with, fit.level)) {
+        if let Some(reason) = self.misfit(rest, part, fit.level) {
             return refuse(reason);
         }
         if !self.predicts(&with, fit.level) {
@@ -93,39 +92,36 @@ impl State<'_, '_> {
         None
     }
 
-    /// Why an effect cannot be told where it stands: a knock with hardly a row on its other side; damage on the flank of a
-    /// joint of rails, or a joint on the flank of damage, which is what the shape of the one leaves of the other.
-    fn ill_placed(&self, rest: &[Part], part: Part) -> Option<&'static str> {
-        let shape = |part: Part| {
-            let column = *self.library.form(part).columns.first()?;
-            match self.library.terms[column] {
-                Term::Effect { kind, shape, .. } => Some((kind, shape)),
-                _ => None,
-            }
-        };
-        let (kind, own) = shape(part)?;
-        match kind {
-            EffectKind::Step(_) => {
-                let times = || self.source.rows.iter().filter_map(|row| row.conditions.time_s);
-                let before = times().filter(|time| *time < own.time_s).count();
-                let fewest = before.min(times().count() - before);
-                (fewest < STEP_ROWS)
-                    .then_some("so few rows lie on one side of the knock that they could be blunders")
-            }
-            EffectKind::Local(axis) | EffectKind::Joint(axis) => {
-                let flank = |other: Part| {
-                    shape(other).is_some_and(|(other, at)| {
-                        let meet = match kind {
-                            EffectKind::Local(_) => other == EffectKind::Joint(axis),
-                            _ => other == EffectKind::Local(axis),
-                        };
-                        meet && (at.centre_mm - own.centre_mm).abs() < at.width_mm + own.width_mm
-                    })
-                };
-                rest.iter()
-                    .any(|other| flank(*other))
-                    .then_some("it stands where the shape of another leaves something")
-            }
+    /// What is wrong with the form of an effect, whatever it explains.
+    pub(crate) fn misfit(&self, rest: &[Part], part: Part, level: usize) -> Option<&'static str> {
+        let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
+        let formed = self.unsupported(part).or_else(|| self.crowded(&with));
+        formed.or_else(|| self.out_of_bounds(&with, level))
+    }
+
+    /// Why a knock cannot be told: hardly a row lies on its other side.
+    fn unsupported(&self, part: Part) -> Option<&'static str> {
+        let (EffectKind::Step(_), shape) = self.shape(part)? else { return None };
+        let times = || self.source.rows.iter().filter_map(|row| row.conditions.time_s);
+        let before = times().filter(|time| *time < shape.time_s).count();
+        let fewest = before.min(times().count() - before);
+        (fewest < STEP_ROWS).then_some("so few rows lie on one side of the knock that they could be blunders")
+    }
+
+    /// True for damage where a joint of the same rails stands: the shape of the joint leaves something there.
+    fn on_a_flank(&self, rest: &[Part], part: Part) -> bool {
+        let Some((EffectKind::Local(axis), own)) = self.shape(part) else { return false };
+        rest.iter().filter_map(|other| self.shape(*other)).any(|(kind, other)| {
+            kind == EffectKind::Joint(axis)
+                && (other.centre_mm - own.centre_mm).abs() < other.width_mm + own.width_mm
+        })
+    }
+
+    /// An effect and its non-linear numbers.
+    fn shape(&self, part: Part) -> Option<(EffectKind, Shape)> {
+        let column = *self.library.form(part).columns.first()?;
+        match self.library.terms[column] {
+            Term::Effect { kind, shape, .. } => Some((kind, shape)),
             _ => None,
         }
     }
