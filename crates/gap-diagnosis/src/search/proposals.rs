@@ -341,4 +341,22 @@ mod tests {
         assert!(!is_strobed(&[20.0; 8], 10.0), "too few steps to tell");
         assert!(!is_strobed(&[1.0; 100], 10.0), "steps below half a period see the wave");
     }
+
+    #[test]
+    fn a_knock_needs_rows_on_both_sides() {
+        let place = |off: usize| {
+            let value = |k: usize| if k + off >= 40 { 9.0 } else { f64::from(u8::from(k % 3 == 0)) };
+            let mut points: Vec<(f64, f64)> = (0..40).map(|k| (k as f64, value(k))).collect();
+            let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
+            jumps.look(&mut points, f64::MIN_POSITIVE);
+            jumps.largest().map(|(place, _)| place)
+        };
+        assert_eq!(place(6), Some(33.5));
+        // Two rows at the end are never all that lies behind a knock.
+        assert_eq!(place(2), Some(35.5));
+        let mut few = vec![(0.0, 0.0), (1.0, 0.0), (2.0, 9.0)];
+        let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
+        jumps.look(&mut few, f64::MIN_POSITIVE);
+        assert_eq!(jumps.largest(), None);
+    }
 }

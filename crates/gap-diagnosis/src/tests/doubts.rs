@@ -375,3 +375,47 @@ fn a_coarse_display_is_noise() {
     let answer = diagnose(&rounded, None, &Options::default());
     assert!(answer.causes.is_empty(), "{:?}", names(&answer));
 }
+
+/// What creeps alike everywhere is the machine's or the instrument's; nothing is written for it.
+#[test]
+fn a_warm_up_may_be_the_instruments() {
+    let creep =
+        |row: &Row| Vector::new(14.0 * (1.0 - (-row.conditions.time_s.unwrap() / 500.0).exp()), 0.0, 0.0);
+    let answer = diagnose(&measured(GOOD, creep), None, &Options::default());
+    let cause = answer.causes.iter().find(|c| c.effect == "warmup.X").expect("found");
+    assert!(
+        cause.cannot_be_told_from.iter().any(|rival| rival == "instrument-drift"),
+        "{:?}",
+        names(&answer)
+    );
+    assert_eq!(answer.verdict, Verdict::Ambiguous);
+    assert!(!answer.corrects());
+    // Who knows that the instrument stands still says so.
+    let stable = Options { without: vec![EffectKind::InstrumentDrift], ..Options::default() };
+    let answer = diagnose(&measured(GOOD, creep), None, &stable);
+    assert_eq!((answer.verdict, names(&answer)), (Verdict::Named, vec!["warmup.X"]));
+}
+
+/// Rails that meet with a step over 12 mm, where the model's step is narrower: one cause, no damage beside it.
+#[test]
+fn the_flank_of_a_joint_is_no_damage() {
+    let step = |row: &Row| {
+        let along = (row.command.linear_mm.z - 200.0) / 12.0;
+        Vector::new(5.0 * along.tanh(), 0.0, 0.0)
+    };
+    let answer = diagnose(&measured(GOOD, step), None, &Options::default());
+    assert!(names(&answer).iter().all(|name| !name.starts_with("local.")), "{:?}", names(&answer));
+}
+
+/// A product of two places: curves and lines of hundreds of micrometres that cancel explain it, and are no name.
+#[test]
+fn causes_that_cancel_are_no_name() {
+    let sides = |row: &Row| {
+        let at = row.command.linear_mm;
+        let half = (at.y - 200.0) / 200.0;
+        Vector::new(0.0, 0.0, if at.x > 190.0 { 22.0 * half } else { -14.0 * half })
+    };
+    let answer = diagnose(&measured(GOOD, sides), None, &Options::default());
+    assert_ne!(answer.verdict, Verdict::Named, "{:?}", names(&answer));
+    assert!(!answer.corrects() || answer.verdict == Verdict::Ambiguous, "{:?}", names(&answer));
+}

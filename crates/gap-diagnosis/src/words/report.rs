@@ -20,7 +20,7 @@ use crate::words::sentence::sentence;
 /// Causes of which the first leave more than there was: the others take off what they put on.
 fn cancelling(causes: &[Cause], gap_um: f64) -> Option<Harm> {
     /// What two or three causes may leave on their way, by chance, as a factor of the gap.
-    const MORE: f64 = 1.5;
+    const MORE: f64 = 1.1;
     let most_um = causes.iter().map(|cause| cause.rms_after_um).fold(0.0, f64::max);
     (most_um > MORE * gap_um).then_some(Harm::Cancels(most_um, gap_um))
 }
