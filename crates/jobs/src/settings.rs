@@ -70,6 +70,8 @@ impl Settings {
         let stored = Stored::load(options, &profile)?;
         let mut setup = setup(options, &profile, &stored)?;
         files.extend(stored.files);
+        // The other engines know no lever.
+        setup.lever_matters &= engine_id == EngineId::RigidBody;
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
         declare_switches(&profile, &mut dialect);

@@ -136,10 +136,10 @@ impl State<'_, '_> {
     /// The first of some effects that passes its tests, or two that pass beside each other; else why the best did not.
     ///
     /// What few runs cannot prove (a knock between two of them explains their offsets) does not keep the next ones from
-    /// their tests, and neither does a form that breaks its bounds: two waves of a probe that cancel by tenths of a millimetre
-    /// say nothing of the play behind them. What does not hold on other lines ends the search: the structure is there, and has no name. But two
-    /// faults may hide each other: on circles of either sense a lag adds to a squareness or takes off it, and neither alone
-    /// foretells a circle that was left out.
+    /// their tests, and neither does a form that breaks its bounds: two waves of a probe that cancel by tenths of a
+    /// millimetre say nothing of the play behind them. What does not hold on other lines ends the search: the structure is
+    /// there, and has no name. But two faults may hide each other: on circles of either sense a lag adds to a squareness or
+    /// takes off it, and neither alone foretells a circle that was left out.
     fn admitted(&mut self, proposed: &[(Part, Fit)]) -> Result<(Vec<Part>, Fit), Option<Refused>> {
         let mut first = None;
         for (part, fit) in proposed.iter().take(MOST_TRIED) {

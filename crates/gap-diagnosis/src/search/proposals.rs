@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn a_knock_needs_rows_on_both_sides() {
         let place = |off: usize| {
-            let value = |k: usize| if k + off >= 40 { 9.0 } else { f64::from(u8::from(k % 3 == 0)) };
+            let value = |k: usize| if k + off >= 40 { 9.0 } else { f64::from(u8::from(k.is_multiple_of(3))) };
             let mut points: Vec<(f64, f64)> = (0..40).map(|k| (k as f64, value(k))).collect();
             let mut jumps = Jumps { least: STEP_ROWS, ..Jumps::default() };
             jumps.look(&mut points, f64::MIN_POSITIVE);

@@ -379,8 +379,9 @@ fn a_coarse_display_is_noise() {
 /// What creeps alike everywhere is the machine's or the instrument's; nothing is written for it.
 #[test]
 fn a_warm_up_may_be_the_instruments() {
-    let creep =
-        |row: &Row| Vector::new(14.0 * (1.0 - (-row.conditions.time_s.unwrap() / 500.0).exp()), 0.0, 0.0);
+    let creep = |row: &Row| {
+        Vector::new(14.0 * (1.0 - units::math::exp(-row.conditions.time_s.unwrap() / 500.0)), 0.0, 0.0)
+    };
     let answer = diagnose(&measured(GOOD, creep), None, &Options::default());
     let cause = answer.causes.iter().find(|c| c.effect == "warmup.X").expect("found");
     assert!(
@@ -401,7 +402,7 @@ fn a_warm_up_may_be_the_instruments() {
 fn the_flank_of_a_joint_is_no_damage() {
     let step = |row: &Row| {
         let along = (row.command.linear_mm.z - 200.0) / 12.0;
-        Vector::new(5.0 * along.tanh(), 0.0, 0.0)
+        Vector::new(5.0 * along.clamp(-1.0, 1.0), 0.0, 0.0)
     };
     let answer = diagnose(&measured(GOOD, step), None, &Options::default());
     assert!(names(&answer).iter().all(|name| !name.starts_with("local.")), "{:?}", names(&answer));
