@@ -283,11 +283,12 @@ impl Profile {
     /// True where the errors depend on how long the tool is: an axis turns what it carries.
     #[must_use]
     pub fn lever_matters(&self) -> bool {
-        let angles = |rows: &ErrorRows| rows.given[3..].contains(&true);
+        let angles = |rows: &ErrorRows| rows.rows.iter().any(|row| row[3..] != [0.0; 3]);
         let both_ways = |axis: &machine_model::LinearAxis| axis.errors_negative.is_some();
+        let turns = self.chain().axes().any(|axis| !axis.is_linear());
         self.rows.iter().flatten().any(angles)
             || self.description.linear.iter().any(both_ways)
-            || self.chain().axes().any(|axis| !axis.is_linear())
+            || (turns && self.rotary_matters())
             || !self.effects.is_empty()
     }
 
