@@ -1,9 +1,8 @@
 //! The INI file of a LinuxCNC machine: its unit, and which files hold tools and parameters.
 
-use measurement_files::{Refusal, decoded};
+use measurement_files::{Piece, Refusal, decoded};
 
-use crate::text::{Piece, refuse_whole};
-use crate::{BEYOND, UNREADABLE};
+use crate::refusals::{BEYOND, UNREADABLE, refuse, refuse_whole};
 
 /// What an INI file says of a machine's lengths.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +28,9 @@ impl Ini {
         for line in Piece::lines(&text).map(Piece::trimmed) {
             if line.text.starts_with("#INCLUDE") {
                 let help = "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name";
-                return Err(line.refuse(
+                return Err(refuse(
                     file,
+                    line,
                     UNREADABLE,
                     "this INI file takes in others",
                     "what they say would be missed",
@@ -51,8 +51,9 @@ impl Ini {
                 section.eq_ignore_ascii_case(of) && key.eq_ignore_ascii_case(name) && !value.text.is_empty()
             };
             if is("EMCIO", "DB_PROGRAM") {
-                return Err(value.refuse(
+                return Err(refuse(
                     file,
+                    value,
                     BEYOND,
                     "the tools of this machine are kept by a program of their own",
                     "which lengths it holds this file does not say",
@@ -83,7 +84,7 @@ impl Ini {
                 let label = "expected mm or inch";
                 let help = "write what the machine's axes count in: LINEAR_UNITS = mm, or inch";
                 let message = format!("LINEAR_UNITS is `{}`", unit.text);
-                return Err(unit.refuse(file, UNREADABLE, message, label, help));
+                return Err(refuse(file, unit, UNREADABLE, message, label, help));
             }
         };
         let owned = |value: Option<&str>| value.map(str::to_owned);

@@ -19,27 +19,20 @@
 mod ini;
 mod offset_dump;
 mod parameters;
-mod text;
+mod refusals;
 mod tool_list;
 mod tool_table;
 
 pub use ini::Ini;
 pub use measurement_files::Refusal;
-pub use parameters::{Kept, parameters};
-
-use diagnostic::Code;
-
-/// A file of the control that cannot be read.
-const UNREADABLE: Code = Code(920);
-/// A file of the control that holds what cannot be followed.
-const BEYOND: Code = Code(921);
+pub use parameters::work_offsets;
 
 /// The number of a tool length, H1 is 1, and what it adds to X, Y and Z, mm.
 pub type Length = (u32, [f64; 3]);
 
 /// Tool lengths of a file, whoever wrote it, by ascending number.
 ///
-/// * `name` – the file's, in messages; `.csv` is a spreadsheet's
+/// * `name` – the file's, in messages
 /// * `unit_mm` – of a LinuxCNC tool table, which does not say it: that of the machine
 ///
 /// # Errors

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use measurement_files::Refusal;
+use measurement_files::{Piece, Refusal};
 
-use crate::text::{Piece, refuse_whole};
-use crate::{BEYOND, Length, UNREADABLE};
+use crate::Length;
+use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
 
 /// A program in which a block writes offsets, and nothing else.
 pub(crate) fn is_one(text: &str) -> bool {
@@ -37,12 +37,11 @@ fn blocks_words(line: Piece<'_>) -> Vec<(char, Piece<'_>)> {
     words
 }
 
-/// Geometry and wear of a length, mm.
-#[derive(Default)]
+/// Geometry and wear of a length, mm, and the line that gave the first of them.
 struct Parts<'t> {
     geometry_mm: Option<f64>,
     wear_mm: Option<f64>,
-    at: Option<Piece<'t>>,
+    at: Piece<'t>,
 }
 
 pub(crate) fn lengths(name: &str, text: &str) -> Result<Vec<Length>, Box<Refusal>> {
@@ -50,108 +49,115 @@ pub(crate) fn lengths(name: &str, text: &str) -> Result<Vec<Length>, Box<Refusal
     let mut unit_mm = None;
     let mut parts: BTreeMap<u32, Parts<'_>> = BTreeMap::new();
     for line in Piece::lines(text) {
-        let words = blocks_words(line);
-        let mut written = BTreeMap::new();
-        let mut writes = false;
-        for (letter, number) in words {
-            let refuse = |message: String, label: &str, help: &str| {
-                Err(line.trimmed().refuse(file, UNREADABLE, message, label, help))
-            };
-            match (letter, number.number()) {
-                ('%', None) | ('O' | 'N' | ':', _) | ('G', Some(90.0)) | ('M', Some(2.0 | 30.0 | 99.0)) => {}
-                ('G', Some(20.0)) => unit_mm = Some(25.4),
-                ('G', Some(21.0)) => unit_mm = Some(1.0),
-                ('G', Some(10.0)) => writes = true,
-                ('L' | 'P' | 'R', Some(value)) => {
-                    if written.insert(letter, (value, number)).is_some() {
-                        return refuse(
-                            format!("{letter} stands twice"),
-                            "in this block",
-                            "write one block for each",
-                        );
-                    }
-                }
-                _ => {
-                    return refuse(
-                        format!("`{letter}{}` in a list of offsets", number.text),
-                        "expected blocks of G10 alone",
-                        "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
-                    );
-                }
-            }
-        }
-        if !writes {
-            continue;
-        }
-        let refuse = |code, message: String, label: &str, help: &str| {
-            Err(line.trimmed().refuse(file, code, message, label, help))
-        };
-        let whole = |letter: char| {
-            let value = written.get(&letter).map(|(value, _)| *value);
-            value.filter(|value| value.fract() == 0.0 && (0.0..1e6).contains(value)).map(|value| value as u32)
-        };
-        let kind = whole('L');
-        if let Some(2 | 20) = kind {
-            return refuse(
-                BEYOND,
-                "a work offset in a list of tool lengths".to_owned(),
-                "this block",
-                "take it out, and give it with `--work-offset G54=X,Y,Z`",
-            );
-        }
-        if let Some(12 | 13) = kind {
-            continue;
-        }
-        let (Some(kind @ (1 | 10 | 11)), Some(number), Some((value, digits))) =
-            (kind, whole('P').filter(|number| *number > 0), written.get(&'R'))
-        else {
-            let help =
-                "write it like `G10 L10 P1 R120.5`: L10 geometry, L11 wear, P the H number, R the length";
-            return refuse(
-                UNREADABLE,
-                "this block of G10 gives no tool length".to_owned(),
-                "L, P and R were expected",
-                help,
-            );
-        };
+        let Some(words) = written(file, line, &mut unit_mm)? else { continue };
+        let line = line.trimmed();
+        let Some(Offset { geometry, number, value, digits }) = offset(file, line, &words)? else { continue };
         let Some(unit_mm) = unit_mm else {
+            let message = "millimetres or inches? the list does not say";
             let help = "write G21 (or G20) on a line of its own in front, whichever the control was in";
-            return refuse(
-                UNREADABLE,
-                "millimetres or inches? the list does not say".to_owned(),
-                "the first length",
-                help,
-            );
+            return Err(refuse(file, line, UNREADABLE, message, "the first length", help));
         };
-        if *value != 0.0 && !digits.text.contains('.') {
-            let help = "write it with a decimal point";
+        if value != 0.0 && !digits.text.contains('.') {
             let message = format!("R{} has no decimal point", digits.text);
-            return Err(digits.refuse(file, UNREADABLE, message, "increments or a length?", help));
+            let help = "write it with a decimal point";
+            return Err(refuse(file, digits, UNREADABLE, message, "increments or a length?", help));
         }
-        let part = parts.entry(number).or_default();
-        let place = if kind == 10 { &mut part.geometry_mm } else { &mut part.wear_mm };
+        let part = parts.entry(number).or_insert(Parts { geometry_mm: None, wear_mm: None, at: line });
+        let place = if geometry { &mut part.geometry_mm } else { &mut part.wear_mm };
         if place.replace(value * unit_mm).is_some() {
             let message = format!("the length H{number} stands twice");
-            return refuse(UNREADABLE, message, "again here", "keep the line that is true");
+            return Err(refuse(file, line, UNREADABLE, message, "again here", "keep the line that is true"));
         }
-        part.at.get_or_insert(line.trimmed());
     }
     if parts.is_empty() {
         let help = "write them like `G10 L10 P1 R120.5`";
         return Err(refuse_whole(file, UNREADABLE, "the list holds no tool length", help));
     }
     let apart = parts.values().any(|part| part.geometry_mm.is_some());
-    let length = |(number, part): (u32, Parts<'_>)| match (part.geometry_mm, part.at) {
-        (None, Some(at)) if apart => Err(at.refuse(
-            file,
-            UNREADABLE,
-            format!("H{number} has a wear (L11) and no geometry (L10)"),
-            "how long is it?",
-            format!("add `G10 L10 P{number} R…`, or take the line out"),
-        )),
-        (geometry_mm, _) => {
-            Ok((number, [0.0, 0.0, geometry_mm.unwrap_or(0.0) + part.wear_mm.unwrap_or(0.0)]))
+    let length = |(number, part): (u32, Parts<'_>)| {
+        if apart && part.geometry_mm.is_none() {
+            let message = format!("H{number} has a wear (L11) and no geometry (L10)");
+            let help = format!("add `G10 L10 P{number} R…`, or take the line out");
+            return Err(refuse(file, part.at, UNREADABLE, message, "how long is it?", help));
         }
+        Ok((number, [0.0, 0.0, part.geometry_mm.unwrap_or(0.0) + part.wear_mm.unwrap_or(0.0)]))
     };
     parts.into_iter().map(length).collect()
+}
+
+/// Letters of a block, their numbers and how these are written.
+type Numbers<'t> = BTreeMap<char, (f64, Piece<'t>)>;
+
+/// L, P and R of a line that writes an offset; `None` for one that writes none. G20 and G21 change the unit.
+fn written<'t>(
+    file: File<'_>,
+    line: Piece<'t>,
+    unit_mm: &mut Option<f64>,
+) -> Result<Option<Numbers<'t>>, Box<Refusal>> {
+    let mut written = Numbers::new();
+    let mut writes = false;
+    let unread = |message, label, help| Err(refuse(file, line.trimmed(), UNREADABLE, message, label, help));
+    for (letter, number) in blocks_words(line) {
+        match (letter, number.number()) {
+            ('%', None) | ('O' | 'N' | ':', _) | ('G', Some(90.0)) | ('M', Some(2.0 | 30.0 | 99.0)) => {}
+            ('G', Some(20.0)) => *unit_mm = Some(25.4),
+            ('G', Some(21.0)) => *unit_mm = Some(1.0),
+            ('G', Some(10.0)) => writes = true,
+            ('L' | 'P' | 'R', Some(value)) => {
+                if written.insert(letter, (value, number)).is_some() {
+                    let message = format!("{letter} stands twice");
+                    return unread(message, "in this block", "write one block for each");
+                }
+            }
+            _ => {
+                return unread(
+                    format!("`{letter}{}` in a list of offsets", number.text),
+                    "expected blocks of G10 alone",
+                    "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
+                );
+            }
+        }
+    }
+    Ok(writes.then_some(written))
+}
+
+/// One number of a tool's length.
+struct Offset<'t> {
+    /// Its geometry, not its wear.
+    geometry: bool,
+    /// H.
+    number: u32,
+    /// In the unit of the list.
+    value: f64,
+    /// How it is written.
+    digits: Piece<'t>,
+}
+
+/// What a block of G10 says of a length; `None` where it gives a radius.
+fn offset<'t>(
+    file: File<'_>,
+    line: Piece<'t>,
+    words: &Numbers<'t>,
+) -> Result<Option<Offset<'t>>, Box<Refusal>> {
+    let whole = |letter: char| {
+        let value = words.get(&letter).map(|(value, _)| *value);
+        value.filter(|value| value.fract() == 0.0 && (0.0..1e6).contains(value)).map(|value| value as u32)
+    };
+    match (whole('L'), whole('P'), words.get(&'R')) {
+        (Some(2 | 20), ..) => {
+            let message = "a work offset in a list of tool lengths";
+            let help = "take it out, and give it with `--work-offset G54=X,Y,Z`";
+            Err(refuse(file, line, BEYOND, message, "this block", help))
+        }
+        (Some(12 | 13), ..) => Ok(None),
+        (Some(kind @ (1 | 10 | 11)), Some(number @ 1..), Some((value, digits))) => {
+            Ok(Some(Offset { geometry: kind == 10, number, value: *value, digits: *digits }))
+        }
+        _ => {
+            let message = "this block of G10 gives no tool length";
+            let help =
+                "write it like `G10 L10 P1 R120.5`: L10 geometry, L11 wear, P the H number, R the length";
+            Err(refuse(file, line, UNREADABLE, message, "L, P and R were expected", help))
+        }
+    }
 }

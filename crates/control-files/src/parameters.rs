@@ -5,10 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use measurement_files::{Refusal, decoded};
+use measurement_files::{Piece, Refusal, decoded};
 
-use crate::text::{Piece, refuse_whole};
-use crate::{BEYOND, UNREADABLE};
+use crate::refusals::{BEYOND, UNREADABLE, refuse, refuse_whole};
 
 /// Nine systems: the code that selects each.
 const SYSTEMS: [&str; 9] = ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"];
@@ -20,26 +19,19 @@ const SELECTED: u32 = 5220;
 /// Not 0: G92 is in force.
 const G92_HOLDS: u32 = 5210;
 
-/// What a file of parameters keeps.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
-    /// Code and machine coordinates of its zero, mm; X of a lathe is a radius.
-    pub work_offsets: Vec<(String, [f64; 3])>,
-}
-
-/// Reads a file of parameters.
+/// The work offsets in a file of parameters: code and machine coordinates of its zero, mm; X of a lathe is a radius.
 ///
 /// * `unit_mm` – the machine's, of its INI file
 /// * `has_rotary` – which of A, B, C the machine has: a zero of those must be 0
 ///
 /// # Errors
 /// It is none; G92, a turn about Z or a zero of a rotary axis holds; another system than G54 is in force.
-pub fn parameters(
+pub fn work_offsets(
     name: &str,
     bytes: &[u8],
     unit_mm: f64,
     has_rotary: [bool; 3],
-) -> Result<Kept, Box<Refusal>> {
+) -> Result<Vec<(String, [f64; 3])>, Box<Refusal>> {
     let text = decoded(bytes);
     let file = (name, text.as_ref());
     let mut kept = BTreeMap::new();
@@ -50,7 +42,7 @@ pub fn parameters(
         let (Some(number), Some(value), None) = (number, value.and_then(Piece::number), words.next()) else {
             let help = "give the file that the INI file names as PARAMETER_FILE, as LinuxCNC writes it";
             let message = "this line is no parameter of LinuxCNC";
-            return Err(line.refuse(file, UNREADABLE, message, "expected a number and its value", help));
+            return Err(refuse(file, line, UNREADABLE, message, "expected a number and its value", help));
         };
         kept.insert(number, (value, line));
     }
@@ -60,12 +52,12 @@ pub fn parameters(
         return Err(refuse_whole(file, UNREADABLE, message, help));
     }
     let value = |number: u32| kept.get(&number).map_or(0.0, |(value, _)| *value);
-    let refuse = |number: u32, message: String, label: &str, help: &str| match kept.get(&number) {
-        Some((_, line)) => line.refuse(file, BEYOND, message, label, help),
+    let holds = |number: u32, message: String, label: &str, help: &str| match kept.get(&number) {
+        Some((_, line)) => refuse(file, *line, BEYOND, message, label, help),
         None => refuse_whole(file, BEYOND, message, help),
     };
     if value(G92_HOLDS) != 0.0 && (5211..=5219).any(|number| value(number) != 0.0) {
-        return Err(refuse(
+        return Err(holds(
             G92_HOLDS,
             "a shift by G92 was in force when this file was written".to_owned(),
             "it would shift the program too",
@@ -75,7 +67,7 @@ pub fn parameters(
     let selected = value(SELECTED);
     if selected != 1.0 {
         let code = SYSTEMS.get((selected - 1.0) as usize).filter(|_| selected >= 1.0);
-        return Err(refuse(
+        return Err(holds(
             SELECTED,
             format!("{} was in force when this file was written", code.unwrap_or(&"no work offset")),
             "a program that names none would begin in it",
@@ -85,7 +77,7 @@ pub fn parameters(
     let mut work_offsets = Vec::new();
     for (first, code) in (FIRST..).step_by(BETWEEN as usize).zip(SYSTEMS) {
         if value(first + 9) != 0.0 {
-            return Err(refuse(
+            return Err(holds(
                 first + 9,
                 format!("{code} is turned by {} degrees about Z", value(first + 9)),
                 "a zero that is turned is no shift",
@@ -97,7 +89,7 @@ pub fn parameters(
         }
         for (at, axis) in (3u32..).zip(["A", "B", "C"]) {
             if has_rotary[at as usize - 3] && value(first + at) != 0.0 {
-                return Err(refuse(
+                return Err(holds(
                     first + at,
                     format!("the zero of {axis} under {code} is {} degrees", value(first + at)),
                     "rotary axes have no work offset here",
@@ -107,5 +99,5 @@ pub fn parameters(
         }
         work_offsets.push((code.to_owned(), [0, 1, 2].map(|at| value(first + at) * unit_mm)));
     }
-    Ok(Kept { work_offsets })
+    Ok(work_offsets)
 }

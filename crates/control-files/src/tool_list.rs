@@ -2,7 +2,8 @@
 
 use measurement_files::{Codes, Kind, Refusal, Sheet};
 
-use crate::{Length, UNREADABLE};
+use crate::Length;
+use crate::refusals::UNREADABLE;
 
 const KIND: Kind<'static> = Kind {
     columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",

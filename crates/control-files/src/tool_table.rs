@@ -2,10 +2,10 @@
 //!
 //! Letters and what LinuxCNC does with lines it cannot read (passes over them): its source, `tooldata_common.cc`.
 
-use measurement_files::Refusal;
+use measurement_files::{Piece, Refusal};
 
-use crate::text::{Piece, refuse_whole};
-use crate::{Length, UNREADABLE};
+use crate::Length;
+use crate::refusals::{UNREADABLE, refuse, refuse_whole};
 
 /// Of offsets, diameter, angles and place in the magazine.
 const NUMBERS: &str = "PXYZABCUVWDIJQ";
@@ -39,7 +39,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         let unread = |word: Piece<'_>, label: &str| {
             let message = format!("`{}` in a tool table of LinuxCNC", word.text);
             let help = "LinuxCNC would pass over this line; write it like `T1 P1 Z+120.5 D10 ;end mill`, or remove it";
-            word.refuse(file, UNREADABLE, message, label, help)
+            refuse(file, word, UNREADABLE, message, label, help)
         };
         let (mut number, mut vector) = (None, [0.0; 3]);
         for word in line.words() {
@@ -70,7 +70,7 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         }
         if lengths.iter().any(|(known, _)| *known == number) {
             let message = format!("T{number} stands twice in the tool table");
-            return Err(word.refuse(file, UNREADABLE, message, "again here", "keep the line that is true"));
+            return Err(refuse(file, word, UNREADABLE, message, "again here", "keep the line that is true"));
         }
         lengths.push((number, vector));
     }

@@ -1,6 +1,6 @@
 //! Any file is read or refused, and what is refused has a place in its text.
 
-use control_files::{Ini, Refusal, parameters, tool_lengths};
+use control_files::{Ini, Refusal, tool_lengths, work_offsets};
 use proptest::prelude::*;
 
 const FILES: [&str; 5] = [
@@ -36,7 +36,7 @@ proptest! {
                 Err(refusal) => placed(&refusal)?,
             }
         }
-        if let Err(refusal) = parameters("a", &bytes, 1.0, [true; 3]) {
+        if let Err(refusal) = work_offsets("a", &bytes, 1.0, [true; 3]) {
             placed(&refusal)?;
         }
         if let Err(refusal) = Ini::read("a", &bytes) {
@@ -46,6 +46,6 @@ proptest! {
 
     #[test]
     fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = (tool_lengths("a", &bytes, Some(1.0)), parameters("a", &bytes, 1.0, [false; 3]), Ini::read("a", &bytes));
+        let _ = (tool_lengths("a", &bytes, Some(1.0)), work_offsets("a", &bytes, 1.0, [false; 3]), Ini::read("a", &bytes));
     }
 }

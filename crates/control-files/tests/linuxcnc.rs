@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-use control_files::{parameters, tool_lengths};
+use control_files::{tool_lengths, work_offsets};
 
 /// LinuxCNC prints four decimals of an inch here.
 const PRINTED_MM: f64 = 0.5e-4 * 25.4 + 1e-9;
@@ -85,7 +85,7 @@ fn linuxcnc_reads_the_same() {
             assert!((ours[axis] - theirs[axis] * 25.4).abs() <= PRINTED_MM, "T{number}: {ours:?} {theirs:?}");
         }
     }
-    let offsets = parameters("a.var", kept.as_bytes(), 25.4, [false; 3]).expect("parameters").work_offsets;
+    let offsets = work_offsets("a.var", kept.as_bytes(), 25.4, [false; 3]).expect("parameters");
     // The first is printed at the start, in millimetres.
     let theirs: Vec<Vec<f64>> = printed(&output, "SET_G5X_OFFSET(").into_iter().skip(1).collect();
     let mut seen = [false; 9];

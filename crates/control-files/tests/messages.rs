@@ -1,6 +1,6 @@
 //! What files of controls are refused for: the message, the place, what to do.
 
-use control_files::{Ini, Refusal, parameters, tool_lengths};
+use control_files::{Ini, Refusal, tool_lengths, work_offsets};
 
 /// Number, message and what stands at the place.
 fn said<T: std::fmt::Debug>(read: Result<T, Box<Refusal>>) -> (u16, String, String) {
@@ -107,14 +107,11 @@ fn ini_files() {
 
 #[test]
 fn files_of_parameters() {
-    let read = |text: &str| parameters("m.var", text.as_bytes(), 1.0, [false, false, true]);
+    let read = |text: &str| work_offsets("m.var", text.as_bytes(), 1.0, [false, false, true]);
     let plain = "5210 0\n5211 7\n5220 1\n5221 1.5\n5222 2\n5223 -3\n5243 4\n";
     let kept = read(plain).expect("read");
-    assert_eq!(
-        kept.work_offsets[..2],
-        [("G54".to_owned(), [1.5, 2.0, -3.0]), ("G55".to_owned(), [0.0, 0.0, 4.0])]
-    );
-    assert_eq!((kept.work_offsets.len(), kept.work_offsets[8].0.as_str()), (9, "G59.3"));
+    assert_eq!(kept[..2], [("G54".to_owned(), [1.5, 2.0, -3.0]), ("G55".to_owned(), [0.0, 0.0, 4.0])]);
+    assert_eq!((kept.len(), kept[8].0.as_str()), (9, "G59.3"));
     let owned = |code: u16, message: &str, at: &str| (code, message.to_owned(), at.to_owned());
     let with = |line: &str| said(read(&format!("{plain}{line}\n")));
     assert_eq!(

@@ -44,7 +44,7 @@ impl Stored {
                     let parameters = beside(path, name);
                     let bytes = stored.read(&parameters)?;
                     let name = lines::name(&parameters);
-                    control_files::parameters(&name, &bytes, ini.unit_mm, profile.has_rotary())?.work_offsets
+                    control_files::work_offsets(&name, &bytes, ini.unit_mm, profile.has_rotary())?
                 }
             });
             stored.lengths = Some(Vec::new());

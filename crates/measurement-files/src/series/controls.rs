@@ -6,7 +6,7 @@ use machine_model::Axis;
 use crate::codes::{CELL, COLUMN, QUESTION};
 use crate::refusal::Refusal;
 
-use super::file::{Content, File, Line, Origin, Series, Values, numbers, symbol};
+use super::file::{Content, File, Origin, Series, Values, numbers, symbol};
 
 /// LinuxCNC: nominal, forward, reverse.
 pub(super) fn triplets(file: &File<'_>) -> Result<Series, Box<Refusal>> {
@@ -56,7 +56,7 @@ pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
         let cells = &cells[skip..];
         if cells.len() != header.len() {
             let message = format!("{} numbers for {} columns", cells.len(), header.len());
-            return Err(file.refuse(CELL, line.span, message, "give every row all columns"));
+            return Err(file.refuse(CELL, line.span(), message, "give every row all columns"));
         }
         let cell = |title: &str| header.iter().position(|h| h == title).map(|k| cells[k]);
         let Some(position) = cell("AXISPOS") else { continue };
@@ -86,8 +86,8 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
     let mut found: Vec<Series> = Vec::new();
     let mut angles: Option<[f64; 3]> = None;
     let mut header: Vec<String> = Vec::new();
-    for Line { span, text } in file.lines() {
-        let line = text.split("//").next().unwrap_or_default().trim();
+    for whole in file.lines() {
+        let line = whole.text.split("//").next().unwrap_or_default().trim();
         if line.is_empty() {
             continue;
         }
@@ -101,7 +101,7 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
         }
         let Some(cells) = numbers(line).filter(|n| n.len() == header.len()) else {
             let message = format!("expected {} numbers", header.len());
-            return Err(file.refuse(CELL, span, message, "mm and rad, separated by spaces"));
+            return Err(file.refuse(CELL, whole.span(), message, "mm and rad, separated by spaces"));
         };
         let angle = |title: &String| ["C0Y", "B0Z", "A0Z"].iter().position(|known| known == title);
         if let Some(places) = header.iter().map(angle).collect::<Option<Vec<usize>>>() {
@@ -114,12 +114,22 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
         let Some(axis) = header[0].chars().next().and_then(Axis::from_letter).filter(|a| a.is_linear())
         else {
             let help = "a block begins with the axis: `X EXX EYX …`; of constant errors only C0Y, B0Z and A0Z are read";
-            return Err(file.refuse(COLUMN, span, format!("`{}` is no linear axis", header[0]), help));
+            return Err(file.refuse(
+                COLUMN,
+                whole.span(),
+                format!("`{}` is no linear axis", header[0]),
+                help,
+            ));
         };
         for (title, value) in header.iter().zip(&cells).skip(1) {
             let Some((function, own)) = symbol(title).filter(|(_, own)| *own == axis) else {
                 let message = format!("`{title}` is no error function of {axis}");
-                return Err(file.refuse(COLUMN, span, message, "write EXX, EYX, … of the block's axis"));
+                return Err(file.refuse(
+                    COLUMN,
+                    whole.span(),
+                    message,
+                    "write EXX, EYX, … of the block's axis",
+                ));
             };
             let same = |s: &Series| s.axis == own && s.function == function;
             if !found.iter().any(same) {

@@ -8,6 +8,7 @@ use machine_model::Axis;
 use crate::codes::{QUESTION, UNREADABLE};
 use crate::number::Mark;
 use crate::refusal::{Refusal, error};
+use crate::text::Piece;
 use crate::unit::{MM, Quantity, RAD, Unit};
 
 /// What numbers of a control's table mean.
@@ -129,32 +130,18 @@ pub(super) struct File<'f> {
     pub(super) told: Told<'f>,
 }
 
-/// A line that says something: its bytes' place, and what it says.
-#[derive(Clone)]
-pub(super) struct Line<'f> {
-    pub(super) span: Range<usize>,
-    pub(super) text: &'f str,
-}
-
 impl<'f> File<'f> {
-    /// Lines that say something; `#` begins a comment.
-    pub(super) fn lines(&self) -> impl Iterator<Item = Line<'f>> + Clone + use<'f> {
-        let mut at = 0;
-        let lines = self.text.split_inclusive('\n').map(move |line| {
-            let start = at + (line.len() - line.trim_start().len());
-            at += line.len();
-            let text = line.trim();
-            Line { span: start..start + text.len(), text }
-        });
-        lines.filter(|line| !line.text.is_empty())
+    /// Lines that say something.
+    pub(super) fn lines(&self) -> impl Iterator<Item = Piece<'f>> + Clone + use<'f> {
+        Piece::lines(self.text).map(Piece::trimmed).filter(|line| !line.text.is_empty())
     }
 
     pub(super) fn refuse(&self, code: Code, span: Range<usize>, message: String, help: &str) -> Box<Refusal> {
         Refusal::of(self.name, self.text, error(code, message, &span, "here", help))
     }
 
-    pub(super) fn damaged(&self, line: &Line<'_>, message: String) -> Box<Refusal> {
-        self.refuse(UNREADABLE, line.span.clone(), message, "the file is damaged; export it again")
+    pub(super) fn damaged(&self, span: Range<usize>, message: String) -> Box<Refusal> {
+        self.refuse(UNREADABLE, span, message, "the file is damaged; export it again")
     }
 
     pub(super) fn question(&self, message: &str, help: String) -> Box<Refusal> {

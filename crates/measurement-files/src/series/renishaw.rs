@@ -7,16 +7,17 @@ use machine_model::Axis;
 use crate::codes::{AXES, CELL, RUNS, UNIT};
 use crate::refusal::{Codes, Refusal};
 use crate::table::{Table, value};
+use crate::text::Piece;
 use crate::unit::{MM, Unit};
 
-use super::file::{File, Line, Origin, Series, numbers};
+use super::file::{File, Origin, Series, numbers};
 
 /// One deviation: run, target (from 1), value, and where it stands.
 struct Deviation<'f> {
     run: usize,
     target: usize,
     value: f64,
-    line: Line<'f>,
+    line: Piece<'f>,
 }
 
 /// Renishaw's RTL text.
@@ -36,14 +37,14 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                 let message = "a second measurement in one file".to_owned();
                 return Err(file.refuse(
                     RUNS,
-                    line.span,
+                    line.span(),
                     message,
                     "export each measurement to a file of its own",
                 ));
             }
         } else if let Some((key, rest)) = line.text.split_once(':') {
             part = key.trim().to_lowercase();
-            let count = rest.trim().parse::<usize>().ok().map(|count| (count, line.span.clone()));
+            let count = rest.trim().parse::<usize>().ok().map(|count| (count, line.span()));
             match (section.as_str(), part.as_str()) {
                 ("TARGET DATA", "target-count") => announced_targets = count,
                 ("RUNS", "run-count") => announced_runs = count,
@@ -63,7 +64,7 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                         );
                         return Err(file.refuse(
                             AXES,
-                            line.span,
+                            line.span(),
                             message,
                             "correct the symbol behind the file's name",
                         ));
@@ -78,7 +79,11 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                     [run, target, value] if run >= 1.0 && target >= 1.0 => {
                         rows.push(Deviation { run: run as usize, target: target as usize, value, line });
                     }
-                    _ => return Err(file.damaged(&line, "expected run, target and deviation".to_owned())),
+                    _ => {
+                        return Err(
+                            file.damaged(line.span(), "expected run, target and deviation".to_owned())
+                        );
+                    }
                 },
                 _ => {}
             }
@@ -87,7 +92,7 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let (announced, span) = announced_targets.unwrap_or((targets.len(), 0..0));
     if announced != targets.len() || targets.is_empty() {
         let message = format!("{announced} targets are announced and {} are there", targets.len());
-        return Err(file.damaged(&Line { span, text: "" }, message));
+        return Err(file.damaged(span, message));
     }
     let found = rows.iter().map(|row| row.run).max().unwrap_or(0);
     if let Some((announced, place)) = announced_runs.filter(|(count, _)| *count != found) {
@@ -107,7 +112,9 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         };
         for row in own {
             let Some(position) = at(&row) else {
-                return Err(file.damaged(&row.line, format!("target {} of {}", row.target, targets.len())));
+                return Err(
+                    file.damaged(row.line.span(), format!("target {} of {}", row.target, targets.len()))
+                );
             };
             // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
             series.push(&run.div_ceil(2).to_string(), position, row.value * factor, direction);

@@ -1,0 +1,36 @@
+//! Why a file is not read.
+
+use diagnostic::{Code, Diagnostic};
+use measurement_files::{Piece, Refusal};
+
+/// A file of the control that cannot be read.
+pub(crate) const UNREADABLE: Code = Code(920);
+/// A file of the control that holds what cannot be followed.
+pub(crate) const BEYOND: Code = Code(921);
+
+/// A file's name in messages, and its text.
+pub(crate) type File<'f> = (&'f str, &'f str);
+
+/// What is wrong at a place, what is found there, what to do.
+pub(crate) fn refuse(
+    (name, text): File<'_>,
+    at: Piece<'_>,
+    code: Code,
+    message: impl Into<String>,
+    label: impl Into<String>,
+    help: impl Into<String>,
+) -> Box<Refusal> {
+    let start = at.span().start as u64;
+    let end = start + at.text.len().max(1) as u64;
+    Refusal::of(name, text, Diagnostic::error(code, message).at(start..end, label).help(help))
+}
+
+/// About no line of the file.
+pub(crate) fn refuse_whole(
+    (name, text): File<'_>,
+    code: Code,
+    message: impl Into<String>,
+    help: impl Into<String>,
+) -> Box<Refusal> {
+    Refusal::of(name, text, Diagnostic::error(code, message).help(help))
+}
