@@ -178,6 +178,15 @@ impl ToolLength {
         matches!(self, Self::Off | Self::On { number: 0, .. })
     }
 
+    /// What a length adds that says where the tool ends; none do off, H0 and a written length of zero.
+    #[must_use]
+    pub(crate) fn ends_mm(&self) -> Option<[f64; 3]> {
+        match *self {
+            Self::Off | Self::On { number: 0, .. } | Self::Written { applied_mm: [0.0, 0.0, 0.0] } => None,
+            Self::On { applied_mm, .. } | Self::Written { applied_mm } => Some(applied_mm),
+        }
+    }
+
     /// What is added to axis commands, mm.
     #[must_use]
     pub const fn applied_mm(&self) -> [f64; 3] {

@@ -222,33 +222,32 @@ fn take(
                 )
             }));
     };
-    stands_out(env, words, span, &format!("tool offset {offset:02}"), applied_mm)?;
-    state.tool_length = ToolLength::On { number: offset, negative: false, applied_mm };
-    Ok(())
+    let length = ToolLength::On { number: offset, negative: false, applied_mm };
+    bring_in(env, words, span, &format!("tool offset {offset:02}"), length, state)
 }
 
-/// Refuses a length by which the tip would be at the gauge point or above it, where nobody has said from where lengths
-/// count: it was touched off, and errors of angle act along the tool.
-fn stands_out(
+/// Brings a length into force, unless by it the tip would be at the gauge point or above it, where nobody has said from
+/// where lengths count: it was touched off, and errors of angle act along the tool.
+fn bring_in(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     span: Span,
     name: &str,
-    [x, y, z]: [f64; 3],
+    length: ToolLength,
+    state: &mut Modal,
 ) -> Outcome<()> {
-    let beside = z == 0.0 && (x, y) != (0.0, 0.0);
-    if env.setup.gauge_point_mm.is_some()
-        || z > 0.0
-        || beside
-        || !env.setup.lever_matters
-        || env.dialect.turning.is_some()
+    let asked =
+        env.setup.gauge_point_mm.is_none() && env.setup.lever_matters && env.dialect.turning.is_none();
+    if let Some([x, y, z]) = length.ends_mm().filter(|_| asked)
+        && (z < 0.0 || [x, y, z] == [0.0; 3])
     {
-        return Ok(());
+        let message = format!("{name} shifts Z by {z} mm: a tool {z} mm long");
+        return Err(words
+            .refuse(codes::TOOL_LENGTH, message, span, "the machine's angles act along the tool: how long is it?")
+            .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"));
     }
-    let message = format!("{name} shifts Z by {z} mm: a tool {z} mm long");
-    Err(words
-        .refuse(codes::TOOL_LENGTH, message, span, "the machine's angles act along the tool: how long is it?")
-        .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"))
+    state.tool_length = length;
+    Ok(())
 }
 
 /// The code that ends cutter compensation, where it may end a tool length too.
@@ -335,11 +334,8 @@ pub(crate) fn length(
         ));
     };
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
-    if number != 0 {
-        stands_out(env, words, span, &format!("H{number}"), applied_mm)?;
-    }
-    state.tool_length = ToolLength::On { number, negative, applied_mm };
-    Ok(())
+    let length = ToolLength::On { number, negative, applied_mm };
+    bring_in(env, words, span, &format!("H{number}"), length, state)
 }
 
 /// G43.1: the words are the length; axes left out keep what they had.
@@ -363,10 +359,7 @@ pub(crate) fn from_words(
                 applied_mm[i] = value * state.units.mm();
             }
         }
-        if applied_mm != [0.0; 3] {
-            stands_out(env, words, span, "this length", applied_mm)?;
-        }
-        state.tool_length = ToolLength::Written { applied_mm };
+        bring_in(env, words, span, "this length", ToolLength::Written { applied_mm }, state)?;
         frames::refresh(state);
         return Ok(());
     };
