@@ -101,6 +101,12 @@ impl Failure {
         Self::Usage(vec![Report { source: None, diagnostics: vec![diagnostic] }])
     }
 
+    /// A file that command line or profile names cannot be read: a usage error.
+    #[must_use]
+    pub fn unread(name: &str, error: &std::io::Error) -> Self {
+        Self::usage(file_diagnostic(name, "read", error))
+    }
+
     /// A file cannot be read or written.
     #[must_use]
     pub fn file(name: &str, verb: &str, error: &std::io::Error) -> Self {

@@ -6,7 +6,7 @@ use diagnostic::{Code, Diagnostic};
 use machine_profile::{Profile, ProfileError};
 
 use crate::lines;
-use crate::message::{Failure, Report, Source, file_diagnostic};
+use crate::message::{Failure, Report, Source};
 
 /// A profile and the bytes it was made from.
 pub struct Loaded {
@@ -38,8 +38,7 @@ pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
 /// # Errors
 /// That.
 pub fn load(path: &Path) -> Result<Loaded, Failure> {
-    let bytes = std::fs::read(path)
-        .map_err(|error| Failure::usage(file_diagnostic(&lines::name(path), "read", &error)))?;
+    let bytes = std::fs::read(path).map_err(|error| Failure::unread(&lines::name(path), &error))?;
     loaded(path, &bytes)
 }
 

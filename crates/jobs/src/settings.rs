@@ -61,13 +61,7 @@ impl Settings {
         let mut files = loaded.files;
         let tables = options.dialect.iter().chain(&profile.control).filter(|name| name.ends_with(".toml"));
         files.extend(tables.map(PathBuf::from));
-        if options.linuxcnc_ini.is_some() && dialect.flow.macros != Macros::LinuxCnc {
-            return Err(Failure::option(
-                format!("`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}", dialect.name),
-                "leave it out, or give `--dialect linuxcnc`",
-            ));
-        }
-        let stored = Stored::load(options, &profile)?;
+        let stored = Stored::load(options, &profile, &dialect)?;
         let mut setup = setup(options, &profile, &stored)?;
         files.extend(stored.files);
         // The other engines know no lever.
@@ -402,8 +396,7 @@ pub fn load_dialect(name: &str) -> Result<Dialect, Failure> {
             ),
         ));
     }
-    let bytes = std::fs::read(name)
-        .map_err(|error| Failure::usage(crate::message::file_diagnostic(name, "read", &error)))?;
+    let bytes = std::fs::read(name).map_err(|error| Failure::unread(name, &error))?;
     let stem = Path::new(name)
         .file_stem()
         .map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use control_files::{Ini, Length};
 use machine_profile::Profile;
+use nc_syntax::Dialect;
+use nc_syntax::dialect::Macros;
 
 use crate::lines;
-use crate::message::{Failure, file_diagnostic};
+use crate::message::Failure;
 use crate::options::JobOptions;
 
 /// What files say of lengths and zeros; where they do, the profile's do not count.
@@ -24,8 +26,14 @@ impl Stored {
     /// Reads what the options name.
     ///
     /// # Errors
-    /// A file cannot be read; what is wrong with it.
-    pub(crate) fn load(options: &JobOptions, profile: &Profile) -> Result<Self, Failure> {
+    /// Files of LinuxCNC for another control; a file cannot be read; what is wrong with it.
+    pub(crate) fn load(options: &JobOptions, profile: &Profile, dialect: &Dialect) -> Result<Self, Failure> {
+        if options.linuxcnc_ini.is_some() && dialect.flow.macros != Macros::LinuxCnc {
+            return Err(Failure::option(
+                format!("`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}", dialect.name),
+                "leave it out, or give `--dialect linuxcnc`",
+            ));
+        }
         let mut stored = Self::default();
         let ini = match &options.linuxcnc_ini {
             None => None,
@@ -58,8 +66,7 @@ impl Stored {
     }
 
     fn read(&mut self, path: &Path) -> Result<Vec<u8>, Failure> {
-        let bytes = std::fs::read(path)
-            .map_err(|error| Failure::usage(file_diagnostic(&lines::name(path), "read", &error)))?;
+        let bytes = std::fs::read(path).map_err(|error| Failure::unread(&lines::name(path), &error))?;
         self.files.push(path.to_owned());
         Ok(bytes)
     }

@@ -67,9 +67,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     };
     let mut found = Found::default();
     for input in &programs.inputs {
-        let data = input.metadata().map_err(|error| {
-            Failure::usage(crate::message::file_diagnostic(&file::name(input), "read", &error))
-        })?;
+        let data = input.metadata().map_err(|error| Failure::unread(&file::name(input), &error))?;
         if data.is_dir() {
             let entries =
                 entries_of(input).map_err(|error| Failure::file(&file::name(input), "read", &error))?;

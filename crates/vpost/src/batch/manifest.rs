@@ -153,9 +153,7 @@ impl Manifest {
     /// Reads a manifest and checks that it is whole and of this version.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let text = std::fs::read(path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                Failure::usage(crate::message::file_diagnostic(&file::name(path), "read", &error))
-            }
+            std::io::ErrorKind::NotFound => Failure::unread(&file::name(path), &error),
             _ => Failure::file(&file::name(path), "read", &error),
         })?;
         let damaged = |what: String| {

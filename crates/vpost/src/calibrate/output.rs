@@ -11,7 +11,7 @@ use machine_model::{Axis, Chain, Command, Description, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, Messages, Report, file_diagnostic};
+use crate::message::{Failure, Messages, Report};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -94,7 +94,7 @@ impl Output {
                     .map_or_else(|| old.to_owned(), |n| n.to_string_lossy().into_owned());
                 match std::fs::read(from.join(old)) {
                     Ok(bytes) => tables.push((name.clone(), bytes)),
-                    Err(error) => broken = Some(Failure::usage(file_diagnostic(old, "read", &error))),
+                    Err(error) => broken = Some(Failure::unread(old, &error)),
                 }
                 format!("{folder}/{name}")
             });
