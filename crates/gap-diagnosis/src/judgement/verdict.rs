@@ -38,7 +38,7 @@ pub(crate) struct Evidence {
     pub slow: bool,
     /// The causes take off less than [`WORTH_NAMING`] of the gap's RMS.
     pub trifling: bool,
-    /// Together the causes move places between those measured by more than any reading could mean.
+    /// Together the causes move places between those measured by more than any reading could mean, or cancel each other.
     pub swings: bool,
     /// What rows that no fit has seen say.
     pub unseen: Option<Unseen>,
@@ -106,7 +106,7 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 ///    the machine explains as well is not known to be the instrument's.
 /// 5. NOISE MODEL SUSPECT where every cause is a fault of the instrument, else NAMED.
 ///
-/// Causes that swing between the places measured explain nothing, however well they fit: UNKNOWN.
+/// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
 ///
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
 /// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise.

@@ -41,10 +41,10 @@ pub(crate) struct Bounds {
     span_um: f64,
 }
 
-/// What causes that pass each alone do together between the places measured, which no reading of the file is as large as.
+/// Why causes that pass each alone correct nothing together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Harm {
-    /// They swing: by so much they displace a place, or change from their mean over the rows; and the longest reading; µm.
+    /// They swing between the places measured: by so much they displace a place, or change from their mean over the rows; and the longest reading; µm.
     Swings(f64, f64),
     /// They shift: straight lines through machine zero, read on a short way far from it, move all of that way by so much,
     /// which the measuring frame took off the readings; and the range of the readings; µm.

@@ -7,11 +7,10 @@ use crate::equations::observation::{Measurements, Scalar};
 use crate::equations::pool::Pool;
 use crate::library::candidates::Part;
 use crate::search::doubt::Setting;
-use crate::search::explanation::{Explanation, Refused};
+use crate::search::explanation::{Explanation, Reason, Refused};
 use crate::search::moves::{MOST_TRIED, Move, next_move, without};
 use crate::search::space::Fit;
 use crate::search::state::State;
-use crate::search::trial::{NOT_ELSEWHERE, UNPROVEN};
 
 /// With fewer runs one that is left out is an extrapolation: that an effect does not foretell it hides nothing.
 const ENOUGH_RUNS: usize = 8;
@@ -149,13 +148,13 @@ impl State<'_, '_> {
             let reason = refused.reason;
             first.get_or_insert(refused);
             let many = self.source.runs >= ENOUGH_RUNS;
-            if many && reason == NOT_ELSEWHERE && self.parts.len() + 2 <= MOST_CAUSES {
+            if many && reason == Reason::NotElsewhere && self.parts.len() + 2 <= MOST_CAUSES {
                 let others = proposed.iter().take(MOST_TRIED).map(|(other, _)| *other);
                 if let Some(pair) = self.hidden_by(*part, others.filter(|other| other != part)) {
                     return Ok(pair);
                 }
             }
-            if reason != UNPROVEN && self.misfit(&self.parts, *part, fit.level).is_none() {
+            if !matches!(reason, Reason::Unproven | Reason::Form(_)) {
                 break;
             }
         }

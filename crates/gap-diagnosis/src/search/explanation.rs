@@ -57,5 +57,28 @@ pub(crate) struct Refused {
     /// Corrected p value.
     pub p: f64,
     /// Which test it failed.
-    pub reason: &'static str,
+    pub reason: Reason,
+}
+
+/// Which test an effect failed, and what that says of the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reason {
+    /// It may be there and is not proven.
+    Unproven,
+    /// It explains the rows and not the next ones.
+    NotElsewhere,
+    /// Its form cannot be meant, whatever it explains.
+    Form(&'static str),
+    /// It explains too little to be named.
+    Little(&'static str),
+}
+
+impl std::fmt::Display for Reason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Unproven => "the F test",
+            Self::NotElsewhere => "it does not predict lines it has not seen",
+            Self::Form(words) | Self::Little(words) => words,
+        })
+    }
 }

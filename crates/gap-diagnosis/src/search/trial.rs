@@ -13,7 +13,7 @@ use crate::library::candidates::Part;
 use crate::library::seen::curve_axis;
 use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
-use crate::search::explanation::Refused;
+use crate::search::explanation::{Reason, Refused};
 use crate::search::moves::without;
 use crate::search::proposals::STEP_ROWS;
 use crate::search::space::{FREE, Fit};
@@ -36,11 +36,6 @@ const BEYOND_DOUBT: f64 = 10.0;
 
 /// More than this share of what shows an effect lies between the runs: how much these differ by chance decides.
 const MOSTLY: f64 = 0.5;
-
-/// Why an effect is refused that may be there and is not proven.
-pub(crate) const UNPROVEN: &str = "the F test";
-/// Why an effect is refused that explains the rows and not the next ones.
-pub(crate) const NOT_ELSEWHERE: &str = "it does not predict lines it has not seen";
 
 impl State<'_, '_> {
     /// Why an effect that scores must not be named beside `rest`; `None` where it may.
@@ -67,36 +62,30 @@ impl State<'_, '_> {
         let share = gain / before.max(1e-12);
         let refuse = |reason| Some(Refused { kind, share, p: p.min(1.0), reason });
         if p > LEVEL {
-            return refuse(UNPROVEN);
+            return refuse(Reason::Unproven);
+        }
+        let misfit = self.unsupported(part).or_else(|| self.crowded(&with));
+        if let Some(words) = misfit.or_else(|| self.out_of_bounds(&with, fit.level)) {
+            return refuse(Reason::Form(words));
         }
         let trifling = residual > (1.0 - WORTH) * (1.0 - WORTH) * tested;
         if self.setting.is_doubtful() && trifling && ratio < BEYOND_DOUBT * BEYOND_DOUBT {
-            return refuse(
+            return refuse(Reason::Little(
                 "so small a gain rests on the noise being independent and normal, which it is not",
-            );
+            ));
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         let by_shape = matches!(kind, EffectKind::Joint(_)) || self.on_a_flank(rest, part);
         if by_shape && gain / reducible < LEAST_STEP {
-            return refuse("so little is what the shape of another curve leaves");
+            return refuse(Reason::Little("so little is what the shape of another curve leaves"));
         }
         if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
-            return refuse("its share is below 2 % of what can be explained");
-        }
-        if let Some(reason) = self.misfit(rest, part, fit.level) {
-            return refuse(reason);
+            return refuse(Reason::Little("its share is below 2 % of what can be explained"));
         }
         if !self.predicts(&with, fit.level) {
-            return refuse(NOT_ELSEWHERE);
+            return refuse(Reason::NotElsewhere);
         }
         None
-    }
-
-    /// What is wrong with the form of an effect, whatever it explains.
-    pub(crate) fn misfit(&self, rest: &[Part], part: Part, level: usize) -> Option<&'static str> {
-        let with: Vec<Part> = rest.iter().copied().chain([part]).collect();
-        let formed = self.unsupported(part).or_else(|| self.crowded(&with));
-        formed.or_else(|| self.out_of_bounds(&with, level))
     }
 
     /// Why a knock cannot be told: hardly a row lies on its other side.
@@ -192,7 +181,7 @@ impl State<'_, '_> {
                 let (before, _) = self.space.left(&self.library, &rest, fit.level);
                 let share = (before - self.fit.residual).max(0.0) / before.max(1e-12);
                 let kind = self.library.kind(*part);
-                self.refused = Some(Refused { kind, share, p: 0.0, reason });
+                self.refused = Some(Refused { kind, share, p: 0.0, reason: Reason::Form(reason) });
             }
             (self.parts, self.fit) = (rest, fit);
         }
