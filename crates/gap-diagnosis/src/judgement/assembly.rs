@@ -210,7 +210,7 @@ impl<'a> Assembly<'a> {
         let parts = self.model.parts.iter().enumerate();
         let causes: Vec<_> =
             parts.map(|(place, part)| (self.model.library.kind(*part), self.own(place))).collect();
-        Bounds::new(self.data, &self.model.scalars).broken_together(&causes, &self.data.geometry)
+        Bounds::new(self.data, &self.model.scalars).broken_together(&causes, self.data)
     }
 
     /// What the verdict depends on, unseen rows not yet asked; `corner_um`: how uncertain the causes are in the corners of the

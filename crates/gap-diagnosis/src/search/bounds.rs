@@ -10,12 +10,15 @@ use machine_model::effects::{EffectGeometry, EffectKind};
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
 use crate::equations::term::Term;
+use crate::library::seen::curve_axis;
 
 /// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
 const LARGEST: f64 = 2.0;
 /// Rows at which a cause is evaluated, and places per axis between which it is.
 const ROWS: usize = 240;
 const PLACES: usize = 120;
+/// Pairs of rows between which causes are looked at together.
+const WAYS: usize = 1500;
 /// Where between two places, as shares of their distance.
 const BETWEEN: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
@@ -109,12 +112,15 @@ impl Bounds {
     pub(crate) fn broken_together(
         &self,
         causes: &[(EffectKind, Vec<(Term, f64)>)],
-        geometry: &EffectGeometry,
+        data: &Measurements,
     ) -> Option<Harm> {
+        let geometry = &data.geometry;
+        let mut probes = self.probes.clone();
+        probes.extend(ways(&data.rows, &self.summits(causes, geometry)));
         let moved = |counts: fn(EffectKind) -> bool| {
             let counted = causes.iter().filter(|(kind, _)| !kind.is_instrument() && counts(*kind));
             let terms: Vec<(Term, f64)> = counted.flat_map(|(_, terms)| terms.iter().copied()).collect();
-            self.displacements_um(&terms, geometry)
+            displacements_um(&probes, &terms, geometry)
         };
         let length = |d: Vector| (0..3).filter(|c| self.read[*c]).map(|c| d[c] * d[c]).sum::<f64>().sqrt();
         let farthest =
@@ -132,22 +138,34 @@ impl Bounds {
         (shift_um > LARGEST * self.span_um).then_some(Harm::Shifts(shift_um, self.span_um))
     }
 
-    /// Displacements by some terms at the rows and between them, µm.
-    fn displacements_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> Vec<Vector> {
-        let at = |row: &Row| -> Vector {
-            terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
+    /// Where a curve is farthest from its mean: an axis and a place on it, mm, for each cause that is one.
+    fn summits(
+        &self,
+        causes: &[(EffectKind, Vec<(Term, f64)>)],
+        geometry: &EffectGeometry,
+    ) -> Vec<(usize, f64)> {
+        let summit = |(kind, terms): &(EffectKind, Vec<(Term, f64)>)| {
+            let axis = match kind {
+                EffectKind::Local(axis) | EffectKind::Joint(axis) => *axis,
+                _ => curve_axis(*kind)?,
+            };
+            let all = displacements_um(&self.probes, terms, geometry);
+            let mean = self.mean(&all);
+            let farthest =
+                (0..all.len()).max_by(|a, b| (all[*a] - mean).norm().total_cmp(&(all[*b] - mean).norm()))?;
+            Some((axis, self.probes[farthest].command.linear_mm[axis]))
         };
-        self.probes.iter().map(at).collect()
+        causes.iter().filter_map(summit).collect()
     }
 
-    /// Mean over the rows of what [`Self::displacements_um`] gives.
+    /// Mean over the rows of what [`displacements_um`] gives.
     fn mean(&self, all: &[Vector]) -> Vector {
         all.iter().take(self.measured).sum::<Vector>() / self.measured.max(1) as f64
     }
 
     /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.
     fn excursion_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> f64 {
-        let all = self.displacements_um(terms, geometry);
+        let all = displacements_um(&self.probes, terms, geometry);
         let mean = self.mean(&all);
         all.iter().map(|d| (d - mean).amax()).fold(0.0, f64::max)
     }
@@ -168,6 +186,37 @@ impl Bounds {
         harmful
             .then_some("between the places measured it would displace by more than twice the largest reading")
     }
+}
+
+/// Points on straight ways from any row to any other, for a machine goes there: where a way crosses the summit of a curve,
+/// and once anywhere. Curves of several axes swing farthest where their summits meet, which few ways do.
+fn ways(rows: &[Row], summits: &[(usize, f64)]) -> Vec<Row> {
+    // Pairs and shares fill their cube evenly (Roberts' sequence in three dimensions).
+    let nth_way = |nth: usize| -> [f64; 3] {
+        [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step| ((nth as f64 + 0.5) * step).fract())
+    };
+    let along = |nth: usize| {
+        let [from, to, anywhere] = nth_way(nth);
+        let [from, to] = [from, to].map(|at| &rows[(at * rows.len() as f64) as usize]);
+        let (start, end) = (from.command.linear_mm, to.command.linear_mm);
+        let crossing =
+            move |(axis, place): &(usize, f64)| (place - start[*axis]) / (end[*axis] - start[*axis]);
+        let shares = summits.iter().map(crossing).chain([anywhere]).collect::<Vec<f64>>().into_iter();
+        shares.filter(|share| (0.0..=1.0).contains(share)).map(move |share| {
+            let mut row = *from;
+            row.command.linear_mm = start.lerp(&end, share);
+            row
+        })
+    };
+    (0..WAYS).flat_map(along).collect()
+}
+
+/// Displacements by some terms, µm.
+fn displacements_um(probes: &[Row], terms: &[(Term, f64)], geometry: &EffectGeometry) -> Vec<Vector> {
+    let at = |row: &Row| -> Vector {
+        terms.iter().map(|(term, value)| term.displacement_um(row, geometry) * *value).sum()
+    };
+    probes.iter().map(at).collect()
 }
 
 /// What is straight does not swing between places.

@@ -8,8 +8,8 @@ use crate::equations::pool::Pool;
 use crate::library::candidates::Part;
 use crate::search::doubt::Setting;
 use crate::search::explanation::{Explanation, Reason, Refused};
-use crate::search::moves::{MOST_TRIED, Move, next_move, without};
-use crate::search::space::Fit;
+use crate::search::moves::{MOST_TRIED, Move, by_effect, next_move, without};
+use crate::search::space::{Asked, Fit};
 use crate::search::state::State;
 
 /// With fewer runs one that is left out is an extrapolation: that an effect does not foretell it hides nothing.
@@ -22,6 +22,8 @@ const MOST_CAUSES: usize = 8;
 pub(crate) enum Task {
     /// Looks for causes.
     Search,
+    /// Looks for causes, two in place of two others as well: once the noise is known, for it costs as much as all before.
+    Exchange,
     /// Looks for shapes of other effects that imitate the causes found.
     Imitate,
 }
@@ -44,7 +46,7 @@ pub(crate) fn pass(
     let lost = Source { scalars: &lost, places: None, ..all };
     let mut state = State::new(data, &source, pool, lost, without, setting, start);
     match task {
-        Task::Search => state.search(),
+        Task::Search | Task::Exchange => state.search(task),
         Task::Imitate => state.imitate(),
     }
     let State { library, space, parts, fit, refused, .. } = state;
@@ -70,7 +72,7 @@ pub(crate) fn pass(
 }
 
 impl State<'_, '_> {
-    fn search(&mut self) {
+    fn search(&mut self, task: Task) {
         self.refused = None;
         // What an earlier search named must pass the tests on these rows, too: beside all others where readings hang together,
         // for what one cause leaves of the others does so as well.
@@ -96,26 +98,84 @@ impl State<'_, '_> {
                     (self.parts, self.fit) = (parts, fit);
                 }
                 Move::Add(proposed) => {
-                    if self.parts.len() >= MOST_CAUSES {
-                        break;
-                    }
-                    match self.admitted(&proposed) {
+                    let full = self.parts.len() >= MOST_CAUSES;
+                    let admitted = if full { Err(None) } else { self.admitted(&proposed) };
+                    match admitted {
                         Ok((new, fit)) => {
                             self.parts.extend(new);
                             self.fit = fit;
                             self.propose();
                         }
                         Err(refused) => {
-                            self.refused = refused;
-                            break;
+                            self.refused = refused.or_else(|| self.refused.take());
+                            if task == Task::Search || !self.exchange() {
+                                break;
+                            }
                         }
                     }
                 }
-                Move::Stop => break,
+                Move::Stop => {
+                    if task == Task::Search || !self.exchange() {
+                        break;
+                    }
+                }
             }
         }
         self.prune();
         self.restrain();
+    }
+
+    /// Two causes for two others that explain more, each of which passes its tests beside the other; false where there are
+    /// none.
+    ///
+    /// One after the other, a curve that is a little of two causes comes first and stays, and more curves mend what it gets
+    /// wrong: none of them can be changed for the better alone.
+    fn exchange(&mut self) -> bool {
+        let parts = self.parts.clone();
+        let mut better: Vec<(Fit, Vec<Part>)> = Vec::new();
+        for (first, second) in self.entangled() {
+            let rest = without(&without(&parts, second), first);
+            let firsts = by_effect(self.space.scan(&self.library, &rest, Asked::Nameable), f64::INFINITY);
+            for (new, _) in firsts.into_iter().take(MOST_TRIED) {
+                // One of the two again: that was a change of the other alone.
+                if new == parts[first] || new == parts[second] {
+                    continue;
+                }
+                let with: Vec<Part> = rest.iter().copied().chain([new]).collect();
+                self.complete(&with);
+                let limit = self.fit.score - self.space.allowance();
+                let seconds = by_effect(self.space.scan(&self.library, &with, Asked::Nameable), limit);
+                let whole = |other: Part| with.iter().copied().chain([other]).collect();
+                better.extend(seconds.into_iter().map(|(other, fit)| (fit, whole(other))));
+            }
+        }
+        better.sort_by(|(a, _), (b, _)| a.score.total_cmp(&b.score));
+        let passes = |(fit, with): &(Fit, Vec<Part>)| {
+            let mut new = [with.len() - 2, with.len() - 1].into_iter();
+            new.all(|place| self.objection(&without(with, place), with[place], fit).is_none())
+        };
+        let Some((fit, with)) = better.into_iter().take(MOST_TRIED).find(passes) else { return false };
+        self.complete(&with);
+        (self.parts, self.fit) = (with, fit);
+        self.propose();
+        true
+    }
+
+    /// Pairs of causes that share what they explain, or that explain only together.
+    fn entangled(&self) -> Vec<(usize, usize)> {
+        /// Share of what the lesser of the two explains beside all others.
+        const SHARED: f64 = 0.1;
+        let left = |parts: &[Part]| self.space.left(&self.library, parts, self.fit.level).0;
+        let full = left(&self.parts);
+        let rests: Vec<Vec<Part>> = (0..self.parts.len()).map(|place| without(&self.parts, place)).collect();
+        let alone: Vec<f64> = rests.iter().map(|rest| left(rest) - full).collect();
+        let is_entangled = |(first, second): &(usize, usize)| {
+            let both = left(&without(&rests[*second], *first)) - full;
+            let apart = alone[*first] + alone[*second];
+            (both - apart).abs() > SHARED * alone[*first].min(alone[*second])
+        };
+        let pairs = (1..self.parts.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
+        pairs.filter(is_entangled).collect()
     }
 
     /// Takes out causes that fail their tests beside all others, the weakest first.

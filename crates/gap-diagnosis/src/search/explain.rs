@@ -145,6 +145,9 @@ fn settled(
         setting.lumpy |= lumpy;
         result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Search);
     }
+    if result.parts.len() > 1 {
+        result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Exchange);
+    }
     setting.caution = setting.caution.max(hanging(&result));
     result = pass(data, &mut pool, &dropped, without, setting, Some(result), Task::Imitate);
     result.outliers.clone_from(&dropped);

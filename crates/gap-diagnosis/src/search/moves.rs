@@ -61,7 +61,7 @@ pub(crate) fn next_move(
 }
 
 /// The best form of every effect that scores below a limit, the best effect first.
-fn by_effect(found: Vec<(Part, Fit)>, limit: f64) -> Vec<(Part, Fit)> {
+pub(crate) fn by_effect(found: Vec<(Part, Fit)>, limit: f64) -> Vec<(Part, Fit)> {
     let mut best: Vec<(Part, Fit)> = Vec::new();
     for (part, fit) in found.into_iter().filter(|(_, fit)| fit.score < limit) {
         match best.iter_mut().find(|(known, _)| known.candidate == part.candidate) {

@@ -79,13 +79,37 @@ impl State<'_, '_> {
         if by_shape && gain / reducible < LEAST_STEP {
             return refuse(Reason::Little("so little is what the shape of another curve leaves"));
         }
-        if gain / reducible < LEAST_SHARE && !self.was_taken_over(&with, gain, before, fit.level) {
+        if gain * self.spread(part) / reducible < LEAST_SHARE
+            && !self.was_taken_over(&with, gain, before, fit.level)
+        {
             return refuse(Reason::Little("its share is below 2 % of what can be explained"));
         }
         if !self.predicts(&with, fit.level) {
             return refuse(Reason::NotElsewhere);
         }
         None
+    }
+
+    /// How many times as many equations there are as a part acts on, where its physics says which those are: at a turn of
+    /// an axis. Its share counts there, as a machinist reads the marks at the quadrants; a place that was searched for must
+    /// earn its share of all.
+    fn spread(&self, part: Part) -> f64 {
+        if !matches!(self.library.kind(part), EffectKind::Spike(_)) {
+            return 1.0;
+        }
+        let columns = &self.library.form(part).columns;
+        let acts = |column: &usize| {
+            let term = self.library.terms[*column];
+            let squares = self.source.scalars.iter().map(|s| {
+                let value = term.value(s, &self.source.rows[s.row], self.source.geometry);
+                value * value
+            });
+            let (sum, of_squares) =
+                squares.fold((0.0, 0.0), |(a, b), square| (a + square, b + square * square));
+            if of_squares > 0.0 { sum * sum / of_squares } else { f64::INFINITY }
+        };
+        let most = columns.iter().map(acts).fold(1.0, f64::max);
+        (self.source.scalars.len() as f64 / most).max(1.0)
     }
 
     /// Why a knock cannot be told: hardly a row lies on its other side.
@@ -285,7 +309,7 @@ impl State<'_, '_> {
                     let rest = without(&self.parts, place);
                     let left = self.space.left(&self.library, &rest, level).0;
                     let with: Vec<Part> = rest.iter().copied().chain([self.parts[place]]).collect();
-                    let share = (left - full) / reducible;
+                    let share = (left - full) * self.spread(self.parts[place]) / reducible;
                     let stays = share < LEAST_SHARE && self.was_taken_over(&with, left - full, left, level);
                     (!stays).then_some((share, rest))
                 })

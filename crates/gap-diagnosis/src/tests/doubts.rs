@@ -420,3 +420,71 @@ fn causes_that_cancel_are_no_name() {
     assert_ne!(answer.verdict, Verdict::Named, "{:?}", names(&answer));
     assert!(!answer.corrects() || answer.verdict == Verdict::Ambiguous, "{:?}", names(&answer));
 }
+
+/// Full circles of a bar in XY, both ways and at two feeds, a reading every degree.
+fn circles(field_um: impl Fn(&Row) -> Vector) -> Measurements {
+    const RADIUS_MM: f64 = 150.0;
+    const NOISE_UM: f64 = 0.25;
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let base = measured(SILENT, nothing);
+    let mut data = Measurements { runs: Vec::new(), rows: Vec::new(), ..base.clone() };
+    let tool_mm = Vector::new(0.0, 0.0, -120.0);
+    let centre = Vector::new(220.0, 190.0, 250.0);
+    for run in 0..8 {
+        let (feed, sense) = (if run < 4 { 600.0 } else { 3000.0 }, if run % 2 == 0 { 1.0 } else { -1.0 });
+        data.runs.push(format!("circle {run}"));
+        for degree in 0..360 {
+            let angle = sense * f64::from(degree).to_radians() + 0.007;
+            let mut row = base.rows[0];
+            row.run = run;
+            row.command.linear_mm =
+                centre + RADIUS_MM * Vector::new(units::math::cos(angle), units::math::sin(angle), 0.0);
+            row.command.tool_mm = tool_mm;
+            let signs = [-units::math::sin(angle), units::math::cos(angle)]
+                .map(|v| if sense * v > 0.0 { 1 } else { -1 });
+            row.command.direction = [signs[0], signs[1], 0];
+            row.conditions = Conditions { feed_mm_min: Some(feed), ..Conditions::default() };
+            row.reading = Reading::Length { length_mm: 0.0, ball_mm: centre + tool_mm };
+            data.rows.push(row);
+        }
+    }
+    data.follow();
+    for row in &mut data.rows {
+        let bar = row.command.linear_mm - centre + 1e-3 * field_um(row);
+        let length_mm = bar.norm() + 1e-3 * NOISE_UM * normal(&mut random);
+        row.reading = Reading::Length { length_mm, ball_mm: centre + tool_mm };
+    }
+    data
+}
+
+/// The marks at the quadrants are read where they stand: a share of the whole circle they hardly have.
+#[test]
+fn a_mark_at_a_quadrant_is_told_beside_larger_faults() {
+    let field = |row: &Row| {
+        let spike = 9.0 * units::math::exp(-row.conditions.since_turn_mm[0].unwrap() / 3.0);
+        let direction = row.command.direction.map(f64::from);
+        Vector::new(-(6.0 + spike) * direction[0], -5.0 * direction[1] + 0.07 * row.command.linear_mm.x, 0.0)
+    };
+    let answer = diagnose(&circles(field), None, &Options::default());
+    let mut found = names(&answer);
+    found.sort_unstable();
+    assert_eq!(found, ["backlash.X", "backlash.Y", "spike.X", "squareness.XY"], "{:?}", answer.verdict);
+}
+
+/// A scale, a squareness, a bow and a lost motion: curves that mend each other come first, and give way.
+#[test]
+fn straight_faults_are_not_taken_for_curves_that_mend_each_other() {
+    for sign in [1.0, -1.0] {
+        let field = |row: &Row| {
+            let at = row.command.linear_mm - Vector::new(220.0, 190.0, 250.0);
+            let bow = sign * 10.0 * units::math::cos(at.y / 37.5 + 0.6);
+            let lost = 6.4 * f64::from(row.command.direction[0]);
+            Vector::new(-0.062 * at.y + bow, -0.073 * at.y + lost, 0.0)
+        };
+        let answer = diagnose(&circles(field), None, &Options::default());
+        let mut found = names(&answer);
+        found.sort_unstable();
+        let true_ones = ["lost-motion.EYX", "scale.Y", "squareness.XY", "straightness.EXY"];
+        assert_eq!(found, true_ones, "{:?}", answer.verdict);
+    }
+}
