@@ -215,3 +215,121 @@ fn a_plan_needs_a_work_offset_for_its_program_only() {
     assert_eq!(ran.status.code(), Some(2));
     assert!(messages(&ran).contains("--work-offset G54=0,0,0"), "{}", messages(&ran));
 }
+
+/// One feed cannot tell lag from play. The line that is proposed, filled in by a machine with play, settles it.
+#[test]
+fn the_proposed_line_filled_in_settles_what_was_open() {
+    let [file, profile] = ["one_feed.csv", "one_feed.toml"].map(|name| format!("samples/diagnosis/{name}"));
+    let ran = run(&["diagnose", &file, "-m", &profile, "--next", "points"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    assert!(messages(&ran).contains("it tells servo-lag.X from backlash.X"), "{}", messages(&ran));
+    let proposed = String::from_utf8(ran.stdout).expect("text");
+    let measured = std::fs::read_to_string(crate::common::root().join(&file)).expect("a file");
+    let head: Vec<&str> = proposed.lines().next().expect("a header").split(',').collect();
+    // The frame that the rows were read in is turned; the first run goes along X.
+    let columns: Vec<&str> = measured.lines().next().expect("a header").split(',').collect();
+    let cell = |line: &str, name: &str| -> f64 {
+        let at = columns.iter().position(|h| *h == name).expect("a column");
+        line.split(',').nth(at).expect("a cell").parse().expect("a number")
+    };
+    let slope = |name: &str| {
+        let first = measured.lines().filter(|line| line.starts_with("r0,"));
+        let pairs: Vec<(f64, f64)> = first.map(|line| (cell(line, "x_mm"), cell(line, name))).collect();
+        let count = pairs.len() as f64;
+        let (x, y) = pairs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / count, b + y / count));
+        let of = |f: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>();
+        of(&|p| (p.0 - x) * (p.1 - y)) / of(&|p| (p.0 - x) * (p.0 - x))
+    };
+    let (slope_y, slope_z) = (slope("dy_um"), slope("dz_um"));
+    let mut whole = measured.trim_end().to_owned();
+    for (nth, line) in proposed.lines().skip(1).enumerate() {
+        let cells: Vec<&str> = line.split(',').collect();
+        let of = |name: &str| cells[head.iter().position(|h| *h == name).expect("a column")];
+        let noise = |by: usize| 2.0 * ((nth * by % 23) as f64 / 11.0 - 1.0);
+        let number = |name: &str| of(name).parse::<f64>().expect("a number");
+        let filled = |name: &&str| match *name {
+            "dx_um" => format!("{:.3}", noise(5) - 13.8 * number("dir_x")),
+            "dy_um" => format!("{:.3}", noise(7) + slope_y * number("x_mm")),
+            "dz_um" => format!("{:.3}", noise(9) + slope_z * number("x_mm")),
+            name => of(name).to_owned(),
+        };
+        whole += &format!("\n{}", columns.iter().map(filled).collect::<Vec<_>>().join(","));
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("whole.csv");
+    std::fs::write(&path, whole).expect("writable");
+    let ran = run(&["diagnose", path.to_str().expect("a plain path"), "-m", &profile]);
+    let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(said.starts_with("NAMED") && said.contains("cause   backlash.X"), "{said}");
+}
+
+/// The program of a proposal comes to its points in order, within the travel, and from the side that is read.
+#[test]
+fn the_program_of_a_proposal_goes_through_its_points() {
+    let next = |form: &str| {
+        let ran = run(&[
+            "diagnose",
+            "samples/diagnosis/one_feed.csv",
+            "-m",
+            "samples/diagnosis/one_feed.toml",
+            "--next",
+            form,
+            "--work-offset",
+            "G54=100,50,-200",
+        ]);
+        assert!(ran.status.success(), "{}", messages(&ran));
+        String::from_utf8(ran.stdout).expect("text")
+    };
+    let (points, program) = (next("points"), next("program"));
+    let places: Vec<[f64; 3]> = program
+        .lines()
+        .filter(|line| line.starts_with("G1 X") && line.contains('Z'))
+        .map(|line| {
+            let words: Vec<&str> = line.split(' ').skip(1).collect();
+            [(0, 100.0), (1, 50.0), (2, -200.0)]
+                .map(|(axis, zero)| words[axis][1..].parse::<f64>().expect("a number") + zero)
+        })
+        .collect();
+    assert!(places.iter().all(|at| (0.0..=600.0).contains(&at[0])), "beyond the travel: {places:?}");
+    let mut here = 0;
+    for line in points.lines().skip(1) {
+        let cells: Vec<f64> = line.split(',').skip(1).map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+        let found = (here..places.len()).find(|k| (0..3).all(|a| (places[*k][a] - cells[a]).abs() < 1e-6));
+        let found = found.unwrap_or_else(|| panic!("the program does not come to {line}"));
+        if found > 0 {
+            let step = places[found][0] - places[found - 1][0];
+            assert!(step * cells[6] > 0.0, "from the other side: {line}");
+        }
+        here = found + 1;
+    }
+    assert!(program.contains("F4000.") && !program.contains("G4 "), "read on the fly");
+}
+
+#[test]
+fn where_nothing_is_open_there_is_no_next_line() {
+    let ran = run(&[
+        "diagnose",
+        "samples/diagnosis/backlash.csv",
+        "-m",
+        "samples/diagnosis/backlash.toml",
+        "--next",
+        "points",
+    ]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(ran.stdout.is_empty() && messages(&ran).contains("the verdict is NAMED"), "{}", messages(&ran));
+}
+
+/// Who watched a target that stands still knows that the instrument does not drift.
+#[test]
+fn an_effect_that_is_not_there_is_taken_out_by_name() {
+    let with = |more: &[&str]| {
+        let file = ["diagnose", "samples/diagnosis/one_feed.csv", "-m", "samples/diagnosis/one_feed.toml"];
+        run(&[&file[..], more].concat())
+    };
+    let ran = with(&["--without", "servo-lag.X"]);
+    let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(said.starts_with("NAMED") && said.contains("cause   backlash.X"), "{said}");
+    let ran = with(&["--without", "servo-leg.X"]);
+    assert_eq!(ran.status.code(), Some(2));
+    assert!(messages(&ran).contains("servo-leg.X"), "{}", messages(&ran));
+}

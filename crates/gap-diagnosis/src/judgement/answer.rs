@@ -224,8 +224,19 @@ pub struct NextMeasurement {
     pub separates: [String; 2],
     /// How far apart they would lie, standard deviations; 0 where nothing is to be separated yet.
     pub expected_sigma: f64,
-    /// Its rows, readings to be filled in.
+    /// Its rows, readings to be filled in: each run goes along its line and back.
     pub rows: Vec<crate::equations::observation::Row>,
+}
+
+impl NextMeasurement {
+    /// Id of a row's run: `next`, `next 2` …
+    #[must_use]
+    pub fn run(&self, row: &crate::equations::observation::Row) -> String {
+        match self.rows.first().map_or(0, |first| row.run - first.run) {
+            0 => "next".to_owned(),
+            more => format!("next {}", more + 1),
+        }
+    }
 }
 
 /// Smallest amplitude that would have been named.

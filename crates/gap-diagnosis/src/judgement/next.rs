@@ -70,19 +70,26 @@ pub(crate) fn next_measurement(
     } else {
         format!("Measure {}: it tells {} from {}.", line.text, separates[0], separates[1])
     };
-    Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
+    let rows = line.rows.into_iter().map(|row| Row { run: data.runs.len(), ..row }).collect();
+    Some(NextMeasurement { text, separates, expected_sigma, rows })
 }
 
 /// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
 #[must_use]
 pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
     let line = lines(data).into_iter().find(|line| line.text.starts_with("the body diagonal"))?;
+    let line =
+        Line { rows: line.rows.into_iter().map(|r| Row { run: data.runs.len(), ..r }).collect(), ..line };
     let text = format!(
         "Measure {}, and once more from its other end: what no effect explains must come back there.",
         line.text
     );
     let separates = ["what has no name".to_owned(), "chance".to_owned()];
-    Some(NextMeasurement { text, separates, expected_sigma: 0.0, rows: line.rows })
+    // Back and forth from one end, then from the other.
+    let (there, back) = line.rows.split_at(line.rows.len() / 2);
+    let again = back.iter().chain(there).map(|row| Row { run: row.run + 1, ..*row });
+    let rows = line.rows.iter().copied().chain(again).collect();
+    Some(NextMeasurement { text, separates, expected_sigma: 0.0, rows })
 }
 
 /// Length of what the first columns cannot imitate of the last ones' displacement, standard deviations.

@@ -65,7 +65,7 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
         }),
         next_measurement: d.next_measurement.as_ref().map_or(Value::Null, |n| {
             json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma),
-                "rows": n.rows.iter().map(row).collect::<Vec<_>>() })
+                "rows": n.rows.iter().map(|r| row(r, &n.run(r))).collect::<Vec<_>>() })
         }),
         outlier_lines: &d.outlier_lines,
         detectable: d
@@ -86,11 +86,11 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
 }
 
 /// A row to be measured, in the columns of a measurement file; the reading is not there yet.
-fn row(row: &Row) -> Value {
+fn row(row: &Row, run: &str) -> Value {
     let (q, t, d) = (row.command.linear_mm, row.command.tool_mm, row.command.direction);
     let c = &row.conditions;
     let mut all = Map::new();
-    all.insert("run".to_owned(), json!("next"));
+    all.insert("run".to_owned(), json!(run));
     let mut number = |name: &str, value: f64| {
         all.insert(name.to_owned(), json!(round(value)));
     };

@@ -24,6 +24,9 @@ pub struct Diagnose {
     /// Print what to measure on this machine, and nothing else: rows to fill in, or the NC program that goes there.
     #[arg(long, value_enum, value_name = "FORM", conflicts_with = "measurements")]
     pub plan: Option<Form>,
+    /// Print what to measure next instead of the summary: rows to fill in, or the NC program that goes there.
+    #[arg(long, value_enum, value_name = "FORM", conflicts_with = "plan")]
+    pub next: Option<Form>,
     /// Measurements that no fit may see: the predicted shrinkage is checked on them.
     #[arg(long, value_name = "FILE")]
     pub holdout: Option<PathBuf>,
@@ -36,17 +39,17 @@ pub struct Diagnose {
     /// Write the profile with the causes added as effects.
     #[arg(long, value_name = "FILE")]
     pub write_profile: Option<PathBuf>,
-    /// Column of the measurements to pass over (repeatable).
+    /// Column to pass over (repeatable).
     #[arg(long, value_name = "NAME")]
     pub ignore_column: Vec<String>,
-    /// Take the columns as they are named, even where the rows fit better with a sign flipped or two columns swapped.
+    /// Take the columns as named: no look for flipped signs, swapped columns.
     #[arg(long)]
     pub as_written: bool,
     /// Seed of the random relabellings behind the p values of places.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Take an effect out of the library (repeatable).
-    #[arg(long, value_name = "ID", hide = true)]
+    /// Effect that this machine does not have, or the instrument (repeatable).
+    #[arg(long, value_name = "ID")]
     pub without: Vec<String>,
 }
 
@@ -102,7 +105,10 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         };
         messages.note(&format!("{} holds {holds}", file::name(path)));
     }
-    file::print(summary::text(&diagnosis, &changes).as_bytes())
+    match arguments.next {
+        Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),
+        None => file::print(summary::text(&diagnosis, &changes).as_bytes()),
+    }
 }
 
 /// What the report says of files, options and machine.

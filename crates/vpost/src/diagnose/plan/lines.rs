@@ -1,5 +1,6 @@
 //! The lines of a plan.
 
+use machine_model::effects::Conditions;
 use machine_model::{Vector, Volume};
 
 use crate::message::Failure;
@@ -11,7 +12,7 @@ const STOPS: usize = 15;
 /// The ends of the volume stay free, for the way to a line and for the overrun at its ends.
 const MARGIN: f64 = 0.04;
 /// Feed to a stop and between lines, mm/min.
-const SLOW_MM_MIN: f64 = 1000.0;
+pub(super) const SLOW_MM_MIN: f64 = 1000.0;
 /// Feeds of the lines that are read on the fly, mm/min.
 const FEEDS_MM_MIN: [f64; 2] = [500.0, 3000.0];
 /// The second tool is so much longer, or half as long where the first is long already, mm.
@@ -44,6 +45,8 @@ pub(in crate::diagnose) struct Line {
     pub flying: bool,
     /// From the point the tables were measured at to the target.
     pub tool_mm: Vector,
+    /// Load, temperature and time, where the line is about them; else they are filled in.
+    pub conditions: Conditions,
     /// How often the line was measured before, and once more.
     pub repeat: usize,
     /// Where the way to its first stop begins, so that the direction is known.
@@ -132,6 +135,11 @@ pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<
     Ok(plan.lines)
 }
 
+/// To what any control resolves.
+pub(super) fn rounded(at_mm: Vector) -> Vector {
+    at_mm.map(|v| (v * 100.0).round() / 100.0)
+}
+
 #[derive(Clone, Copy)]
 enum Kind {
     AtRest,
@@ -166,12 +174,12 @@ impl Plan {
                 i8::from(step > 1e-9) - i8::from(step < -1e-9)
             })
         };
-        // Uneven steps: an even one cannot tell a screw's period from a curve. Rounded to what any control resolves.
+        // Uneven steps: an even one cannot tell a screw's period from a curve.
         let place = |k: usize| {
             let inside = k > 0 && k + 1 < STOPS;
             let uneven = if inside { (k as f64 * 0.618_034).fract() - 0.5 } else { 0.0 };
             let share = (k as f64 + 0.6 * uneven) / (STOPS - 1) as f64;
-            (from + (to - from) * share).map(|v| (v * 100.0).round() / 100.0)
+            rounded(from + (to - from) * share)
         };
         let stop = |k: usize, sign: f64| Stop { at_mm: place(k), direction: direction(sign) };
         let overrun = (to - from) * self.overrun;
@@ -185,6 +193,7 @@ impl Plan {
             feed_mm_min,
             flying,
             tool_mm,
+            conditions: Conditions::default(),
             repeat,
             before_mm: from - overrun,
             turn_mm: to + overrun,

@@ -2,11 +2,12 @@
 
 mod lines;
 mod program;
+mod proposed;
 
 use std::fmt::Write;
 
 use clap::ValueEnum;
-use gap_diagnosis::{Confounding, Measurements, Reading, Row, confounding};
+use gap_diagnosis::{Confounding, Diagnosis, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Command, Vector};
 
@@ -16,6 +17,7 @@ use crate::message::{Failure, Messages};
 use jobs::diagnose::Model;
 
 use lines::{Line, lines};
+use proposed::proposed;
 
 /// What of a plan is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -29,19 +31,49 @@ pub enum Form {
 /// Prints a plan for the profile's axes and volume, and says what it cannot separate.
 pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
-    let text = match form {
-        Form::Points => points(&plan),
-        Form::Program => program::text(&plan, &crate::settings::load(shared, messages)?)?,
-    };
-    file::print(text.as_bytes())?;
+    print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
     let found = confounding(&design(&plan, &model.geometry));
     messages.note(&summary(&plan, &found, &model.geometry));
     Ok(())
 }
 
-/// Seconds from the start to each stop, as the machine would need them; to be replaced by what the clock said.
+/// Prints the measurement that a diagnosis proposes; the words of the proposal go with it.
+pub(super) fn print_next(
+    form: Form,
+    diagnosis: &Diagnosis,
+    model: &Model,
+    shared: &Shared,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let Some(next) = &diagnosis.next_measurement else {
+        return Err(Failure::option(
+            format!("there is no next measurement: the verdict is {}", diagnosis.verdict.name()),
+            "leave out `--next`; `--plan` prints a measurement of the whole machine",
+        ));
+    };
+    print_lines(form, &proposed(next, model.profile.volume())?, &next.text, shared, messages)?;
+    messages.note(&next.text);
+    Ok(())
+}
+
+fn print_lines(
+    form: Form,
+    plan: &[Line],
+    title: &str,
+    shared: &Shared,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let text = match form {
+        Form::Points => points(plan),
+        Form::Program => program::text(plan, title, &crate::settings::load(shared, messages)?)?,
+    };
+    file::print(text.as_bytes())
+}
+
+/// Seconds from the start to each stop, as the machine would need them; to be replaced by what the clock said. A proposal
+/// goes on where the rows that were measured end.
 fn times(plan: &[Line]) -> Vec<Vec<f64>> {
-    let mut now = 0.0;
+    let mut now = plan.first().and_then(|line| line.conditions.time_s).unwrap_or(0.0);
     let mut here: Option<Vector> = None;
     plan.iter()
         .map(|line| {
@@ -64,7 +96,9 @@ fn points(plan: &[Line]) -> String {
     let mut out = String::from(
         "run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,dir_x,dir_y,dir_z,feed_mm_min,tool_x_mm,tool_y_mm,tool_z_mm,load_kg,time_s,temp_c,repeat,u_um\n",
     );
+    let filled = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
     for (line, times) in plan.iter().zip(times(plan)) {
+        let (load_kg, temp_c) = (filled(line.conditions.load_kg), filled(line.conditions.temp_c[0]));
         for (stop, time) in line.stops.iter().zip(times) {
             let (q, t, d) = (stop.at_mm, line.tool_mm, stop.direction);
             // An axis at rest lags behind nothing: only readings on the fly have a feed.
@@ -72,7 +106,7 @@ fn points(plan: &[Line]) -> String {
             // Writing into a string cannot fail.
             let _ = writeln!(
                 out,
-                "{},{:.3},{:.3},{:.3},,,,{},{},{},{feed},{:.3},{:.3},{:.3},,{time:.0},,{},",
+                "{},{:.3},{:.3},{:.3},,,,{},{},{},{feed},{:.3},{:.3},{:.3},{load_kg},{time:.0},{temp_c},{},",
                 line.run, q.x, q.y, q.z, d[0], d[1], d[2], t.x, t.y, t.z, line.repeat
             );
         }

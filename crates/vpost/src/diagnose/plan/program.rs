@@ -22,7 +22,7 @@ struct Blocks<'a> {
 }
 
 /// The program: slow, Z up between lines, both ways along each, a dwell at every stop.
-pub(super) fn text(plan: &[Line], settings: &Settings) -> Result<String, Failure> {
+pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<String, Failure> {
     let Some((offset, zero_mm)) = settings.setup.work_offsets.first().cloned() else {
         return Err(Failure::option(
             "the program needs a work offset, and the profile has none",
@@ -36,7 +36,8 @@ pub(super) fn text(plan: &[Line], settings: &Settings) -> Result<String, Failure
         blocks.block("%");
         blocks.block("O9010");
     }
-    blocks.comment("measuring plan of vpost: no workpiece on the table, spindle off");
+    blocks.comment(title);
+    blocks.comment("no workpiece on the table, spindle off");
     blocks.comment(&format!("axis positions are machine coordinates less {offset}"));
     let (units, no_length) = match name {
         // Tool lengths are taken in there by words that vpost leaves to the operator.
