@@ -89,7 +89,10 @@ impl Assembly<'_> {
         let left = if before_um > 0.0 { after_um / before_um } else { 1.0 };
         // Both sizes are known to 1/√(2n), their ratio to √2 of that at worst.
         let error = left / equations.max(1.0).sqrt();
-        Unseen { before: before_um / floor, after: after_um / floor, promised, error }
+        // Noise was estimated on the rows of the fit, and readings that hang together count as fewer.
+        let few = |readings: f64| model.caution.as_one() / (2.0 * readings.max(1.0));
+        let chance = (few(equations) + few(self.degrees())).sqrt();
+        Unseen { before: before_um / floor, after: after_um / floor, promised, error, chance }
     }
 
     /// The forecast of this model for runs that it was not fitted to, and what became of it: in the frame that was

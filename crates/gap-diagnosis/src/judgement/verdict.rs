@@ -55,6 +55,8 @@ pub(crate) struct Unseen {
     pub promised: (f64, f64),
     /// Standard error of the achieved shrinkage by the number of rows alone.
     pub error: f64,
+    /// Standard error of the RMS without the causes where it is noise, in the same units.
+    pub chance: f64,
 }
 
 impl Unseen {
@@ -72,7 +74,7 @@ impl Unseen {
 
     /// A gap where nothing was named.
     pub(crate) fn shows_a_gap(&self) -> bool {
-        self.before > UNSEEN_GAP
+        self.before > UNSEEN_GAP || self.before > 1.0 + f64::max(OTHER_NOISE, NO_CHANCE * self.chance)
     }
 
     /// A forecast that does not hold, and of which hardly anything came true, where noise is not all that is left.
@@ -90,6 +92,10 @@ const NOISE_LEFT: f64 = 1.6;
 /// An unseen gap of so many times the noise is one, whatever the rows of the fit say. Nobody calls twice the noise agreement,
 /// and with the limit there one gap in ten of about that size passed by chance.
 const UNSEEN_GAP: f64 = 1.5;
+/// Below that, rows enough must say so: noise of another day may be so much larger …
+const OTHER_NOISE: f64 = 0.25;
+/// … and chance makes no more than so many standard errors.
+const NO_CHANCE: f64 = 5.0;
 /// Beside structure without a name, a cause that takes off less than this share of the RMS is none that anyone acts on.
 pub(crate) const WORTH_NAMING: f64 = 0.1;
 
@@ -109,7 +115,8 @@ pub(crate) const WORTH_NAMING: f64 = 0.1;
 /// Causes that swing between the places measured, or cancel each other, explain nothing, however well they fit: UNKNOWN.
 ///
 /// What rows that no fit has seen say comes last and weighs most: a forecast they refute is PARTIAL, UNKNOWN where they
-/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise.
+/// contradict it, and NO GAP is UNKNOWN where their gap is above [`UNSEEN_GAP`] times the noise, or above what noise and
+/// chance make of so many rows.
 #[must_use]
 pub(crate) fn verdict(e: &Evidence) -> Verdict {
     let seen = on_the_rows(e);
@@ -220,7 +227,7 @@ mod tests {
     /// Forecast 50 % (40 % at least) of a gap ten times the noise.
     #[test]
     fn unseen_rows_have_the_last_word() {
-        let kept = Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01 };
+        let kept = Unseen { before: 10.0, after: 5.0, promised: (0.4, 0.5), error: 0.01, chance: 0.1 };
         let with = |unseen: Unseen, e: Evidence| verdict(&Evidence { unseen: Some(unseen), ..e });
         let after = |after: f64| Unseen { after, ..kept };
         let none = Evidence { causes: 0, ..CLEAR };
@@ -239,6 +246,8 @@ mod tests {
             (with(Unseen { error: 0.2, ..after(7.0) }, CLEAR), Verdict::Named),
             (with(Unseen { before: 2.0, after: 1.5, ..kept }, CLEAR), Verdict::Named),
             (with(Unseen { before: 1.4, after: 1.4, ..kept }, none), Verdict::NoGap),
+            (with(Unseen { before: 1.4, chance: 0.07, ..kept }, none), Verdict::Unknown),
+            (with(Unseen { before: 1.2, chance: 0.01, ..kept }, none), Verdict::NoGap),
             (with(Unseen { before: 1.6, after: 1.6, ..kept }, none), Verdict::Unknown),
         ] {
             assert_eq!(found, expected);
