@@ -243,9 +243,10 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The cause and its rival that most need to be told apart.
-    pub(crate) fn worst_pair(&self) -> Option<(usize, Part)> {
-        self.ordered.iter().find_map(|r| r.told().next().map(|rival| (r.place, rival.part)))
+    /// The first cause that cannot be told from others, and these, the nearest first.
+    pub(crate) fn open(&self) -> Option<(usize, Vec<Part>)> {
+        let rivals = |r: &Ranked| r.told().map(|rival| rival.part).collect::<Vec<Part>>();
+        self.ordered.iter().map(|r| (r.place, rivals(r))).find(|(_, rivals)| !rivals.is_empty())
     }
 
     /// Names of what cannot be told from a cause.

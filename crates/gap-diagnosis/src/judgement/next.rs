@@ -24,54 +24,76 @@ pub(crate) struct Line {
     pub rows: Vec<Row>,
 }
 
-/// The cheapest line that tells the part at `pair.0` from its rival, `noise_um` the noise of a reading.
+/// Most rivals that one line is asked to tell from a cause.
+const RIVALS: usize = 4;
+/// So many standard deviations apart two effects are told for certain, and more is worth nothing.
+const CERTAIN: f64 = 12.0;
+
+/// The cheapest line that tells a part of the model from its rivals, the worst first; `noise_um` is the noise of a reading.
 #[must_use]
 pub(crate) fn next_measurement(
     data: &Measurements,
     model: &Explanation,
-    pair: Option<(usize, Part)>,
+    open: Option<(usize, Vec<Part>)>,
     noise_um: f64,
 ) -> Option<NextMeasurement> {
-    let (place, rival) = pair?;
-    let nuisances = model.library.nuisances;
-    let mut explaining = without(&model.parts, place);
-    explaining.push(rival);
-    let mut columns = model.library.model_columns(&explaining);
-    let explained_by = columns.len();
-    let own = &model.library.form(model.parts[place]).columns;
-    columns.extend(own);
+    let (place, mut rivals) = open?;
+    rivals.truncate(RIVALS);
+    let mut columns = model.library.model_columns(&without(&model.parts, place));
+    let others = columns.len();
+    let mut sets: Vec<Vec<usize>> = Vec::new();
+    for rival in &rivals {
+        let own = &model.library.form(*rival).columns;
+        sets.push((0..others).chain(columns.len()..columns.len() + own.len()).collect());
+        columns.extend(own);
+    }
+    let own = columns.len();
+    columns.extend(&model.library.form(model.parts[place]).columns);
     let values = &model.solution.coefficients[model.library.positions(&model.parts, place)];
     let terms: Vec<Term> = columns.iter().map(|c| model.library.terms[*c]).collect();
-    debug_assert!(nuisances <= explained_by, "the set-up comes first");
     let (known, _) = model.space.gram.select(&columns).whitened(model.solution.rho);
-    let now = separation(&known, explained_by, values, noise_um);
-    let mut best: Option<(f64, Line)> = None;
+    let apart = |products: &DMatrix<f64>| -> Vec<f64> {
+        sets.iter().map(|set| separation(products, set, own, values, noise_um)).collect()
+    };
+    let worth = |sigmas: &[f64]| sigmas.iter().map(|sigma| sigma.min(CERTAIN)).sum::<f64>();
+    let now = apart(&known);
+    let mut best: Option<(Vec<f64>, Line)> = None;
     for line in lines(data) {
         let mut runs = data.runs.clone();
         runs.push("next".to_owned());
-        let rows: Vec<Row> = line.rows.iter().map(|r| Row { run: data.runs.len(), ..*r }).collect();
-        let extra = Measurements { runs, rows, ..data.clone() };
+        let extra = Measurements { runs, rows: line.rows.clone(), ..data.clone() };
         let scalars = extra.scalars(None);
         let (fresh, _) =
             Gram::new(terms.clone(), &Source::new(&extra, &scalars)).whitened(model.solution.rho);
-        let sigma = separation(&(&known + fresh), explained_by, values, noise_um);
-        if best.as_ref().is_none_or(|(s, _)| sigma > s * 1.05) {
-            best = Some((sigma, line));
+        let sigmas = apart(&(&known + fresh));
+        let better = |(than, _): &(Vec<f64>, Line)| {
+            let (new, old) = (worth(&sigmas), worth(than));
+            new > 1.05 * old || (new > 0.95 * old && sigmas[0] > 1.05 * than[0])
+        };
+        if best.as_ref().is_none_or(better) {
+            best = Some((sigmas, line));
         }
     }
-    let (expected_sigma, line) = best?;
+    let (sigmas, line) = best?;
     let name = |part: Part| model.library.kind(part).to_string();
-    let separates = [name(model.parts[place]), name(rival)];
-    let text = if expected_sigma < now + 1.0 {
-        format!(
-            "No simple line tells {} from {}: a different kind of measurement is needed.",
-            separates[0], separates[1]
-        )
-    } else {
-        format!("Measure {}: it tells {} from {}.", line.text, separates[0], separates[1])
+    let told: Vec<usize> = (0..rivals.len()).filter(|r| sigmas[*r] >= now[*r] + 1.0).collect();
+    let cause = name(model.parts[place]);
+    let Some(first) = told.first() else {
+        let rival = name(rivals[0]);
+        let text =
+            format!("No simple line tells {cause} from {rival}: a different kind of measurement is needed.");
+        return Some(NextMeasurement {
+            text,
+            separates: [cause, rival],
+            expected_sigma: sigmas[0],
+            rows: line.rows,
+        });
     };
-    let rows = line.rows.into_iter().map(|row| Row { run: data.runs.len(), ..row }).collect();
-    Some(NextMeasurement { text, separates, expected_sigma, rows })
+    let names: Vec<String> = told.iter().map(|r| name(rivals[*r])).collect();
+    let text = format!("Measure {}: it tells {cause} from {}.", line.text, names.join(", "));
+    let expected_sigma = told.iter().map(|r| sigmas[*r]).fold(f64::INFINITY, f64::min);
+    let separates = [cause, name(rivals[*first])];
+    Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
 }
 
 /// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
@@ -92,15 +114,18 @@ pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
     Some(NextMeasurement { text, separates, expected_sigma: 0.0, rows })
 }
 
-/// Length of what the first columns cannot imitate of the last ones' displacement, standard deviations.
-fn separation(products: &DMatrix<f64>, explained_by: usize, values: &[f64], noise_um: f64) -> f64 {
-    let imitators: Vec<usize> = (0..explained_by).collect();
+/// Length of what some columns cannot imitate of the last ones' displacement, from `own` on; standard deviations.
+fn separation(
+    products: &DMatrix<f64>,
+    imitators: &[usize],
+    own: usize,
+    values: &[f64],
+    noise_um: f64,
+) -> f64 {
     let squares: Vec<f64> = (0..products.nrows()).map(|i| products[(i, i)]).collect();
-    let with = |i: usize| -> f64 {
-        values.iter().enumerate().map(|(k, v)| v * products[(i, explained_by + k)]).sum()
-    };
-    let square: f64 = values.iter().enumerate().map(|(k, v)| v * with(explained_by + k)).sum();
-    let factor = Factor::new(products, &imitators, &squares);
+    let with = |i: usize| -> f64 { values.iter().enumerate().map(|(k, v)| v * products[(i, own + k)]).sum() };
+    let square: f64 = values.iter().enumerate().map(|(k, v)| v * with(own + k)).sum();
+    let factor = Factor::new(products, imitators, &squares);
     let b: Vec<f64> = factor.kept.iter().map(|k| with(*k)).collect();
     let imitated: f64 = factor.forward(&b).iter().map(|v| v * v).sum();
     (square - imitated).max(0.0).sqrt() / noise_um.max(1e-9)
@@ -116,6 +141,7 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
         .filter_map(|r| r.conditions.time_s)
         .fold(None, |m: Option<f64>, t| Some(m.map_or(t, |m| m.max(t))));
     let base = Row {
+        run: data.runs.len(),
         conditions: machine_model::effects::Conditions {
             time_s: time.map(|t| t + 60.0),
             share: None,
@@ -156,6 +182,9 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     vary("with a tool 100 mm longer", &changed);
     changed.command.tool_mm = base.command.tool_mm + Vector::new(80.0, 0.0, 0.0);
     vary("with the target 80 mm aside in X", &changed);
+    // Angles about all three directions show at once.
+    changed.command.tool_mm = base.command.tool_mm + Vector::new(80.0, 80.0, -100.0);
+    vary("with the target 80 mm aside in X and in Y, on a tool 100 mm longer", &changed);
     if let Some(time) = time {
         let mut changed = base;
         changed.conditions.time_s = Some(3.0 * time);

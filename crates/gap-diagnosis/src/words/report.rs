@@ -91,13 +91,8 @@ impl Assembly<'_> {
             sentence,
             gap,
             places: places(data, scalars, &before, self.noise_variance(), options.seed),
-            next_measurement: next_measurement(
-                data,
-                self.model,
-                self.worst_pair(),
-                self.noise_variance().sqrt(),
-            )
-            .or_else(|| nameless.then(|| once_more(data)).flatten()),
+            next_measurement: next_measurement(data, self.model, self.open(), self.noise_variance().sqrt())
+                .or_else(|| nameless.then(|| once_more(data)).flatten()),
             causes,
             withheld,
             setup: self.setup(),
