@@ -401,3 +401,32 @@ fn what_is_not_certain_of_a_tilted_plane_is_refused_by_name() {
         );
     }
 }
+
+/// Where the rotary axes stand at the start is knowledge: the program without their block comes out as with it.
+#[test]
+fn rotary_axes_may_be_said_to_stand_somewhere() {
+    let whole = program("fanuc");
+    let without = whole.replace("G0 A0 C0\n", "");
+    let [out, corrected] = [(&whole, &[][..]), (&without, &["--start-at", "A=0,C=0"])].map(|(text, more)| {
+        let place = Place::new(text);
+        let ran = run(&[&[place.path("in.nc").as_str(), "-m", PROFILE, "-d", "fanuc"][..], more].concat());
+        assert!(ran.status.success(), "{}", messages(&ran));
+        String::from_utf8(ran.stdout).expect("text")
+    });
+    assert_eq!(out.replace("G0 A0 C0\n", ""), corrected);
+    // The first rapid names A and C; a rapid of Z before it goes where nobody knows.
+    let early = without.replace("G43.4 H1\n", "G0 Z300.\nG43.4 H1\n");
+    let place = Place::new(&early);
+    let input = place.path("in.nc");
+    let command = |more: &[&str]| {
+        let ran = run(&[&[input.as_str(), "-m", PROFILE, "-d", "fanuc"][..], more].concat());
+        (ran.status.success(), messages(&ran))
+    };
+    let (done, said) = command(&[]);
+    assert!(!done && said.contains("VP0213") && said.contains("--start-at A=0,C=0"), "{said}");
+    assert!(command(&["--start-at", "A=0,C=0"]).0);
+    for (wrong, words) in [("B=0", "no such axis"), ("A=0,A=1", "said twice"), ("W=3", "no axis `W`")] {
+        let (done, said) = command(&["--start-at", wrong]);
+        assert!(!done && said.contains(words), "{said}");
+    }
+}

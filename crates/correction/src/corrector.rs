@@ -102,15 +102,7 @@ impl<'m> Corrector<'m> {
         self
     }
 
-    /// The same with the axes standing at a known place before the first motion, axis commands in mm.
-    #[must_use]
-    pub fn standing_at(mut self, start_mm: [f64; 3]) -> Self {
-        self.standing = start_mm.map(Some);
-        (0..3).for_each(|axis| self.play.forget(axis, Some(start_mm[axis])));
-        self
-    }
-
-    /// One axis stands here at the start, mm, the others wherever.
+    /// One axis stands here before the first motion, axis command in mm, the others wherever.
     #[must_use]
     pub fn with_axis_at(mut self, axis: usize, start_mm: f64) -> Self {
         self.standing[axis] = Some(start_mm);

@@ -205,7 +205,8 @@ const READINGS: [Reading; 3] = [Reading::First, Reading::Even, Reading::Last];
 
 /// Runs a random program on a machine.
 fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
-    let mut corrector = Corrector::new(&judged.model, OPTIONS).standing_at([1.0; 3]);
+    let mut corrector =
+        Corrector::new(&judged.model, OPTIONS).with_axis_at(0, 1.0).with_axis_at(1, 1.0).with_axis_at(2, 1.0);
     let mut block = block("XYZ", false);
     if let Some(angle) = turned {
         let (sin, cos) = units::math::sin_cos(angle);

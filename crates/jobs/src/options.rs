@@ -9,7 +9,7 @@ use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
 
 use crate::message::Failure;
-use crate::values::{Conditions, Given, Point3, ToolLength, Unread, WorkOffset};
+use crate::values::{Conditions, Given, Start, ToolLength, Unread, WorkOffset};
 
 /// What decides the output of a job besides the program; a manifest keeps it.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ pub struct JobOptions {
     pub linuxcnc_ini: Option<PathBuf>,
     /// Where the axes stand at the start, mm.
     ///
-    /// Machine coordinates.
+    /// Machine coordinates; of some axes, and of rotary ones in degrees: `Z=300,A=0,C=90`.
     #[arg(
         long = "start-at",
         value_name = "X,Y,Z",
@@ -73,7 +73,7 @@ pub struct JobOptions {
         help_heading = "Program",
         allow_hyphen_values = true
     )]
-    pub start_at: Option<Given<Point3>>,
+    pub start_at: Option<Given<Start>>,
     /// Variable that the program does not set.
     ///
     /// Repeatable: `#500=12.5`, `#<depth>=2`, `R5=12.5` (Sinumerik), `#1=#0` for empty. Quote it for the shell.

@@ -423,7 +423,8 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         lever_matters: profile.lever_matters(),
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
-        start_mm: None,
+        start_mm: [None; 3],
+        start_deg: [None; 3],
         tool_change: profile.program.tool_change.map(|change| match change {
             machine_profile::AfterChange::Unknown => AfterChange::Unknown,
             machine_profile::AfterChange::Stays => AfterChange::Stays,
@@ -443,13 +444,20 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         }
     }
     if let Some(start) = &options.start_at {
-        if setup.tip_at_start {
+        if setup.tip_at_start && start.linear_mm.iter().any(Option::is_some) {
             return Err(Failure::option(
                 "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
-                "leave it out: the first rapid that names X, Y and Z says where the tip is",
+                "give rotary axes alone, as in `--start-at A=0,C=0`: the first rapid that names X, Y and Z says where the tip is",
             ));
         }
-        setup.start_mm = Some(start.0);
+        if let Some(axis) = (0..3).find(|i| start.rotary_deg[*i].is_some() && !setup.has_rotary[*i]) {
+            let name = ["A", "B", "C"][axis];
+            return Err(Failure::option(
+                format!("`--start-at` says where {name} stands, and the machine has no such axis"),
+                format!("leave it out, or name {name} in `chain` of the profile"),
+            ));
+        }
+        (setup.start_mm, setup.start_deg) = (start.linear_mm, start.rotary_deg);
     }
     Ok(setup)
 }

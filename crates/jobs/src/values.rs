@@ -163,6 +163,39 @@ impl Value for Point3 {
     }
 }
 
+/// `X,Y,Z`, mm, or some axes by name, rotary ones in degrees: where they stand.
+#[derive(Debug, Clone, Copy)]
+pub struct Start {
+    /// Of X, Y, Z; `None`: not said.
+    pub linear_mm: [Option<f64>; 3],
+    /// Of A, B, C; `None`: not said.
+    pub rotary_deg: [Option<f64>; 3],
+}
+
+impl Value for Start {
+    const WHAT: &'static str = "millimetres, or axes by name, rotary ones in degrees,";
+    const EXAMPLES: &'static [&'static str] = &["400,280,200", "Z=300,A=0,C=90"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        if !text.contains('=') {
+            let linear_mm = three(text, millimetres).ok_or(None)?;
+            return Ok(Self { linear_mm: linear_mm.map(Some), rotary_deg: [None; 3] });
+        }
+        let mut places = [None; 6];
+        for part in text.split(',') {
+            let (name, value) = assignment(part).ok_or(None)?;
+            let axis = ["X", "Y", "Z", "A", "B", "C"].iter().position(|axis| name.eq_ignore_ascii_case(axis));
+            let Some(axis) = axis else { return Err(Some(format!("there is no axis `{name}`"))) };
+            let value = if axis < 3 { millimetres(value) } else { finite(value) };
+            if places[axis].replace(value.ok_or(None)?).is_some() {
+                return Err(Some(format!("{name} is said twice")));
+            }
+        }
+        let [x, y, z, a, b, c] = places;
+        Ok(Self { linear_mm: [x, y, z], rotary_deg: [a, b, c] })
+    }
+}
+
 /// `LX,LY,LZ`, mm, none below zero.
 #[derive(Debug, Clone, Copy)]
 pub struct Size3(pub [f64; 3]);
@@ -547,6 +580,7 @@ mod tests {
     #[test]
     fn examples_can_be_read() {
         examples::<Point3>();
+        examples::<Start>();
         examples::<Size3>();
         examples::<WorkOffset>();
         examples::<ToolLength>();
@@ -574,6 +608,11 @@ mod tests {
         for wrong in ["1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "1,2,1e7", ""] {
             assert!(refused::<Point3>(wrong).contains("cannot be read"), "{wrong}");
         }
+        for wrong in ["1,2", "X=1,2", "X=", "A=inf", "X1", ""] {
+            assert!(refused::<Start>(wrong).contains("cannot be read"), "{wrong}");
+        }
+        assert!(refused::<Start>("U=3").contains("there is no axis `U`"));
+        assert!(refused::<Start>("A=3,a=4").contains("a is said twice"));
         assert!(refused::<ToolLength>("H1=1,2").contains("`--o H1=120` or `--o H1=0,0,120`"));
         assert!(refused::<Size3>("1,-2,3").contains("120,80,40"));
         assert!(refused::<Region3>("3..1,0..1,0..1").contains("cannot be read"));

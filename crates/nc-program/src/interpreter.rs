@@ -135,10 +135,12 @@ impl<'d> Interpreter<'d> {
             written: Vec::new(),
             frame: None,
             axes: Axes {
-                linear: setup.start_mm.map_or([unknown; 3], |start| start.map(Axis::At)),
-                rotary: setup
-                    .has_rotary
-                    .map(|has| if has && setup.rotary_matters { unknown } else { Axis::At(0.0) }),
+                linear: setup.start_mm.map(|start| start.map_or(unknown, Axis::At)),
+                rotary: [0, 1, 2].map(|axis| match setup.start_deg[axis] {
+                    Some(start) => Axis::At(start),
+                    None if setup.has_rotary[axis] && setup.rotary_matters => unknown,
+                    None => Axis::At(0.0),
+                }),
             },
             named: [Naming::Since(Lost { why: Why::Start, line: 0 }); 3],
             stated: Stated::default(),

@@ -216,7 +216,14 @@ fn unknown(words: &Words<'_, '_, '_>, message: &str, span: Span, lost: &[(char, 
     } else {
         ""
     };
-    let help = format!("program a rapid `G90 G0 {}` before this block{tool_change}", names.join(" "));
+    let rotary_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "ABC".contains(*name);
+    let start = if lost.iter().all(rotary_from_start) {
+        let places: Vec<String> = lost.iter().map(|(name, _)| format!("{name}=0")).collect();
+        format!(", or say where it stands then, as in `--start-at {}`", places.join(","))
+    } else {
+        String::new()
+    };
+    let help = format!("program a rapid `G90 G0 {}` before this block{tool_change}{start}", names.join(" "));
     words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
 }
 

@@ -379,7 +379,7 @@ mod tests {
     fn states(text: &str) -> Vec<(String, Process)> {
         let dialect = nc_dialect_fanuc();
         let setup = Setup {
-            start_mm: Some([0.0; 3]),
+            start_mm: [Some(0.0); 3],
             work_offsets: vec![("G54".to_owned(), [0.0; 3])],
             ..Setup::default()
         };

@@ -75,8 +75,10 @@ pub struct Setup {
     /// What the linear axes must be told depends on where the rotary axes stand. Where it does not, their
     /// position need not be known, and they may turn while linear axes feed.
     pub rotary_matters: bool,
-    /// Axis commands at the start of the program, mm (`--start-at`); `None`: unknown.
-    pub start_mm: Option<[f64; 3]>,
+    /// Commands of the linear axes at the start of the program, mm (`--start-at`); `None`: unknown.
+    pub start_mm: [Option<f64>; 3],
+    /// Where the rotary axes stand at the start of the program, degrees; `None`: unknown.
+    pub start_deg: [Option<f64>; 3],
     /// X, Y, Z behind a tool change.
     pub tool_change: [AfterChange; 3],
     /// What is known of tool centre point control.

@@ -25,7 +25,7 @@ fn absolute_words_of_motions_name_axes() {
     assert_eq!(unnamed("fanuc", "G0 X1. Y1. Z1.\nG91 G1 X1. F9.\nX2.\n"), "");
     // An increment says no place, a dwell's X neither.
     assert_eq!(unnamed("fanuc", "G0 Y1. Z1.\nG4 X1.\nX2.\n"), "X");
-    let known = Setup { start_mm: Some([0.0; 3]), ..setup() };
+    let known = Setup { start_mm: [Some(0.0); 3], ..setup() };
     let run = run_with(common::dialect("fanuc"), &known, "G91 G1 X1. Y1. Z1. F9.\nX2.\n");
     assert!(run.steps[1].context.unnamed.iter().all(Option::is_some));
 }

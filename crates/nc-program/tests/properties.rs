@@ -84,7 +84,7 @@ proptest! {
     #[test]
     fn any_program_twice(text in programs(), name in prop::sample::select(vec!["fanuc", "linuxcnc", "perspektiva", "centroid"]),
                          with_a: bool, known: bool) {
-        let setup = Setup { has_rotary: [with_a, false, false], rotary_matters: true, start_mm: known.then_some([0.0; 3]), ..setup() };
+        let setup = Setup { has_rotary: [with_a, false, false], rotary_matters: true, start_mm: [known.then_some(0.0); 3], ..setup() };
         prop_assert_eq!(transcript(name, &setup, &text), transcript(name, &setup, &text));
     }
 
@@ -92,7 +92,7 @@ proptest! {
     #[test]
     fn motions_are_chained(text in programs()) {
         let dialect = dialect("fanuc");
-        let setup = Setup { start_mm: Some([0.0; 3]), ..setup() };
+        let setup = Setup { start_mm: [Some(0.0); 3], ..setup() };
         let mut reader = Reader::new(text.as_bytes(), dialect);
         let mut interpreter = Interpreter::new(dialect, &setup);
         let mut block = Block::default();

@@ -141,7 +141,7 @@ fn a_rapid_may_have_unknown_axes() {
 
 #[test]
 fn start_at_makes_the_first_feed_possible() {
-    let setup = Setup { start_mm: Some([1.0, 2.0, 3.0]), ..setup() };
+    let setup = Setup { start_mm: [1.0, 2.0, 3.0].map(Some), ..setup() };
     let run = run_with(dialect("fanuc"), &setup, "G91 G1 X10. F100.\n");
     assert_eq!(feed(&run.steps[0].motions[0]).end.linear_mm, [11.0, 2.0, 3.0]);
 }

@@ -26,12 +26,15 @@ impl<'a> State<'a> {
             // A lathe's Y stands on the axis, whatever moves.
             corrector = corrector.with_axis_at(1, 0.0);
         }
+        for (axis, start_mm) in job.setup.start_mm.into_iter().enumerate() {
+            corrector = match start_mm {
+                Some(start_mm) => corrector.with_axis_at(axis, start_mm),
+                None => corrector,
+            };
+        }
         Self {
             interpreter: Interpreter::new(job.dialect, job.setup),
-            corrector: match job.setup.start_mm {
-                Some(start_mm) => corrector.standing_at(start_mm),
-                None => corrector,
-            },
+            corrector,
             emitter: Emitter::new(job.dialect).with_numbers(numbers),
             guarded: Guarded::default(),
             expects_name: false,

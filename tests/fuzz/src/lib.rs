@@ -33,7 +33,7 @@ pub const LIMITS: Limits = Limits { steps: 2_000, output_bytes: 16 << 10, depth:
 pub fn parse(bytes: &[u8]) {
     let (name, _, bytes) = split(bytes);
     let dialect = nc_dialect::builtin(name).expect("shipped");
-    let setup = Setup { start_mm: Some([0.0; 3]), ..Setup::default() };
+    let setup = Setup { start_mm: [Some(0.0); 3], ..Setup::default() };
     blocks(bytes, name, &setup);
     let nothing = |_: &str| Err(std::io::Error::from(std::io::ErrorKind::NotFound));
     let environment = Environment { variables: &[], read_external: &nothing, limits: LIMITS };
