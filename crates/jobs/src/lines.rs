@@ -5,7 +5,7 @@ use std::path::Path;
 
 use diagnostic::{Code, Diagnostic};
 
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 use crate::shown::shown;
 
 /// A block is longer than any that is read.
@@ -36,7 +36,7 @@ pub fn read_lines(mut source: impl Read, name: &str) -> Result<Vec<u8>, Failure>
             .by_ref()
             .take(LONGEST_LINE as u64)
             .read_to_end(&mut bytes)
-            .map_err(|error| Failure::file(name, "read", &error))?;
+            .map_err(|error| Failure::file(name, Deed::Read, &error))?;
         if read < LONGEST_LINE {
             return Ok(bytes);
         }

@@ -5,6 +5,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::str::FromStr;
 
+use diagnostic::Language;
 use error_map::Plane;
 use machine_model::{Axis, EngineId, Range};
 use nc_expand::Preset;
@@ -248,6 +249,15 @@ impl Value for EngineId {
             let names: Vec<&str> = Self::ALL.iter().map(|id| id.name()).collect();
             Some(format!("there is no such engine; there are {}", names.join(", ")))
         })
+    }
+}
+
+impl Value for Language {
+    const WHAT: &'static str = "a language that vpost speaks";
+    const EXAMPLES: &'static [&'static str] = &["en", "ru"];
+
+    fn read(text: &str) -> Result<Self, Option<String>> {
+        Self::from_name(text).ok_or(None)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text};
 use machine_model::effects::EffectTerm;
 use machine_model::{
     Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
@@ -74,7 +74,7 @@ const FINEST_MM: f64 = 1e-6;
 const STANDING_MM: f64 = 1.0;
 
 impl Loader<'_> {
-    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
+    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<Text>) {
         self.errors.push(ProfileError::profile(diagnostic.at(span(&at.span()), label)));
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 
 use crate::codes;
 
@@ -32,10 +32,10 @@ impl Refusal {
 /// An error at bytes of the text: what is wrong, what stands there, what to write.
 pub(crate) fn error(
     code: Code,
-    message: impl Into<String>,
+    message: impl Into<Text>,
     span: &Range<usize>,
-    label: impl Into<String>,
-    help: impl Into<String>,
+    label: impl Into<Text>,
+    help: impl Into<Text>,
 ) -> Diagnostic {
     Diagnostic::error(code, message).at(span.start as u64..span.end as u64, label).help(help)
 }

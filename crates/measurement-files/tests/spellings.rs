@@ -155,7 +155,7 @@ proptest! {
         let sheet = match Sheet::read("a.csv", &bytes, &KIND, None) {
             Ok(sheet) => sheet,
             Err(refusal) => {
-                let message = refusal.diagnostic.message;
+                let message = refusal.diagnostic.message.english();
                 prop_assert!(spelling.comma && message.contains("no other number tells which"), "{message}");
                 // Nothing in the table speaks for a decimal comma: every number could be a thousand times larger.
                 let could_be_group = |v: i32| (1..1000).contains(&(v.abs() / 1000));
@@ -204,7 +204,8 @@ fn refused(text: &str) -> (String, String, String) {
     };
     let span = refusal.diagnostic.span.unwrap_or(0..0);
     let place = text[span.start as usize..span.end as usize].to_owned();
-    (refusal.diagnostic.message, place, refusal.diagnostic.help.unwrap_or_default())
+    let help = refusal.diagnostic.help.unwrap_or_default();
+    (refusal.diagnostic.message.english().to_owned(), place, help.english().to_owned())
 }
 
 fn check(text: &str, message: &str, place: &str, help: &str) {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 use nc_syntax::dialect::Macros;
 
 use crate::codes;
@@ -19,7 +19,7 @@ pub(crate) enum Stop {
     /// There is no value.
     Fault(Fault),
     /// Code, message, label, help; the place is the statement.
-    Said(Box<(Code, String, String, String)>),
+    Said(Box<(Code, Text, Text, Text)>),
     /// Ready, with its place.
     Diagnostic(Box<Diagnostic>),
     /// Ready, about another file that could not be read in.
@@ -29,9 +29,9 @@ pub(crate) enum Stop {
 /// A stop in words.
 pub(crate) fn say(
     code: Code,
-    message: impl Into<String>,
-    label: impl Into<String>,
-    help: impl Into<String>,
+    message: impl Into<Text>,
+    label: impl Into<Text>,
+    help: impl Into<Text>,
 ) -> Stop {
     Stop::Said(Box::new((code, message.into(), label.into(), help.into())))
 }
@@ -42,7 +42,7 @@ pub(crate) fn diagnostic(stop: &Stop, span: Range<u64>, names: &Names, macros: M
         Stop::Diagnostic(diagnostic) | Stop::InFile(diagnostic, ..) => (**diagnostic).clone(),
         Stop::Said(said) => {
             let (code, message, label, help) = &**said;
-            Diagnostic::error(*code, message.as_str()).at(span, label.as_str()).help(help.as_str())
+            Diagnostic::error(*code, message.clone()).at(span, label.clone()).help(help.clone())
         }
         Stop::Unknown(variable) => unknown(*variable, span, names, macros),
         Stop::Fault(fault) => arithmetic(fault, span),

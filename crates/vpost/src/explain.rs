@@ -1,9 +1,9 @@
 //! What a message means, from the page that explains them all.
 
 use clap::Args;
+use diagnostic::{Language, both};
 
 use crate::file;
-use crate::language::Language;
 use crate::message::Failure;
 
 /// `docs/diagnostics.md`: an entry for each number.
@@ -31,8 +31,11 @@ pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure
     let entry = digits.parse::<u16>().ok().and_then(|number| entry(page, number));
     let Some(entry) = entry else {
         return Err(Failure::option(
-            format!("there is no message `{code}`"),
-            "give the number that stands in brackets behind `error` or `warning`, like VP0509",
+            both!("there is no message `{code}`", "сообщения `{code}` нет"),
+            both!(
+                "give the number that stands in brackets behind `error` or `warning`, like VP0509",
+                "дайте номер, который стоит в скобках после слова «ошибка» или «предупреждение», например VP0509"
+            ),
         ));
     };
     file::print(format!("{entry}\n").as_bytes())

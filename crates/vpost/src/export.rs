@@ -8,7 +8,7 @@ use diagnostic::{Code, Diagnostic};
 use machine_model::{Axis, Command, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -130,7 +130,7 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
         return Err(Failure::option("a step is above zero", "write `--step 50`"));
     }
     std::fs::create_dir_all(&arguments.folder)
-        .map_err(|error| Failure::file(&file::name(&arguments.folder), "make", &error))?;
+        .map_err(|error| Failure::file(&file::name(&arguments.folder), Deed::Make, &error))?;
     let lost = match arguments.format {
         Format::Linuxcnc => linuxcnc(&profile, &arguments.folder)?,
         Format::Isg => isg(&profile, &arguments.folder)?,

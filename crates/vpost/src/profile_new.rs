@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::both;
 use machine_model::{Axis, Chain};
 
 use crate::message::{Failure, Messages};
@@ -56,13 +57,14 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
     let Some(path) = &arguments.output else { return file::print(text.as_bytes()) };
     if path.exists() {
         return Err(Failure::option(
-            format!("{} is there already", file::name(path)),
-            "give another name, or remove it",
+            both!("{} is there already", "{} уже есть", file::name(path)),
+            both!("give another name, or remove it", "дайте другое имя или уберите его"),
         ));
     }
     file::write(path, text.as_bytes())?;
-    messages.note(&format!(
+    messages.note(&both!(
         "{}: a profile of {}; fill in what is measured",
+        "{}: профиль станка {}; впишите в него измеренное",
         file::name(path),
         arguments.name
     ));

@@ -5,11 +5,11 @@
 
 use std::io;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 
 pub(crate) use jobs::shown::{is_obeyed, shown};
 
-use crate::message::{Failure, Report};
+use crate::message::{Deed, Failure, Report};
 
 /// A program would give orders to the terminal.
 const OBEYED: Code = Code(5);
@@ -18,7 +18,9 @@ const OBEYED: Code = Code(5);
 /// what is read off a terminal may become a file.
 pub(crate) fn obeys_nothing_of(program: &mut impl io::Read) -> Result<(), Failure> {
     let mut text = Vec::new();
-    program.read_to_end(&mut text).map_err(|error| Failure::file("the output", "read", &error))?;
+    program
+        .read_to_end(&mut text)
+        .map_err(|error| Failure::place(&Text::pair("the output", "выходной файл"), Deed::Read, &error))?;
     let mut line = 1;
     for chunk in text.utf8_chunks() {
         for c in chunk.valid().chars() {

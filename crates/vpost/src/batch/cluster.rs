@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use diagnostic::both;
 use rayon::prelude::*;
 
 use super::arguments::{EngineForm, Merge, Plan, Run};
@@ -101,7 +102,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
     let open = match OutputFolder::open(root, Company::Alone) {
         Ok(folder) => Some(folder),
         Err(Failure::Later(_)) => {
-            messages.note("shards are still at work");
+            messages.note(&both!("shards are still at work", "части ещё работают"));
             None
         }
         Err(failure) => return Err(failure),
@@ -168,14 +169,22 @@ fn shards_of(missing: &[usize], of: u32) -> Vec<u32> {
 fn say_missing(missing: &[usize], manifest: &Manifest, of: Option<u32>, messages: &Messages) {
     let Some(first) = missing.first() else { return };
     let first = &manifest.items[*first].output;
-    let mut text =
-        format!("{} of {} outputs are missing, {first} the first\n", missing.len(), manifest.items.len());
+    let mut text = both!(
+        "{} of {} outputs are missing, {first} the first\n",
+        "не хватает выходных файлов: {} из {}, первый — {first}\n",
+        missing.len(),
+        manifest.items.len()
+    );
     match of {
-        None => text.push_str("which shards to run again: add `--shards N`"),
+        None => text.push(&both!(
+            "which shards to run again: add `--shards N`",
+            "какие части запустить снова, скажет `--shards N`"
+        )),
         Some(of) => {
             let shards = shards_of(missing, of);
-            text.push_str(&format!(
+            text.push(&both!(
                 "run again: HyperQueue `--array {}`, Slurm `--array={}`, GNU parallel `::: {}`",
+                "запустите снова: HyperQueue `--array {}`, Slurm `--array={}`, GNU parallel `::: {}`",
                 shard::array(&shards, EngineForm::Hq),
                 shard::array(&shards, EngineForm::Slurm),
                 shard::array(&shards, EngineForm::Parallel).trim_end().replace('\n', " "),

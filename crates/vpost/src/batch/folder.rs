@@ -21,7 +21,7 @@ use diagnostic::{Code, Diagnostic};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
-use crate::message::{Failure, Report};
+use crate::message::{Deed, Failure, Report};
 use crate::to_disk;
 
 /// Someone else works in the output folder.
@@ -66,9 +66,9 @@ impl OutputFolder {
         let own = root.join(OWN);
         // Made whole here, it is not made whole for each file.
         let temporaries = std::path::absolute(own.join("tmp"))
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         std::fs::create_dir_all(root)
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         for (path, kind) in [
             (&own, Kind::Folder),
             (&own.join("tmp"), Kind::Folder),
@@ -83,7 +83,7 @@ impl OutputFolder {
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         let temporaries = Nursery::new(temporaries);
         let alone = match lock.try_lock() {
             Ok(()) => true,
@@ -95,7 +95,7 @@ impl OutputFolder {
         };
         if alone {
             let folder = temporaries.path();
-            sweep(folder).map_err(|error| Failure::file(&file::name(folder), "empty", &error))?;
+            sweep(folder).map_err(|error| Failure::file(&file::name(folder), Deed::Empty, &error))?;
         }
         let held = match company {
             Company::Alone => alone,

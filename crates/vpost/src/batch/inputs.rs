@@ -11,7 +11,7 @@ use glob::{MatchOptions, Pattern};
 use super::arguments::Programs;
 use super::folder;
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 
 /// No program was found.
 const NONE_FOUND: Code = Code(1001);
@@ -70,7 +70,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
         let data = input.metadata().map_err(|error| Failure::unread(&file::name(input), &error))?;
         if data.is_dir() {
             let entries =
-                entries_of(input).map_err(|error| Failure::file(&file::name(input), "read", &error))?;
+                entries_of(input).map_err(|error| Failure::file(&file::name(input), Deed::Read, &error))?;
             search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
@@ -114,7 +114,7 @@ impl Search {
                 continue;
             }
             let kind =
-                entry.file_type().map_err(|error| Failure::file(&file::name(&path), "read", &error))?;
+                entry.file_type().map_err(|error| Failure::file(&file::name(&path), Deed::Read, &error))?;
             if kind.is_dir() {
                 if self.output.is_some() && path.canonicalize().ok() == self.output {
                     continue;

@@ -15,7 +15,7 @@ use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{JobOptions, Shared};
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Deed, Failure, Messages};
 
 /// The manifest cannot be used.
 const MANIFEST: Code = Code(1010);
@@ -68,7 +68,7 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
         .par_iter()
         .map(|item| {
             let (bytes, hash) = folder::hash(&item.input)
-                .map_err(|error| Failure::file(&file::name(&item.input), "read", &error))?;
+                .map_err(|error| Failure::file(&file::name(&item.input), Deed::Read, &error))?;
             let blake3 = hash.to_hex().to_string();
             Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
@@ -120,7 +120,7 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
     }
     let mut hasher = blake3::Hasher::new();
     for folder in folders {
-        let fail = |error: std::io::Error| Failure::file(&file::name(folder), "read", &error);
+        let fail = |error: std::io::Error| Failure::file(&file::name(folder), Deed::Read, &error);
         let mut paths = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(fail)? {
             paths.push(entry.map_err(fail)?.path());
@@ -145,7 +145,7 @@ pub(crate) fn write(path: &Path, text: &[u8]) -> Result<(), Failure> {
             "give another name, or delete it if no shard of it will run again",
         )),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => file::write(path, text),
-        Err(error) => Err(Failure::file(&file::name(path), "read", &error)),
+        Err(error) => Err(Failure::file(&file::name(path), Deed::Read, &error)),
     }
 }
 
@@ -154,7 +154,7 @@ impl Manifest {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let text = std::fs::read(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => Failure::unread(&file::name(path), &error),
-            _ => Failure::file(&file::name(path), "read", &error),
+            _ => Failure::file(&file::name(path), Deed::Read, &error),
         })?;
         let damaged = |what: String| {
             unusable(

@@ -24,6 +24,8 @@ use std::path::Path;
 pub use arguments::Batch;
 use arguments::BatchCommand;
 
+use diagnostic::both;
+
 use crate::arguments::Shared;
 use crate::exit_status::REFUSED;
 
@@ -62,7 +64,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let folder = OutputFolder::open(root, Company::Alone)?;
     if !folder.is_locked() && shared.messages.verbose > 0 {
         messages
-            .note("the output folder's file system knows no locks: nothing that a killed run left is swept");
+            .note(&both!("the output folder's file system knows no locks: nothing that a killed run left is swept", "файловая система выходной папки не знает блокировок: то, что осталось от прерванного запуска, не убирается"));
     }
     let earlier = journal::read(&folder.journal(), None)?;
     let mut journal = Journal::begin(&folder, journal::WHOLE)?;

@@ -9,7 +9,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use blake3::Hash;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 
 use super::folder::{Grown, OutputFolder, hash};
 use super::inputs::Item;
@@ -21,7 +21,7 @@ use super::record::{Record, Status};
 use super::shelf::Shelf;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 
 /// An output would be written over a file that vpost did not write.
 const FOREIGN: Code = Code(1006);
@@ -136,7 +136,9 @@ impl<'a> Batch<'a> {
                     told.take(index, outcome, progress, messages);
                 }
             }
-            shelf.end().map_err(|error| Failure::file("the output folder", "write to", &error))?;
+            shelf.end().map_err(|error| {
+                Failure::place(&Text::pair("the output folder", "выходную папку"), Deed::WriteTo, &error)
+            })?;
             self.interrupt.check()?;
             Ok(told.results)
         })
@@ -214,7 +216,7 @@ impl<'a> Batch<'a> {
             return Ok(());
         }
         let place = || self.folder.place(&item.output);
-        let fail = |error: std::io::Error| Failure::file(&file::name(&place()), "write", &error);
+        let fail = |error: std::io::Error| Failure::file(&file::name(&place()), Deed::Write, &error);
         let mut temporary = self.folder.temporary().map_err(fail)?;
         let done = self.job.correct(item, threads, &mut temporary, self.interrupt)?;
         if let Some(hash) = done.input.hash {
@@ -244,7 +246,7 @@ impl<'a> Batch<'a> {
         });
         let Some(known) = same else { return Ok(None) };
         let present = self.folder.present(&record.output).map_err(|error| {
-            Failure::file(&file::name(&self.folder.place(&record.output)), "read", &error)
+            Failure::file(&file::name(&self.folder.place(&record.output)), Deed::Read, &error)
         })?;
         let intact = present.is_some_and(|hash| is(known.output_blake3.as_deref(), hash));
         Ok(intact.then(|| known.clone()))
@@ -273,7 +275,7 @@ fn gone(item: &Item, error: &std::io::Error) -> Failure {
     if item.blake3.is_some() && error.kind() == std::io::ErrorKind::NotFound {
         changed(&item.input, "is not there any more")
     } else {
-        Failure::file(&file::name(&item.input), "read", error)
+        Failure::file(&file::name(&item.input), Deed::Read, error)
     }
 }
 
@@ -354,7 +356,7 @@ impl Told {
         if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
             let Self { said, printed, .. } = self;
             let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
-                (None, [only]) => said.insert(only.message.clone()),
+                (None, [only]) => said.insert(only.message.english().to_owned()),
                 _ => true,
             };
             let told: Vec<&Report> = outcome.told.iter().filter(new).collect();

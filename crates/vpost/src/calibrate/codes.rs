@@ -1,7 +1,7 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 
 use crate::message::Failure;
 
@@ -53,6 +53,6 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
 }
 
 /// A question that stays open.
-pub(super) fn question(message: impl Into<String>, help: impl Into<String>) -> Failure {
+pub(super) fn question(message: impl Into<Text>, help: impl Into<Text>) -> Failure {
     Failure::usage(Diagnostic::error(QUESTION, message).help(help))
 }

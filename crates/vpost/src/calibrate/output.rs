@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use machine_model::effects::{Conditions, EffectKind};
 use machine_model::{Axis, Chain, Command, Description, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -341,12 +341,17 @@ impl Output {
         let Some(path) = &target.output else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
         std::fs::create_dir_all(&folder)
-            .map_err(|error| Failure::file(&file::name(&folder), "make", &error))?;
+            .map_err(|error| Failure::file(&file::name(&folder), Deed::Make, &error))?;
         for (name, bytes) in &self.tables {
             file::write(&folder.join(name), bytes)?;
         }
         file::write(path, self.text.to_string().as_bytes())?;
-        messages.note(&format!("{}: written, tables in {}", file::name(path), file::name(&folder)));
+        messages.note(&both!(
+            "{}: written, tables in {}",
+            "{}: записан, таблицы в {}",
+            file::name(path),
+            file::name(&folder)
+        ));
         Ok(())
     }
 }
