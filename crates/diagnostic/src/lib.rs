@@ -5,12 +5,14 @@
 //! The list of codes with cause and remedy is `docs/diagnostics.md`.
 
 mod language;
+mod speaks;
 mod text;
 
 use std::fmt;
 use std::ops::Range;
 
 pub use language::{Language, russian_plural};
+pub use speaks::Speaks;
 pub use text::Text;
 
 /// The number in `error[VP0203]`.
