@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use calibration::functions::FunctionReading;
+use diagnostic::Text;
 use measurement_files::series::{Content, Series, Told, Values, symbol};
 use measurement_files::{Codes, Kind, Sheet};
 
@@ -10,10 +11,10 @@ use crate::file;
 use crate::message::Failure;
 
 /// Reads a table of one of the instruments.
-pub(super) fn sheet(path: &Path, columns: &str, expected: &str, ignore: &[String]) -> Result<Sheet, Failure> {
+pub(super) fn sheet(path: &Path, columns: &str, expected: impl Into<Text>, ignore: &[String]) -> Result<Sheet, Failure> {
     let kind = Kind {
         columns,
-        expected,
+        expected: expected.into(),
         passes_over: Some("published_"),
         may_be_empty: false,
         codes: Codes::MEASUREMENTS,
