@@ -113,6 +113,9 @@ impl Text {
     }
 }
 
+/// What went wrong where nothing but an error can be handed on, as through [`std::io::Error`].
+impl std::error::Error for Text {}
+
 impl fmt::Display for Text {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if f.alternate() { &self.russian } else { &self.english })

@@ -166,6 +166,9 @@ pub fn file_diagnostic(name: &Text, deed: Deed, error: &std::io::Error) -> Diagn
 /// What the system says of an error: in English its own words.
 fn said(error: &std::io::Error) -> Text {
     use std::io::ErrorKind;
+    if let Some(text) = error.get_ref().and_then(|inner| inner.downcast_ref::<Text>()) {
+        return text.clone();
+    }
     // `tempfile` adds the name of its file, which means nothing to the user.
     let own = error.to_string();
     let own = own.split(" at path ").next().unwrap_or_default();

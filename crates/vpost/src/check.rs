@@ -4,6 +4,7 @@ mod page;
 
 use std::path::Path;
 
+use diagnostic::both;
 use jobs::check::{Outcome, closed, limit_mm};
 use path_comparison::Traces;
 use rewrite::Checked;
@@ -19,9 +20,9 @@ use crate::settings;
 pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let settings = settings::load(shared, messages)?;
     Roles::default()
-        .reads("the program", &arguments.input)
-        .reads("the corrected program", &arguments.output)
-        .reads_all("read by the profile", &settings.files)
+        .reads(both!("the program", "программа"), &arguments.input)
+        .reads(both!("the corrected program", "исправленная программа"), &arguments.output)
+        .reads_all(both!("read by the profile", "файл, который читает профиль"), &settings.files)
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let model = settings.path_model()?;
@@ -37,8 +38,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let limit_mm = limit_mm(&settings, &comparison);
     let outcome = Outcome::new(&settings, &comparison, findings);
     let passed = outcome.passed;
-    let findings: Vec<String> =
-        outcome.findings.iter().map(|finding| finding.english().to_owned()).collect();
+    let findings: Vec<String> = outcome.findings.iter().map(|finding| finding.english().to_owned()).collect();
     if arguments.json || arguments.html.is_some() {
         let text = outcome.json();
         if let Some(path) = &arguments.html {

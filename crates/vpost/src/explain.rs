@@ -24,11 +24,7 @@ pub struct Explain {
 pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure> {
     let code = &arguments.code;
     let digits = code.strip_prefix("VP").or_else(|| code.strip_prefix("vp")).unwrap_or(code);
-    let page = match language {
-        Language::English => PAGE,
-        Language::Russian => PAGE_RU,
-    };
-    let entry = digits.parse::<u16>().ok().and_then(|number| entry(page, number));
+    let entry = digits.parse::<u16>().ok().and_then(|number| entry(page(language), number));
     let Some(entry) = entry else {
         return Err(Failure::option(
             both!("there is no message `{code}`", "сообщения `{code}` нет"),
@@ -39,6 +35,22 @@ pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure
         ));
     };
     file::print(format!("{entry}\n").as_bytes())
+}
+
+/// What a message is about, in the few words of its entry's heading.
+pub(crate) fn title(code: &str, language: Language) -> Option<&'static str> {
+    let heading = format!("### {code} — ");
+    let page = page(language);
+    let rest = &page[page.find(&heading)? + heading.len()..];
+    let title = rest.lines().next()?;
+    Some(title.strip_prefix("warning: ").or_else(|| title.strip_prefix("предупреждение: ")).unwrap_or(title))
+}
+
+fn page(language: Language) -> &'static str {
+    match language {
+        Language::English => PAGE,
+        Language::Russian => PAGE_RU,
+    }
 }
 
 /// The part of a page under the heading of a number, without the example that causes the message.

@@ -10,7 +10,7 @@ use crate::message::{Deed, Failure};
 use crate::source::Still;
 use crate::terminal;
 use crate::to_disk::{self, ToDisk};
-use diagnostic::Text;
+use diagnostic::{Text, both};
 
 /// Reads a file, or standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
@@ -229,7 +229,10 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
 
 fn printed(print: impl FnOnce(&mut std::io::StdoutLock<'_>) -> std::io::Result<()>) -> Result<(), Failure> {
     if !open_streams::is_stdout_open() {
-        let closed = std::io::Error::other("it was closed before vpost began");
+        let closed = std::io::Error::other(both!(
+            "it was closed before vpost began",
+            "он был закрыт до начала работы vpost"
+        ));
         return Err(Failure::place(
             &Text::pair("standard output", "стандартный вывод"),
             Deed::WriteTo,

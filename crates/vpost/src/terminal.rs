@@ -5,7 +5,7 @@
 
 use std::io;
 
-use diagnostic::{Code, Diagnostic, Text};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 pub(crate) use jobs::shown::{is_obeyed, shown};
 
@@ -25,11 +25,13 @@ pub(crate) fn obeys_nothing_of(program: &mut impl io::Read) -> Result<(), Failur
     for chunk in text.utf8_chunks() {
         for c in chunk.valid().chars() {
             if is_obeyed(c) {
-                let message = format!(
+                let message = both!(
                     "line {line} of the corrected program has U+{:04X}, which a terminal obeys",
+                    "в строке {line} исправленной программы стоит U+{:04X}, и терминал его исполнит",
                     u32::from(c)
                 );
-                let diagnostic = Diagnostic::error(OBEYED, message).help("write to a file: `-o OUT.nc`");
+                let diagnostic = Diagnostic::error(OBEYED, message)
+                    .help(both!("write to a file: `-o OUT.nc`", "запишите в файл: `-o OUT.nc`"));
                 return Err(Failure::File(Report { source: None, diagnostics: vec![diagnostic] }));
             }
             line += usize::from(c == '\n');

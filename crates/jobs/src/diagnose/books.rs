@@ -225,7 +225,7 @@ mod tests {
         let moved: Vec<String> = trials(&[("G54".to_owned(), [10.0, 0.0, 0.0])])
             .into_iter()
             .filter(|t| t.moves)
-            .map(|t| t.words)
+            .map(|t| t.words.english().to_owned())
             .collect();
         assert_eq!(moved.len(), 5, "{moved:?}");
         assert!(moved.iter().all(|words| words.contains("_mm") || words.contains("G54")), "{moved:?}");

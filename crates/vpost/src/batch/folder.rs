@@ -17,7 +17,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
@@ -228,11 +228,16 @@ impl Kind {
         if ours {
             return Ok(());
         }
-        let what = if found.is_symlink() { "a link" } else { "not what vpost makes there" };
-        let message = format!("{} is {what}", file::name(path));
-        Err(Failure::usage(
-            Diagnostic::error(NOT_OURS, message).help("remove it, or give another output folder with `-O`"),
-        ))
+        let what = if found.is_symlink() {
+            both!("a link", "ссылка")
+        } else {
+            both!("not what vpost makes there", "не то, что создаёт там vpost")
+        };
+        let message = both!("{} is {what}", "{} — {what:#}", file::name(path));
+        Err(Failure::usage(Diagnostic::error(NOT_OURS, message).help(both!(
+            "remove it, or give another output folder with `-O`",
+            "уберите или дайте другую выходную папку ключом `-O`"
+        ))))
     }
 }
 
@@ -269,8 +274,14 @@ fn share(lock: &File) -> bool {
 
 /// Someone else works there.
 fn busy(root: &Path) -> Failure {
-    let diagnostic = Diagnostic::error(BUSY, format!("another vpost batch is at work in {}", root.display()))
-        .help("let it end, or give a folder of its own with `-O`");
+    let diagnostic = Diagnostic::error(
+        BUSY,
+        both!("another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display()),
+    )
+    .help(both!(
+        "let it end, or give a folder of its own with `-O`",
+        "дождитесь конца или дайте отдельную папку ключом `-O`"
+    ));
     Failure::Later(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

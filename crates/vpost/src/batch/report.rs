@@ -6,7 +6,7 @@ use super::work::Results;
 use super::{inputs, record, table};
 use crate::file;
 use crate::message::{Failure, Messages};
-use diagnostic::{Text, both};
+use diagnostic::{Language, Text, both};
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
 pub(super) fn passed_over(found: &inputs::Found, messages: &Messages) {
@@ -75,12 +75,12 @@ pub(super) fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
 }
 
 /// Results to disk and to the user, who gets the table whatever cannot be written.
-pub(super) fn finish(results: &Results, lines: Option<&Path>) -> Result<(), Failure> {
+pub(super) fn finish(results: &Results, lines: Option<&Path>, language: Language) -> Result<(), Failure> {
     let (written, printed) = match lines {
         Some(path) if path.as_os_str() == "-" => (Ok(()), file::print(&record::lines(&results.records))),
         path => (
             path.map_or(Ok(()), |path| file::write(path, &record::lines(&results.records))),
-            file::print(table::table(results).as_bytes()),
+            file::print(table::table(results, language).as_bytes()),
         ),
     };
     written.and(printed)

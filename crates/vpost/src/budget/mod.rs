@@ -8,7 +8,7 @@ mod text;
 
 pub use arguments::Budget;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use error_budget::Machine;
 use machine_model::EngineId;
 
@@ -29,8 +29,8 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     let path = machine(&shared.job)?;
     let profile::Loaded { profile, files, .. } = profile::load_mill(path)?;
     Roles::default()
-        .reads_all("the control points", &arguments.points)
-        .reads_all("read by the profile", &files)
+        .reads_all(both!("the control points", "контрольные точки"), &arguments.points)
+        .reads_all(both!("read by the profile", "файл, который читает профиль"), &files)
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
     if let Some(id) = shared.job.engine().filter(|id| *id != EngineId::RigidBody) {

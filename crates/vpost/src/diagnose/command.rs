@@ -61,9 +61,9 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
     };
     Roles::default()
-        .reads("the measurements", measurements)
-        .reads_all("the hold-out", &arguments.holdout)
-        .reads_all("read by the profile", &model.files)
+        .reads(both!("the measurements", "измерения"), measurements)
+        .reads_all(both!("the hold-out", "контрольные измерения"), &arguments.holdout)
+        .reads_all(both!("read by the profile", "файл, который читает профиль"), &model.files)
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())
