@@ -2,12 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
+use diagnostic::Text;
 use measurement_files::{Codes, Kind, Sheet, decoded};
 use proptest::prelude::*;
 
 const KIND: Kind<'_> = Kind {
     columns: "run x_mm y_mm dx_um temp_c note",
-    expected: "expected: run,x_mm,y_mm,dx_um",
+    expected: Text::pair("expected: run,x_mm,y_mm,dx_um", "ожидалось: run,x_mm,y_mm,dx_um"),
     passes_over: None,
     may_be_empty: false,
     codes: Codes::MEASUREMENTS,
