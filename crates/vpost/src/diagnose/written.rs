@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use diagnostic::Code;
+use diagnostic::{Code, both};
 use gap_diagnosis::Diagnosis;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
@@ -19,7 +19,10 @@ pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(
     let text = String::from_utf8_lossy(&file::read(from)?).into_owned();
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
         let diagnostic = diagnostic::Diagnostic::error(UNREADABLE, error.to_string());
-        Failure::usage(diagnostic.help("run `vpost profile check` on it"))
+        Failure::usage(
+            diagnostic
+                .help(both!("run `vpost profile check` on it", "запустите для него `vpost profile check`")),
+        )
     })?;
     move_tables(&mut document, &folder(from), &folder(path));
     let effects = document.entry("effect").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
