@@ -16,9 +16,9 @@ pub(crate) fn refuse(
     (name, text): File<'_>,
     at: Piece<'_>,
     code: Code,
-    message: impl Into<Text>,
-    label: impl Into<Text>,
-    help: impl Into<Text>,
+    message: Text,
+    label: Text,
+    help: Text,
 ) -> Box<Refusal> {
     let start = at.span().start as u64;
     let end = start + at.text.len().max(1) as u64;
@@ -26,11 +26,6 @@ pub(crate) fn refuse(
 }
 
 /// About no line of the file.
-pub(crate) fn refuse_whole(
-    (name, text): File<'_>,
-    code: Code,
-    message: impl Into<Text>,
-    help: impl Into<Text>,
-) -> Box<Refusal> {
+pub(crate) fn refuse_whole((name, text): File<'_>, code: Code, message: Text, help: Text) -> Box<Refusal> {
     Refusal::of(name, text, Diagnostic::error(code, message).help(help))
 }

@@ -33,7 +33,7 @@ pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refus
             "keep length_mm, which is along Z, or x_mm, y_mm and z_mm",
             "оставьте length_mm (вдоль Z) или x_mm, y_mm и z_mm"
         );
-        return Err(sheet.refuse_column(UNREADABLE, "length_mm", message.to_owned(), help));
+        return Err(sheet.refuse_column(UNREADABLE, "length_mm", message, help));
     }
     if !by_axis {
         sheet.need(

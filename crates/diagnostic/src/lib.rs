@@ -60,37 +60,30 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error.
     #[must_use]
-    pub fn error(code: Code, message: impl Into<Text>) -> Self {
-        Self {
-            code,
-            severity: Severity::Error,
-            message: message.into(),
-            span: None,
-            label: Text::EMPTY,
-            help: None,
-        }
+    pub fn error(code: Code, message: Text) -> Self {
+        Self { code, severity: Severity::Error, message, span: None, label: Text::EMPTY, help: None }
     }
     /// A warning.
     #[must_use]
-    pub fn warning(code: Code, message: impl Into<Text>) -> Self {
+    pub fn warning(code: Code, message: Text) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
     }
     /// A warning that the program itself is doubtful.
     #[must_use]
-    pub fn doubt(code: Code, message: impl Into<Text>) -> Self {
+    pub fn doubt(code: Code, message: Text) -> Self {
         Self { severity: Severity::Doubt, ..Self::error(code, message) }
     }
     /// Says where.
     #[must_use]
-    pub fn at(mut self, span: Range<u64>, label: impl Into<Text>) -> Self {
+    pub fn at(mut self, span: Range<u64>, label: Text) -> Self {
         self.span = Some(span);
-        self.label = label.into();
+        self.label = label;
         self
     }
     /// Says what to do.
     #[must_use]
-    pub fn help(mut self, help: impl Into<Text>) -> Self {
-        self.help = Some(help.into());
+    pub fn help(mut self, help: Text) -> Self {
+        self.help = Some(help);
         self
     }
 }

@@ -122,19 +122,6 @@ impl fmt::Display for Text {
     }
 }
 
-// Until every room speaks both languages.
-impl From<&str> for Text {
-    fn from(text: &str) -> Self {
-        Self::english_only(text)
-    }
-}
-
-impl From<String> for Text {
-    fn from(text: String) -> Self {
-        Self::english_only(text)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -91,7 +91,7 @@ impl Failure {
     }
 
     /// An option is wrong.
-    pub fn option(message: impl Into<Text>, help: impl Into<Text>) -> Self {
+    pub fn option(message: Text, help: Text) -> Self {
         Self::usage(Diagnostic::error(OPTION, message).help(help))
     }
 

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, FromArgMatches, ValueEnum};
-use diagnostic::both;
+use diagnostic::{Text, both};
 use machine_model::EngineId;
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
@@ -156,7 +156,7 @@ impl JobOptions {
                 let text = error.to_string();
                 let first = text.lines().next().unwrap_or_default();
                 Failure::option(
-                    first.trim_start_matches("error: "),
+                    Text::english_only(first.trim_start_matches("error: ")),
                     both!(
                         "see docs/reference.md for what it takes",
                         "что он принимает, сказано в docs/reference.md"

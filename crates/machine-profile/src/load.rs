@@ -75,7 +75,7 @@ const FINEST_MM: f64 = 1e-6;
 const STANDING_MM: f64 = 1.0;
 
 impl Loader<'_> {
-    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<Text>) {
+    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: Text) {
         self.errors.push(ProfileError::profile(diagnostic.at(span(&at.span()), label)));
     }
 
@@ -974,7 +974,7 @@ impl Loader<'_> {
                 };
                 self.refuse(
                     value,
-                    Diagnostic::error(VALUE, format!("{name} is {number}")),
+                    Diagnostic::error(VALUE, both!("{name} is {number}", "{name} — {number}")),
                     both!("expected {wanted}", "ожидалось {wanted:#}"),
                 );
             }

@@ -169,7 +169,7 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
         codes: CODES,
     };
     let sheet = Sheet::read(file, bytes, &kind, None)?;
-    sheet.need(&[COMMANDED, MEASURED].concat(), kind.expected.clone())?;
+    sheet.need(&[COMMANDED, MEASURED].concat(), kind.expected)?;
     let has_cosines = COSINES.iter().any(|key| sheet.has(key));
     if has_cosines {
         sheet.need(

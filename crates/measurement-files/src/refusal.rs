@@ -30,13 +30,7 @@ impl Refusal {
 }
 
 /// An error at bytes of the text: what is wrong, what stands there, what to write.
-pub(crate) fn error(
-    code: Code,
-    message: impl Into<Text>,
-    span: &Range<usize>,
-    label: impl Into<Text>,
-    help: impl Into<Text>,
-) -> Diagnostic {
+pub(crate) fn error(code: Code, message: Text, span: &Range<usize>, label: Text, help: Text) -> Diagnostic {
     Diagnostic::error(code, message).at(span.start as u64..span.end as u64, label).help(help)
 }
 

@@ -195,7 +195,7 @@ impl Sheet {
     ///
     /// # Errors
     /// The first column that it lacks.
-    pub fn need(&self, keys: &[&str], help: impl Into<Text>) -> Result<(), Box<Refusal>> {
+    pub fn need(&self, keys: &[&str], help: Text) -> Result<(), Box<Refusal>> {
         match keys.iter().find(|key| !self.has(key)) {
             Some(missing) => Err(self.lacks(missing, help)),
             None => Ok(()),
@@ -204,7 +204,7 @@ impl Sheet {
 
     /// The refusal of a file without this column.
     #[must_use]
-    pub fn lacks(&self, key: &str, help: impl Into<Text>) -> Box<Refusal> {
+    pub fn lacks(&self, key: &str, help: Text) -> Box<Refusal> {
         let header = Column::of(key).map_or_else(|| key.to_owned(), |column| column.header());
         self.refuse_header(
             self.codes.column,
@@ -215,20 +215,14 @@ impl Sheet {
 
     /// A refusal that points at the header.
     #[must_use]
-    pub fn refuse_header(&self, code: Code, message: impl Into<Text>, help: impl Into<Text>) -> Box<Refusal> {
+    pub fn refuse_header(&self, code: Code, message: Text, help: Text) -> Box<Refusal> {
         let span = self.table.header.cells.first().map_or(0..0, |cell| cell.span.clone());
         self.refused(code, span, message, both!("the header", "заголовок"), help)
     }
 
     /// A refusal that points at the header of a column.
     #[must_use]
-    pub fn refuse_column(
-        &self,
-        code: Code,
-        key: &str,
-        message: impl Into<Text>,
-        help: impl Into<Text>,
-    ) -> Box<Refusal> {
+    pub fn refuse_column(&self, code: Code, key: &str, message: Text, help: Text) -> Box<Refusal> {
         let at = self.placed(key).map_or(0, |placed| placed.at);
         self.refused(
             code,
@@ -265,9 +259,9 @@ impl Sheet {
         &self,
         code: Code,
         span: Range<usize>,
-        message: impl Into<Text>,
-        label: impl Into<Text>,
-        help: impl Into<Text>,
+        message: Text,
+        label: Text,
+        help: Text,
     ) -> Box<Refusal> {
         Refusal::of(&self.name, &self.text, error(code, message, &span, label, help))
     }
@@ -562,13 +556,7 @@ impl<'s> Row<'s> {
 
     /// A refusal that points at the cell of a column, or at the row where it has none.
     #[must_use]
-    pub fn refuse(
-        &self,
-        code: Code,
-        key: &str,
-        message: impl Into<Text>,
-        help: impl Into<Text>,
-    ) -> Box<Refusal> {
+    pub fn refuse(&self, code: Code, key: &str, message: Text, help: Text) -> Box<Refusal> {
         let span =
             self.cell(key).map_or_else(|| self.record.cells[0].span.clone(), |(_, cell)| cell.span.clone());
         self.sheet.refused(code, span, message, Text::same(self.sheet.header(key)), help)
@@ -576,13 +564,7 @@ impl<'s> Row<'s> {
 
     /// A refusal that points at the whole row.
     #[must_use]
-    pub fn refuse_row(
-        &self,
-        code: Code,
-        message: impl Into<Text>,
-        label: impl Into<Text>,
-        help: impl Into<Text>,
-    ) -> Box<Refusal> {
+    pub fn refuse_row(&self, code: Code, message: Text, label: Text, help: Text) -> Box<Refusal> {
         self.sheet.refused(code, self.record.span(), message, label, help)
     }
 

@@ -27,13 +27,8 @@ pub(crate) enum Stop {
 }
 
 /// A stop in words.
-pub(crate) fn say(
-    code: Code,
-    message: impl Into<Text>,
-    label: impl Into<Text>,
-    help: impl Into<Text>,
-) -> Stop {
-    Stop::Said(Box::new((code, message.into(), label.into(), help.into())))
+pub(crate) fn say(code: Code, message: Text, label: Text, help: Text) -> Stop {
+    Stop::Said(Box::new((code, message, label, help)))
 }
 
 /// The message, at the statement where execution ended.

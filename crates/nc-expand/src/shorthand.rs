@@ -134,11 +134,7 @@ impl Words<'_, '_> {
         whole(self.block)
     }
     pub(crate) fn fault(&self, code: Code, span: Span, message: Text, label: Text, help: Text) -> Fault {
-        Box::new(
-            Diagnostic::error(code, message.to_owned())
-                .at(self.block.file_span(span), label.to_owned())
-                .help(help.to_owned()),
-        )
+        Box::new(Diagnostic::error(code, message).at(self.block.file_span(span), label).help(help))
     }
 }
 

@@ -381,7 +381,7 @@ impl Compiler<'_, '_> {
         };
         let conflict = |message: Text, help: Text| {
             Err(Box::new(
-                Diagnostic::error(codes::COMBINATION, message.to_owned())
+                Diagnostic::error(codes::COMBINATION, message)
                     .at(block.file_span(whole(block)), both!("whose are the words?", "чьи это слова?"))
                     .help(help),
             ))

@@ -478,7 +478,7 @@ pub(crate) struct Refusal(Box<Diagnostic>);
 
 impl Refusal {
     pub(crate) fn help(mut self, help: Text) -> Box<Diagnostic> {
-        self.0.help = Some(help.into());
+        self.0.help = Some(help);
         self.0
     }
 }

@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     Roles::default()
         .reads(both!("the program", "программа"), &arguments.input)
         .reads(both!("the corrected program", "исправленная программа"), &arguments.output)
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &settings.files)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let model = settings.path_model()?;

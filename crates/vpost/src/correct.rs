@@ -28,8 +28,8 @@ pub(crate) fn run(
     let settings = crate::settings::load(shared, messages)?;
     Roles::default()
         .reads(both!("the program", "программа"), path)
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &settings.files)
-        .reads_folders(both!("in a folder of subprograms", "файл в папке подпрограмм"), &shared.job.include)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
+        .reads_folders(&both!("in a folder of subprograms", "файл в папке подпрограмм"), &shared.job.include)
         .writes("--output", arguments.output.as_deref())
         .writes("--summary", arguments.summary.as_deref())
         .are_apart()?;

@@ -27,13 +27,13 @@ impl<'a> Roles<'a> {
     }
 
     /// Files that are read for the same.
-    pub(crate) fn reads_all(mut self, role: Text, paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+    pub(crate) fn reads_all(mut self, role: &Text, paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
         self.read.extend(paths.into_iter().map(|path| (role.clone(), path.as_path())));
         self
     }
 
     /// The files of folders, where subprograms are looked for.
-    pub(crate) fn reads_folders(mut self, role: Text, folders: &[PathBuf]) -> Self {
+    pub(crate) fn reads_folders(mut self, role: &Text, folders: &[PathBuf]) -> Self {
         let files = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();
         self.found.extend(files.filter_map(|entry| Some((role.clone(), entry.ok()?.path()))));
         self

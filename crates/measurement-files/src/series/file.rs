@@ -136,17 +136,11 @@ impl<'f> File<'f> {
         Piece::lines(self.text).map(Piece::trimmed).filter(|line| !line.text.is_empty())
     }
 
-    pub(super) fn refuse(
-        &self,
-        code: Code,
-        span: Range<usize>,
-        message: impl Into<Text>,
-        help: impl Into<Text>,
-    ) -> Box<Refusal> {
+    pub(super) fn refuse(&self, code: Code, span: Range<usize>, message: Text, help: Text) -> Box<Refusal> {
         Refusal::of(self.name, self.text, error(code, message, &span, both!("here", "здесь"), help))
     }
 
-    pub(super) fn damaged(&self, span: Range<usize>, message: impl Into<Text>) -> Box<Refusal> {
+    pub(super) fn damaged(&self, span: Range<usize>, message: Text) -> Box<Refusal> {
         self.refuse(
             UNREADABLE,
             span,
@@ -155,7 +149,7 @@ impl<'f> File<'f> {
         )
     }
 
-    pub(super) fn question(&self, message: Text, help: Text) -> Box<Refusal> {
+    pub(super) fn question(&self, message: &Text, help: Text) -> Box<Refusal> {
         Refusal::without_text(
             Diagnostic::error(QUESTION, both!("{} {message}", "{} {message:#}", self.name)).help(help),
         )
@@ -164,7 +158,7 @@ impl<'f> File<'f> {
     pub(super) fn function(&self) -> Result<(usize, Axis), Box<Refusal>> {
         self.told.symbol.ok_or_else(|| {
             self.question(
-                both!(
+                &both!(
                     "does not say which error function it holds",
                     "не говорит, какая в нём функция погрешности"
                 ),
@@ -182,8 +176,7 @@ impl<'f> File<'f> {
         let own = if function < 3 { MM } else { RAD };
         let wanted = if own.quantity == Quantity::Length { "um, mm" } else { "urad, arcsec, um_per_mm, rad" };
         let Some(unit) = self.told.unit.or(known) else {
-            return Err(self.question(
-                both!("does not say the unit of its deviations", "не говорит, в какой единице отклонения"),
+            return Err(self.question(&both!("does not say the unit of its deviations", "не говорит, в какой единице отклонения"),
                 both!("write it behind the symbol, as in `{}=EXX:um`; um or mm for lengths, urad, arcsec, um_per_mm or rad for angles", "напишите её после обозначения, например `{}=EXX:um`; um или mm для длин, urad, arcsec, um_per_mm или rad для углов",
                     self.name
                 ),
@@ -206,7 +199,7 @@ impl<'f> File<'f> {
     pub(super) fn values(&self, options: &Text) -> Result<Values, Box<Refusal>> {
         self.told.values.ok_or_else(|| {
             self.question(
-                both!(
+                &both!(
                     "is a control's table: are its numbers what the axis did, or what the control adds?",
                     "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
                 ),

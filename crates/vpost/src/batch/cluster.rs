@@ -82,8 +82,8 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     };
     Roles::default()
         .reads(both!("the manifest", "задание"), &arguments.manifest)
-        .reads_all(both!("a program", "программа"), manifest.items.iter().map(|item| &item.input))
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
+        .reads_all(&both!("a program", "программа"), manifest.items.iter().map(|item| &item.input))
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
         .writes("--results", arguments.work.results.as_deref())
         .are_apart()?;
     let results = batch.run(&items, &mut journal, &progress, messages);

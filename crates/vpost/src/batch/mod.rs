@@ -55,8 +55,8 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
     Roles::default()
-        .reads_all(both!("a program", "программа"), found.items.iter().map(|item| &item.input))
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
+        .reads_all(&both!("a program", "программа"), found.items.iter().map(|item| &item.input))
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
         .writes("--results", arguments.work.results.as_deref().filter(|path| path.as_os_str() != "-"))
         .are_apart()?;
     passed_over(&found, messages);

@@ -29,8 +29,8 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     let path = machine(&shared.job)?;
     let profile::Loaded { profile, files, .. } = profile::load_mill(path)?;
     Roles::default()
-        .reads_all(both!("the control points", "контрольные точки"), &arguments.points)
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &files)
+        .reads_all(&both!("the control points", "контрольные точки"), &arguments.points)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &files)
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
     if let Some(id) = shared.job.engine().filter(|id| *id != EngineId::RigidBody) {

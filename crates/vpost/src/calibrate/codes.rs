@@ -76,6 +76,6 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
 }
 
 /// A question that stays open.
-pub(super) fn question(message: impl Into<Text>, help: impl Into<Text>) -> Failure {
+pub(super) fn question(message: Text, help: Text) -> Failure {
     Failure::usage(Diagnostic::error(QUESTION, message).help(help))
 }

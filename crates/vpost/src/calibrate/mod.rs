@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         _ => Shown::default(),
     };
     let roles = Roles::default()
-        .reads_all(both!("a measurement", "измерения"), &files)
+        .reads_all(&both!("a measurement", "измерения"), &files)
         .writes("--output", target.output.as_deref());
     shown.roles(roles).are_apart()?;
     match &arguments.command {

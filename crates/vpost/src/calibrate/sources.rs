@@ -11,15 +11,10 @@ use crate::file;
 use crate::message::Failure;
 
 /// Reads a table of one of the instruments.
-pub(super) fn sheet(
-    path: &Path,
-    columns: &str,
-    expected: impl Into<Text>,
-    ignore: &[String],
-) -> Result<Sheet, Failure> {
+pub(super) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
     let kind = Kind {
         columns,
-        expected: expected.into(),
+        expected,
         passes_over: Some("published_"),
         may_be_empty: false,
         codes: Codes::MEASUREMENTS,

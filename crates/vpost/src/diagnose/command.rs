@@ -62,8 +62,8 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     };
     Roles::default()
         .reads(both!("the measurements", "измерения"), measurements)
-        .reads_all(both!("the hold-out", "контрольные измерения"), &arguments.holdout)
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &model.files)
+        .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &model.files)
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())

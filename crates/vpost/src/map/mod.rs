@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     let loaded = profile::load_mill(machine(&shared.job)?)?;
     let profile = loaded.profile;
     Roles::default()
-        .reads_all(both!("read by the profile", "файл, который читает профиль"), &loaded.files)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &loaded.files)
         .writes("--csv", arguments.csv.as_deref())
         .writes("--vtk", arguments.vtk.as_deref())
         .writes("--json", arguments.json.as_deref())
