@@ -63,7 +63,7 @@ impl Program {
             Ok(expanded) => (Some(expanded.text().to_vec()), None),
             Err(refusal) => {
                 let first = &refusal.diagnostics[0];
-                (None, Some((first.code.0, first.message.clone())))
+                (None, Some((first.code.0, first.message.english().to_owned())))
             }
         };
         let run = match &flat {
@@ -121,7 +121,7 @@ fn interpret(text: &[u8], dialect: &Dialect, setup: &Setup) -> Run {
         match interpreter.step(&block) {
             Ok(step) => run.steps.push(step),
             Err(refused) => {
-                run.refused = Some((refused[0].code.0, refused[0].message.clone()));
+                run.refused = Some((refused[0].code.0, refused[0].message.english().to_owned()));
                 break;
             }
         }

@@ -47,6 +47,7 @@ mod points;
 mod profile_new;
 mod real_machines;
 mod refusals;
+mod russian;
 mod spreadsheets;
 mod tool_lengths;
 mod traps;

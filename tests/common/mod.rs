@@ -10,10 +10,10 @@ pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the project is there")
 }
 
-/// The command under test, in the project's root.
+/// The command under test, in the project's root, in English whatever the locale of who tests.
 pub(crate) fn vpost() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vpost"));
-    command.current_dir(root()).env_remove("NO_COLOR");
+    command.current_dir(root()).env_remove("NO_COLOR").env("LC_ALL", "C");
     command
 }
 

@@ -1,5 +1,6 @@
 //! The INI file of a LinuxCNC machine: its unit, and which files hold tools and parameters.
 
+use diagnostic::both;
 use measurement_files::{Piece, Refusal, decoded};
 
 use crate::refusals::{BEYOND, UNREADABLE, refuse, refuse_whole};
@@ -27,13 +28,16 @@ impl Ini {
         let (mut unit, mut tool_table, mut parameters) = (None, None, None);
         for line in Piece::lines(&text).map(Piece::trimmed) {
             if line.text.starts_with("#INCLUDE") {
-                let help = "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name";
+                let help = both!(
+                    "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name",
+                    "дайте полный, который LinuxCNC при запуске пишет рядом: с `.expanded` после имени"
+                );
                 return Err(refuse(
                     file,
                     line,
                     UNREADABLE,
-                    "this INI file takes in others",
-                    "what they say would be missed",
+                    both!("this INI file takes in others", "этот INI-файл включает другие"),
+                    both!("what they say would be missed", "сказанное в них пропало бы"),
                     help,
                 ));
             }
@@ -55,9 +59,18 @@ impl Ini {
                     file,
                     value,
                     BEYOND,
-                    "the tools of this machine are kept by a program of their own",
-                    "which lengths it holds this file does not say",
-                    "write them as CSV (tool,length_mm) and give that: `--tool-table FILE`, and the zeros with `--work-offset`",
+                    both!(
+                        "the tools of this machine are kept by a program of their own",
+                        "инструмент этого станка хранит отдельная программа"
+                    ),
+                    both!(
+                        "which lengths it holds this file does not say",
+                        "какие в ней длины, этот файл не говорит"
+                    ),
+                    both!(
+                        "write them as CSV (tool,length_mm) and give that: `--tool-table FILE`, and the zeros with `--work-offset`",
+                        "запишите их как CSV (tool,length_mm) и дайте его: `--tool-table FILE`, а нули — ключом `--work-offset`"
+                    ),
                 ));
             }
             // Of a key that stands twice LinuxCNC takes the first.
@@ -73,17 +86,26 @@ impl Ini {
             return Err(refuse_whole(
                 file,
                 UNREADABLE,
-                "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
-                "give the file that LinuxCNC is started with",
+                both!(
+                    "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
+                    "в [TRAJ] нет LINEAR_UNITS: это не INI-файл станка с LinuxCNC"
+                ),
+                both!(
+                    "give the file that LinuxCNC is started with",
+                    "дайте файл, с которым запускают LinuxCNC"
+                ),
             ));
         };
         let unit_mm = match unit.text.to_ascii_lowercase().as_str() {
             "mm" | "metric" => 1.0,
             "in" | "inch" | "imperial" => 25.4,
             _ => {
-                let label = "expected mm or inch";
-                let help = "write what the machine's axes count in: LINEAR_UNITS = mm, or inch";
-                let message = format!("LINEAR_UNITS is `{}`", unit.text);
+                let label = both!("expected mm or inch", "ожидалось mm или inch");
+                let help = both!(
+                    "write what the machine's axes count in: LINEAR_UNITS = mm, or inch",
+                    "напишите, в чём считают оси станка: LINEAR_UNITS = mm или inch"
+                );
+                let message = both!("LINEAR_UNITS is `{}`", "LINEAR_UNITS — `{}`", unit.text);
                 return Err(refuse(file, unit, UNREADABLE, message, label, help));
             }
         };

@@ -13,7 +13,7 @@
 //! let lengths = tool_lengths("tool.tbl", table, Some(25.4)).expect("a tool table");
 //! assert_eq!(lengths, [(1, [0.0, 0.0, 101.6]), (12, [2.54, 0.0, -50.8])]);
 //! let refusal = tool_lengths("tool.tbl", table, None).expect_err("inches or millimetres?");
-//! assert!(refusal.diagnostic.message.contains("does not say in which unit"));
+//! assert!(refusal.diagnostic.message.english().contains("does not say in which unit"));
 //! ```
 
 mod ini;

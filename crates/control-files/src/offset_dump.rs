@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use diagnostic::both;
 use measurement_files::{Piece, Refusal};
 
 use crate::Length;
@@ -53,32 +54,77 @@ pub(crate) fn lengths(name: &str, text: &str) -> Result<Vec<Length>, Box<Refusal
         let line = line.trimmed();
         let Some(Offset { geometry, number, value, digits }) = offset(file, line, &words)? else { continue };
         let Some(unit_mm) = unit_mm else {
-            let message = "millimetres or inches? the list does not say";
-            let help = "write G21 (or G20) on a line of its own in front, whichever the control was in";
-            return Err(refuse(file, line, UNREADABLE, message, "the first length", help));
+            let message = both!(
+                "millimetres or inches? the list does not say",
+                "миллиметры или дюймы? в списке не сказано"
+            );
+            let help = both!(
+                "write G21 (or G20) on a line of its own in front, whichever the control was in",
+                "напишите перед ним отдельной строкой G21 (или G20) — то, что действовало на стойке"
+            );
+            return Err(refuse(
+                file,
+                line,
+                UNREADABLE,
+                message,
+                both!("the first length", "первая длина"),
+                help,
+            ));
         };
         if value != 0.0 && !digits.text.contains('.') {
-            let message = format!("R{} has no decimal point", digits.text);
-            let help = "write it with a decimal point";
-            return Err(refuse(file, digits, UNREADABLE, message, "increments or a length?", help));
+            let message = both!("R{} has no decimal point", "у R{} нет десятичной точки", digits.text);
+            let help = both!("write it with a decimal point", "напишите с десятичной точкой");
+            return Err(refuse(
+                file,
+                digits,
+                UNREADABLE,
+                message,
+                both!("increments or a length?", "дискреты или длина?"),
+                help,
+            ));
         }
         let part = parts.entry(number).or_insert(Parts { geometry_mm: None, wear_mm: None, at: line });
         let place = if geometry { &mut part.geometry_mm } else { &mut part.wear_mm };
         if place.replace(value * unit_mm).is_some() {
-            let message = format!("the length H{number} stands twice");
-            return Err(refuse(file, line, UNREADABLE, message, "again here", "keep the line that is true"));
+            let message = both!("the length H{number} stands twice", "длина H{number} стоит дважды");
+            return Err(refuse(
+                file,
+                line,
+                UNREADABLE,
+                message,
+                both!("again here", "здесь ещё раз"),
+                both!("keep the line that is true", "оставьте верную строку"),
+            ));
         }
     }
     if parts.is_empty() {
-        let help = "write them like `G10 L10 P1 R120.5`";
-        return Err(refuse_whole(file, UNREADABLE, "the list holds no tool length", help));
+        let help = both!("write them like `G10 L10 P1 R120.5`", "пишите их так: `G10 L10 P1 R120.5`");
+        return Err(refuse_whole(
+            file,
+            UNREADABLE,
+            both!("the list holds no tool length", "в списке нет ни одной длины инструмента"),
+            help,
+        ));
     }
     let apart = parts.values().any(|part| part.geometry_mm.is_some());
     let length = |(number, part): (u32, Parts<'_>)| {
         if apart && part.geometry_mm.is_none() {
-            let message = format!("H{number} has a wear (L11) and no geometry (L10)");
-            let help = format!("add `G10 L10 P{number} R…`, or take the line out");
-            return Err(refuse(file, part.at, UNREADABLE, message, "how long is it?", help));
+            let message = both!(
+                "H{number} has a wear (L11) and no geometry (L10)",
+                "у H{number} есть износ (L11), а геометрии (L10) нет"
+            );
+            let help = both!(
+                "add `G10 L10 P{number} R…`, or take the line out",
+                "добавьте `G10 L10 P{number} R…` или уберите строку"
+            );
+            return Err(refuse(
+                file,
+                part.at,
+                UNREADABLE,
+                message,
+                both!("how long is it?", "какова его длина?"),
+                help,
+            ));
         }
         Ok((number, [0.0, 0.0, part.geometry_mm.unwrap_or(0.0) + part.wear_mm.unwrap_or(0.0)]))
     };
@@ -105,15 +151,26 @@ fn written<'t>(
             ('G', Some(10.0)) => writes = true,
             ('L' | 'P' | 'R', Some(value)) => {
                 if written.insert(letter, (value, number)).is_some() {
-                    let message = format!("{letter} stands twice");
-                    return unread(message, "in this block", "write one block for each");
+                    let message = both!("{letter} stands twice", "{letter} стоит дважды");
+                    return unread(
+                        message,
+                        both!("in this block", "в этом кадре"),
+                        both!("write one block for each", "напишите на каждую отдельный кадр"),
+                    );
                 }
             }
             _ => {
                 return unread(
-                    format!("`{letter}{}` in a list of offsets", number.text),
-                    "expected blocks of G10 alone",
-                    "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
+                    both!(
+                        "`{letter}{}` in a list of offsets",
+                        "`{letter}{}` в списке коррекций",
+                        number.text
+                    ),
+                    both!("expected blocks of G10 alone", "ожидались только кадры G10"),
+                    both!(
+                        "give the offsets as the control writes them out, like `G10 L10 P1 R120.5`",
+                        "дайте коррекции так, как их выводит стойка: `G10 L10 P1 R120.5`"
+                    ),
                 );
             }
         }
@@ -145,19 +202,33 @@ fn offset<'t>(
     };
     match (whole('L'), whole('P'), words.get(&'R')) {
         (Some(2 | 20), ..) => {
-            let message = "a work offset in a list of tool lengths";
-            let help = "take it out, and give it with `--work-offset G54=X,Y,Z`";
-            Err(refuse(file, line, BEYOND, message, "this block", help))
+            let message =
+                both!("a work offset in a list of tool lengths", "смещение нуля в списке длин инструмента");
+            let help = both!(
+                "take it out, and give it with `--work-offset G54=X,Y,Z`",
+                "уберите его и задайте ключом `--work-offset G54=X,Y,Z`"
+            );
+            Err(refuse(file, line, BEYOND, message, both!("this block", "этот кадр"), help))
         }
         (Some(12 | 13), ..) => Ok(None),
         (Some(kind @ (1 | 10 | 11)), Some(number @ 1..), Some((value, digits))) => {
             Ok(Some(Offset { geometry: kind == 10, number, value: *value, digits: *digits }))
         }
         _ => {
-            let message = "this block of G10 gives no tool length";
-            let help =
-                "write it like `G10 L10 P1 R120.5`: L10 geometry, L11 wear, P the H number, R the length";
-            Err(refuse(file, line, UNREADABLE, message, "L, P and R were expected", help))
+            let message =
+                both!("this block of G10 gives no tool length", "этот кадр G10 не задаёт длины инструмента");
+            let help = both!(
+                "write it like `G10 L10 P1 R120.5`: L10 geometry, L11 wear, P the H number, R the length",
+                "пишите так: `G10 L10 P1 R120.5` — L10 геометрия, L11 износ, P номер H, R длина"
+            );
+            Err(refuse(
+                file,
+                line,
+                UNREADABLE,
+                message,
+                both!("L, P and R were expected", "ожидались L, P и R"),
+                help,
+            ))
         }
     }
 }

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use diagnostic::{Text, both};
 use measurement_files::{Piece, Refusal, decoded};
 
 use crate::refusals::{BEYOND, UNREADABLE, refuse, refuse_whole};
@@ -40,28 +41,50 @@ pub fn work_offsets(
         let number = words.next().and_then(|word| word.text.parse::<u32>().ok());
         let value = words.next();
         let (Some(number), Some(value), None) = (number, value.and_then(Piece::number), words.next()) else {
-            let help = "give the file that the INI file names as PARAMETER_FILE, as LinuxCNC writes it";
-            let message = "this line is no parameter of LinuxCNC";
-            return Err(refuse(file, line, UNREADABLE, message, "expected a number and its value", help));
+            let help = both!(
+                "give the file that the INI file names as PARAMETER_FILE, as LinuxCNC writes it",
+                "дайте файл, который INI-файл называет PARAMETER_FILE, таким, каким его пишет LinuxCNC"
+            );
+            let message = both!("this line is no parameter of LinuxCNC", "эта строка — не параметр LinuxCNC");
+            return Err(refuse(
+                file,
+                line,
+                UNREADABLE,
+                message,
+                both!("expected a number and its value", "ожидались номер и его значение"),
+                help,
+            ));
         };
         kept.insert(number, (value, line));
     }
     if !kept.contains_key(&FIRST) {
-        let help = "LinuxCNC writes it when it has run once; give the file that the INI file names as PARAMETER_FILE";
-        let message = "the file holds no work offset: #5221 is missing";
+        let help = both!(
+            "LinuxCNC writes it when it has run once; give the file that the INI file names as PARAMETER_FILE",
+            "LinuxCNC пишет его после первого запуска; дайте файл, который INI-файл называет PARAMETER_FILE"
+        );
+        let message = both!(
+            "the file holds no work offset: #5221 is missing",
+            "в файле нет смещений нуля: не хватает #5221"
+        );
         return Err(refuse_whole(file, UNREADABLE, message, help));
     }
     let value = |number: u32| kept.get(&number).map_or(0.0, |(value, _)| *value);
-    let holds = |number: u32, message: String, label: &str, help: &str| match kept.get(&number) {
+    let holds = |number: u32, message: Text, label: Text, help: Text| match kept.get(&number) {
         Some((_, line)) => refuse(file, *line, BEYOND, message, label, help),
         None => refuse_whole(file, BEYOND, message, help),
     };
     if value(G92_HOLDS) != 0.0 && (5211..=5219).any(|number| value(number) != 0.0) {
         return Err(holds(
             G92_HOLDS,
-            "a shift by G92 was in force when this file was written".to_owned(),
-            "it would shift the program too",
-            "end it on the control (G92.1), and give the file anew",
+            both!(
+                "a shift by G92 was in force when this file was written",
+                "когда записывался этот файл, действовал сдвиг G92"
+            ),
+            both!("it would shift the program too", "он сдвинул бы и программу"),
+            both!(
+                "end it on the control (G92.1), and give the file anew",
+                "отмените его на стойке (G92.1) и дайте файл заново"
+            ),
         ));
     }
     let selected = value(SELECTED);
@@ -69,9 +92,22 @@ pub fn work_offsets(
         let code = SYSTEMS.get((selected - 1.0) as usize).filter(|_| selected >= 1.0);
         return Err(holds(
             SELECTED,
-            format!("{} was in force when this file was written", code.unwrap_or(&"no work offset")),
-            "a program that names none would begin in it",
-            "select G54 on the control, and give the file anew",
+            both!(
+                "{} was in force when this file was written",
+                "когда записывался этот файл, действовало: {:#}",
+                code.map_or(
+                    Text::pair("no work offset", "ни одного смещения нуля"),
+                    |code| Text::same(*code)
+                )
+            ),
+            both!(
+                "a program that names none would begin in it",
+                "программа, которая ничего не выбирает, началась бы с ним"
+            ),
+            both!(
+                "select G54 on the control, and give the file anew",
+                "выберите на стойке G54 и дайте файл заново"
+            ),
         ));
     }
     let mut work_offsets = Vec::new();
@@ -79,10 +115,15 @@ pub fn work_offsets(
         if value(first + 9) != 0.0 {
             return Err(holds(
                 first + 9,
-                format!("{code} is turned by {} degrees about Z", value(first + 9)),
-                "a zero that is turned is no shift",
-                &format!(
+                both!(
+                    "{code} is turned by {} degrees about Z",
+                    "{code} повёрнуто вокруг Z на {} градусов",
+                    value(first + 9)
+                ),
+                both!("a zero that is turned is no shift", "повёрнутый нуль — не сдвиг"),
+                both!(
                     "end the turn on the control (G10 L2 P{} R0), and give the file anew",
+                    "отмените поворот на стойке (G10 L2 P{} R0) и дайте файл заново",
                     (first - FIRST) / BETWEEN + 1
                 ),
             ));
@@ -91,9 +132,16 @@ pub fn work_offsets(
             if has_rotary[at as usize - 3] && value(first + at) != 0.0 {
                 return Err(holds(
                     first + at,
-                    format!("the zero of {axis} under {code} is {} degrees", value(first + at)),
-                    "rotary axes have no work offset here",
-                    "set it to 0 on the control, and program the machine's own angles",
+                    both!(
+                        "the zero of {axis} under {code} is {} degrees",
+                        "нуль {axis} при {code} — {} градусов",
+                        value(first + at)
+                    ),
+                    both!("rotary axes have no work offset here", "смещения нуля поворотных осей здесь нет"),
+                    both!(
+                        "set it to 0 on the control, and program the machine's own angles",
+                        "обнулите его на стойке и программируйте собственные углы станка"
+                    ),
                 ));
             }
         }

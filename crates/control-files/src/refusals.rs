@@ -1,6 +1,6 @@
 //! Why a file is not read.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 use measurement_files::{Piece, Refusal};
 
 /// A file of the control that cannot be read.
@@ -16,9 +16,9 @@ pub(crate) fn refuse(
     (name, text): File<'_>,
     at: Piece<'_>,
     code: Code,
-    message: impl Into<String>,
-    label: impl Into<String>,
-    help: impl Into<String>,
+    message: Text,
+    label: Text,
+    help: Text,
 ) -> Box<Refusal> {
     let start = at.span().start as u64;
     let end = start + at.text.len().max(1) as u64;
@@ -26,11 +26,6 @@ pub(crate) fn refuse(
 }
 
 /// About no line of the file.
-pub(crate) fn refuse_whole(
-    (name, text): File<'_>,
-    code: Code,
-    message: impl Into<String>,
-    help: impl Into<String>,
-) -> Box<Refusal> {
+pub(crate) fn refuse_whole((name, text): File<'_>, code: Code, message: Text, help: Text) -> Box<Refusal> {
     Refusal::of(name, text, Diagnostic::error(code, message).help(help))
 }

@@ -1,5 +1,6 @@
 //! A spreadsheet of tool lengths: `tool,length_mm`, or a column for each of X, Y and Z.
 
+use diagnostic::{Text, both};
 use measurement_files::{Codes, Kind, Refusal, Sheet};
 
 use crate::Length;
@@ -7,7 +8,10 @@ use crate::refusals::UNREADABLE;
 
 const KIND: Kind<'static> = Kind {
     columns: "tool length_mm x_mm y_mm z_mm diameter_mm note",
-    expected: "expected: tool,length_mm (a line for each: H1,120.5), a tool table of LinuxCNC (T1 P1 Z120.5), or a control's offsets (G10 L10 P1 R120.5)",
+    expected: Text::pair(
+        "expected: tool,length_mm (a line for each: H1,120.5), a tool table of LinuxCNC (T1 P1 Z120.5), or a control's offsets (G10 L10 P1 R120.5)",
+        "ожидалось: tool,length_mm (строка на каждый: H1,120.5), таблица инструмента LinuxCNC (T1 P1 Z120.5) или коррекции стойки (G10 L10 P1 R120.5)",
+    ),
     passes_over: None,
     may_be_empty: false,
     codes: Codes::all(UNREADABLE),
@@ -15,15 +19,27 @@ const KIND: Kind<'static> = Kind {
 
 pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refusal>> {
     let sheet = Sheet::read(name, bytes, &KIND, None)?;
-    sheet.need(&["tool"], "each length needs the number of its tool")?;
+    sheet.need(
+        &["tool"],
+        both!("each length needs the number of its tool", "каждой длине нужен номер её инструмента"),
+    )?;
     let by_axis = ["x_mm", "y_mm", "z_mm"].map(|column| sheet.has(column)).contains(&true);
     if by_axis && sheet.has("length_mm") {
-        let message = "`length_mm` stands beside lengths along X, Y and Z";
-        let help = "keep length_mm, which is along Z, or x_mm, y_mm and z_mm";
-        return Err(sheet.refuse_column(UNREADABLE, "length_mm", message.to_owned(), help));
+        let message = both!(
+            "`length_mm` stands beside lengths along X, Y and Z",
+            "`length_mm` стоит рядом с длинами вдоль X, Y и Z"
+        );
+        let help = both!(
+            "keep length_mm, which is along Z, or x_mm, y_mm and z_mm",
+            "оставьте length_mm (вдоль Z) или x_mm, y_mm и z_mm"
+        );
+        return Err(sheet.refuse_column(UNREADABLE, "length_mm", message, help));
     }
     if !by_axis {
-        sheet.need(&["length_mm"], "a list of tools needs their lengths")?;
+        sheet.need(
+            &["length_mm"],
+            both!("a list of tools needs their lengths", "в списке инструмента нужны длины"),
+        )?;
     }
     let mut lengths: Vec<Length> = Vec::new();
     for row in sheet.rows() {
@@ -31,12 +47,22 @@ pub(crate) fn lengths(name: &str, bytes: &[u8]) -> Result<Vec<Length>, Box<Refus
         let digits = written.trim_start_matches(['H', 'h', 'T', 't', 'Т']);
         let number = digits.parse::<u32>().ok().filter(|number| *number > 0);
         let Some(number) = number.filter(|_| written.len() - digits.len() <= 2) else {
-            let message = format!("`{written}` is no number of a length");
-            return Err(row.refuse(UNREADABLE, "tool", message, "write H1, T1 or 1"));
+            let message = both!("`{written}` is no number of a length", "`{written}` — не номер длины");
+            return Err(row.refuse(
+                UNREADABLE,
+                "tool",
+                message,
+                both!("write H1, T1 or 1", "напишите H1, T1 или 1"),
+            ));
         };
         if lengths.iter().any(|(known, _)| *known == number) {
-            let message = format!("tool {number} stands twice");
-            return Err(row.refuse(UNREADABLE, "tool", message, "keep the line that is true"));
+            let message = both!("tool {number} stands twice", "инструмент {number} стоит дважды");
+            return Err(row.refuse(
+                UNREADABLE,
+                "tool",
+                message,
+                both!("keep the line that is true", "оставьте верную строку"),
+            ));
         }
         let vector = if by_axis {
             let mut vector = [0.0; 3];

@@ -2,6 +2,7 @@
 //!
 //! Letters and what LinuxCNC does with lines it cannot read (passes over them): its source, `tooldata_common.cc`.
 
+use diagnostic::{Text, both};
 use measurement_files::{Piece, Refusal};
 
 use crate::Length;
@@ -26,8 +27,14 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         return Err(refuse_whole(
             file,
             UNREADABLE,
-            "a tool table of LinuxCNC does not say in which unit its lengths are",
-            "give the machine's INI file, which says it (LINEAR_UNITS): `--linuxcnc-ini FILE`",
+            both!(
+                "a tool table of LinuxCNC does not say in which unit its lengths are",
+                "таблица инструмента LinuxCNC не говорит, в какой единице длины"
+            ),
+            both!(
+                "give the machine's INI file, which says it (LINEAR_UNITS): `--linuxcnc-ini FILE`",
+                "дайте INI-файл станка, где это сказано (LINEAR_UNITS): `--linuxcnc-ini FILE`"
+            ),
         ));
     };
     let mut lengths: Vec<Length> = Vec::new();
@@ -36,41 +43,67 @@ pub(crate) fn lengths(name: &str, text: &str, unit_mm: Option<f64>) -> Result<Ve
         if line.text.is_empty() {
             continue;
         }
-        let unread = |word: Piece<'_>, label: &str| {
-            let message = format!("`{}` in a tool table of LinuxCNC", word.text);
-            let help = "LinuxCNC would pass over this line; write it like `T1 P1 Z+120.5 D10 ;end mill`, or remove it";
+        let unread = |word: Piece<'_>, label: Text| {
+            let message =
+                both!("`{}` in a tool table of LinuxCNC", "`{}` в таблице инструмента LinuxCNC", word.text);
+            let help = both!(
+                "LinuxCNC would pass over this line; write it like `T1 P1 Z+120.5 D10 ;end mill`, or remove it",
+                "LinuxCNC эту строку пропустил бы; напишите её так: `T1 P1 Z+120.5 D10 ;end mill`, или уберите"
+            );
             refuse(file, word, UNREADABLE, message, label, help)
         };
         let (mut number, mut vector) = (None, [0.0; 3]);
         for word in line.words() {
             let letter = word.text.chars().next().unwrap_or_default().to_ascii_uppercase();
             if !letter.is_ascii() {
-                return Err(unread(word, "expected a letter and a number"));
+                return Err(unread(word, both!("expected a letter and a number", "ожидались буква и число")));
             }
             let rest = word.behind(1);
             if letter == 'T' {
                 let tool = rest.text.parse::<u32>().ok();
-                number = Some((tool.ok_or_else(|| unread(word, "expected T and a whole number"))?, word));
+                number = Some((
+                    tool.ok_or_else(|| {
+                        unread(word, both!("expected T and a whole number", "ожидались T и целое число"))
+                    })?,
+                    word,
+                ));
                 continue;
             }
             if !NUMBERS.contains(letter) {
-                return Err(unread(word, "not a letter of a tool table"));
+                return Err(unread(
+                    word,
+                    both!("not a letter of a tool table", "такой буквы в таблице инструмента нет"),
+                ));
             }
-            let value = rest.number().ok_or_else(|| unread(word, "expected a number"))?;
+            let value =
+                rest.number().ok_or_else(|| unread(word, both!("expected a number", "ожидалось число")))?;
             if let Some(axis) = "XYZ".find(letter) {
                 vector[axis] = value * unit_mm;
             }
         }
         let Some((number, word)) = number else {
-            return Err(unread(line, "expected T and the tool's number"));
+            return Err(unread(
+                line,
+                both!("expected T and the tool's number", "ожидались T и номер инструмента"),
+            ));
         };
         // T0 is no tool.
         if number == 0 {
             continue;
         }
         if lengths.iter().any(|(known, _)| *known == number) {
-            let message = format!("T{number} stands twice in the tool table");
-            return Err(refuse(file, word, UNREADABLE, message, "again here", "keep the line that is true"));
+            let message = both!(
+                "T{number} stands twice in the tool table",
+                "T{number} стоит в таблице инструмента дважды"
+            );
+            return Err(refuse(
+                file,
+                word,
+                UNREADABLE,
+                message,
+                both!("again here", "здесь ещё раз"),
+                both!("keep the line that is true", "оставьте верную строку"),
+            ));
         }
         lengths.push((number, vector));
     }

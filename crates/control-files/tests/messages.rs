@@ -9,7 +9,7 @@ fn said<T: std::fmt::Debug>(read: Result<T, Box<Refusal>>) -> (u16, String, Stri
         text.get(span.start as usize..span.end as usize).unwrap_or_default().to_owned()
     });
     assert!(refusal.diagnostic.help.is_some());
-    (refusal.diagnostic.code.0, refusal.diagnostic.message, at.unwrap_or_default())
+    (refusal.diagnostic.code.0, refusal.diagnostic.message.english().to_owned(), at.unwrap_or_default())
 }
 
 fn table(text: &str) -> (u16, String, String) {

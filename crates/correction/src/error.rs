@@ -1,5 +1,6 @@
 //! Why a motion cannot be corrected.
 
+use diagnostic::Speaks;
 use machine_model::SolveError;
 
 /// Why a motion cannot be corrected.
@@ -82,5 +83,42 @@ fn off(distance_um: f64) -> String {
         format!("the path would be {distance_um:.2} um off")
     } else {
         "no single arc leads from the corrected start to the corrected end".to_owned()
+    }
+}
+
+impl Speaks for CorrectionError {
+    fn russian(&self) -> String {
+        match *self {
+            Self::Solve(error) => error.russian(),
+            Self::MustNotSplit { distance_um } if distance_um.is_finite() => {
+                format!("путь отошёл бы на {distance_um:.2} мкм, а это движение делить нельзя")
+            }
+            Self::MustNotSplit { .. } => {
+                "от исправленного начала к исправленному концу не ведёт ни одна дуга, а это движение делить нельзя"
+                    .to_owned()
+            }
+            Self::TooManyPecks { pecks } => {
+                format!("отверстие в {pecks:.0} проходов, которое пришлось бы записать движениями")
+            }
+            Self::TurnedFrame { distance_um, tolerance_um } => format!(
+                "в этой повёрнутой системе координат ось с люфтом ходила бы взад и вперёд: отклонение {distance_um:.2} мкм, допуск {tolerance_um} мкм"
+            ),
+            Self::Sideways { distance_um, tolerance_um } => format!(
+                "при реверсе оси потеря хода сдвигает инструмент вбок: при любой команде остаётся {distance_um:.2} мкм, допуск {tolerance_um} мкм"
+            ),
+            Self::Unnamed { axis, distance_um } => format!(
+                "инструмент отошёл бы на {distance_um:.2} мкм без слова {}, а программа эту ось не назвала",
+                toolpath::AXIS_NAMES[axis]
+            ),
+            Self::NoBoundsForTurns => {
+                "путь не доказать, пока поворотная ось вращается на рабочей подаче".to_owned()
+            }
+            Self::Direction { slip_urad, allowed_urad } => format!(
+                "для деления нужны слова поворотных осей, которые отвернут инструмент от направления на {slip_urad:.1} мкрад; допускается {allowed_urad:.1} мкрад"
+            ),
+            Self::NotWithinTolerance { distance_um, tolerance_um } => format!(
+                "путь отошёл бы на {distance_um:.2} мкм при сколь угодно мелком делении; допуск {tolerance_um} мкм"
+            ),
+        }
     }
 }

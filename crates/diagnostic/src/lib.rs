@@ -4,8 +4,16 @@
 //! of, never a file name, line or column: those are found where the message is printed (`vpost`).
 //! The list of codes with cause and remedy is `docs/diagnostics.md`.
 
+mod language;
+mod speaks;
+mod text;
+
 use std::fmt;
 use std::ops::Range;
+
+pub use language::{Language, russian_plural};
+pub use speaks::Speaks;
+pub use text::Text;
 
 /// The number in `error[VP0203]`.
 ///
@@ -40,49 +48,42 @@ pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
     /// What is wrong, in one line, with numbers.
-    pub message: String,
+    pub message: Text,
     /// Bytes of the source text the message is about, from its start.
     pub span: Option<Range<u64>>,
     /// What stands under the caret: what was found there, what was expected.
-    pub label: String,
+    pub label: Text,
     /// What to type.
-    pub help: Option<String>,
+    pub help: Option<Text>,
 }
 
 impl Diagnostic {
     /// An error.
     #[must_use]
-    pub fn error(code: Code, message: impl Into<String>) -> Self {
-        Self {
-            code,
-            severity: Severity::Error,
-            message: message.into(),
-            span: None,
-            label: String::new(),
-            help: None,
-        }
+    pub fn error(code: Code, message: Text) -> Self {
+        Self { code, severity: Severity::Error, message, span: None, label: Text::EMPTY, help: None }
     }
     /// A warning.
     #[must_use]
-    pub fn warning(code: Code, message: impl Into<String>) -> Self {
+    pub fn warning(code: Code, message: Text) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
     }
     /// A warning that the program itself is doubtful.
     #[must_use]
-    pub fn doubt(code: Code, message: impl Into<String>) -> Self {
+    pub fn doubt(code: Code, message: Text) -> Self {
         Self { severity: Severity::Doubt, ..Self::error(code, message) }
     }
     /// Says where.
     #[must_use]
-    pub fn at(mut self, span: Range<u64>, label: impl Into<String>) -> Self {
+    pub fn at(mut self, span: Range<u64>, label: Text) -> Self {
         self.span = Some(span);
-        self.label = label.into();
+        self.label = label;
         self
     }
     /// Says what to do.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+    pub fn help(mut self, help: Text) -> Self {
+        self.help = Some(help);
         self
     }
 }

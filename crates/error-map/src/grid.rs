@@ -1,5 +1,6 @@
 //! Where the error is asked for: nodes along each axis, and parts of the grid they span.
 
+use diagnostic::Speaks;
 use std::ops::Range as Indices;
 
 use machine_model::{Range, Vector};
@@ -24,6 +25,17 @@ pub enum GridError {
     /// More nodes than can be held.
     #[error("{0} nodes are more than the {MOST_NODES} that a map may have")]
     TooMany(u64),
+}
+
+impl Speaks for GridError {
+    fn russian(&self) -> String {
+        match self {
+            Self::Order => "узлы идут от первого места к последнему, которое не ниже его".to_owned(),
+            Self::Step { step_mm, length_mm } => format!("шаг {step_mm} мм не делит {length_mm} мм"),
+            Self::Empty => "на оси нужен хотя бы один узел".to_owned(),
+            Self::TooMany(nodes) => format!("узлов {nodes}, а в карте их может быть не больше {MOST_NODES}"),
+        }
+    }
 }
 
 /// Most nodes of one grid: a map of them fills a few gigabytes.

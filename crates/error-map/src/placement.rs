@@ -1,5 +1,6 @@
 //! Where to clamp: the place in the volume where a workpiece gets the least error.
 
+use diagnostic::Speaks;
 use machine_model::{Range, Vector, Volume};
 use nalgebra::Matrix3;
 
@@ -50,6 +51,12 @@ pub struct TooLarge {
     pub size_mm: f64,
     /// Length of the volume, mm.
     pub room_mm: f64,
+}
+
+impl Speaks for TooLarge {
+    fn russian(&self) -> String {
+        format!("габарит по {} — {} мм, а калиброванный объём — {} мм", self.axis, self.size_mm, self.room_mm)
+    }
 }
 
 /// Samples of a box per axis: corners, and four places between each two.

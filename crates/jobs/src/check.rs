@@ -1,5 +1,6 @@
 //! The closed loop: two programs through the machine model, what they make of the part compared.
 
+use diagnostic::{Text, both};
 use nc_expand::Expanded;
 use path_comparison::{Comparison, Traces};
 use rewrite::Checked;
@@ -36,13 +37,14 @@ pub struct Outcome {
     /// Where.
     pub deviation_after_line: u64,
     /// What is wrong.
-    pub findings: Vec<String>,
+    #[serde(serialize_with = "in_english")]
+    pub findings: Vec<Text>,
 }
 
 impl Outcome {
     /// What a comparison says.
     #[must_use]
-    pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<String>) -> Self {
+    pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<Text>) -> Self {
         Self {
             schema: "vpost.check/1",
             passed: findings.is_empty(),
@@ -67,9 +69,10 @@ impl Outcome {
 
     /// The same for people.
     #[must_use]
-    pub fn text(&self) -> String {
-        let mut text = format!(
+    pub fn text(&self) -> Text {
+        let mut text = both!(
             "{} feed motions in, {} out\nbefore: the tool is up to {:8.3} um off its path (line {})\nafter:  the tool is up to {:8.3} um off its path (line {}), allowed are {:.3} um\n",
+            "рабочих ходов было {}, стало {}\nдо:     инструмент отходит от пути не больше чем на {:8.3} мкм (строка {})\nпосле:  инструмент отходит от пути не больше чем на {:8.3} мкм (строка {}), допускается {:.3} мкм\n",
             self.feed_motions_in,
             self.feed_motions_out,
             self.deviation_before_um,
@@ -79,13 +82,19 @@ impl Outcome {
             self.limit_um,
         );
         for finding in &self.findings {
-            text.push_str("- ");
-            text.push_str(finding);
-            text.push('\n');
+            text.push(&both!("- {finding}\n", "- {finding:#}\n"));
         }
-        text.push_str(if self.passed { "passed\n" } else { "FAILED\n" });
+        text.push(&if self.passed { PASSED } else { FAILED });
         text
     }
+}
+
+const PASSED: Text = Text::pair("passed\n", "проверка пройдена\n");
+const FAILED: Text = Text::pair("FAILED\n", "ПРОВЕРКА НЕ ПРОЙДЕНА\n");
+
+/// JSON is English in every language.
+fn in_english<S: serde::Serializer>(texts: &[Text], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(texts.iter().map(Text::english))
 }
 
 /// What the corrected path may be off, mm. A program that feeds nowhere has no limit of its own.
@@ -103,7 +112,8 @@ pub fn findings_between(
     corrected: (&str, &[u8]),
     settings: &Settings,
 ) -> Result<Vec<String>, Failure> {
-    Ok(closed([posted, corrected], settings, Traces::Forgotten, &|_| ())?.findings)
+    let findings = closed([posted, corrected], settings, Traces::Forgotten, &|_| ())?.findings;
+    Ok(findings.iter().map(|finding| finding.english().to_owned()).collect())
 }
 
 /// Both programs through the model, the posted and the corrected one, by the names they have in messages.

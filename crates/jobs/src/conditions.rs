@@ -1,6 +1,6 @@
 //! What the machine's effects depend on besides the command: `--at temp_c=24,load_kg=100`.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 use machine_model::effects::Conditions;
 use machine_model::{Engine, EngineId};
 use machine_profile::{EngineError, Profile};
@@ -36,8 +36,12 @@ pub fn conditions(options: &JobOptions) -> Result<Conditions, Failure> {
             for place in places {
                 if place.replace(*value).is_some() {
                     return Err(Failure::option(
-                        format!("`--at {given}`: `{}` is given twice", condition.name()),
-                        "leave one",
+                        both!(
+                            "`--at {given}`: `{}` is given twice",
+                            "`--at {given}`: `{}` дано дважды",
+                            condition.name()
+                        ),
+                        both!("leave one", "оставьте одно"),
                     ));
                 }
             }
@@ -74,11 +78,9 @@ pub fn temperature(
         }
     }
     Ok(worst.map(|(letter, temperature, um)| {
-        let message = format!(
-            "the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}"
+        let message = both!("the machine was calibrated at {calibrated_c} °C and is used at {temperature} °C: steel grows by {um:.1} um over the volume in {letter}", "станок калиброван при {calibrated_c} °C, а работает при {temperature} °C: сталь удлиняется по {letter} на длине объёма на {um:.1} мкм"
         );
-        let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(format!(
-            "calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect"
+        let diagnostic = Diagnostic::warning(OTHER_TEMPERATURE, message).help(both!("calibrate at the temperature of use, or give the profile a `thermal.{letter}` effect", "калибруйте при рабочей температуре или внесите в профиль эффект `thermal.{letter}`"
         ));
         Report { source: None, diagnostics: vec![diagnostic] }
     }))
@@ -96,29 +98,60 @@ pub fn engine(profile: &Profile, id: EngineId, options: &JobOptions) -> Result<B
 #[must_use]
 pub fn failure(error: &EngineError) -> Failure {
     let (code, help) = match error {
-        EngineError::Build(_) => (OPTION, "see `vpost profile show` for what the profile gives".to_owned()),
-        EngineError::Effect(_) => (UNKNOWN_CONDITION, "correct the profile's [[effect]]".to_owned()),
+        EngineError::Build(_) => (
+            OPTION,
+            both!(
+                "see `vpost profile show` for what the profile gives",
+                "что есть в профиле, покажет `vpost profile show`"
+            ),
+        ),
+        EngineError::Effect(_) => {
+            (UNKNOWN_CONDITION, both!("correct the profile's [[effect]]", "исправьте [[effect]] профиля"))
+        }
         EngineError::Condition(unknown) => {
             let option = match unknown.condition.0 {
-                "temperature" => "`--at temp_c=24` (degrees Celsius; one axis: temp_x_c)",
-                "time" => "`--at time_s=3600` (seconds since power-on, as in the measurements)",
-                "load" => "`--at load_kg=100`",
+                "temperature" => both!(
+                    "`--at temp_c=24` (degrees Celsius; one axis: temp_x_c)",
+                    "`--at temp_c=24` (градусы Цельсия; для одной оси: temp_x_c)"
+                ),
+                "time" => both!(
+                    "`--at time_s=3600` (seconds since power-on, as in the measurements)",
+                    "`--at time_s=3600` (секунды от включения, как в измерениях)"
+                ),
+                "load" => both!("`--at load_kg=100`", "`--at load_kg=100`"),
                 "feed" => {
-                    "`--at feed_mm_min=500`: the feed for which points are wanted; a program's F is not what the axes do near corners and stops, so it is not taken for it"
+                    both!(
+                        "`--at feed_mm_min=500`: the feed for which points are wanted; a program's F is not what the axes do near corners and stops, so it is not taken for it",
+                        "`--at feed_mm_min=500`: подача, для которой нужны точки; F программы не годится — у углов и остановок оси идут не с ней"
+                    )
                 }
-                _ => "`--at`",
+                _ => Text::same("`--at`"),
             };
-            (UNKNOWN_CONDITION, format!("say it: {option}; or take the effect out of the profile"))
+            (
+                UNKNOWN_CONDITION,
+                both!(
+                    "say it: {option}; or take the effect out of the profile",
+                    "скажите её: {option:#}; или уберите эффект из профиля"
+                ),
+            )
         }
-        EngineError::ReferenceTemperature { .. } => {
-            (UNKNOWN_CONDITION, "add it to the profile: calibrated = { temperature_c = 20.0 }".to_owned())
+        EngineError::ReferenceTemperature { .. } => (
+            UNKNOWN_CONDITION,
+            both!(
+                "add it to the profile: calibrated = {{ temperature_c = 20.0 }}",
+                "добавьте её в профиль: calibrated = {{ temperature_c = 20.0 }}"
+            ),
+        ),
+        EngineError::Lathe { .. } => {
+            (OPTION, both!("use `--engine rigid-body`", "возьмите `--engine rigid-body`"))
         }
-        EngineError::Lathe { .. } => (OPTION, "use `--engine rigid-body`".to_owned()),
         EngineError::WithoutEffects { .. } => (
             ENGINE_WITHOUT_EFFECTS,
-            "use `--engine rigid-body`, which can, or take the [[effect]] entries out of the profile"
-                .to_owned(),
+            both!(
+                "use `--engine rigid-body`, which can, or take the [[effect]] entries out of the profile",
+                "возьмите `--engine rigid-body`, он учитывает, или уберите разделы [[effect]] из профиля"
+            ),
         ),
     };
-    Failure::usage(Diagnostic::error(code, error.to_string()).help(help))
+    Failure::usage(Diagnostic::error(code, error.text()).help(help))
 }

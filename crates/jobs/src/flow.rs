@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use diagnostic::both;
 use nc_expand::{Limits, Preset};
 
 use crate::message::Failure;
@@ -29,8 +30,11 @@ impl Flow {
         for folder in &options.include {
             if !folder.is_dir() {
                 return Err(Failure::option(
-                    format!("`--include {}` is no folder", folder.display()),
-                    "give the folder that holds the subprograms",
+                    both!("`--include {}` is no folder", "`--include {}` — не папка", folder.display()),
+                    both!(
+                        "give the folder that holds the subprograms",
+                        "дайте папку, где лежат подпрограммы"
+                    ),
                 ));
             }
         }

@@ -3,9 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 use crate::shown::shown;
 
 /// A block is longer than any that is read.
@@ -36,7 +36,7 @@ pub fn read_lines(mut source: impl Read, name: &str) -> Result<Vec<u8>, Failure>
             .by_ref()
             .take(LONGEST_LINE as u64)
             .read_to_end(&mut bytes)
-            .map_err(|error| Failure::file(name, "read", &error))?;
+            .map_err(|error| Failure::file(name, Deed::Read, &error))?;
         if read < LONGEST_LINE {
             return Ok(bytes);
         }
@@ -72,8 +72,14 @@ fn check_line(bytes: &[u8], start: usize, name: &str) -> Result<(), Failure> {
         return Err(Failure::refused(name, bytes, vec![diagnostic]));
     }
     let span = start as u64..start as u64 + 120;
-    let diagnostic = Diagnostic::error(TOO_LONG, format!("a block of more than {LONGEST_LINE} bytes"))
-        .at(span, "no line end within a megabyte")
-        .help("check that this is a part program and that its line ends arrived with it");
+    let diagnostic = Diagnostic::error(
+        TOO_LONG,
+        both!("a block of more than {LONGEST_LINE} bytes", "кадр длиннее {LONGEST_LINE} байт"),
+    )
+    .at(span, both!("no line end within a megabyte", "на протяжении мегабайта нет конца строки"))
+    .help(both!(
+        "check that this is a part program and that its line ends arrived with it",
+        "проверьте, что это управляющая программа и что при передаче не пропали концы строк"
+    ));
     Err(Failure::refused(name, bytes, vec![diagnostic]))
 }

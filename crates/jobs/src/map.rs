@@ -1,6 +1,6 @@
 //! The error over the volume: where it is asked for, and what it is there.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
 use machine_model::{Command, Engine, PathModel, Range, Vector, Volume};
 use machine_profile::Profile;
@@ -18,8 +18,15 @@ use crate::values::{Given, Lattice, Rotary, ToolVector};
 pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
     engine.path_model().ok_or_else(|| {
         Failure::option(
-            format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
-            "leave `--engine` out, or take one of the engines without `-published`",
+            both!(
+                "engine `{}` has no forward model: it reproduces a publication",
+                "у метода `{}` нет прямой модели: он воспроизводит публикацию",
+                engine.id()
+            ),
+            both!(
+                "leave `--engine` out, or take one of the engines without `-published`",
+                "уберите `--engine` или возьмите метод без `-published`"
+            ),
         )
     })
 }
@@ -40,8 +47,9 @@ pub fn outside(
             if known.contains(range.low) && known.contains(range.high) {
                 continue;
             }
-            let message = format!(
+            let message = both!(
                 "{} from {} to {} mm reaches outside the calibrated volume, {} to {} mm",
+                "{} от {} до {} мм выходит из калиброванного объёма, от {} до {} мм",
                 ['X', 'Y', 'Z'][axis],
                 range.low,
                 range.high,
@@ -49,10 +57,16 @@ pub fn outside(
                 known.high
             );
             if options.outside != Some(Outside::Clamp) {
-                let help = "stay inside, or take the nearest point's error with `--outside clamp`";
+                let help = both!(
+                    "stay inside, or take the nearest point's error with `--outside clamp`",
+                    "оставайтесь внутри или возьмите погрешность ближайшей точки: `--outside clamp`"
+                );
                 return Err(Failure::usage(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
             }
-            let help = "the nodes outside have the error of the volume's nearest point";
+            let help = both!(
+                "the nodes outside have the error of the volume's nearest point",
+                "у узлов снаружи погрешность ближайшей точки объёма"
+            );
             let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
             warnings.push(Report { source: None, diagnostics: vec![diagnostic] });
         }
@@ -73,19 +87,22 @@ pub fn evaluated(grid: Grid, error_mm: impl Fn(&Vector) -> Vector + Sync) -> Err
 /// # Errors
 /// Nodes that cannot be.
 pub fn grid(given: &Given<Lattice>, volume: Volume) -> Result<Grid, Failure> {
-    let refuse = |why: String| {
+    let refuse = |why: Text| {
         Failure::option(
-            format!("`--grid {given}`: {why}"),
-            "write numbers of nodes as in `--grid 22x22x21`, or from:to:step in mm as in `--grid 40:880:40,30:450:20,5:505:25`",
+            both!("`--grid {given}`: {why}", "`--grid {given}`: {why:#}"),
+            both!(
+                "write numbers of nodes as in `--grid 22x22x21`, or from:to:step in mm as in `--grid 40:880:40,30:450:20,5:505:25`",
+                "напишите числа узлов, например `--grid 22x22x21`, или от:до:шаг в мм, например `--grid 40:880:40,30:450:20,5:505:25`"
+            ),
         )
     };
     let axis = |k: usize| match **given {
         Lattice::Counts(counts) => Nodes::over(volume.0[k], counts[k]),
         Lattice::Stepped(axes) => Nodes::stepped(axes[k][0], axes[k][1], axes[k][2]),
     };
-    let nodes = [0, 1, 2].map(|k| axis(k).map_err(|error| refuse(error.to_string())));
+    let nodes = [0, 1, 2].map(|k| axis(k).map_err(|error| refuse(error.text())));
     let [x, y, z] = nodes;
-    Grid::new([x?, y?, z?]).map_err(|error| refuse(error.to_string()))
+    Grid::new([x?, y?, z?]).map_err(|error| refuse(error.text()))
 }
 
 /// An H number stands for minus its length vector, as under G43.
@@ -108,8 +125,11 @@ pub fn tool(
             })
             .ok_or_else(|| {
                 Failure::option(
-                    format!("`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}"),
-                    format!("add `--tool H{number}=120`"),
+                    both!(
+                        "`--tool-vector H{number}`: neither the profile nor `--tool` has an H{number}",
+                        "`--tool-vector H{number}`: H{number} нет ни в профиле, ни в `--tool`"
+                    ),
+                    both!("add `--tool H{number}=120`", "добавьте `--tool H{number}=120`"),
                 )
             }),
     }
@@ -124,8 +144,11 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
     for (axis, angle) in given.0.iter().enumerate() {
         if angle.is_some() && !profile.has_rotary()[axis] {
             return Err(Failure::option(
-                format!("`--rotary {given}`: the profile's chain has no such axis"),
-                format!("the chain is {}", profile.chain()),
+                both!(
+                    "`--rotary {given}`: the profile's chain has no such axis",
+                    "`--rotary {given}`: такой оси в цепи профиля нет"
+                ),
+                both!("the chain is {}", "цепь — {}", profile.chain()),
             ));
         }
     }
@@ -133,7 +156,14 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
     let turned =
         Command { linear_mm: Vector::zeros(), rotary_rad, tool_mm: Vector::zeros(), direction: [0; 3] };
     profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
-        Failure::option(format!("`--rotary {given}`: {error}"), "give angles inside its travel and its table")
+        let error = error.text();
+        Failure::option(
+            both!("`--rotary {given}`: {error}", "`--rotary {given}`: {error:#}"),
+            both!(
+                "give angles inside its travel and its table",
+                "дайте углы в пределах её хода и её таблицы"
+            ),
+        )
     })?;
     Ok(rotary_rad)
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use diagnostic::{Code, Diagnostic, Severity};
+use diagnostic::{Code, Diagnostic, Language, Severity, Text, both};
 
 use crate::shown::{is_obeyed, shown};
 
@@ -91,7 +91,7 @@ impl Failure {
     }
 
     /// An option is wrong.
-    pub fn option(message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub fn option(message: Text, help: Text) -> Self {
         Self::usage(Diagnostic::error(OPTION, message).help(help))
     }
 
@@ -104,13 +104,19 @@ impl Failure {
     /// A file that command line or profile names cannot be read: a usage error.
     #[must_use]
     pub fn unread(name: &str, error: &std::io::Error) -> Self {
-        Self::usage(file_diagnostic(name, "read", error))
+        Self::usage(file_diagnostic(&Text::same(name), Deed::Read, error))
     }
 
     /// A file cannot be read or written.
     #[must_use]
-    pub fn file(name: &str, verb: &str, error: &std::io::Error) -> Self {
-        Self::File(Report { source: None, diagnostics: vec![file_diagnostic(name, verb, error)] })
+    pub fn file(name: &str, deed: Deed, error: &std::io::Error) -> Self {
+        Self::place(&Text::same(name), deed, error)
+    }
+
+    /// The same of what is called differently in each language: standard output.
+    #[must_use]
+    pub fn place(name: &Text, deed: Deed, error: &std::io::Error) -> Self {
+        Self::File(Report { source: None, diagnostics: vec![file_diagnostic(name, deed, error)] })
     }
 }
 
@@ -126,41 +132,111 @@ impl From<Box<measurement_files::Refusal>> for Failure {
 
 /// What to say of an input or output error.
 #[must_use]
-pub fn file_diagnostic(name: &str, verb: &str, error: &std::io::Error) -> Diagnostic {
+pub fn file_diagnostic(name: &Text, deed: Deed, error: &std::io::Error) -> Diagnostic {
     use std::io::ErrorKind;
     let help = match error.kind() {
-        ErrorKind::NotFound => "check the name; nothing of it exists there",
-        ErrorKind::PermissionDenied => "check who may read and write there (`ls -l`)",
-        ErrorKind::IsADirectory => "give a file in it",
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "make room on the disk; an earlier output was left as it was"
+        ErrorKind::NotFound => {
+            Text::pair("check the name; nothing of it exists there", "проверьте имя: ничего такого там нет")
         }
-        _ => "nothing was changed; try again when the cause is gone",
+        ErrorKind::PermissionDenied => Text::pair(
+            "check who may read and write there (`ls -l`)",
+            "проверьте права на чтение и запись (`ls -l`)",
+        ),
+        ErrorKind::IsADirectory => Text::pair("give a file in it", "это папка: укажите файл в ней"),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Text::pair(
+            "make room on the disk; an earlier output was left as it was",
+            "освободите место на диске; прежний выходной файл не тронут",
+        ),
+        _ => Text::pair(
+            "nothing was changed; try again when the cause is gone",
+            "ничего не изменено; повторите, когда причина устранена",
+        ),
     };
-    // `tempfile` adds the name of its file, which means nothing to the user.
-    let error = error.to_string();
-    let error = error.split(" at path ").next().unwrap_or_default();
-    Diagnostic::error(FILE, format!("cannot {verb} {name}: {error}")).help(help)
+    let error = said(error);
+    let message = match deed {
+        Deed::Read => both!("cannot read {name}: {error}", "{name:#} не читается: {error:#}"),
+        Deed::Write => both!("cannot write {name}: {error}", "{name:#} не записывается: {error:#}"),
+        Deed::WriteTo => both!("cannot write to {name}: {error}", "запись в {name:#} не удалась: {error:#}"),
+        Deed::Make => both!("cannot make {name}: {error}", "{name:#} не создаётся: {error:#}"),
+        Deed::Empty => both!("cannot empty {name}: {error}", "{name:#} не очищается: {error:#}"),
+    };
+    Diagnostic::error(FILE, message).help(help)
 }
+
+/// What the system says of an error: in English its own words.
+fn said(error: &std::io::Error) -> Text {
+    use std::io::ErrorKind;
+    if let Some(text) = error.get_ref().and_then(|inner| inner.downcast_ref::<Text>()) {
+        return text.clone();
+    }
+    // `tempfile` adds the name of its file, which means nothing to the user.
+    let own = error.to_string();
+    let own = own.split(" at path ").next().unwrap_or_default();
+    let russian = match error.kind() {
+        ErrorKind::NotFound => "нет такого файла или папки",
+        ErrorKind::PermissionDenied => "нет прав",
+        ErrorKind::AlreadyExists => "уже существует",
+        ErrorKind::IsADirectory => "это папка",
+        ErrorKind::NotADirectory => "это не папка",
+        ErrorKind::DirectoryNotEmpty => "папка не пуста",
+        ErrorKind::StorageFull => "на устройстве нет места",
+        ErrorKind::QuotaExceeded => "исчерпана дисковая квота",
+        ErrorKind::ReadOnlyFilesystem => "файловая система только для чтения",
+        ErrorKind::FileTooLarge => "файл слишком велик",
+        ErrorKind::BrokenPipe => "принимающая программа закрыла канал",
+        ErrorKind::InvalidFilename => "недопустимое имя",
+        ErrorKind::UnexpectedEof => "файл кончился раньше времени",
+        _ => own,
+    };
+    both!("{own}", "{russian}")
+}
+
+/// What was to be done with a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deed {
+    /// To read it.
+    Read,
+    /// To write it.
+    Write,
+    /// To write into it: a folder, a stream.
+    WriteTo,
+    /// To make it: a folder.
+    Make,
+    /// To empty it: a folder.
+    Empty,
+}
+
+/// What messages begin with.
+static ERROR: Text = Text::pair("error", "ошибка");
+static WARNING: Text = Text::pair("warning", "предупреждение");
+static HELP: Text = Text::pair("help", "что делать");
+static INTERRUPTED: Text = Text::pair("interrupted: nothing was written", "прервано: ничего не записано");
 
 /// How messages are written.
 #[derive(Debug)]
 pub struct Wording {
     renderer: Renderer,
     quiet: bool,
+    language: Language,
 }
 
 impl Wording {
-    /// Without colours, warnings and all.
+    /// In English, without colours, warnings and all.
     #[must_use]
     pub fn plain() -> Self {
-        Self { renderer: Renderer::plain(), quiet: false }
+        Self { renderer: Renderer::plain(), quiet: false, language: Language::English }
     }
 
-    /// With colours, for a terminal.
+    /// The same with colours, for a terminal.
     #[must_use]
     pub fn colored() -> Self {
-        Self { renderer: Renderer::styled(), quiet: false }
+        Self { renderer: Renderer::styled(), ..Self::plain() }
+    }
+
+    /// The same in a language.
+    #[must_use]
+    pub fn speaking(self, language: Language) -> Self {
+        Self { language, ..self }
     }
 
     /// The same without warnings.
@@ -179,7 +255,7 @@ impl Wording {
             Failure::File(report) | Failure::Later(report) => {
                 self.rendered(report).collect::<Vec<_>>().join("\n")
             }
-            Failure::Interrupted(_) => "interrupted: nothing was written".to_owned(),
+            Failure::Interrupted(_) => INTERRUPTED.in_language(self.language).to_owned(),
             Failure::Check | Failure::Said(_) => String::new(),
         }
     }
@@ -191,13 +267,16 @@ impl Wording {
     }
 
     fn render(&self, diagnostic: &Diagnostic, source: Option<&Source>) -> String {
-        let level = match diagnostic.severity {
-            Severity::Error => Level::ERROR,
-            Severity::Warning | Severity::Doubt => Level::WARNING,
+        let (level, name) = match diagnostic.severity {
+            Severity::Error => (Level::ERROR, &ERROR),
+            Severity::Warning | Severity::Doubt => (Level::WARNING, &WARNING),
         };
+        let level = level.with_name(name.in_language(self.language));
+        let help_level = Level::HELP.with_name(HELP.in_language(self.language));
         let code = diagnostic.code.to_string();
-        let [message, label] = [&diagnostic.message, &diagnostic.label].map(|text| shown(text));
-        let help = diagnostic.help.as_deref().map(shown);
+        let [message, label] =
+            [&diagnostic.message, &diagnostic.label].map(|text| shown(text.in_language(self.language)));
+        let help = diagnostic.help.as_ref().map(|help| shown(help.in_language(self.language)));
         let title = level.primary_title(message.as_ref()).id(code.as_str());
         let line = match (&diagnostic.span, source) {
             (Some(span), Some(source)) => Some((source.around(span), shown(&source.name))),
@@ -223,13 +302,13 @@ impl Wording {
         // Without a line of source there is nothing that a rule would join to the help.
         let separate = source.is_none();
         if let (Some(help), false) = (&help, separate) {
-            groups.push(Group::with_title(Level::HELP.secondary_title(help.as_ref())));
+            groups.push(Group::with_title(help_level.clone().secondary_title(help.as_ref())));
         }
         let mut text = self.renderer.render(&groups);
         if let (Some(help), true) = (&help, separate) {
             text.push('\n');
             text.push_str(
-                &self.renderer.render(&[Group::with_title(Level::HELP.secondary_title(help.as_ref()))]),
+                &self.renderer.render(&[Group::with_title(help_level.secondary_title(help.as_ref()))]),
             );
         }
         text

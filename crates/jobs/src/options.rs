@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, FromArgMatches, ValueEnum};
+use diagnostic::{Text, both};
 use machine_model::EngineId;
 use nc_expand::Preset;
 use serde::{Deserialize, Serialize};
@@ -155,8 +156,11 @@ impl JobOptions {
                 let text = error.to_string();
                 let first = text.lines().next().unwrap_or_default();
                 Failure::option(
-                    first.trim_start_matches("error: "),
-                    "see docs/reference.md for what it takes",
+                    Text::english_only(first.trim_start_matches("error: ")),
+                    both!(
+                        "see docs/reference.md for what it takes",
+                        "что он принимает, сказано в docs/reference.md"
+                    ),
                 )
             })
         })
@@ -188,7 +192,8 @@ pub enum Decimal {
 /// # Errors
 /// What was expected.
 pub fn finite(text: &str) -> Result<f64, Unread> {
-    number(text, |_| true).ok_or_else(|| Unread::number("a finite number is expected"))
+    number(text, |_| true)
+        .ok_or_else(|| Unread::number(both!("a finite number is expected", "ожидалось конечное число")))
 }
 
 fn number(text: &str, may_be: impl Fn(f64) -> bool) -> Option<f64> {
@@ -200,8 +205,12 @@ fn number(text: &str, may_be: impl Fn(f64) -> bool) -> Option<f64> {
 /// # Errors
 /// What was expected.
 pub fn size(text: &str) -> Result<f64, Unread> {
-    number(text, |value| value > 0.0 && value <= 1e6)
-        .ok_or_else(|| Unread::number("a number above 0, at most 1000000, is expected"))
+    number(text, |value| value > 0.0 && value <= 1e6).ok_or_else(|| {
+        Unread::number(both!(
+            "a number above 0, at most 1000000, is expected",
+            "ожидалось число больше 0 и не больше 1000000"
+        ))
+    })
 }
 
 /// A size of an option that may be zero.
@@ -209,8 +218,9 @@ pub fn size(text: &str) -> Result<f64, Unread> {
 /// # Errors
 /// What was expected.
 pub fn size_or_zero(text: &str) -> Result<f64, Unread> {
-    number(text, |value| (0.0..=1e6).contains(&value))
-        .ok_or_else(|| Unread::number("a number from 0 to 1000000 is expected"))
+    number(text, |value| (0.0..=1e6).contains(&value)).ok_or_else(|| {
+        Unread::number(both!("a number from 0 to 1000000 is expected", "ожидалось число от 0 до 1000000"))
+    })
 }
 
 /// A value that an option cannot take, said as all failures are; `None` where the command line is wrong otherwise.
@@ -229,9 +239,10 @@ pub fn unread(error: &clap::Error) -> Option<Failure> {
     let why = std::error::Error::source(error)?;
     Some(match why.downcast_ref::<Unread>() {
         Some(unread) => Failure::option(unread.message(option, given), unread.help(option)),
-        None => {
-            Failure::option(format!("`{option} {given}`: {why}"), "see `--help` for what the option takes")
-        }
+        None => Failure::option(
+            both!("`{option} {given}`: {why}", "`{option} {given}`: {why}"),
+            both!("see `--help` for what the option takes", "что принимает ключ, скажет `--help`"),
+        ),
     })
 }
 

@@ -1,6 +1,6 @@
 //! Forward: where the machine really goes.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use machine_model::{Command, Engine, EngineId, PathModel, Vector, WithEffects, rotation};
 use machine_profile::Profile;
 
@@ -54,8 +54,12 @@ impl<'p> Predictor<'p> {
         let engine = other.map(|id| engine(profile, id, options)).transpose()?;
         if let Some(engine) = engine.as_ref().filter(|engine| engine.path_model().is_none()) {
             return Err(Failure::option(
-                format!("engine `{}` has no forward model: it reproduces a publication", engine.id()),
-                "use it with `vpost solve`",
+                both!(
+                    "engine `{}` has no forward model: it reproduces a publication",
+                    "у метода `{}` нет прямой модели: он воспроизводит публикацию",
+                    engine.id()
+                ),
+                both!("use it with `vpost solve`", "используйте его с `vpost solve`"),
             ));
         }
         Ok(Self { profile, machine, engine, frame })
@@ -138,12 +142,25 @@ impl PointsOutside {
     #[must_use]
     pub fn diagnostic(&self, options: &JobOptions) -> Diagnostic {
         let first = self.first + 1;
-        let message = format!("{} of {} points lie outside the calibrated volume", self.count, self.of);
+        let message = both!(
+            "{} of {} points lie outside the calibrated volume",
+            "вне калиброванного объёма лежат точки: {} из {}",
+            self.count,
+            self.of
+        );
         if options.outside == Some(Outside::Refuse) {
-            return Diagnostic::error(POINT_OUTSIDE, format!("{message}, the first is point {first}"))
-                .help("leave them out, or drop `--outside refuse` to take the nearest point's error");
+            return Diagnostic::error(
+                POINT_OUTSIDE,
+                both!("{message}, the first is point {first}", "{message:#}, первая — точка {first}"),
+            )
+            .help(both!(
+                "leave them out, or drop `--outside refuse` to take the nearest point's error",
+                "исключите их или уберите `--outside refuse`, чтобы взять погрешность ближайшей точки"
+            ));
         }
-        Diagnostic::warning(POINT_OUTSIDE, message)
-            .help(format!("point {first} is the first; each has the error of the volume's nearest point"))
+        Diagnostic::warning(POINT_OUTSIDE, message).help(both!(
+            "point {first} is the first; each has the error of the volume's nearest point",
+            "первая — точка {first}; каждой приписана погрешность ближайшей точки объёма"
+        ))
     }
 }

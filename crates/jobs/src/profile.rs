@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use machine_profile::{Profile, ProfileError};
 
 use crate::lines;
@@ -27,8 +27,16 @@ pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
     match &loaded.profile.lathe {
         None => Ok(loaded),
         Some(lathe) => Err(Failure::option(
-            format!("{} is the profile of a lathe, {}", lines::name(path), lathe.chain),
-            "of lathes `vpost correct`, `batch`, `check` and `predict --lathe PROGRAM` know",
+            both!(
+                "{} is the profile of a lathe, {}",
+                "{} — профиль токарного станка, {}",
+                lines::name(path),
+                lathe.chain
+            ),
+            both!(
+                "of lathes `vpost correct`, `batch`, `check` and `predict --lathe PROGRAM` know",
+                "токарные станки знают `vpost correct`, `batch`, `check` и `predict --lathe PROGRAM`"
+            ),
         )),
     }
 }
@@ -51,9 +59,13 @@ pub fn loaded(path: &Path, bytes: &[u8]) -> Result<Loaded, Failure> {
     let name = lines::name(path);
     let Ok(text) = std::str::from_utf8(bytes) else {
         let at = std::str::from_utf8(bytes).err().map_or(0, |error| error.valid_up_to()) as u64;
-        let diagnostic = Diagnostic::error(Code(301), "a profile is UTF-8 text")
-            .at(at..at + 1, "this byte is not")
-            .help("save it as UTF-8, or give the profile, not the program, to -m");
+        let diagnostic =
+            Diagnostic::error(Code(301), both!("a profile is UTF-8 text", "профиль — текст в UTF-8"))
+                .at(at..at + 1, both!("this byte is not", "а этот байт — нет"))
+                .help(both!(
+                    "save it as UTF-8, or give the profile, not the program, to -m",
+                    "сохраните его в UTF-8 или дайте в -m профиль, а не программу"
+                ));
         return Err(Failure::Usage(vec![Report {
             source: source(&name, bytes),
             diagnostics: vec![diagnostic],
@@ -100,9 +112,11 @@ const MOST_TOLD: usize = 20;
 fn some_of(mut errors: Vec<ProfileError>) -> Vec<ProfileError> {
     if let Some(next) = errors.get(MOST_TOLD) {
         let more = errors.len() - MOST_TOLD;
-        let diagnostic =
-            Diagnostic::error(next.diagnostic.code, format!("and {more} more errors of this profile"))
-                .help("mend those above first");
+        let diagnostic = Diagnostic::error(
+            next.diagnostic.code,
+            both!("and {more} more errors of this profile", "и ещё ошибки этого профиля: {more}"),
+        )
+        .help(both!("mend those above first", "исправьте сначала те, что выше"));
         errors.truncate(MOST_TOLD);
         errors.push(ProfileError { file: None, diagnostic });
     }

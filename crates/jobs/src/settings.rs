@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use correction::{Options, Outside};
+use diagnostic::both;
 use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
 use machine_profile::{BareLengths, Profile, TurningRules};
 use nc_program::{AfterChange, Questions, Setup};
@@ -82,8 +83,14 @@ impl Settings {
         let tolerance_um = options.tolerance.unwrap_or(profile.correction.tolerance_um);
         if !(tolerance_um > 0.0 && tolerance_um.is_finite()) {
             return Err(Failure::option(
-                format!("a tolerance of {tolerance_um} um cannot be kept"),
-                "give micrometres above zero: `--tolerance 1`",
+                both!(
+                    "a tolerance of {tolerance_um} um cannot be kept",
+                    "допуск {tolerance_um} мкм выдержать нельзя"
+                ),
+                both!(
+                    "give micrometres above zero: `--tolerance 1`",
+                    "дайте микрометры больше нуля: `--tolerance 1`"
+                ),
             ));
         }
         let warning = conditions::temperature(&profile, options, tolerance_um)?;
@@ -131,9 +138,13 @@ impl Settings {
         self.engine.path_model().ok_or_else(|| {
             let name = self.engine.id().name();
             Failure::option(
-                format!("engine `{name}` reproduces a publication and corrects no programs"),
-                format!(
+                both!(
+                    "engine `{name}` reproduces a publication and corrects no programs",
+                    "метод `{name}` воспроизводит публикацию и программ не исправляет"
+                ),
+                both!(
                     "use `--engine {}`, or `vpost solve` for single points",
+                    "возьмите `--engine {}` или, для отдельных точек, `vpost solve`",
                     name.trim_end_matches("-published")
                 ),
             )
@@ -183,8 +194,15 @@ fn guards(options: &JobOptions, dialect: &Dialect) -> Result<Guards, Failure> {
     // Whether a lathe keeps X as a diameter its parameters say.
     if dialect.flow.macros == Macros::None || dialect.turning.is_some() {
         return Err(Failure::option(
-            format!("no way is known to ask dialect {} for its work offsets", dialect.name),
-            "correct without `--guard`, and compare the offsets by hand",
+            both!(
+                "no way is known to ask dialect {} for its work offsets",
+                "как спросить у диалекта {} его смещения нуля, неизвестно",
+                dialect.name
+            ),
+            both!(
+                "correct without `--guard`, and compare the offsets by hand",
+                "исправляйте без `--guard` и сравните смещения вручную"
+            ),
         ));
     }
     Ok(Guards::Put)
@@ -197,15 +215,26 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
         return match &profile.lathe {
             None => Ok(dialect),
             Some(lathe) => Err(Failure::option(
-                format!("dialect {name} is of mills, and {} is a lathe", lathe.chain),
-                format!("use a dialect of lathes: {}", lathe_dialects()),
+                both!(
+                    "dialect {name} is of mills, and {} is a lathe",
+                    "диалект {name} — фрезерный, а {} — токарный станок",
+                    lathe.chain
+                ),
+                both!("use a dialect of lathes: {}", "возьмите токарный диалект: {}", lathe_dialects()),
             )),
         };
     };
     let Some(lathe) = &profile.lathe else {
         return Err(Failure::option(
-            format!("dialect {name} is of lathes, and {} has no spindle", profile.chain()),
-            "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+            both!(
+                "dialect {name} is of lathes, and {} has no spindle",
+                "диалект {name} — токарный, а в {} нет шпинделя",
+                profile.chain()
+            ),
+            both!(
+                "write the chain of the lathe into the profile, like \"[w S b Z X t]\", or use a mill's dialect",
+                "впишите в профиль цепь токарного станка, например \"[w S b Z X t]\", или возьмите фрезерный диалект"
+            ),
         ));
     };
     if turning.systems.is_empty() {
@@ -214,14 +243,25 @@ fn turning_dialect(dialect: Dialect, profile: &Profile) -> Result<Dialect, Failu
     let systems: Vec<&str> = turning.systems.iter().map(|system| system.name.as_str()).collect();
     let Some(system) = &profile.program.g_code_system else {
         return Err(Failure::option(
-            format!("which G-code system? the profile of {} does not say", lathe.chain),
-            format!("write `g_code_system = \"A\"` under `[program]`, one of: {}", systems.join(", ")),
+            both!(
+                "which G-code system? the profile of {} does not say",
+                "какая система функций G? в профиле {} не сказано",
+                lathe.chain
+            ),
+            both!(
+                "write `g_code_system = \"A\"` under `[program]`, one of: {}",
+                "впишите `g_code_system = \"A\"` в раздел `[program]`, одно из: {}",
+                systems.join(", ")
+            ),
         ));
     };
     dialect.in_system(system).ok_or_else(|| {
         Failure::option(
-            format!("dialect {name} has no G-code system {system}"),
-            format!("one of: {}", systems.join(", ")),
+            both!(
+                "dialect {name} has no G-code system {system}",
+                "в диалекте {name} нет системы функций G {system}"
+            ),
+            both!("one of: {}", "одно из: {}", systems.join(", ")),
         )
     })
 }
@@ -294,11 +334,15 @@ fn settle_lengths(options: &JobOptions, profile: &Profile, dialect: &mut Dialect
         Some(BareLengths::Millimetres) => *point_free = PointFree::Unit,
         Some(BareLengths::Increments) if *point_free == PointFree::Unit => {
             return Err(Failure::option(
-                format!(
+                both!(
                     "dialect {} reads a length without a point as Z10 = Z10., not as increments",
+                    "диалект {} читает размер без точки как Z10 = Z10., а не в дискретах",
                     dialect.name
                 ),
-                "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+                both!(
+                    "give the dialect of the control, or change `numbers.without_point` in a copy of the grammar where its manual says so",
+                    "дайте диалект этой стойки или, если так сказано в её руководстве, измените `numbers.without_point` в копии таблицы"
+                ),
             ));
         }
         Some(BareLengths::Increments) => {}
@@ -318,12 +362,14 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
                 let acts = row.ends_program || row.refuse.is_some() || row.loses_position != [false; 3];
                 if acts {
                     return Err(Failure::option(
-                        format!(
+                        both!(
                             "the profile calls M{number} harmless, which the table of dialect {} knows as something else",
+                            "профиль называет M{number} безобидной, а в таблице диалекта {} она значит другое",
                             dialect.name
                         ),
-                        format!(
-                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`"
+                        both!(
+                            "remove \"M{number}\" from `harmless` under `[m_codes]`; where a tool change leaves the axes is said with `tool_change` under `[program]`",
+                            "уберите \"M{number}\" из `harmless` раздела `[m_codes]`; где оставляет оси смена инструмента, говорит `tool_change` в разделе `[program]`"
                         ),
                     ));
                 }
@@ -357,8 +403,11 @@ fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
 pub fn machine(options: &JobOptions) -> Result<&Path, Failure> {
     options.machine.as_deref().ok_or_else(|| {
         Failure::option(
-            "which machine? no profile was given",
-            "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
+            both!("which machine? no profile was given", "какой станок? профиль не задан"),
+            both!(
+                "add `-m PROFILE.toml`, for example `-m machine-profiles/stan_s500.toml`",
+                "добавьте `-m PROFILE.toml`, например `-m machine-profiles/stan_s500.toml`"
+            ),
         )
     })
 }
@@ -372,8 +421,15 @@ pub fn setup_tool(profile: &Profile) -> [f64; 3] {
 fn dialect(options: &JobOptions, profile: &Profile) -> Result<Dialect, Failure> {
     let Some(name) = options.dialect.as_deref().or(profile.control.as_deref()) else {
         return Err(Failure::option(
-            "which dialect? neither the profile's `control` nor `--dialect` says",
-            format!("add `--dialect D`, one of: {}", nc_dialect::builtin_names().join(", ")),
+            both!(
+                "which dialect? neither the profile's `control` nor `--dialect` says",
+                "какой диалект? не говорят ни `control` профиля, ни `--dialect`"
+            ),
+            both!(
+                "add `--dialect D`, one of: {}",
+                "добавьте `--dialect D`, одно из: {}",
+                nc_dialect::builtin_names().join(", ")
+            ),
         ));
     };
     load_dialect(name)
@@ -389,9 +445,10 @@ pub fn load_dialect(name: &str) -> Result<Dialect, Failure> {
     }
     if !name.ends_with(".toml") {
         return Err(Failure::option(
-            format!("there is no dialect `{name}`"),
-            format!(
+            both!("there is no dialect `{name}`", "диалекта `{name}` нет"),
+            both!(
                 "one of: {}; or the path of a grammar file ending in .toml",
+                "одно из: {}; или путь к файлу таблицы, который кончается на .toml",
                 nc_dialect::builtin_names().join(", ")
             ),
         ));
@@ -446,15 +503,27 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
     if let Some(start) = &options.start_at {
         if setup.tip_at_start && start.linear_mm.iter().any(Option::is_some) {
             return Err(Failure::option(
-                "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
-                "give rotary axes alone, as in `--start-at A=0,C=0`: the first rapid that names X, Y and Z says where the tip is",
+both!(
+                    "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
+                    "`--start-at` задаёт команды осей, а по профилю программы начинаются при управлении по вершине инструмента"
+                ),
+                both!(
+                    "give rotary axes alone, as in `--start-at A=0,C=0`: the first rapid that names X, Y and Z says where the tip is",
+                    "задайте только поворотные оси, например `--start-at A=0,C=0`: где вершина, скажет первый быстрый ход, в котором названы X, Y и Z"
+                ),
             ));
         }
         if let Some(axis) = (0..3).find(|i| start.rotary_deg[*i].is_some() && !setup.has_rotary[*i]) {
             let name = ["A", "B", "C"][axis];
             return Err(Failure::option(
-                format!("`--start-at` says where {name} stands, and the machine has no such axis"),
-                format!("leave it out, or name {name} in `chain` of the profile"),
+                both!(
+                    "`--start-at` says where {name} stands, and the machine has no such axis",
+                    "`--start-at` говорит, где стоит {name}, а такой оси у станка нет"
+                ),
+                both!(
+                    "leave it out, or name {name} in `chain` of the profile",
+                    "уберите её или назовите {name} в `chain` профиля"
+                ),
             ));
         }
         (setup.start_mm, setup.start_deg) = (start.linear_mm, start.rotary_deg);

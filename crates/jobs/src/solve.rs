@@ -1,6 +1,6 @@
 //! Inverse: what to command so that the tool reaches points.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, both};
 use machine_model::{Command, Engine, EngineId, Solution};
 use machine_profile::Profile;
 use rewrite::OUTSIDE;
@@ -33,8 +33,15 @@ impl Solver {
     /// No command brings it there.
     pub fn solve(&self, row: usize, target: &Command) -> Result<Solution, Diagnostic> {
         self.engine.solve(target).map_err(|error| {
-            Diagnostic::error(OUTSIDE, format!("point {} cannot be reached: {error}", row + 1))
-                .help("leave the point out, or choose another engine with `--engine`")
+            let error = error.text();
+            Diagnostic::error(
+                OUTSIDE,
+                both!("point {} cannot be reached: {error}", "точка {} недостижима: {error:#}", row + 1),
+            )
+            .help(both!(
+                "leave the point out, or choose another engine with `--engine`",
+                "исключите точку или выберите другой метод ключом `--engine`"
+            ))
         })
     }
 }

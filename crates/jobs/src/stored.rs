@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use control_files::{Ini, Length};
+use diagnostic::both;
 use machine_profile::Profile;
 use nc_syntax::Dialect;
 use nc_syntax::dialect::Macros;
@@ -30,8 +31,15 @@ impl Stored {
     pub(crate) fn load(options: &JobOptions, profile: &Profile, dialect: &Dialect) -> Result<Self, Failure> {
         if options.linuxcnc_ini.is_some() && dialect.flow.macros != Macros::LinuxCnc {
             return Err(Failure::option(
-                format!("`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}", dialect.name),
-                "leave it out, or give `--dialect linuxcnc`",
+                both!(
+                    "`--linuxcnc-ini` says what LinuxCNC keeps, and the dialect is {}",
+                    "`--linuxcnc-ini` говорит, что хранит LinuxCNC, а диалект — {}",
+                    dialect.name
+                ),
+                both!(
+                    "leave it out, or give `--dialect linuxcnc`",
+                    "уберите его или дайте `--dialect linuxcnc`"
+                ),
             ));
         }
         let mut stored = Self::default();

@@ -1,5 +1,6 @@
 //! What was done, for pipelines.
 
+use diagnostic::{Text, both};
 use serde::Serialize;
 
 use rewrite::{Digest, Figures};
@@ -119,8 +120,8 @@ impl<'a> Summary<'a> {
                 .iter()
                 .map(|warning| Warning {
                     code: warning.code.to_string(),
-                    message: warning.message.clone(),
-                    note: warning.label.clone(),
+                    message: warning.message.english().to_owned(),
+                    note: warning.label.english().to_owned(),
                 })
                 .collect(),
         }
@@ -134,12 +135,17 @@ impl<'a> Summary<'a> {
 
     /// The same in one line for people.
     #[must_use]
-    pub fn line(figures: &Figures) -> String {
-        let tilt = tilt(figures).map_or_else(String::new, |(rad, line)| {
-            format!("; tool leans by {:.1} urad (line {line})", rad * 1e6)
+    pub fn line(figures: &Figures) -> Text {
+        let tilt = tilt(figures).map_or(Text::EMPTY, |(rad, line)| {
+            both!(
+                "; tool leans by {:.1} urad (line {line})",
+                "; инструмент наклонён на {:.1} мкрад (строка {line})",
+                rad * 1e6
+            )
         });
-        format!(
+        both!(
             "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{tilt}",
+            "кадров было {}, стало {}, разделено {}; наибольшая поправка {:.1} мкм (строка {}); отклонение пути не больше {:.1} мкм до, {:.2} мкм после{tilt:#}",
             figures.blocks_in,
             figures.blocks_out,
             figures.splits,

@@ -5,6 +5,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::str::FromStr;
 
+use diagnostic::{Language, Text, both};
 use error_map::Plane;
 use machine_model::{Axis, EngineId, Range};
 use nc_expand::Preset;
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// What an option may be given.
 pub trait Value: Sized {
     /// What it is, with its unit: "millimetres".
-    const WHAT: &'static str;
+    const WHAT: Text;
     /// How it is written.
     const EXAMPLES: &'static [&'static str];
 
@@ -21,7 +22,7 @@ pub trait Value: Sized {
     ///
     /// # Errors
     /// What is wrong, where more can be said than that it is not written so.
-    fn read(text: &str) -> Result<Self, Option<String>>;
+    fn read(text: &str) -> Result<Self, Option<Text>>;
 }
 
 /// A value, and the text that it was read from: messages, pages and manifests say what was typed.
@@ -89,40 +90,44 @@ impl<T> From<Given<T>> for String {
 /// Why a value cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unread {
-    why: Option<String>,
-    what: &'static str,
+    why: Option<Text>,
+    what: Text,
     examples: &'static [&'static str],
 }
 
 impl Unread {
     /// Of a bare number.
     #[must_use]
-    pub fn number(why: &str) -> Self {
-        Self { why: Some(why.to_owned()), what: "a number", examples: &["20"] }
+    pub fn number(why: Text) -> Self {
+        Self { why: Some(why), what: Text::pair("a number", "число"), examples: &["20"] }
     }
 
     /// What to say of an option that was given this.
     #[must_use]
-    pub fn message(&self, option: &str, given: &str) -> String {
+    pub fn message(&self, option: &str, given: &str) -> Text {
         match &self.why {
-            Some(why) => format!("`{option} {given}`: {why}"),
-            None => format!("`{option} {given}` cannot be read"),
+            Some(why) => both!("`{option} {given}`: {why}", "`{option} {given}`: {why:#}"),
+            None => both!("`{option} {given}` cannot be read", "`{option} {given}`: значение непонятно"),
         }
     }
 
     /// What to type.
     #[must_use]
-    pub fn help(&self, option: &str) -> String {
+    pub fn help(&self, option: &str) -> Text {
         let examples: Vec<String> =
             self.examples.iter().map(|example| format!("`{option} {example}`")).collect();
-        format!("write {} as in {}", self.what, examples.join(" or "))
+        let (english, russian) = (examples.join(" or "), examples.join(" или "));
+        Text::new(
+            format!("write {} as in {english}", self.what),
+            format!("напишите {:#} так: {russian}", self.what),
+        )
     }
 }
 
 impl fmt::Display for Unread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.why {
-            Some(why) => f.write_str(why),
+            Some(why) => why.fmt(f),
             None => write!(f, "cannot be read: write {} as in {}", self.what, self.examples.join(" or ")),
         }
     }
@@ -155,10 +160,10 @@ fn assignment(text: &str) -> Option<(&str, &str)> {
 pub struct Point3(pub [f64; 3]);
 
 impl Value for Point3 {
-    const WHAT: &'static str = "millimetres";
+    const WHAT: Text = Text::pair("millimetres", "миллиметры");
     const EXAMPLES: &'static [&'static str] = &["400,280,200"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         three(text, millimetres).map(Self).ok_or(None)
     }
 }
@@ -173,10 +178,13 @@ pub struct Start {
 }
 
 impl Value for Start {
-    const WHAT: &'static str = "millimetres, or axes by name, rotary ones in degrees,";
+    const WHAT: Text = Text::pair(
+        "millimetres, or axes by name, rotary ones in degrees,",
+        "миллиметры или оси по именам, поворотные в градусах,",
+    );
     const EXAMPLES: &'static [&'static str] = &["400,280,200", "Z=300,A=0,C=90"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         if !text.contains('=') {
             let linear_mm = three(text, millimetres).ok_or(None)?;
             return Ok(Self { linear_mm: linear_mm.map(Some), rotary_deg: [None; 3] });
@@ -185,10 +193,10 @@ impl Value for Start {
         for part in text.split(',') {
             let (name, value) = assignment(part).ok_or(None)?;
             let axis = ["X", "Y", "Z", "A", "B", "C"].iter().position(|axis| name.eq_ignore_ascii_case(axis));
-            let Some(axis) = axis else { return Err(Some(format!("there is no axis `{name}`"))) };
+            let Some(axis) = axis else { return Err(Some(both!("there is no axis `{name}`", "оси `{name}` нет"))) };
             let value = if axis < 3 { millimetres(value) } else { finite(value) };
             if places[axis].replace(value.ok_or(None)?).is_some() {
-                return Err(Some(format!("{name} is said twice")));
+                return Err(Some(both!("{name} is said twice", "{name} задана дважды")));
             }
         }
         let [x, y, z, a, b, c] = places;
@@ -201,10 +209,10 @@ impl Value for Start {
 pub struct Size3(pub [f64; 3]);
 
 impl Value for Size3 {
-    const WHAT: &'static str = "millimetres";
+    const WHAT: Text = Text::pair("millimetres", "миллиметры");
     const EXAMPLES: &'static [&'static str] = &["120,80,40"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         three(text, |part| millimetres(part).filter(|v| *v >= 0.0)).map(Self).ok_or(None)
     }
 }
@@ -219,10 +227,10 @@ pub struct WorkOffset {
 }
 
 impl Value for WorkOffset {
-    const WHAT: &'static str = "millimetres";
+    const WHAT: Text = Text::pair("millimetres", "миллиметры");
     const EXAMPLES: &'static [&'static str] = &["G54=100,50,0"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (name, value) = assignment(text).ok_or(None)?;
         let zero_mm = three(value, millimetres).ok_or(None)?;
         Ok(Self { name: name.to_ascii_uppercase(), zero_mm })
@@ -243,10 +251,10 @@ fn h_number(text: &str) -> Option<u32> {
 }
 
 impl Value for ToolLength {
-    const WHAT: &'static str = "millimetres";
+    const WHAT: Text = Text::pair("millimetres", "миллиметры");
     const EXAMPLES: &'static [&'static str] = &["H1=120", "H1=0,0,120"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (name, value) = assignment(text).ok_or(None)?;
         let vector_mm = three(value, millimetres).or_else(|| Some([0.0, 0.0, millimetres(value)?]));
         Ok(Self { number: h_number(name).ok_or(None)?, vector_mm: vector_mm.ok_or(None)? })
@@ -263,32 +271,45 @@ pub enum ToolVector {
 }
 
 impl Value for ToolVector {
-    const WHAT: &'static str = "an H number, or millimetres,";
+    const WHAT: Text = Text::pair("an H number, or millimetres,", "номер H или миллиметры");
     const EXAMPLES: &'static [&'static str] = &["H1", "0,0,-120"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let length = h_number(text).map(Self::Length);
         length.or_else(|| three(text, millimetres).map(Self::Vector)).ok_or(None)
     }
 }
 
 impl Value for EngineId {
-    const WHAT: &'static str = "its name";
+    const WHAT: Text = Text::pair("its name", "его имя");
     const EXAMPLES: &'static [&'static str] = &["rigid-body"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         Self::from_name(text).ok_or_else(|| {
             let names: Vec<&str> = Self::ALL.iter().map(|id| id.name()).collect();
-            Some(format!("there is no such engine; there are {}", names.join(", ")))
+            Some(both!(
+                "there is no such engine; there are {}",
+                "такого метода нет; есть {}",
+                names.join(", ")
+            ))
         })
     }
 }
 
+impl Value for Language {
+    const WHAT: Text = Text::pair("a language that vpost speaks", "язык, на котором говорит vpost,");
+    const EXAMPLES: &'static [&'static str] = &["en", "ru"];
+
+    fn read(text: &str) -> Result<Self, Option<Text>> {
+        Self::from_name(text).ok_or(None)
+    }
+}
+
 impl Value for Preset {
-    const WHAT: &'static str = "a variable and its value";
+    const WHAT: Text = Text::pair("a variable and its value", "переменную и её значение");
     const EXAMPLES: &'static [&'static str] = &["\"#500=12.5\"", "\"#<depth>=2\"", "\"#1=#0\""];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         Self::parse(text).ok_or(None)
     }
 }
@@ -335,24 +356,29 @@ impl Condition {
 pub struct Conditions(pub Vec<(Condition, f64)>);
 
 impl Value for Conditions {
-    const WHAT: &'static str = "names and values";
+    const WHAT: Text = Text::pair("names and values", "имена и значения");
     const EXAMPLES: &'static [&'static str] = &["temp_c=24,load_kg=100"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let one = |part: &str| {
-            let (name, value) = assignment(part).ok_or_else(|| format!("`{part}` is not NAME=VALUE"))?;
+            let (name, value) = assignment(part)
+                .ok_or_else(|| both!("`{part}` is not NAME=VALUE", "`{part}` — не ИМЯ=ЗНАЧЕНИЕ"))?;
             let (_, condition) =
                 Condition::ALL.into_iter().find(|(known, _)| *known == name).ok_or_else(|| {
                     let names = Condition::ALL.map(|(known, _)| known).join(", ");
-                    format!("there is no condition `{name}`; there are {names}")
+                    both!(
+                        "there is no condition `{name}`; there are {names}",
+                        "условия `{name}` нет; есть {names}"
+                    )
                 })?;
-            let number = finite(value).ok_or_else(|| format!("`{value}` is no number"))?;
+            let number =
+                finite(value).ok_or_else(|| both!("`{value}` is no number", "`{value}` — не число"))?;
             if !condition.is_temperature() && number < 0.0 {
-                return Err(format!("`{name}` cannot be below zero"));
+                return Err(both!("`{name}` cannot be below zero", "`{name}` не бывает меньше нуля"));
             }
             Ok((condition, number))
         };
-        text.split(',').map(one).collect::<Result<_, String>>().map(Self).map_err(Some)
+        text.split(',').map(one).collect::<Result<_, Text>>().map(Self).map_err(Some)
     }
 }
 
@@ -361,16 +387,19 @@ impl Value for Conditions {
 pub struct Rotary(pub [Option<f64>; 3]);
 
 impl Value for Rotary {
-    const WHAT: &'static str = "degrees";
+    const WHAT: Text = Text::pair("degrees", "градусы");
     const EXAMPLES: &'static [&'static str] = &["A=30,C=90"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let mut angles = [None; 3];
         for part in text.split(',') {
-            let (name, value) = assignment(part).ok_or_else(|| "AXIS=DEGREES is expected".to_owned())?;
+            let (name, value) =
+                assignment(part).ok_or_else(|| both!("AXIS=DEGREES is expected", "ожидалось ОСЬ=ГРАДУСЫ"))?;
             let axis = ["A", "B", "C"].iter().position(|known| known.eq_ignore_ascii_case(name));
-            let axis = axis.ok_or_else(|| "the rotary axes are A, B and C".to_owned())?;
-            angles[axis] = Some(finite(value).ok_or_else(|| format!("`{value}` is no number"))?);
+            let axis =
+                axis.ok_or_else(|| both!("the rotary axes are A, B and C", "поворотные оси — A, B и C"))?;
+            angles[axis] =
+                Some(finite(value).ok_or_else(|| both!("`{value}` is no number", "`{value}` — не число"))?);
         }
         Ok(Self(angles))
     }
@@ -381,10 +410,10 @@ impl Value for Rotary {
 pub struct SquarenessReadings(pub [Option<f64>; 3]);
 
 impl Value for SquarenessReadings {
-    const WHAT: &'static str = "µrad,";
+    const WHAT: Text = Text::pair("µrad,", "мкрад");
     const EXAMPLES: &'static [&'static str] = &["XY=12,ZX=-3,YZ=5"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let mut read = [None; 3];
         for part in text.split(',') {
             let (name, value) = assignment(part).ok_or(None)?;
@@ -400,10 +429,10 @@ impl Value for SquarenessReadings {
 pub struct Region3(pub [Range; 3]);
 
 impl Value for Region3 {
-    const WHAT: &'static str = "millimetres";
+    const WHAT: Text = Text::pair("millimetres", "миллиметры");
     const EXAMPLES: &'static [&'static str] = &["100..220,50..130,20..60"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         three(text, range_mm).map(Self).ok_or(None)
     }
 }
@@ -425,10 +454,10 @@ pub struct Travel {
 }
 
 impl Value for Travel {
-    const WHAT: &'static str = "an axis and millimetres";
+    const WHAT: Text = Text::pair("an axis and millimetres", "ось и миллиметры");
     const EXAMPLES: &'static [&'static str] = &["X=0..500"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (axis, range) = assignment(text).ok_or(None)?;
         let axis = linear_axis(axis).ok_or(None)?;
         // An axis that travels nowhere is none.
@@ -447,10 +476,10 @@ pub struct AxisTable {
 }
 
 impl Value for AxisTable {
-    const WHAT: &'static str = "an axis and a file";
+    const WHAT: Text = Text::pair("an axis and a file", "ось и файл");
     const EXAMPLES: &'static [&'static str] = &["X=errors_x.csv"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (axis, path) = assignment(text).ok_or(None)?;
         let axis = linear_axis(axis).ok_or(None)?;
         (!path.is_empty()).then(|| Self { axis, path: path.to_owned() }).ok_or(None)
@@ -467,10 +496,10 @@ pub struct Centre {
 }
 
 impl Value for Centre {
-    const WHAT: &'static str = "a rotary axis and millimetres";
+    const WHAT: Text = Text::pair("a rotary axis and millimetres", "поворотную ось и миллиметры");
     const EXAMPLES: &'static [&'static str] = &["C=250,200,0"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (axis, point) = assignment(text).ok_or(None)?;
         let axis = axis_of(axis).filter(|axis| !axis.is_linear()).ok_or(None)?;
         three(point, millimetres).map(|point_mm| Self { axis, point_mm }).ok_or(None)
@@ -497,10 +526,10 @@ pub struct NamedRegion {
 }
 
 impl Value for NamedRegion {
-    const WHAT: &'static str = "a name and millimetres";
+    const WHAT: Text = Text::pair("a name and millimetres", "имя и миллиметры");
     const EXAMPLES: &'static [&'static str] = &["table=0..200,0..140,0..100"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         // Names may hold anything; the ranges hold no equals sign.
         let (name, ranges) = text.rsplit_once('=').ok_or(None)?;
         Ok(Self { name: name.trim().to_owned(), ranges_mm: Region3::read(ranges)?.0 })
@@ -517,10 +546,10 @@ pub struct Layer {
 }
 
 impl Value for Layer {
-    const WHAT: &'static str = "a plane and millimetres";
+    const WHAT: Text = Text::pair("a plane and millimetres", "плоскость и миллиметры");
     const EXAMPLES: &'static [&'static str] = &["XY=100", "XY"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         let (name, at_mm) = match assignment(text) {
             Some((name, at)) => (name, Some(millimetres(at).ok_or(None)?)),
             None => (text.trim(), None),
@@ -540,22 +569,25 @@ pub enum Lattice {
 }
 
 impl Value for Lattice {
-    const WHAT: &'static str = "numbers of nodes, or from:to:step in mm,";
+    const WHAT: Text =
+        Text::pair("numbers of nodes, or from:to:step in mm,", "числа узлов или от:до:шаг в мм");
     const EXAMPLES: &'static [&'static str] = &["22x22x21", "40:880:40,30:450:20,5:505:25"];
 
-    fn read(text: &str) -> Result<Self, Option<String>> {
+    fn read(text: &str) -> Result<Self, Option<Text>> {
         if text.contains(':') {
             let stepped = three(text, |part| {
                 let mut numbers = part.split(':').map(millimetres);
                 let found = [numbers.next()??, numbers.next()??, numbers.next()??];
                 numbers.next().is_none().then_some(found)
             });
-            return stepped
-                .map(Self::Stepped)
-                .ok_or_else(|| Some("three times from:to:step are expected".to_owned()));
+            return stepped.map(Self::Stepped).ok_or_else(|| {
+                Some(both!("three times from:to:step are expected", "ожидалось трижды от:до:шаг"))
+            });
         }
         let counts = three(&text.replace(['x', 'X', '×'], ","), |part| part.trim().parse::<u64>().ok());
-        counts.map(Self::Counts).ok_or_else(|| Some("three whole numbers are expected".to_owned()))
+        counts
+            .map(Self::Counts)
+            .ok_or_else(|| Some(both!("three whole numbers are expected", "ожидались три целых числа")))
     }
 }
 

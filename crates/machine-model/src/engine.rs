@@ -92,8 +92,10 @@ pub enum SolveError {
         residual_mm: f64,
     },
     /// The engine is defined on a narrower domain than the volume (published variants).
+    ///
+    /// Why, in English and in Russian.
     #[error("{0}")]
-    Undefined(&'static str),
+    Undefined(&'static str, &'static str),
 }
 
 /// The engines by the names of the command line.

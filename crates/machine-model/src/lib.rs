@@ -23,6 +23,7 @@ mod real;
 mod rigid_body;
 mod rotary;
 pub mod rotation;
+mod russian;
 mod solve;
 mod table;
 mod tip_control;

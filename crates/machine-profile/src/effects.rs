@@ -1,5 +1,6 @@
 //! A profile's machine with its effects: what predicts and corrects.
 
+use diagnostic::Speaks;
 use machine_model::effects::{Conditions, EffectError, EffectGeometry, EffectKind, EffectTerm};
 use machine_model::engines::{BuildError, build};
 use machine_model::{Engine, EngineId, PathModel, UnknownCondition, Vector, WithEffects};
@@ -42,6 +43,23 @@ pub enum EngineError {
         /// Ids of the effects.
         effects: String,
     },
+}
+
+impl Speaks for EngineError {
+    fn russian(&self) -> String {
+        match self {
+            Self::Build(error) => error.russian(),
+            Self::Effect(error) => error.russian(),
+            Self::Condition(error) => error.russian(),
+            Self::ReferenceTemperature { effect } => {
+                format!("эффект {effect} отсчитывается от температуры калибровки, а её в профиле нет")
+            }
+            Self::Lathe { engine } => format!("метод `{engine}` токарного станка не моделирует"),
+            Self::WithoutEffects { engine, effects } => {
+                format!("метод `{engine}` не учитывает эффектов профиля: {effects}")
+            }
+        }
+    }
 }
 
 impl Profile {

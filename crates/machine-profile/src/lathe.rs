@@ -1,6 +1,6 @@
 //! What a profile says of a lathe: spindle, headstock, tailstock, workpiece, noses.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, both};
 use machine_model::Vector;
 use toml::Spanned;
 use turning::{
@@ -66,26 +66,50 @@ impl Loader<'_> {
         let others = links.iter().filter(|link| !["w", "b", "t", "X", "Z"].contains(link)).count();
         let sound = spindle == 1 && others == 0 && links.len() == 5 && links.last() == Some(&"t");
         if !sound {
-            let diagnostic = Diagnostic::error(CHAIN, format!("{text} is no lathe of two axes")).help(
+            let diagnostic = Diagnostic::error(
+                CHAIN,
+                both!("{text} is no lathe of two axes", "{text} — не двухосевой токарный станок"),
+            )
+            .help(both!(
                 "write the spindle S behind the workpiece, the bed b, and X and Z, like \"[w S b Z X t]\"",
-            );
-            self.refuse(&document.chain, diagnostic, "this chain");
+                "напишите после детали шпиндель S, станину b, X и Z, например \"[w S b Z X t]\""
+            ));
+            self.refuse(&document.chain, diagnostic, both!("this chain", "эта цепь"));
         }
         if let Some(y) = &document.axis.Y {
-            let diagnostic = Diagnostic::error(CONFLICT, "[axis.Y] on a lathe of two axes")
-                .help("remove it: the axes are X and Z");
-            self.refuse(y, diagnostic, "not in the chain");
+            let diagnostic = Diagnostic::error(
+                CONFLICT,
+                both!("[axis.Y] on a lathe of two axes", "[axis.Y] на двухосевом токарном станке"),
+            )
+            .help(both!("remove it: the axes are X and Z", "уберите: оси — X и Z"));
+            self.refuse(y, diagnostic, both!("not in the chain", "её нет в цепи"));
         }
         if let Some(square) = &document.squareness.EC0Y_urad {
-            let diagnostic =
-                Diagnostic::error(CONFLICT, "EC0Y is the squareness of Y, which a lathe of two axes has not")
-                    .help("EB0Z is that of Z to X, EA0Z tilts Z out of the plane");
-            self.refuse(square, diagnostic, "no such axis");
+            let diagnostic = Diagnostic::error(
+                CONFLICT,
+                both!(
+                    "EC0Y is the squareness of Y, which a lathe of two axes has not",
+                    "EC0Y — перпендикулярность Y, которой у двухосевого токарного станка нет"
+                ),
+            )
+            .help(both!(
+                "EB0Z is that of Z to X, EA0Z tilts Z out of the plane",
+                "EB0Z — перпендикулярность Z к X, EA0Z наклоняет Z из плоскости"
+            ));
+            self.refuse(square, diagnostic, both!("no such axis", "такой оси нет"));
         }
         if let Some(tracker) = &document.tracker {
-            let diagnostic = Diagnostic::error(CONFLICT, "[tracker] on a lathe")
-                .help("give the errors of X and Z as tables: [axis.X] and [axis.Z] with errors");
-            self.refuse(&tracker.x, diagnostic, "a lathe has no three traverses");
+            let diagnostic =
+                Diagnostic::error(CONFLICT, both!("[tracker] on a lathe", "[tracker] на токарном станке"))
+                    .help(both!(
+                        "give the errors of X and Z as tables: [axis.X] and [axis.Z] with errors",
+                        "задайте погрешности X и Z таблицами: [axis.X] и [axis.Z] с errors"
+                    ));
+            self.refuse(
+                &tracker.x,
+                diagnostic,
+                both!("a lathe has no three traverses", "трёх проходов у токарного станка нет"),
+            );
         }
         links.insert(links.len().saturating_sub(1), "Y");
         Some(format!("[{}]", links.join(" ")))
@@ -104,10 +128,16 @@ impl Loader<'_> {
         for (name, span) in spans.into_iter().filter_map(|(name, span)| Some((name, span?))) {
             let diagnostic = Diagnostic::error(
                 CONFLICT,
-                format!("{name} belongs to a lathe, and the chain has no spindle"),
+                both!(
+                    "{name} belongs to a lathe, and the chain has no spindle",
+                    "{name} бывает у токарного станка, а в цепи нет шпинделя"
+                ),
             )
-            .at(crate::error::span(&span), "of a lathe")
-            .help("write the chain of a lathe, like \"[w S b Z X t]\", or remove this");
+            .at(crate::error::span(&span), both!("of a lathe", "токарное"))
+            .help(both!(
+                "write the chain of a lathe, like \"[w S b Z X t]\", or remove this",
+                "напишите цепь токарного станка, например \"[w S b Z X t]\", или уберите это"
+            ));
             self.errors.push(ProfileError::profile(diagnostic));
         }
     }
@@ -134,10 +164,15 @@ impl Loader<'_> {
         if let Some(at) = document.tailstock.as_ref().map(|tailstock| &tailstock.get_ref().at_mm)
             && at.get_ref().0 <= 0.0
         {
-            let diagnostic =
-                Diagnostic::error(VALUE, format!("the tailstock stands at {} mm", at.get_ref().0))
-                    .help("at_mm counts from the chuck's face (face_mm of [spindle]) towards +Z");
-            self.refuse(at, diagnostic, "expected above 0");
+            let diagnostic = Diagnostic::error(
+                VALUE,
+                both!("the tailstock stands at {} mm", "задняя бабка стоит в {} мм", at.get_ref().0),
+            )
+            .help(both!(
+                "at_mm counts from the chuck's face (face_mm of [spindle]) towards +Z",
+                "at_mm отсчитывается от торца патрона (face_mm в [spindle]) в сторону +Z"
+            ));
+            self.refuse(at, diagnostic, both!("expected above 0", "ожидалось больше 0"));
         }
         let (bending, bears) = self.workpiece(document, tailstock);
         let spindle = Spindle {
@@ -167,33 +202,50 @@ impl Loader<'_> {
         let written = spanned.get_ref();
         let force = match (&written.radial_force_n, written.specific_force_n_mm2) {
             (Some(force), None) => Force::Radial { newton: force.get_ref().0 },
-            (None, Some(Finite(specific_n_mm2))) => match (written.depth_mm, written.feed_mm) {
-                (Some(Finite(depth_mm)), Some(Finite(feed_mm))) => {
-                    Force::Cut { specific_n_mm2, depth_mm, feed_mm }
-                }
-                _ => {
-                    let diagnostic =
-                        Diagnostic::error(KEY, "specific_force_n_mm2 without depth_mm and feed_mm").help(
-                            "add the depth of cut on the radius and the feed a turn, or give radial_force_n",
+            (None, Some(Finite(specific_n_mm2))) => {
+                match (written.depth_mm, written.feed_mm) {
+                    (Some(Finite(depth_mm)), Some(Finite(feed_mm))) => {
+                        Force::Cut { specific_n_mm2, depth_mm, feed_mm }
+                    }
+                    _ => {
+                        let diagnostic =
+                        Diagnostic::error(KEY, both!("specific_force_n_mm2 without depth_mm and feed_mm", "specific_force_n_mm2 без depth_mm и feed_mm")).help(
+                            both!("add the depth of cut on the radius and the feed a turn, or give radial_force_n", "добавьте глубину резания по радиусу и подачу на оборот или задайте radial_force_n"),
                         );
-                    self.refuse(spanned, diagnostic, "of this workpiece");
-                    NO_FORCE
+                        self.refuse(spanned, diagnostic, both!("of this workpiece", "у этой детали"));
+                        NO_FORCE
+                    }
                 }
-            },
+            }
             (None, None) => NO_FORCE,
             (Some(force), Some(_)) => {
-                let diagnostic = Diagnostic::error(CONFLICT, "both radial_force_n and specific_force_n_mm2")
-                    .help("give one of the two");
-                self.refuse(force, diagnostic, "counted twice");
+                let diagnostic = Diagnostic::error(
+                    CONFLICT,
+                    both!(
+                        "both radial_force_n and specific_force_n_mm2",
+                        "и radial_force_n, и specific_force_n_mm2"
+                    ),
+                )
+                .help(both!("give one of the two", "задайте одно из двух"));
+                self.refuse(force, diagnostic, both!("counted twice", "учтено дважды"));
                 NO_FORCE
             }
         };
         let tail = |this: &mut Self| match tailstock {
             Some(Tailstock { at_mm, .. }) => Some(at_mm),
             None => {
-                let diagnostic = Diagnostic::error(KEY, "a clamping with a tailstock, and no [tailstock]")
-                    .help("add [tailstock] with at_mm, its centre from the chuck's face");
-                this.refuse(spanned, diagnostic, "of this workpiece");
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!(
+                        "a clamping with a tailstock, and no [tailstock]",
+                        "закрепление с задней бабкой, а раздела [tailstock] нет"
+                    ),
+                )
+                .help(both!(
+                    "add [tailstock] with at_mm, its centre from the chuck's face",
+                    "добавьте [tailstock] с at_mm — местом центра от торца патрона"
+                ));
+                this.refuse(spanned, diagnostic, both!("of this workpiece", "у этой детали"));
                 None
             }
         };
@@ -205,9 +257,15 @@ impl Loader<'_> {
             Some(ClampingName::Centres) => tail(self).map(|at_mm| Clamping::Centres { at_mm }),
             None if force.newton() == 0.0 => return (Bending::default(), tailstock.is_some()),
             None => {
-                let diagnostic = Diagnostic::error(KEY, "a cutting force without clamping")
-                    .help("add clamping = \"chuck\", \"chuck-tailstock\" or \"centres\" under [workpiece]");
-                self.refuse(spanned, diagnostic, "how is it held?");
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!("a cutting force without clamping", "сила резания без закрепления"),
+                )
+                .help(both!(
+                    "add clamping = \"chuck\", \"chuck-tailstock\" or \"centres\" under [workpiece]",
+                    "добавьте clamping = \"chuck\", \"chuck-tailstock\" или \"centres\" в раздел [workpiece]"
+                ));
+                self.refuse(spanned, diagnostic, both!("how is it held?", "как она закреплена?"));
                 None
             }
         };
@@ -215,9 +273,18 @@ impl Loader<'_> {
         let bears = !matches!(clamping, Clamping::Chuck);
         let (Some(diameters), Some(modulus)) = (&written.diameters_mm, &written.e_gpa) else {
             if force.newton() != 0.0 {
-                let diagnostic = Diagnostic::error(KEY, "a cutting force without diameters_mm and e_gpa")
-                    .help("add diameters_mm = [[0, 40], [300, 40]] and e_gpa = 210.0 under [workpiece]");
-                self.refuse(spanned, diagnostic, "how stiff is it?");
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!(
+                        "a cutting force without diameters_mm and e_gpa",
+                        "сила резания без diameters_mm и e_gpa"
+                    ),
+                )
+                .help(both!(
+                    "add diameters_mm = [[0, 40], [300, 40]] and e_gpa = 210.0 under [workpiece]",
+                    "добавьте diameters_mm = [[0, 40], [300, 40]] и e_gpa = 210.0 в раздел [workpiece]"
+                ));
+                self.refuse(spanned, diagnostic, both!("how stiff is it?", "какова её жёсткость?"));
             }
             return (Bending::default(), bears);
         };
@@ -232,16 +299,22 @@ impl Loader<'_> {
             Err(error) => {
                 let help = match error {
                     WorkpieceError::BeyondTheBar { .. } => {
-                        "diameters_mm reach from the chuck's face to the bar's end; at_mm and steady_mm count from there too"
+                        both!(
+                            "diameters_mm reach from the chuck's face to the bar's end; at_mm and steady_mm count from there too",
+                            "diameters_mm идут от торца патрона до конца прутка; at_mm и steady_mm отсчитываются оттуда же"
+                        )
                     }
-                    WorkpieceError::Modulus(_) => "steel has e_gpa = 210.0",
-                    WorkpieceError::Twice { .. } => "leave one of them out",
+                    WorkpieceError::Modulus(_) => both!("steel has e_gpa = 210.0", "у стали e_gpa = 210.0"),
+                    WorkpieceError::Twice { .. } => both!("leave one of them out", "уберите одну из них"),
                     _ => {
-                        "write Z from the chuck's face and diameter, like diameters_mm = [[0, 40], [300, 40]]"
+                        both!(
+                            "write Z from the chuck's face and diameter, like diameters_mm = [[0, 40], [300, 40]]",
+                            "напишите Z от торца патрона и диаметр, например diameters_mm = [[0, 40], [300, 40]]"
+                        )
                     }
                 };
-                let diagnostic = Diagnostic::error(VALUE, error.to_string()).help(help);
-                self.refuse(spanned, diagnostic, "this workpiece");
+                let diagnostic = Diagnostic::error(VALUE, error.text()).help(help);
+                self.refuse(spanned, diagnostic, both!("this workpiece", "эта деталь"));
                 (Bending::default(), bears)
             }
         }
@@ -258,18 +331,31 @@ impl Loader<'_> {
             let number = name.strip_prefix('H').and_then(|digits| digits.parse::<u32>().ok());
             let tool = tools.iter_mut().find(|(known, _)| Some(*known) == number);
             let (Some(number), Some((_, length))) = (number, tool) else {
-                let diagnostic =
-                    Diagnostic::error(KEY, format!("`{name}` under noses is no tool of lengths_mm"))
-                        .help("write the same H number in both, like H1");
-                self.refuse(nose, diagnostic, "of this entry");
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!(
+                        "`{name}` under noses is no tool of lengths_mm",
+                        "`{name}` в noses — не инструмент из lengths_mm"
+                    ),
+                )
+                .help(both!(
+                    "write the same H number in both, like H1",
+                    "напишите в обоих один номер H, например H1"
+                ));
+                self.refuse(nose, diagnostic, both!("of this entry", "в этой записи"));
                 continue;
             };
             let WrittenNose { radius_mm: Finite(radius_mm), direction, height_um, minor_edge_deg } =
                 *nose.get_ref();
             if radius_mm < 0.0 || direction.is_some_and(|direction| direction > 9) {
-                let diagnostic =
-                    Diagnostic::error(VALUE, "a nose's radius is 0 or more, its direction 0 to 9");
-                self.refuse(nose, diagnostic, "this nose");
+                let diagnostic = Diagnostic::error(
+                    VALUE,
+                    both!(
+                        "a nose's radius is 0 or more, its direction 0 to 9",
+                        "радиус при вершине — 0 или больше, направление — от 0 до 9"
+                    ),
+                );
+                self.refuse(nose, diagnostic, both!("this nose", "эта вершина"));
             }
             // The tool vector is minus the length.
             length[1] -= um(height_um);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::effects::EffectTerm;
 use machine_model::{
     Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
@@ -64,6 +64,7 @@ const MOST_CHAMFER_LEADS: f64 = 12.7;
 const MOST_CHAMFER_DEG: f64 = 89.0;
 /// Parameters 5133 and 5139 are clearances; more is a slip of the unit.
 const MOST_ESCAPE_MM: f64 = 50.0;
+static MM: Text = Text::pair("mm", "мм");
 /// Finishing passes of a thread: P of the first block has two digits for them.
 const MOST_FINISHING_PASSES: f64 = 99.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
@@ -74,16 +75,22 @@ const FINEST_MM: f64 = 1e-6;
 const STANDING_MM: f64 = 1.0;
 
 impl Loader<'_> {
-    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: impl Into<String>) {
+    pub(crate) fn refuse<T>(&mut self, at: &Spanned<T>, diagnostic: Diagnostic, label: Text) {
         self.errors.push(ProfileError::profile(diagnostic.at(span(&at.span()), label)));
     }
 
     fn profile(&mut self, document: Document) -> Option<Profile> {
         if *document.format.get_ref() != 1 {
-            let message = format!("format {} of the profile is not known", document.format.get_ref());
-            let diagnostic =
-                Diagnostic::error(FORMAT, message).help("write format = 1, or use a newer vpost");
-            self.refuse(&document.format, diagnostic, "expected 1");
+            let message = both!(
+                "format {} of the profile is not known",
+                "формат профиля {} неизвестен",
+                document.format.get_ref()
+            );
+            let diagnostic = Diagnostic::error(FORMAT, message).help(both!(
+                "write format = 1, or use a newer vpost",
+                "напишите format = 1 или возьмите vpost новее"
+            ));
+            self.refuse(&document.format, diagnostic, both!("expected 1", "ожидалось 1"));
             return None;
         }
         let lathe_chain = self.lathe_chain(&document);
@@ -93,10 +100,11 @@ impl Loader<'_> {
         let chain = match Chain::parse(written) {
             Ok(chain) => Some(chain),
             Err(e) => {
-                let diagnostic = Diagnostic::error(CHAIN, e.to_string()).help(
+                let diagnostic = Diagnostic::error(CHAIN, e.text()).help(both!(
                     "write the axes from workpiece (w) to tool (t), b for the bed, like \"[w X Y b Z t]\"",
-                );
-                self.refuse(&document.chain, diagnostic, "this chain");
+                    "напишите оси от детали (w) к инструменту (t), станина — b, например \"[w X Y b Z t]\""
+                ));
+                self.refuse(&document.chain, diagnostic, both!("this chain", "эта цепь"));
                 None
             }
         };
@@ -145,9 +153,11 @@ impl Loader<'_> {
             Ok(model) => model,
             Err(e) => {
                 let at = [&axes.X, &axes.Y, &axes.Z][Axis::from_letter(e.axis)?.direction()].as_ref()?;
-                let diagnostic = Diagnostic::error(CONFLICT, e.to_string())
-                    .help("travel_mm and the tables' position_mm are both machine coordinates");
-                self.refuse(at, diagnostic, "this axis");
+                let diagnostic = Diagnostic::error(CONFLICT, e.text()).help(both!(
+                    "travel_mm and the tables' position_mm are both machine coordinates",
+                    "и travel_mm, и position_mm таблиц — координаты станка"
+                ));
+                self.refuse(at, diagnostic, both!("this axis", "эта ось"));
                 return None;
             }
         };
@@ -180,9 +190,14 @@ impl Loader<'_> {
         if let Some(date) = &written.date
             && !is_date(date.get_ref())
         {
-            let diagnostic = Diagnostic::error(VALUE, format!("`{}` is not a date", date.get_ref()))
-                .help("write year-month-day, like \"2023-05-15\"");
-            self.refuse(date, diagnostic, "expected year-month-day");
+            let diagnostic =
+                Diagnostic::error(VALUE, both!("`{}` is not a date", "`{}` — не дата", date.get_ref())).help(
+                    both!(
+                        "write year-month-day, like \"2023-05-15\"",
+                        "напишите год-месяц-день, например \"2023-05-15\""
+                    ),
+                );
+            self.refuse(date, diagnostic, both!("expected year-month-day", "ожидалось год-месяц-день"));
         }
         for (name, given) in
             [("repeatability_um", &written.repeatability_um), ("uncertainty_um", &written.uncertainty_um)]
@@ -190,8 +205,9 @@ impl Loader<'_> {
             if let Some(given) = given
                 && given.get_ref().0 < 0.0
             {
-                let diagnostic = Diagnostic::error(VALUE, format!("{name} is {}", given.get_ref().0));
-                self.refuse(given, diagnostic, "expected 0 or more");
+                let diagnostic =
+                    Diagnostic::error(VALUE, both!("{name} is {}", "{name} — {}", given.get_ref().0));
+                self.refuse(given, diagnostic, both!("expected 0 or more", "ожидалось 0 или больше"));
             }
         }
         let number = |given: &Option<Spanned<Finite>>| given.as_ref().map(|v| v.get_ref().0);
@@ -211,9 +227,15 @@ impl Loader<'_> {
             match code.get_ref().strip_prefix(['M', 'm']).and_then(|digits| digits.parse().ok()) {
                 Some(number) => numbers.push(number),
                 None => {
-                    let diagnostic = Diagnostic::error(VALUE, format!("`{}` is no M code", code.get_ref()))
-                        .help("write the letter and its number, like \"M777\"");
-                    self.refuse(code, diagnostic, "expected an M code");
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!("`{}` is no M code", "`{}` — не функция M", code.get_ref()),
+                    )
+                    .help(both!(
+                        "write the letter and its number, like \"M777\"",
+                        "напишите букву и номер, например \"M777\""
+                    ));
+                    self.refuse(code, diagnostic, both!("expected an M code", "ожидалась функция M"));
                 }
             }
         }
@@ -227,9 +249,9 @@ impl Loader<'_> {
     ) -> Option<Kinematics> {
         let section = written.get_ref();
         if *section.straight.get_ref() == format::StraightName::Axes {
-            let diagnostic = Diagnostic::error(VALUE, "a control that leads the axes straight, not the tip")
-                .help("what the tip does between the ends of a block is another path then: leave the section out and post without tool centre point control");
-            self.refuse(&section.straight, diagnostic, "expected \"tip\"");
+            let diagnostic = Diagnostic::error(VALUE, both!("a control that leads the axes straight, not the tip", "стойка, которая ведёт по прямой оси, а не вершину"))
+                .help(both!("what the tip does between the ends of a block is another path then: leave the section out and post without tool centre point control", "тогда между концами кадра вершина идёт другим путём: уберите раздел и выводите без управления по вершине инструмента"));
+            self.refuse(&section.straight, diagnostic, both!("expected \"tip\"", "ожидалось \"tip\""));
         }
         let axes: Vec<Axis> = chain?.axes().filter(|axis| !axis.is_linear()).collect();
         let mut centres_mm = [None; 3];
@@ -237,26 +259,34 @@ impl Loader<'_> {
             match axes.iter().find(|axis| name.len() == 1 && name.starts_with(axis.letter())) {
                 Some(axis) => centres_mm[axis.direction()] = Some(triple(Some(*centre.get_ref()))),
                 None => {
-                    let diagnostic =
-                        Diagnostic::error(VALUE, format!("`{name}` is no rotary axis of the chain"))
-                            .help("give a centre for each rotary axis, like C = [0, 0, 0]");
-                    self.refuse(centre, diagnostic, "this centre");
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!("`{name}` is no rotary axis of the chain", "`{name}` — не поворотная ось цепи"),
+                    )
+                    .help(both!(
+                        "give a centre for each rotary axis, like C = [0, 0, 0]",
+                        "дайте центр каждой поворотной оси, например C = [0, 0, 0]"
+                    ));
+                    self.refuse(centre, diagnostic, both!("this centre", "этот центр"));
                 }
             }
         }
         for axis in axes.iter().filter(|axis| centres_mm[axis.direction()].is_none()) {
             let letter = axis.letter();
-            let diagnostic = Diagnostic::error(VALUE, format!("the control's centre of {letter} is missing"))
-                .help(format!("add {letter} = [X, Y, Z] to centres_mm: as the control has it in its parameters, which need not be where the axis is"));
-            self.refuse(written, diagnostic, "this section");
+            let diagnostic = Diagnostic::error(VALUE, both!("the control's centre of {letter} is missing", "нет центра {letter}, который держит стойка"))
+                .help(both!("add {letter} = [X, Y, Z] to centres_mm: as the control has it in its parameters, which need not be where the axis is", "добавьте {letter} = [X, Y, Z] в centres_mm: так, как он записан в параметрах стойки, хотя бы ось была и не там"));
+            self.refuse(written, diagnostic, both!("this section", "этот раздел"));
         }
         let [on, off] = [&section.on, &section.off].map(|codes| self.m_codes(codes));
         if let Some(both) =
             section.on.iter().zip(&on).find_map(|(code, number)| off.contains(number).then_some(code))
         {
-            let diagnostic = Diagnostic::error(VALUE, format!("{} switches on and off", both.get_ref()))
-                .help("name each M code once");
-            self.refuse(both, diagnostic, "also under `off`");
+            let diagnostic = Diagnostic::error(
+                VALUE,
+                both!("{} switches on and off", "{} и включает, и выключает", both.get_ref()),
+            )
+            .help(both!("name each M code once", "назовите каждую функцию M один раз"));
+            self.refuse(both, diagnostic, both!("also under `off`", "она же в `off`"));
         }
         let branch = section.branch.as_ref().and_then(|written| {
             let axis = |letter: char| axes.iter().find(|axis| axis.letter() == letter);
@@ -264,10 +294,10 @@ impl Loader<'_> {
             match (letters.next().and_then(axis), letters.next(), letters.next()) {
                 (Some(axis), Some(sign @ ('+' | '-')), None) => Some((axis.direction(), sign == '+')),
                 _ => {
-                    let message = format!("`{}` is no branch", written.get_ref());
+                    let message = both!("`{}` is no branch", "`{}` — не ветвь", written.get_ref());
                     let diagnostic = Diagnostic::error(VALUE, message)
-                        .help("name a rotary axis of the chain and its sign where the tool has been turned to a tilted plane, like \"A+\"");
-                    self.refuse(written, diagnostic, "this branch");
+                        .help(both!("name a rotary axis of the chain and its sign where the tool has been turned to a tilted plane, like \"A+\"", "назовите поворотную ось цепи и её знак, когда инструмент повёрнут к наклонной плоскости, например \"A+\""));
+                    self.refuse(written, diagnostic, both!("this branch", "эта ветвь"));
                     None
                 }
             }
@@ -301,13 +331,19 @@ impl Loader<'_> {
             if mm > 0.0 && mm <= MOST_ARC_TOLERANCE_MM {
                 arc_tolerance_mm = Some(mm);
             } else {
-                let message = format!("arc_tolerance_mm is {mm}");
-                let help = "give what the control is set to (parameter 3410, CENTER_ARC_RADIUS_TOLERANCE_MM)";
+                let message = both!("arc_tolerance_mm is {mm}", "arc_tolerance_mm — {mm}");
+                let help = both!(
+                    "give what the control is set to (parameter 3410, CENTER_ARC_RADIUS_TOLERANCE_MM)",
+                    "укажите то, что задано на стойке (параметр 3410, CENTER_ARC_RADIUS_TOLERANCE_MM)"
+                );
                 let diagnostic = Diagnostic::error(VALUE, message).help(help);
                 self.refuse(
                     written,
                     diagnostic,
-                    format!("expected above 0, up to {MOST_ARC_TOLERANCE_MM} mm"),
+                    both!(
+                        "expected above 0, up to {MOST_ARC_TOLERANCE_MM} mm",
+                        "ожидалось больше 0 и не больше {MOST_ARC_TOLERANCE_MM} мм"
+                    ),
                 );
             }
         }
@@ -325,15 +361,22 @@ impl Loader<'_> {
 
     fn turning_rules(&mut self, program: &format::Program) -> TurningRules {
         let thread_finishing_passes = self.finishing_passes(program);
-        let mut number = |written: &Option<Spanned<Finite>>, name: &str, most: f64, unit: &str| {
+        let mut number = |written: &Option<Spanned<Finite>>, name: &str, most: f64, unit: &Text| {
             let written = written.as_ref()?;
             let Finite(value) = *written.get_ref();
             if (0.0..=most).contains(&value) {
                 return Some(value);
             }
-            let diagnostic = Diagnostic::error(VALUE, format!("{name} is {value}"))
-                .help("give what the parameter of the control is set to");
-            self.refuse(written, diagnostic, format!("expected 0 to {most} {unit}"));
+            let diagnostic =
+                Diagnostic::error(VALUE, both!("{name} is {value}", "{name} — {value}")).help(both!(
+                    "give what the parameter of the control is set to",
+                    "укажите значение параметра стойки"
+                ));
+            self.refuse(
+                written,
+                diagnostic,
+                both!("expected 0 to {most} {unit}", "ожидалось от 0 до {most} {unit:#}"),
+            );
             None
         };
         TurningRules {
@@ -341,28 +384,28 @@ impl Loader<'_> {
                 &program.thread_chamfer_leads,
                 "thread_chamfer_leads",
                 MOST_CHAMFER_LEADS,
-                "leads",
+                &Text::pair("leads", "ходов"),
             ),
             thread_chamfer_deg: number(
                 &program.thread_chamfer_deg,
                 "thread_chamfer_deg",
                 MOST_CHAMFER_DEG,
-                "degrees",
+                &Text::pair("degrees", "градусов"),
             ),
             roughing_escape_mm: number(
                 &program.roughing_escape_mm,
                 "roughing_escape_mm",
                 MOST_ESCAPE_MM,
-                "mm",
+                &MM,
             ),
-            groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, "mm"),
+            groove_return_mm: number(&program.groove_return_mm, "groove_return_mm", MOST_ESCAPE_MM, &MM),
             thread_finishing_passes,
-            thread_least_mm: number(&program.thread_least_mm, "thread_least_mm", MOST_ESCAPE_MM, "mm"),
+            thread_least_mm: number(&program.thread_least_mm, "thread_least_mm", MOST_ESCAPE_MM, &MM),
             thread_allowance_mm: number(
                 &program.thread_allowance_mm,
                 "thread_allowance_mm",
                 MOST_ESCAPE_MM,
-                "mm",
+                &MM,
             ),
             thread_flank_from: program.thread_flank_from.map(|name| match name {
                 FlankName::Start => FlankFrom::Start,
@@ -370,7 +413,7 @@ impl Loader<'_> {
                 FlankName::LastPass => FlankFrom::LastPass,
             }),
             drill_chips: program.drill_pecks.map(|name| matches!(name, PecksName::Chip)),
-            drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", MOST_ESCAPE_MM, "mm"),
+            drill_return_mm: number(&program.drill_return_mm, "drill_return_mm", MOST_ESCAPE_MM, &MM),
             nose_in_finishing: matches!(program.contour_compensation, Some(ContourCompensation::Finishing)),
         }
     }
@@ -386,9 +429,19 @@ impl Loader<'_> {
             match "XYZ".find(axis) {
                 Some(index) => change[index] = AfterChange::Stays,
                 None => {
-                    let diagnostic = Diagnostic::error(VALUE, format!("`{axis}` is not X, Y or Z"))
-                        .help("name the axes that stay where they were, like keeps = \"XYZ\"");
-                    self.refuse(written, diagnostic, "expected some of X, Y, Z");
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!("`{axis}` is not X, Y or Z", "`{axis}` — не X, не Y и не Z"),
+                    )
+                    .help(both!(
+                        "name the axes that stay where they were, like keeps = \"XYZ\"",
+                        "назовите оси, которые остаются на месте, например keeps = \"XYZ\""
+                    ));
+                    self.refuse(
+                        written,
+                        diagnostic,
+                        both!("expected some of X, Y, Z", "ожидались какие-то из X, Y, Z"),
+                    );
                 }
             }
         }
@@ -402,10 +455,16 @@ impl Loader<'_> {
             if *change == AfterChange::Stays {
                 let diagnostic = Diagnostic::error(
                     CONFLICT,
-                    format!("a tool change both keeps {axis} and brings it to {place_mm} mm"),
+                    both!(
+                        "a tool change both keeps {axis} and brings it to {place_mm} mm",
+                        "смена инструмента и оставляет {axis} на месте, и выводит её в {place_mm} мм"
+                    ),
                 )
-                .help("name the axis under `keeps` or under `position_mm`");
-                self.refuse(written, diagnostic, "this tool change");
+                .help(both!(
+                    "name the axis under `keeps` or under `position_mm`",
+                    "назовите ось в `keeps` или в `position_mm`"
+                ));
+                self.refuse(written, diagnostic, both!("this tool change", "эта смена инструмента"));
             }
             *change = AfterChange::At(place_mm);
         }
@@ -417,10 +476,15 @@ impl Loader<'_> {
         match (self.read)(name.get_ref()) {
             Ok(bytes) => Some(bytes),
             Err(e) => {
-                let diagnostic =
-                    Diagnostic::error(FILE, format!("cannot read the table {}: {e}", name.get_ref()))
-                        .help("paths are relative to the profile's own folder");
-                self.refuse(name, diagnostic, "named here");
+                let diagnostic = Diagnostic::error(
+                    FILE,
+                    both!("cannot read the table {}: {e}", "таблица {} не читается: {e}", name.get_ref()),
+                )
+                .help(both!(
+                    "paths are relative to the profile's own folder",
+                    "пути считаются от папки профиля"
+                ));
+                self.refuse(name, diagnostic, both!("named here", "названа здесь"));
                 None
             }
         }
@@ -438,14 +502,24 @@ impl Loader<'_> {
     }
 
     /// Lower and upper end, in order.
-    fn range(&mut self, written: &Spanned<[Finite; 2]>, what: &str) -> Option<Range> {
+    fn range(&mut self, written: &Spanned<[Finite; 2]>, what: &Text) -> Option<Range> {
         let [Finite(low), Finite(high)] = *written.get_ref();
         if low < high {
             return Some(Range { low, high });
         }
-        let diagnostic = Diagnostic::error(VALUE, format!("{what} runs from {low} to {high}"))
-            .help(format!("write the lower end first: [{high}, {low}]"));
-        self.refuse(written, diagnostic, "the lower end must lie below the upper");
+        let diagnostic = Diagnostic::error(
+            VALUE,
+            both!("{what} runs from {low} to {high}", "{what:#}: от {low} до {high}"),
+        )
+        .help(both!(
+            "write the lower end first: [{high}, {low}]",
+            "напишите сначала нижний конец: [{high}, {low}]"
+        ));
+        self.refuse(
+            written,
+            diagnostic,
+            both!("the lower end must lie below the upper", "нижний конец должен быть меньше верхнего"),
+        );
         None
     }
 
@@ -458,8 +532,14 @@ impl Loader<'_> {
         resolution_mm: &mut [f64; 3],
     ) -> Option<LinearAxis> {
         let Some(spanned) = written else {
-            let diagnostic = Diagnostic::error(KEY, format!("the profile lacks [axis.{axis}]"))
-                .help(format!("add [axis.{axis}] with travel_mm = [lowest, highest]"));
+            let diagnostic = Diagnostic::error(
+                KEY,
+                both!("the profile lacks [axis.{axis}]", "в профиле нет [axis.{axis}]"),
+            )
+            .help(both!(
+                "add [axis.{axis}] with travel_mm = [lowest, highest]",
+                "добавьте [axis.{axis}] с travel_mm = [наименьшее, наибольшее]"
+            ));
             self.errors.push(ProfileError::profile(diagnostic));
             return None;
         };
@@ -469,39 +549,75 @@ impl Loader<'_> {
             let Finite(value) = *step.get_ref();
             resolution_mm[index] = value;
             if value <= 0.0 || value > COARSEST_MM {
-                let diagnostic = Diagnostic::error(VALUE, format!("resolution_mm of {axis} is {value}"))
-                    .help("write the smallest step the control takes, like 0.001");
-                self.refuse(step, diagnostic, format!("expected a number above 0, at most {COARSEST_MM}"));
+                let diagnostic = Diagnostic::error(
+                    VALUE,
+                    both!("resolution_mm of {axis} is {value}", "resolution_mm оси {axis} — {value}"),
+                )
+                .help(both!(
+                    "write the smallest step the control takes, like 0.001",
+                    "напишите наименьшую дискрету стойки, например 0.001"
+                ));
+                self.refuse(
+                    step,
+                    diagnostic,
+                    both!(
+                        "expected a number above 0, at most {COARSEST_MM}",
+                        "ожидалось число больше 0 и не больше {COARSEST_MM}"
+                    ),
+                );
             }
         }
         let before = self.errors.len();
         let own = self.table(data.errors.as_ref(), axis);
         let negative = self.table(data.errors_negative.as_ref(), axis);
-        let travel =
-            data.travel_mm.as_ref().and_then(|travel| self.range(travel, &format!("travel_mm of {axis}")));
+        let travel = data
+            .travel_mm
+            .as_ref()
+            .and_then(|travel| self.range(travel, &both!("travel_mm of {axis}", "travel_mm оси {axis}")));
         if let (Some(name), None) = (&data.errors_negative, &data.errors) {
             let diagnostic = Diagnostic::error(
                 CONFLICT,
-                format!("axis {axis} has errors_negative, but no errors"),
+                both!(
+                    "axis {axis} has errors_negative, but no errors",
+                    "у оси {axis} есть errors_negative, а errors нет"
+                ),
             )
-            .help(
+            .help(both!(
                 "errors is the table of the positive direction; a table for both directions is errors alone",
-            );
-            self.refuse(name, diagnostic, "the other direction is missing");
+                "errors — таблица движения в плюс; таблица для обоих направлений — одно errors"
+            ));
+            self.refuse(name, diagnostic, both!("the other direction is missing", "нет другого направления"));
         }
         if let (Some(backlash), Some(_)) = (&data.backlash_um, &data.errors_negative) {
-            let message = format!("axis {axis} has both errors_negative and backlash_um");
-            let diagnostic = Diagnostic::error(CONFLICT, message)
-                .help("two tables already hold the reversal value: leave backlash_um out");
-            self.refuse(backlash, diagnostic, "counted twice");
+            let message = both!(
+                "axis {axis} has both errors_negative and backlash_um",
+                "у оси {axis} и errors_negative, и backlash_um"
+            );
+            let diagnostic = Diagnostic::error(CONFLICT, message).help(both!(
+                "two tables already hold the reversal value: leave backlash_um out",
+                "погрешность реверса уже есть в двух таблицах: уберите backlash_um"
+            ));
+            self.refuse(backlash, diagnostic, both!("counted twice", "учтено дважды"));
         }
         if let Some(place) = &data.measured_at_mm
             && [place.get_ref().X, place.get_ref().Y, place.get_ref().Z][index].is_some()
         {
-            let diagnostic =
-                Diagnostic::error(CONFLICT, format!("measured_at_mm of {axis} names {axis} itself"))
-                    .help("it says where the other axes stood while this one was measured");
-            self.refuse(place, diagnostic, format!("{axis} moved along the whole line"));
+            let diagnostic = Diagnostic::error(
+                CONFLICT,
+                both!(
+                    "measured_at_mm of {axis} names {axis} itself",
+                    "в measured_at_mm оси {axis} названа сама {axis}"
+                ),
+            )
+            .help(both!(
+                "it says where the other axes stood while this one was measured",
+                "там сказано, где стояли остальные оси, пока измеряли эту"
+            ));
+            self.refuse(
+                place,
+                diagnostic,
+                both!("{axis} moved along the whole line", "{axis} прошла всю линию"),
+            );
         }
         if self.errors.len() > before {
             return None;
@@ -509,9 +625,18 @@ impl Loader<'_> {
         let errors = own.as_ref().and_then(|rows| rows.tables(interpolation));
         let errors_negative = negative.as_ref().and_then(|rows| rows.tables(interpolation));
         let Some(travel_mm) = travel.or_else(|| errors.as_ref().map(machine_model::AxisTables::range)) else {
-            let diagnostic = Diagnostic::error(KEY, format!("axis {axis} has neither travel_mm nor errors"))
-                .help("add travel_mm = [lowest, highest], machine coordinates");
-            self.refuse(spanned, diagnostic, "how far does this axis go?");
+            let diagnostic = Diagnostic::error(
+                KEY,
+                both!(
+                    "axis {axis} has neither travel_mm nor errors",
+                    "у оси {axis} нет ни travel_mm, ни errors"
+                ),
+            )
+            .help(both!(
+                "add travel_mm = [lowest, highest], machine coordinates",
+                "добавьте travel_mm = [наименьшее, наибольшее], координаты станка"
+            ));
+            self.refuse(spanned, diagnostic, both!("how far does this axis go?", "каков ход этой оси?"));
             return None;
         };
         let place = data.measured_at_mm.as_ref().map(|place| *place.get_ref()).unwrap_or_default();
@@ -546,18 +671,34 @@ impl Loader<'_> {
                 let Finite(value) = *step.get_ref();
                 resolution_deg[axis.direction()] = value;
                 if !(1e-7..=1.0).contains(&value) {
-                    let diagnostic = Diagnostic::error(VALUE, format!("resolution_deg of {axis} is {value}"))
-                        .help("the step of its words in degrees, like 0.001");
-                    self.refuse(step, diagnostic, "expected 0.0000001 to 1");
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!("resolution_deg of {axis} is {value}", "resolution_deg оси {axis} — {value}"),
+                    )
+                    .help(both!(
+                        "the step of its words in degrees, like 0.001",
+                        "дискрета её слов в градусах, например 0.001"
+                    ));
+                    self.refuse(
+                        step,
+                        diagnostic,
+                        both!("expected 0.0000001 to 1", "ожидалось от 0.0000001 до 1"),
+                    );
                 }
             }
             if chain.is_some_and(|chain| !chain.axes().any(|known| known == *axis)) {
                 let diagnostic = Diagnostic::error(
                     CONFLICT,
-                    format!("[rotary.{axis}] is described, but the chain lacks {axis}"),
+                    both!(
+                        "[rotary.{axis}] is described, but the chain lacks {axis}",
+                        "[rotary.{axis}] описана, а в цепи нет {axis}"
+                    ),
                 )
-                .help(format!("add {axis} to the chain, or remove [rotary.{axis}]"))
-                .at(span(&place), "not in the chain");
+                .help(both!(
+                    "add {axis} to the chain, or remove [rotary.{axis}]",
+                    "добавьте {axis} в цепь или уберите [rotary.{axis}]"
+                ))
+                .at(span(&place), both!("not in the chain", "её нет в цепи"));
                 self.errors.push(ProfileError::profile(diagnostic));
             }
             result.centre_mm = vector(parts.centre_mm);
@@ -571,10 +712,18 @@ impl Loader<'_> {
                 if length > 1e-9 {
                     result.direction = Some(along / length);
                 } else {
-                    let diagnostic =
-                        Diagnostic::error(VALUE, format!("the direction of {axis} is no direction"))
-                            .help("write three numbers, not all zero, like [0, 0.7071, 0.7071]");
-                    self.refuse(direction, diagnostic, "a vector of length 0");
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!(
+                            "the direction of {axis} is no direction",
+                            "направление {axis} — не направление"
+                        ),
+                    )
+                    .help(both!(
+                        "write three numbers, not all zero, like [0, 0.7071, 0.7071]",
+                        "напишите три числа, не все нули, например [0, 0.7071, 0.7071]"
+                    ));
+                    self.refuse(direction, diagnostic, both!("a vector of length 0", "нулевой вектор"));
                 }
             }
             result.shift_mm =
@@ -582,7 +731,8 @@ impl Loader<'_> {
             result.tilt_rad =
                 Vector::from(parts.tilt_urad.map(|v| v.map_or(0.0, |Finite(v)| Angle::from_urad(v).rad())));
             if let Some(travel) = parts.travel_deg
-                && let Some(range) = self.range(travel, &format!("travel_deg of {axis}"))
+                && let Some(range) =
+                    self.range(travel, &both!("travel_deg of {axis}", "travel_deg оси {axis}"))
             {
                 let rad = |deg: f64| Angle::from_deg(deg).rad();
                 result.travel_rad = Range { low: rad(range.low), high: rad(range.high) };
@@ -597,10 +747,18 @@ impl Loader<'_> {
             let Some(value) = value else { return 0.0 };
             let Finite(urad) = *value.get_ref();
             if urad.abs() > 1e5 {
-                let diagnostic =
-                    Diagnostic::error(VALUE, format!("{name} of {urad} urad is more than 0.1 rad"))
-                        .help("the unit is the microradian: 1 arc second is 4.848 urad");
-                self.refuse(value, diagnostic, "wrong unit?");
+                let diagnostic = Diagnostic::error(
+                    VALUE,
+                    both!(
+                        "{name} of {urad} urad is more than 0.1 rad",
+                        "{name} {urad} мкрад — больше 0.1 рад"
+                    ),
+                )
+                .help(both!(
+                    "the unit is the microradian: 1 arc second is 4.848 urad",
+                    "единица — микрорадиан: 1 угловая секунда — 4.848 мкрад"
+                ));
+                self.refuse(value, diagnostic, both!("wrong unit?", "не та единица?"));
             }
             Angle::from_urad(urad).rad()
         };
@@ -624,12 +782,21 @@ impl Loader<'_> {
         let written = program.thread_finishing_passes.as_ref()?;
         let Finite(passes) = *written.get_ref();
         if !(1.0..=MOST_FINISHING_PASSES).contains(&passes) || passes.fract() != 0.0 {
-            let diagnostic = Diagnostic::error(VALUE, format!("thread_finishing_passes is {passes}"))
-                .help("give the control's value (parameter 5142)");
+            let diagnostic = Diagnostic::error(
+                VALUE,
+                both!("thread_finishing_passes is {passes}", "thread_finishing_passes — {passes}"),
+            )
+            .help(both!(
+                "give the control's value (parameter 5142)",
+                "укажите значение стойки (параметр 5142)"
+            ));
             self.refuse(
                 written,
                 diagnostic,
-                format!("expected a whole number from 1 to {MOST_FINISHING_PASSES}"),
+                both!(
+                    "expected a whole number from 1 to {MOST_FINISHING_PASSES}",
+                    "ожидалось целое число от 1 до {MOST_FINISHING_PASSES}"
+                ),
             );
         }
         Some(passes)
@@ -639,9 +806,14 @@ impl Loader<'_> {
         let written = program.edge_at_change.as_ref()?;
         let edge = *written.get_ref();
         if edge > 1 {
-            let diagnostic = Diagnostic::error(VALUE, format!("edge_at_change is {edge}"))
-                .help("1 where a tool change brings in the first edge, 0 where it brings in none (MD20270)");
-            self.refuse(written, diagnostic, "expected 0 or 1");
+            let diagnostic =
+                Diagnostic::error(VALUE, both!("edge_at_change is {edge}", "edge_at_change — {edge}")).help(
+                    both!(
+                        "1 where a tool change brings in the first edge, 0 where it brings in none (MD20270)",
+                        "1, если смена инструмента вводит первую кромку, 0, если никакой (MD20270)"
+                    ),
+                );
+            self.refuse(written, diagnostic, both!("expected 0 or 1", "ожидалось 0 или 1"));
         }
         Some(edge)
     }
@@ -651,19 +823,35 @@ impl Loader<'_> {
         let written = document.tool.gauge_point_mm.as_ref()?;
         let conflict = if document.kinematics.is_some() {
             Some((
-                "`gauge_point_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point",
-                "give lengths from the gauge point, on the control and here, and leave `gauge_point_mm` out",
+                both!(
+                    "`gauge_point_mm` and `[kinematics]`: the control turns tools about what it takes for the gauge point",
+                    "`gauge_point_mm` и `[kinematics]`: стойка поворачивает инструмент вокруг того, что считает базовой точкой"
+                ),
+                both!(
+                    "give lengths from the gauge point, on the control and here, and leave `gauge_point_mm` out",
+                    "задайте длины от базовой точки, на стойке и здесь, и уберите `gauge_point_mm`"
+                ),
             ))
         } else if is_lathe {
             Some((
-                "`gauge_point_mm` in the profile of a lathe",
-                "give `lengths_mm` from the point of the turret that the tables were measured at",
+                both!(
+                    "`gauge_point_mm` in the profile of a lathe",
+                    "`gauge_point_mm` в профиле токарного станка"
+                ),
+                both!(
+                    "give `lengths_mm` from the point of the turret that the tables were measured at",
+                    "задайте `lengths_mm` от той точки револьверной головки, в которой измерены таблицы"
+                ),
             ))
         } else {
             None
         };
         if let Some((message, help)) = conflict {
-            self.refuse(written, Diagnostic::error(CONFLICT, message).help(help), "this key");
+            self.refuse(
+                written,
+                Diagnostic::error(CONFLICT, message).help(help),
+                both!("this key", "этот ключ"),
+            );
         }
         Some(written.get_ref().0)
     }
@@ -672,10 +860,20 @@ impl Loader<'_> {
     fn tool_names(&mut self, written: &format::Tool, tools: &[(u32, [f64; 3])]) -> Vec<(String, u32)> {
         for (name, number) in &written.names {
             if tools.iter().all(|(known, _)| known != number.get_ref()) {
-                let message = format!("the tool \"{name}\" has the length H{}", number.get_ref());
-                let diagnostic = Diagnostic::error(KEY, message)
-                    .help("add the length to `lengths_mm`, or correct the number");
-                self.refuse(number, diagnostic, "lengths_mm has no such length");
+                let message = both!(
+                    "the tool \"{name}\" has the length H{}",
+                    "у инструмента \"{name}\" длина H{}",
+                    number.get_ref()
+                );
+                let diagnostic = Diagnostic::error(KEY, message).help(both!(
+                    "add the length to `lengths_mm`, or correct the number",
+                    "добавьте длину в `lengths_mm` или исправьте номер"
+                ));
+                self.refuse(
+                    number,
+                    diagnostic,
+                    both!("lengths_mm has no such length", "такой длины в lengths_mm нет"),
+                );
             }
         }
         written.names.iter().map(|(name, number)| (name.clone(), *number.get_ref())).collect()
@@ -690,9 +888,11 @@ impl Loader<'_> {
                 if digits.bytes().all(|b| b.is_ascii_digit()) { digits.parse::<u32>().ok() } else { None };
             match number.filter(|number| *number > 0) {
                 Some(number) if !known.insert(number) => {
-                    let diagnostic =
-                        Diagnostic::error(CONFLICT, format!("tool H{number} stands there twice"));
-                    self.refuse(length, diagnostic, "again here");
+                    let diagnostic = Diagnostic::error(
+                        CONFLICT,
+                        both!("tool H{number} stands there twice", "инструмент H{number} стоит там дважды"),
+                    );
+                    self.refuse(length, diagnostic, both!("again here", "здесь ещё раз"));
                 }
                 Some(number) => tools.push((
                     number,
@@ -702,9 +902,13 @@ impl Loader<'_> {
                     },
                 )),
                 None => {
-                    let diagnostic = Diagnostic::error(KEY, format!("`{name}` is no H number"))
-                        .help("write H and a whole number from 1, like H1 = 120.0");
-                    self.refuse(length, diagnostic, "of this entry");
+                    let diagnostic =
+                        Diagnostic::error(KEY, both!("`{name}` is no H number", "`{name}` — не номер H"))
+                            .help(both!(
+                                "write H and a whole number from 1, like H1 = 120.0",
+                                "напишите H и целое число от 1, например H1 = 120.0"
+                            ));
+                    self.refuse(length, diagnostic, both!("of this entry", "в этой записи"));
                 }
             }
         }
@@ -716,9 +920,15 @@ impl Loader<'_> {
         let mut offsets = Vec::new();
         for (name, zero) in &document.work_offsets_mm {
             if !name.strip_prefix('G').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
-                let diagnostic = Diagnostic::error(KEY, format!("`{name}` is no work offset"))
-                    .help("write the word that selects it, like G54 or \"G54.1 P2\"");
-                self.refuse(zero, diagnostic, "of this entry");
+                let diagnostic = Diagnostic::error(
+                    KEY,
+                    both!("`{name}` is no work offset", "`{name}` — не смещение нуля"),
+                )
+                .help(both!(
+                    "write the word that selects it, like G54 or \"G54.1 P2\"",
+                    "напишите слово, которым его выбирают, например G54 или \"G54.1 P2\""
+                ));
+                self.refuse(zero, diagnostic, both!("of this entry", "в этой записи"));
             }
             offsets.push((name.clone(), zero.get_ref().map(|Finite(v)| v)));
         }
@@ -735,13 +945,21 @@ impl Loader<'_> {
                     let names: Vec<&str> = usable().collect();
                     let mut diagnostic = Diagnostic::error(
                         VALUE,
-                        format!("`{}` is no engine that corrects programs", name.get_ref()),
+                        both!(
+                            "`{}` is no engine that corrects programs",
+                            "`{}` — не метод, которым исправляют программы",
+                            name.get_ref()
+                        ),
                     );
                     diagnostic = diagnostic.help(match diagnostic::closest(name.get_ref(), usable()) {
-                        Some(near) => format!("did you mean \"{near}\"? Engines: {}", names.join(", ")),
-                        None => format!("engines: {}", names.join(", ")),
+                        Some(near) => both!(
+                            "did you mean \"{near}\"? Engines: {}",
+                            "имелось в виду \"{near}\"? Методы: {}",
+                            names.join(", ")
+                        ),
+                        None => both!("engines: {}", "методы: {}", names.join(", ")),
                     });
-                    self.refuse(name, diagnostic, "this engine");
+                    self.refuse(name, diagnostic, both!("this engine", "этот метод"));
                 }
             }
         }
@@ -749,11 +967,15 @@ impl Loader<'_> {
             let Some(value) = value else { return default };
             let Finite(number) = *value.get_ref();
             if number < 0.0 || (number == 0.0 && !zero_too) {
-                let wanted = if zero_too { "0 or more" } else { "a number above 0" };
+                let wanted = if zero_too {
+                    both!("0 or more", "0 или больше")
+                } else {
+                    both!("a number above 0", "число больше 0")
+                };
                 self.refuse(
                     value,
-                    Diagnostic::error(VALUE, format!("{name} is {number}")),
-                    format!("expected {wanted}"),
+                    Diagnostic::error(VALUE, both!("{name} is {number}", "{name} — {number}")),
+                    both!("expected {wanted}", "ожидалось {wanted:#}"),
                 );
             }
             number
@@ -791,22 +1013,34 @@ impl Loader<'_> {
                 if number.is_finite() && name != "id" {
                     parameters.push((name.clone(), number));
                 } else {
-                    let what = if name == "id" { "a text" } else { "a finite number" };
+                    let what = if name == "id" {
+                        both!("a text", "текст")
+                    } else {
+                        both!("a finite number", "конечное число")
+                    };
                     self.refuse(
                         value,
-                        Diagnostic::error(EFFECT, format!("`{name}` of an effect must be {what}")),
-                        format!("expected {what}"),
+                        Diagnostic::error(
+                            EFFECT,
+                            both!("`{name}` of an effect must be {what}", "`{name}` эффекта — это {what:#}"),
+                        ),
+                        both!("expected {what}", "ожидалось: {what:#}"),
                     );
                 }
             }
             let Some((place, id)) = id else {
-                let diagnostic = Diagnostic::error(EFFECT, "an effect lacks its id")
-                    .help("add id = \"backlash.X\", or whichever it is");
-                self.refuse(entry, diagnostic, "this effect");
+                let diagnostic =
+                    Diagnostic::error(EFFECT, both!("an effect lacks its id", "у эффекта нет id")).help(
+                        both!(
+                            "add id = \"backlash.X\", or whichever it is",
+                            "добавьте id = \"backlash.X\" или какой он есть"
+                        ),
+                    );
+                self.refuse(entry, diagnostic, both!("this effect", "этот эффект"));
                 continue;
             };
             if let Err(e) = EffectTerm::from_entry(&id, &parameters) {
-                self.refuse(place, Diagnostic::error(EFFECT, e.to_string()), "this effect");
+                self.refuse(place, Diagnostic::error(EFFECT, e.text()), both!("this effect", "этот эффект"));
             }
             effects.push(EffectEntry { id, parameters });
         }

@@ -1,5 +1,6 @@
 //! Error tables of one axis and tracker traverses, from their CSV files.
 
+use diagnostic::both;
 use machine_model::{Axis, AxisTables, Interpolation, Six, Table, Traverse, rotation};
 use measurement_files::{Codes, Kind, Refusal, Row, Sheet};
 use units::Angle;
@@ -46,22 +47,34 @@ fn of_profile(file: &str) -> impl Fn(Box<Refusal>) -> Box<ProfileError> + '_ {
 fn increasing(sheet: &Sheet, column: &str) -> Result<(), Box<Refusal>> {
     let rows: Vec<Row<'_>> = sheet.rows().collect();
     if let [only] = rows.as_slice() {
-        let message = "a table needs at least 2 rows, this one has 1".to_owned();
+        let message = both!(
+            "a table needs at least 2 rows, this one has 1",
+            "в таблице нужно не меньше 2 строк, а в этой 1"
+        );
         return Err(only.refuse_row(
             ROWS,
             message,
-            "the only row",
-            "measure the ends of the travel at least",
+            both!("the only row", "единственная строка"),
+            both!("measure the ends of the travel at least", "измерьте хотя бы концы хода"),
         ));
     }
     for pair in rows.windows(2) {
         let (before, at) = (pair[0].needed(column)?, pair[1].needed(column)?);
         if at <= before {
-            let what = if at == before { "the same position twice" } else { "out of order" };
-            let message =
-                format!("{what}: {column} {at} follows {before}, positions must increase from row to row");
-            let help = "sort the rows; two runs, or two directions, are two tables";
-            return Err(pair[1].refuse_row(ROWS, message, "this row", help));
+            let what = if at == before {
+                both!("the same position twice", "одно положение дважды")
+            } else {
+                both!("out of order", "не по порядку")
+            };
+            let message = both!(
+                "{what}: {column} {at} follows {before}, positions must increase from row to row",
+                "{what:#}: {column} {at} после {before}, а положения возрастают от строки к строке"
+            );
+            let help = both!(
+                "sort the rows; two runs, or two directions, are two tables",
+                "упорядочьте строки; два прохода или два направления — это две таблицы"
+            );
+            return Err(pair[1].refuse_row(ROWS, message, both!("this row", "эта строка"), help));
         }
     }
     Ok(())
@@ -77,24 +90,28 @@ fn read_error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Bo
     let functions: [String; 6] = std::array::from_fn(|i| {
         format!("E{}{axis}_{}", ['X', 'Y', 'Z', 'A', 'B', 'C'][i], if i < 3 { "mm" } else { "rad" })
     });
-    let expected = format!(
-        "expected: {position} and error functions of {axis} with their units, EX{axis}_um … EC{axis}_urad"
+    let expected = both!(
+        "expected: {position} and error functions of {axis} with their units, EX{axis}_um … EC{axis}_urad",
+        "ожидалось: {position} и функции погрешности {axis} с единицами, EX{axis}_um … EC{axis}_urad"
     );
     let kind = Kind {
         columns: &format!("{position} {}", functions.join(" ")),
-        expected: &expected,
+        expected: expected.clone(),
         passes_over: None,
         may_be_empty: false,
         codes: CODES,
     };
     let sheet = Sheet::read(file, bytes, &kind, None)?;
-    sheet.need(&[position], &expected)?;
+    sheet.need(&[position], expected.clone())?;
     let given = functions.each_ref().map(|key| sheet.has(key));
     if given == [false; 6] {
         return Err(sheet.refuse_header(
             COLUMN,
-            format!("the table holds no error function of axis {axis}"),
-            &expected,
+            both!(
+                "the table holds no error function of axis {axis}",
+                "в таблице нет ни одной функции погрешности оси {axis}"
+            ),
+            expected,
         ));
     }
     let scale = if axis.is_linear() { 1.0 } else { Angle::from_deg(1.0).rad() };
@@ -104,22 +121,26 @@ fn read_error_rows(file: &str, bytes: &[u8], axis: Axis) -> Result<ErrorRows, Bo
         let mut six: Six = [0.0; 6];
         for (value, key) in six.iter_mut().zip(&functions).filter(|(_, key)| sheet.has(key)) {
             *value = row.number(key)?.ok_or_else(|| {
-                let help = "a function that was not measured is a column left out, not an empty cell";
-                row.refuse(CELL, key, format!("`{}` is empty", sheet.header(key)), help)
+                let help = both!(
+                    "a function that was not measured is a column left out, not an empty cell",
+                    "если функцию не измеряли, её столбца нет, а не пустая ячейка"
+                );
+                row.refuse(CELL, key, both!("`{}` is empty", "`{}` пусто", sheet.header(key)), help)
             })?;
         }
         let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let (translation, angle) = (norm(&six[..3]), norm(&six[3..]));
         if translation > LARGEST_TRANSLATION_MM || angle > rotation::LARGEST_SMALL_ANGLE_RAD {
-            let message = format!(
+            let message = both!(
                 "an error of {translation:.3} mm and {:.3} mrad is larger than geometric errors get: wrong unit?",
+                "погрешность {translation:.3} мм и {:.3} мрад больше, чем бывают геометрические: не та единица?",
                 angle * 1e3
             );
             return Err(row.refuse_row(
                 ROWS,
                 message,
-                "up to 20 mm and 100 mrad are read",
-                "name each column by its unit",
+                both!("up to 20 mm and 100 mrad are read", "читается до 20 мм и 100 мрад"),
+                both!("name each column by its unit", "назовите в каждом столбце его единицу"),
             ));
         }
         rows.push(six);
@@ -139,7 +160,10 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
     const COSINES: [&str; 3] = ["published_cos_x", "published_cos_y", "published_cos_z"];
     let kind = Kind {
         columns: &[COMMANDED, MEASURED, COSINES].concat().join(" "),
-        expected: "expected: commanded_x_mm … commanded_z_mm and measured_x_mm … measured_z_mm",
+        expected: both!(
+            "expected: commanded_x_mm … commanded_z_mm and measured_x_mm … measured_z_mm",
+            "ожидалось: commanded_x_mm … commanded_z_mm и measured_x_mm … measured_z_mm"
+        ),
         passes_over: None,
         may_be_empty: false,
         codes: CODES,
@@ -148,7 +172,10 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
     sheet.need(&[COMMANDED, MEASURED].concat(), kind.expected)?;
     let has_cosines = COSINES.iter().any(|key| sheet.has(key));
     if has_cosines {
-        sheet.need(&COSINES, "give all three cosines, or none")?;
+        sheet.need(
+            &COSINES,
+            both!("give all three cosines, or none", "дайте все три косинуса или ни одного"),
+        )?;
     }
     let moving = axis.direction();
     increasing(&sheet, COMMANDED[moving])?;
@@ -157,12 +184,19 @@ fn read_traverse(file: &str, bytes: &[u8], axis: Axis) -> Result<Traverse, Box<R
     for (row, at) in sheet.rows().zip(&commanded) {
         if let Some(other) = (0..3).find(|&i| i != moving && at[i] != commanded[0][i]) {
             let name = Axis::ALL[other];
-            let message = format!(
+            let message = both!(
                 "axis {name} moves in the traverse of {axis}: {} mm after {} mm",
-                at[other], commanded[0][other]
+                "в проходе {axis} движется ось {name}: {} мм после {} мм",
+                at[other],
+                commanded[0][other]
             );
-            let help = "give each axis a file of its own";
-            return Err(row.refuse_row(ROWS, message, "a traverse moves one axis alone", help));
+            let help = both!("give each axis a file of its own", "дайте каждой оси отдельный файл");
+            return Err(row.refuse_row(
+                ROWS,
+                message,
+                both!("a traverse moves one axis alone", "в проходе движется одна ось"),
+                help,
+            ));
         }
     }
     Ok(Traverse {

@@ -1,6 +1,6 @@
 //! What the TOML reader found, said in the product's way.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 
 use crate::error::{KEY, SYNTAX, VALUE, span};
 
@@ -10,10 +10,12 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
     let whole = error.span();
     let parsed = toml::de::DeTable::parse(text).is_ok();
     if !parsed {
-        let mut diagnostic =
-            Diagnostic::error(SYNTAX, format!("the profile is not TOML: {}", one_line(message)));
+        let mut diagnostic = Diagnostic::error(
+            SYNTAX,
+            both!("the profile is not TOML: {}", "профиль — не TOML: {}", one_line(message)),
+        );
         if let Some(place) = &whole {
-            diagnostic = diagnostic.at(span(place), "here");
+            diagnostic = diagnostic.at(span(place), both!("here", "здесь"));
         }
         return diagnostic;
     }
@@ -21,29 +23,61 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
         let mut names = rest.split('`').skip(1).step_by(2);
         let typed = names.next().unwrap_or_default().to_owned();
         let known: Vec<&str> = names.collect();
-        let mut diagnostic = Diagnostic::error(KEY, format!("unknown key `{typed}`"));
+        let mut diagnostic =
+            Diagnostic::error(KEY, both!("unknown key `{typed}`", "незнакомый ключ `{typed}`"));
         if let Some(place) = &whole {
-            diagnostic = diagnostic.at(span(place), "not a key of this table");
+            diagnostic = diagnostic
+                .at(span(place), both!("not a key of this table", "такого ключа в этом разделе нет"));
         }
         return diagnostic.help(match diagnostic::closest(&typed, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`? Known here: {}", known.join(", ")),
-            None => format!("known here: {}", known.join(", ")),
+            Some(near) => both!(
+                "did you mean `{near}`? Known here: {}",
+                "имелось в виду `{near}`? Здесь известны: {}",
+                known.join(", ")
+            ),
+            None => both!("known here: {}", "здесь известны: {}", known.join(", ")),
         });
     }
     let code =
         if message.starts_with("missing field") || message.starts_with("duplicate") { KEY } else { VALUE };
     let message = match message.strip_prefix("missing field ") {
-        Some(name) => format!("the profile lacks the key {name}"),
-        // serde speaks of Rust's types.
-        None => one_line(message)
-            .replace("expected f64", "expected a number")
-            .replace("expected i64", "expected a whole number"),
+        Some(name) => both!("the profile lacks the key {name}", "в профиле нет ключа {name}"),
+        None => of_reader(&one_line(message)),
     };
     let mut diagnostic = Diagnostic::error(code, message);
     if let Some(place) = whole.filter(|place| place.len() < text.len() || place.len() < 200) {
-        diagnostic = diagnostic.at(span(&place), "here");
+        diagnostic = diagnostic.at(span(&place), both!("here", "здесь"));
     }
     diagnostic
+}
+
+/// What the reader says of a value: its words in English, and what they mean in Russian.
+fn of_reader(message: &str) -> Text {
+    // serde speaks of Rust's types.
+    let english = message
+        .replace("expected f64", "expected a number")
+        .replace("expected i64", "expected a whole number");
+    let russian = |text: &str| {
+        const WORDS: [(&str, &str); 14] = [
+            ("invalid type: ", "значение другого вида: "),
+            ("invalid value: ", "недопустимое значение: "),
+            ("invalid length ", "неверная длина "),
+            ("unknown variant ", "незнакомое значение "),
+            ("duplicate key", "ключ стоит дважды"),
+            ("expected one of ", "ожидалось одно из "),
+            ("expected a whole number", "ожидалось целое число"),
+            ("expected a number", "ожидалось число"),
+            ("expected a string", "ожидался текст"),
+            ("expected an array of length ", "ожидался список, его длина "),
+            ("expected ", "ожидалось "),
+            ("floating point ", "число "),
+            ("integer ", "целое число "),
+            ("string ", "текст "),
+        ];
+        WORDS.iter().fold(text.to_owned(), |text, (english, russian)| text.replace(english, russian))
+    };
+    let russian = russian(&english);
+    Text::new(english, russian)
 }
 
 fn one_line(message: &str) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnostic::Code;
+use diagnostic::{Code, both};
 use machine_model::Vector;
 use units::math;
 
@@ -52,24 +52,38 @@ impl Sheet {
     /// The column; the run and how much of its circle it covers.
     pub fn need_bars(&self) -> Result<(), Box<Refusal>> {
         if !self.is_polar() {
-            self.need(&["x_mm", "y_mm", "z_mm"], "a reading of a ball bar is a length between two balls")?;
+            self.need(
+                &["x_mm", "y_mm", "z_mm"],
+                both!(
+                    "a reading of a ball bar is a length between two balls",
+                    "показание телескопического измерителя — длина между двумя шарами"
+                ),
+            )?;
             return self.need(
                 &[&CENTRE[..], &["length_mm"]].concat(),
-                "a ball-bar length needs the centre of the fixed ball",
+                both!(
+                    "a ball-bar length needs the centre of the fixed ball",
+                    "для длины измерителя нужен центр неподвижного шара"
+                ),
             );
         }
         self.need(
             &[&["plane", "radius_mm", "deviation_um"], &CENTRE[..]].concat(),
-            "a polar reading needs plane, radius_mm, deviation_um and the circle's centre bx_mm,by_mm,bz_mm",
+            both!("a polar reading needs plane, radius_mm, deviation_um and the circle's centre bx_mm,by_mm,bz_mm", "для полярного показания нужны plane, radius_mm, deviation_um и центр окружности bx_mm,by_mm,bz_mm"),
         )?;
-        for (column, place) in [("x_mm", "the angle"), ("length_mm", "the deviation")] {
+        for (column, place) in
+            [("x_mm", both!("the angle", "угол")), ("length_mm", both!("the deviation", "отклонение"))]
+        {
             if self.has(column) {
-                let message = format!("column `{column}` stands beside angle_deg: {place} says the same");
+                let message = both!(
+                    "column `{column}` stands beside angle_deg: {place} says the same",
+                    "столбец `{column}` стоит рядом с angle_deg: то же говорит {place:#}"
+                );
                 return Err(self.refuse_column(
                     self.codes().column,
                     column,
                     message,
-                    "keep one of the two forms",
+                    both!("keep one of the two forms", "оставьте одну из двух форм"),
                 ));
             }
         }
@@ -83,8 +97,15 @@ impl Sheet {
             let gaps = angles.iter().zip(angles.iter().skip(1).chain([&first])).map(|(a, b)| b - a);
             let gap = gaps.fold(0.0, f64::max);
             if gap > LARGEST_GAP_DEG {
-                let message = format!("run `{run}` covers {:.0} degrees of its circle", 360.0 - gap);
-                let help = "measure 220 degrees at least: from less, the centre cannot be told from squareness and scale";
+                let message = both!(
+                    "run `{run}` covers {:.0} degrees of its circle",
+                    "проход `{run}` охватывает {:.0} градусов своей окружности",
+                    360.0 - gap
+                );
+                let help = both!(
+                    "measure 220 degrees at least: from less, the centre cannot be told from squareness and scale",
+                    "измеряйте не меньше 220 градусов: на меньшей дуге центр не отличить от перпендикулярности и масштаба"
+                );
                 return Err(self.refuse_column(OPEN, "angle_deg", message, help));
             }
         }
@@ -119,9 +140,17 @@ impl Row<'_> {
         }
         let plane = self.text("plane");
         let Some(axes) = axes(&plane) else {
-            let help = "write XY, YZ or ZX: the angle counts from the first axis to the second";
+            let help = both!(
+                "write XY, YZ or ZX: the angle counts from the first axis to the second",
+                "напишите XY, YZ или ZX: угол считается от первой оси ко второй"
+            );
             let code: Code = self.sheet().codes().cell;
-            return Err(self.refuse(code, "plane", format!("`{plane}` is no plane"), help));
+            return Err(self.refuse(
+                code,
+                "plane",
+                both!("`{plane}` is no plane", "`{plane}` — не плоскость"),
+                help,
+            ));
         };
         let radius_mm = self.needed("radius_mm")?;
         let angle_rad = self.needed("angle_deg")?.to_radians();

@@ -1,5 +1,7 @@
 //! The registry of columns: what may stand in a header, in which unit, between which bounds.
 
+use diagnostic::Text;
+
 use crate::unit::{CELSIUS, DEG, KG, MM, MM_MIN, RAD, SECOND, UM, URAD, Unit};
 
 /// Columns that differ by a letter only: `x_mm`, `y_mm`, `z_mm`.
@@ -13,8 +15,8 @@ struct Family {
     holds: Holds,
     /// Numbers outside are slips, in the unit of the values.
     range: [f64; 2],
-    /// Why there are bounds; what to look for.
-    beyond: &'static str,
+    /// Why there are bounds; what to look for: in English and in Russian.
+    beyond: [&'static str; 2],
     /// Other headers, without the unit, as [`plain`] leaves them; `%` for the letter.
     aliases: &'static [&'static str],
     /// The same with the other sign.
@@ -61,7 +63,7 @@ const PLAIN: Family = Family {
     units: None,
     holds: Holds::Number,
     range: ANY,
-    beyond: "",
+    beyond: ["", ""],
     aliases: &[],
     opposite: None,
 };
@@ -69,32 +71,44 @@ const PLAIN: Family = Family {
 const PLACE: Family = Family {
     units: Some([MM, MM]),
     range: [-1e6, 1e6],
-    beyond: "no machine is a kilometre long: check the unit",
+    beyond: [
+        "no machine is a kilometre long: check the unit",
+        "станков длиной в километр не бывает: проверьте единицу",
+    ],
     ..PLAIN
 };
 /// Deviations and their uncertainties.
 const DEVIATION: Family = Family {
     units: Some([UM, UM]),
     range: [-1e7, 1e7],
-    beyond: "no machine deviates by ten metres: check the unit",
+    beyond: [
+        "no machine deviates by ten metres: check the unit",
+        "отклонений в десять метров не бывает: проверьте единицу",
+    ],
     ..PLAIN
 };
 const TURN: Family = Family {
     units: Some([DEG, DEG]),
     range: [-1e6, 1e6],
-    beyond: "no axis turns so often: check the unit",
+    beyond: [
+        "no axis turns so often: check the unit",
+        "столько оборотов не делает ни одна ось: проверьте единицу",
+    ],
     ..PLAIN
 };
 const TEMPERATURE: Family = Family {
     units: Some([CELSIUS, CELSIUS]),
     range: [-20.0, 60.0],
-    beyond: "workshops are colder or warmer only by mistake: is it kelvin or Fahrenheit? Give degrees Celsius",
+    beyond: [
+        "workshops are colder or warmer only by mistake: is it kelvin or Fahrenheit? Give degrees Celsius",
+        "такой температуры в цехе не бывает: это кельвины или градусы Фаренгейта? Дайте градусы Цельсия",
+    ],
     ..PLAIN
 };
 const FEED: Family = Family {
     units: Some([MM_MIN, MM_MIN]),
     range: [0.0, 1e7],
-    beyond: "a feed is above zero: check the unit",
+    beyond: ["a feed is above zero: check the unit", "подача больше нуля: проверьте единицу"],
     ..PLAIN
 };
 const TEXT: Family = Family { holds: Holds::Text, ..PLAIN };
@@ -197,9 +211,9 @@ impl Column {
     }
 
     /// Why this is no value of the column, where it is none.
-    pub(crate) fn beyond(&self, value: f64) -> Option<&'static str> {
-        let [low, high] = self.family.range;
-        (!(low..=high).contains(&value)).then_some(self.family.beyond)
+    pub(crate) fn beyond(&self, value: f64) -> Option<Text> {
+        let ([low, high], [english, russian]) = (self.family.range, self.family.beyond);
+        (!(low..=high).contains(&value)).then(|| Text::pair(english, russian))
     }
 
     /// Sign of the column that this heading, without its unit, names; `None` where it names another.

@@ -23,7 +23,7 @@
 //! assert_eq!((row.number("x_mm"), row.number("dx_um")), (Ok(Some(12.5)), Ok(Some(-0.3))));
 //!
 //! let refusal = Sheet::read("a.csv", b"run;x_mm;dx_um\na;12,5;-0.3\n", &kind, None).expect_err("two marks");
-//! assert_eq!(refusal.diagnostic.message, "`12,5` has a comma where `-0.3` has a point");
+//! assert_eq!(refusal.diagnostic.message.english(), "`12,5` has a comma where `-0.3` has a point");
 //! ```
 
 mod bar;

@@ -1,5 +1,6 @@
 //! Points of a machine: commands to be predicted, solved or judged.
 
+use diagnostic::{Text, both};
 use machine_model::Command;
 
 use crate::codes::POINTS;
@@ -19,8 +20,10 @@ pub struct Points {
 }
 
 const ROTARY: [&str; 3] = ["a_deg", "b_deg", "c_deg"];
-const EXPECTED: &str =
-    "expected: x_mm,y_mm,z_mm[,a_deg,b_deg,c_deg][,tool_x_mm,tool_y_mm,tool_z_mm][,dir_x,dir_y,dir_z]";
+const EXPECTED: Text = Text::pair(
+    "expected: x_mm,y_mm,z_mm[,a_deg,b_deg,c_deg][,tool_x_mm,tool_y_mm,tool_z_mm][,dir_x,dir_y,dir_z]",
+    "ожидалось: x_mm,y_mm,z_mm[,a_deg,b_deg,c_deg][,tool_x_mm,tool_y_mm,tool_z_mm][,dir_x,dir_y,dir_z]",
+);
 const KIND: Kind<'_> = Kind {
     columns: "x_mm y_mm z_mm a_deg b_deg c_deg tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z",
     expected: EXPECTED,
@@ -51,9 +54,15 @@ impl Points {
             let fields = keys.iter().map(|key| row.passed_on(key)).collect::<Result<Vec<_>, _>>()?;
             let command = row.command(tool_mm)?;
             if let Some(axis) = (0..3).find(|&axis| command.rotary_rad[axis] != 0.0 && !has_rotary[axis]) {
-                let message =
-                    format!("the machine has no axis {}: its chain is {chain}", ['A', 'B', 'C'][axis]);
-                let help = "leave the column out, or give the profile of the machine that turns";
+                let message = both!(
+                    "the machine has no axis {}: its chain is {chain}",
+                    "на станке нет оси {}: его цепь — {chain}",
+                    ['A', 'B', 'C'][axis]
+                );
+                let help = both!(
+                    "leave the column out, or give the profile of the machine that turns",
+                    "уберите столбец или дайте профиль станка с этой осью"
+                );
                 return Err(row.refuse(POINTS, ROTARY[axis], message, help));
             }
             Ok((fields, command))

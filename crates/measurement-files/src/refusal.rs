@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text};
 
 use crate::codes;
 
@@ -30,13 +30,7 @@ impl Refusal {
 }
 
 /// An error at bytes of the text: what is wrong, what stands there, what to write.
-pub(crate) fn error(
-    code: Code,
-    message: impl Into<String>,
-    span: &Range<usize>,
-    label: impl Into<String>,
-    help: impl Into<String>,
-) -> Diagnostic {
+pub(crate) fn error(code: Code, message: Text, span: &Range<usize>, label: Text, help: Text) -> Diagnostic {
     Diagnostic::error(code, message).at(span.start as u64..span.end as u64, label).help(help)
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, closest};
+use diagnostic::{Code, Diagnostic, Text, both, closest};
 use machine_model::{Command, Vector};
 
 use crate::columns::{Column, Holds, Said, said};
@@ -14,12 +14,12 @@ use crate::text::decoded;
 use crate::unit::{Quantity, Unit};
 
 /// A kind of file: what may stand in it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Kind<'k> {
     /// Keys of its columns in the registry, with spaces between them: `run x_mm dx_um`.
     pub columns: &'k str,
     /// What to say where there is no header, or one lacks a column.
-    pub expected: &'k str,
+    pub expected: Text,
     /// Columns whose names begin so are passed over without being asked for.
     pub passes_over: Option<&'k str>,
     /// True where it may have no rows.
@@ -89,7 +89,7 @@ impl Sheet {
     ) -> Result<(Table, Vec<Placed>, Mark), Diagnostic> {
         let codes = kind.codes;
         let is_known = |header: &str| !matches!(said(header, known), Said::Unknown);
-        let mut table = Table::read(text, codes, kind.expected, is_known)?;
+        let mut table = Table::read(text, codes, &kind.expected, is_known)?;
         let units = unit_row(text, &mut table, known);
         let header = Header { text, known, code: codes.column, ignore, units };
         let mut columns: Vec<Placed> = Vec::new();
@@ -106,27 +106,50 @@ impl Sheet {
                     None => continue,
                     Some(cell) => {
                         let (message, help) = (
-                            "a column without a name holds something",
-                            "give the column a name, or empty it",
+                            both!(
+                                "a column without a name holds something",
+                                "в столбце без имени что-то стоит"
+                            ),
+                            both!(
+                                "give the column a name, or empty it",
+                                "дайте столбцу имя или очистите его"
+                            ),
                         );
-                        return Err(error(codes.column, message, &cell.span, "this cell", help));
+                        return Err(error(
+                            codes.column,
+                            message,
+                            &cell.span,
+                            both!("this cell", "эта ячейка"),
+                            help,
+                        ));
                     }
                 }
             }
             let (place, factor) = header.column(at, cell)?;
             let column = known[place].clone();
             if let Some(earlier) = columns.iter().find(|placed| placed.column.key == column.key) {
-                let mut message = format!("column `{written}` stands twice");
+                let mut message =
+                    both!("column `{written}` stands twice", "столбец `{written}` стоит дважды");
                 let earlier = value(text, &table.header.cells[earlier.at]);
                 if earlier != written {
-                    message += &format!(": `{earlier}` is the same");
+                    message.push(&both!(": `{earlier}` is the same", ": `{earlier}` — тот же"));
                 }
-                return Err(error(codes.column, message, &cell.span, "this column", "remove one of them"));
+                return Err(error(
+                    codes.column,
+                    message,
+                    &cell.span,
+                    both!("this column", "этот столбец"),
+                    both!("remove one of them", "уберите один"),
+                ));
             }
             columns.push(Placed { column, at, factor });
         }
         if table.records.is_empty() && !kind.may_be_empty {
-            return Err(Diagnostic::error(codes.unreadable, "the file has no rows").help(kind.expected));
+            return Err(Diagnostic::error(
+                codes.unreadable,
+                both!("the file has no rows", "в файле нет строк"),
+            )
+            .help(kind.expected.clone()));
         }
         let numbers = columns.iter().filter(|placed| placed.column.holds() == Holds::Number);
         let numbers = numbers.flat_map(|placed| table.records.iter().map(|record| &record.cells[placed.at]));
@@ -172,7 +195,7 @@ impl Sheet {
     ///
     /// # Errors
     /// The first column that it lacks.
-    pub fn need(&self, keys: &[&str], help: &str) -> Result<(), Box<Refusal>> {
+    pub fn need(&self, keys: &[&str], help: Text) -> Result<(), Box<Refusal>> {
         match keys.iter().find(|key| !self.has(key)) {
             Some(missing) => Err(self.lacks(missing, help)),
             None => Ok(()),
@@ -181,23 +204,33 @@ impl Sheet {
 
     /// The refusal of a file without this column.
     #[must_use]
-    pub fn lacks(&self, key: &str, help: &str) -> Box<Refusal> {
+    pub fn lacks(&self, key: &str, help: Text) -> Box<Refusal> {
         let header = Column::of(key).map_or_else(|| key.to_owned(), |column| column.header());
-        self.refuse_header(self.codes.column, format!("column `{header}` is missing"), help)
+        self.refuse_header(
+            self.codes.column,
+            both!("column `{header}` is missing", "нет столбца `{header}`"),
+            help,
+        )
     }
 
     /// A refusal that points at the header.
     #[must_use]
-    pub fn refuse_header(&self, code: Code, message: String, help: &str) -> Box<Refusal> {
+    pub fn refuse_header(&self, code: Code, message: Text, help: Text) -> Box<Refusal> {
         let span = self.table.header.cells.first().map_or(0..0, |cell| cell.span.clone());
-        self.refused(code, span, message, "the header", help)
+        self.refused(code, span, message, both!("the header", "заголовок"), help)
     }
 
     /// A refusal that points at the header of a column.
     #[must_use]
-    pub fn refuse_column(&self, code: Code, key: &str, message: String, help: &str) -> Box<Refusal> {
+    pub fn refuse_column(&self, code: Code, key: &str, message: Text, help: Text) -> Box<Refusal> {
         let at = self.placed(key).map_or(0, |placed| placed.at);
-        self.refused(code, self.table.header.cells[at].span.clone(), message, "this column", help)
+        self.refused(
+            code,
+            self.table.header.cells[at].span.clone(),
+            message,
+            both!("this column", "этот столбец"),
+            help,
+        )
     }
 
     /// The rows.
@@ -226,9 +259,9 @@ impl Sheet {
         &self,
         code: Code,
         span: Range<usize>,
-        message: String,
-        label: &str,
-        help: &str,
+        message: Text,
+        label: Text,
+        help: Text,
     ) -> Box<Refusal> {
         Refusal::of(&self.name, &self.text, error(code, message, &span, label, help))
     }
@@ -273,37 +306,57 @@ impl Header<'_> {
     fn column(&self, at: usize, cell: &Cell) -> Result<(usize, f64), Diagnostic> {
         let known = self.known;
         let header = value(self.text, cell);
-        let refuse = |message: String, help: String| {
-            Err(error(self.code, format!("column `{header}`{message}"), &cell.span, "this column", help))
+        let refuse = |message: Text, help: Text| {
+            Err(error(
+                self.code,
+                both!("column `{header}`{message}", "столбец `{header}`{message:#}"),
+                &cell.span,
+                both!("this column", "этот столбец"),
+                help,
+            ))
         };
-        let write = |place: usize| format!("write `{}`", known[place].header());
+        let write = |place: usize| both!("write `{}`", "напишите `{}`", known[place].header());
         let below_cell = self.units.as_ref().map(|units| &units.cells[at]);
         let below =
             |place: usize| lone_unit(self.text, below_cell?, known[place].unit().map(|unit| unit.quantity));
         let wrong = |place: usize, unit: Unit| {
             let name = known[place].name();
             let Some(own) = known[place].unit().map(|unit| unit.quantity) else {
-                return refuse(format!(": {name} has no unit"), write(place));
+                return refuse(both!(": {name} has no unit", ": у {name} нет единицы"), write(place));
             };
             let units: Vec<&str> = Unit::of(own).collect();
             refuse(
-                format!(": {name} is {}, {} is {}", own.name(), unit.name, unit.quantity.name()),
-                format!("{}; units of {}: {}", write(place), own.name(), units.join(", ")),
+                both!(
+                    ": {name} is {}, {} is {}",
+                    ": {name} — {:#}, а {} — {:#}",
+                    own.name(),
+                    unit.name,
+                    unit.quantity.name()
+                ),
+                both!(
+                    "{}; units of {}: {}",
+                    "{:#}; единицы для величины «{:#}»: {}",
+                    write(place),
+                    own.name(),
+                    units.join(", ")
+                ),
             )
         };
         match said(&header, known) {
             Said::Column { place, factor, unit } => match (unit, below(place), below_cell) {
                 (Some(above), Some(below), Some(below_cell)) if above.name != below.name => {
-                    let message = format!(
+                    let message = both!(
                         "column `{header}` is in {}, and the row below says {}",
-                        above.name, below.name
+                        "столбец `{header}` в {}, а строка под ним говорит {}",
+                        above.name,
+                        below.name
                     );
                     Err(error(
                         self.code,
                         message,
                         &below_cell.span,
-                        "another unit",
-                        "leave one of the two out",
+                        both!("another unit", "другая единица"),
+                        both!("leave one of the two out", "уберите одну из двух"),
                     ))
                 }
                 _ => Ok((place, factor)),
@@ -311,29 +364,43 @@ impl Header<'_> {
             Said::NoUnit { place } => match below(place).zip(known[place].unit()) {
                 Some((below, own)) if below.quantity == own.quantity => Ok((place, below.factor_to(own))),
                 Some((below, _)) => wrong(place, below),
-                None => refuse(" says no unit".to_owned(), write(place)),
+                None => refuse(both!(" says no unit", " не называет единицы"), write(place)),
             },
             Said::WrongUnit { place, unit } => wrong(place, unit),
-            Said::TwoUnits { place, units: [a, b] } => {
-                refuse(format!(" says two units, {} and {}", a.name, b.name), write(place))
-            }
+            Said::TwoUnits { place, units: [a, b] } => refuse(
+                both!(" says two units, {} and {}", " называет две единицы: {} и {}", a.name, b.name),
+                write(place),
+            ),
             Said::Several { places } => {
                 let [a, b] = places.map(|place| known[place].header());
-                refuse(format!(" may be {a} or {b}"), format!("write `{a}` or `{b}`"))
+                refuse(
+                    both!(" may be {a} or {b}", " — это {a} или {b}?"),
+                    both!("write `{a}` or `{b}`", "напишите `{a}` или `{b}`"),
+                )
             }
             Said::Unknown => {
                 if let Some(axis) = Column::axis_of_error_function(&header) {
-                    let message = format!(" is an error function of {axis}, and the file is of another axis");
-                    return refuse(message, "give each axis a file of its own".to_owned());
+                    let message = both!(
+                        " is an error function of {axis}, and the file is of another axis",
+                        " — функция погрешности оси {axis}, а файл другой оси"
+                    );
+                    return refuse(
+                        message,
+                        both!("give each axis a file of its own", "дайте каждой оси отдельный файл"),
+                    );
                 }
                 let names: Vec<String> = known.iter().map(Column::header).collect();
                 let near = closest(&header, names.iter().map(String::as_str));
-                let mut help = near.map_or_else(String::new, |near| format!("did you mean {near}? "));
-                help += &format!("known here: {}", names.join(", "));
+                let mut help = near
+                    .map_or(Text::EMPTY, |near| both!("did you mean {near}? ", "имелось в виду {near}? "));
+                help.push(&both!("known here: {}", "здесь известны: {}", names.join(", ")));
                 if self.ignore.is_some() {
-                    help += &format!("; or pass it over with `--ignore-column {header}`");
+                    help.push(&both!(
+                        "; or pass it over with `--ignore-column {header}`",
+                        "; или пропустите его: `--ignore-column {header}`"
+                    ));
                 }
-                refuse(" is unknown".to_owned(), help)
+                refuse(both!(" is unknown", " неизвестен"), help)
             }
         }
     }
@@ -380,17 +447,32 @@ impl<'s> Row<'s> {
                 .and_then(|at| self.sheet.mark.number(text[..at].trim()).and(Unit::named(&text[at..], None)));
             let help = match unit {
                 Some(unit) => {
-                    format!("its unit belongs into the header: `{}, {}`", placed.column.name(), unit.name)
+                    both!(
+                        "its unit belongs into the header: `{}, {}`",
+                        "единице место в заголовке: `{}, {}`",
+                        placed.column.name(),
+                        unit.name
+                    )
                 }
-                None => "write a decimal number like -12.5".to_owned(),
+                None => {
+                    both!("write a decimal number like -12.5", "напишите десятичное число, например -12.5")
+                }
             };
-            return Err(self.refuse(codes.cell, key, format!("`{text}` is not a number"), &help));
+            return Err(self.refuse(
+                codes.cell,
+                key,
+                both!("`{text}` is not a number", "`{text}` — не число"),
+                help,
+            ));
         };
         let value = written * placed.factor;
         match placed.column.beyond(value) {
-            Some(why) => {
-                Err(self.refuse(codes.unit, key, format!("`{text}` cannot be {}", placed.column.key), why))
-            }
+            Some(why) => Err(self.refuse(
+                codes.unit,
+                key,
+                both!("`{text}` cannot be {}", "`{text}` не может быть {}", placed.column.key),
+                why,
+            )),
             None => Ok(Some(value)),
         }
     }
@@ -404,8 +486,8 @@ impl<'s> Row<'s> {
             self.refuse(
                 self.sheet.codes.cell,
                 key,
-                format!("`{key}` is empty"),
-                "every row needs this number",
+                both!("`{key}` is empty", "`{key}` пусто"),
+                both!("every row needs this number", "это число нужно в каждой строке"),
             )
         })
     }
@@ -474,15 +556,15 @@ impl<'s> Row<'s> {
 
     /// A refusal that points at the cell of a column, or at the row where it has none.
     #[must_use]
-    pub fn refuse(&self, code: Code, key: &str, message: String, help: &str) -> Box<Refusal> {
+    pub fn refuse(&self, code: Code, key: &str, message: Text, help: Text) -> Box<Refusal> {
         let span =
             self.cell(key).map_or_else(|| self.record.cells[0].span.clone(), |(_, cell)| cell.span.clone());
-        self.sheet.refused(code, span, message, &self.sheet.header(key), help)
+        self.sheet.refused(code, span, message, Text::same(self.sheet.header(key)), help)
     }
 
     /// A refusal that points at the whole row.
     #[must_use]
-    pub fn refuse_row(&self, code: Code, message: String, label: &str, help: &str) -> Box<Refusal> {
+    pub fn refuse_row(&self, code: Code, message: Text, label: Text, help: Text) -> Box<Refusal> {
         self.sheet.refused(code, self.record.span(), message, label, help)
     }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::number::{Mark, Shape};
 use crate::refusal::{Codes, error};
@@ -51,16 +51,26 @@ impl Table {
     pub(crate) fn read(
         text: &str,
         codes: Codes,
-        expected: &str,
+        expected: &Text,
         is_known: impl Fn(&str) -> bool,
     ) -> Result<Self, Diagnostic> {
         let Some(Split { mut header, mut rows, .. }) = split(text, codes, is_known)? else {
-            return Err(Diagnostic::error(codes.unreadable, "the file is empty").help(expected));
+            return Err(Diagnostic::error(codes.unreadable, both!("the file is empty", "файл пуст"))
+                .help(expected.clone()));
         };
         let span = header.span();
         if let Some(at) = text[span.clone()].find('\0').map(|at| span.start + at) {
-            let help = "save it as CSV: UTF-8, or as Excel's Unicode text";
-            return Err(error(codes.unreadable, "the file is no text", &(at..at + 1), "a NUL byte", help));
+            let help = both!(
+                "save it as CSV: UTF-8, or as Excel's Unicode text",
+                "сохраните его как CSV в UTF-8 или как «Текст Юникод» из Excel"
+            );
+            return Err(error(
+                codes.unreadable,
+                both!("the file is no text", "файл — не текст"),
+                &(at..at + 1),
+                both!("a NUL byte", "байт NUL"),
+                help,
+            ));
         }
         while header.cells.last().is_some_and(|cell| cell.span.is_empty()) {
             header.cells.pop();
@@ -73,14 +83,32 @@ impl Table {
                 record.cells.pop();
             }
             if record.cells.len() != width {
-                let message = format!("the row has {} cells, the header {width}", record.cells.len());
+                let message = both!(
+                    "the row has {} cells, the header {width}",
+                    "в строке ячеек {}, а в заголовке {width}",
+                    record.cells.len()
+                );
                 let more = match (record.cells.len() < width, rows.separator) {
-                    (true, _) => ", empty ones where nothing was measured",
-                    (false, b',') => "; write 0.5, not 0,5, or put ; between the cells",
-                    (false, _) => "",
+                    (true, _) => {
+                        both!(", empty ones where nothing was measured", ", пустых — где ничего не измерено")
+                    }
+                    (false, b',') => both!(
+                        "; write 0.5, not 0,5, or put ; between the cells",
+                        "; пишите 0.5, а не 0,5, или разделяйте ячейки знаком ;"
+                    ),
+                    (false, _) => Text::EMPTY,
                 };
-                let help = format!("give every row as many cells as the header{more}");
-                return Err(error(codes.cell, message, &record.span(), "this row", help));
+                let help = both!(
+                    "give every row as many cells as the header{more}",
+                    "дайте каждой строке столько ячеек, сколько в заголовке{more:#}"
+                );
+                return Err(error(
+                    codes.cell,
+                    message,
+                    &record.span(),
+                    both!("this row", "эта строка"),
+                    help,
+                ));
             }
             records.push(record);
         }
@@ -107,9 +135,16 @@ impl Table {
                 Shape::Comma => &mut comma,
                 Shape::Either => &mut either,
                 Shape::Thousands => {
-                    let message = format!("`{}` has marks between its thousands", value(text, cell));
-                    let help = "format the cells without them: 1234.5 or 1234,5";
-                    return Err(error(code, message, &cell.span, "this number", help));
+                    let message = both!(
+                        "`{}` has marks between its thousands",
+                        "в `{}` стоит знак тысяч",
+                        value(text, cell)
+                    );
+                    let help = both!(
+                        "format the cells without them: 1234.5 or 1234,5",
+                        "уберите его в формате ячеек: 1234.5 или 1234,5"
+                    );
+                    return Err(error(code, message, &cell.span, both!("this number", "это число"), help));
                 }
             };
             found.get_or_insert(cell);
@@ -118,18 +153,29 @@ impl Table {
         let written = value(text, cell);
         let (message, label, help) = match (point, comma) {
             (Some(point), _) => (
-                format!("`{written}` has a comma where `{}` has a point", value(text, point)),
-                "a comma here",
-                "write all numbers of a file with a point, or all with a comma",
+                both!(
+                    "`{written}` has a comma where `{}` has a point",
+                    "в `{written}` запятая, а в `{}` точка",
+                    value(text, point)
+                ),
+                both!("a comma here", "здесь запятая"),
+                both!(
+                    "write all numbers of a file with a point, or all with a comma",
+                    "пишите все числа файла с точкой или все с запятой"
+                ),
             ),
             (None, None) => (
-                format!(
+                both!(
                     "`{written}` is {} or {}, and no other number tells which",
+                    "`{written}` — это {} или {}, и по другим числам не узнать",
                     written.replace(',', "."),
                     written.replace(',', "")
                 ),
-                "a decimal comma, or a mark between thousands",
-                "write numbers with a point, or one of them with other than three decimals",
+                both!("a decimal comma, or a mark between thousands", "десятичная запятая или знак тысяч"),
+                both!(
+                    "write numbers with a point, or one of them with other than three decimals",
+                    "пишите числа с точкой или хотя бы одно не с тремя знаками"
+                ),
             ),
             (None, Some(_)) => return Ok(Mark::Comma),
         };
@@ -171,9 +217,15 @@ fn split(text: &str, codes: Codes, is_known: impl Fn(&str) -> bool) -> Result<Op
         (Some((0, _)) | None, Some(fault)) => Err(fault),
         (Some((1.., true)), _) if found.len() > 1 => {
             let [a, b] = [0, 1].map(|k| found[k].header.cells.len());
-            let message = format!("the header can be read as {a} columns and as {b}");
-            let label = format!("is {} the separator?", shown(found[0].rows.separator));
-            let help = "put one sign between all cells, and names that contain it into quotes";
+            let message = both!(
+                "the header can be read as {a} columns and as {b}",
+                "заголовок читается и как {a} столбцов, и как {b}"
+            );
+            let label = both!("is {} the separator?", "разделитель — {:#}?", shown(found[0].rows.separator));
+            let help = both!(
+                "put one sign between all cells, and names that contain it into quotes",
+                "разделяйте все ячейки одним знаком, а имена с ним берите в кавычки"
+            );
             Err(error(codes.unreadable, message, &found[0].header.span(), label, help))
         }
         // Where nothing is known, what cuts oftenest; the refusal of a column names it then.
@@ -191,11 +243,11 @@ pub(crate) fn value<'t>(text: &'t str, cell: &Cell) -> Cow<'t, str> {
     }
 }
 
-fn shown(separator: u8) -> &'static str {
+fn shown(separator: u8) -> Text {
     match separator {
-        b'\t' => "a tab",
-        b';' => "`;`",
-        _ => "`,`",
+        b'\t' => both!("a tab", "табуляция"),
+        b';' => Text::same("`;`"),
+        _ => Text::same("`,`"),
     }
 }
 
@@ -294,21 +346,35 @@ impl Rows<'_> {
                 Some(length) if bytes.get(to + length + 1) == Some(&b'"') => to += length + 2,
                 Some(length) => break to += length,
                 None => {
-                    let (message, help) =
-                        ("a quote is opened and never closed", "close it, or write the cell without quotes");
-                    return Err(error(self.code, message, &(from - 1..from), "opened here", help));
+                    let (message, help) = (
+                        both!("a quote is opened and never closed", "кавычка открыта и не закрыта"),
+                        both!(
+                            "close it, or write the cell without quotes",
+                            "закройте её или пишите ячейку без кавычек"
+                        ),
+                    );
+                    return Err(error(
+                        self.code,
+                        message,
+                        &(from - 1..from),
+                        both!("opened here", "открыта здесь"),
+                        help,
+                    ));
                 }
             }
         }
         self.line += bytes[from..to].iter().filter(|byte| **byte == b'\n').count() as u64;
         self.at = until(to + 1);
         if !self.text[to + 1..self.at].trim().is_empty() {
-            let help = "put the whole cell into quotes, and write a quote within as two";
+            let help = both!(
+                "put the whole cell into quotes, and write a quote within as two",
+                "возьмите в кавычки всю ячейку, а кавычку внутри удвойте"
+            );
             return Err(error(
                 self.code,
-                "text behind a closing quote",
+                both!("text behind a closing quote", "текст после закрывающей кавычки"),
                 &(to + 1..self.at),
-                "this text",
+                both!("this text", "этот текст"),
                 help,
             ));
         }

@@ -1,5 +1,6 @@
 //! Units as people write them.
 
+use diagnostic::Text;
 use units::{Angle, Length};
 
 /// What a unit measures.
@@ -22,14 +23,14 @@ pub enum Quantity {
 impl Quantity {
     /// As messages name it.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> Text {
         match self {
-            Self::Length => "a length",
-            Self::Angle => "an angle",
-            Self::Temperature => "a temperature",
-            Self::Time => "a time",
-            Self::Feed => "a feed",
-            Self::Mass => "a mass",
+            Self::Length => Text::pair("a length", "длина"),
+            Self::Angle => Text::pair("an angle", "угол"),
+            Self::Temperature => Text::pair("a temperature", "температура"),
+            Self::Time => Text::pair("a time", "время"),
+            Self::Feed => Text::pair("a feed", "подача"),
+            Self::Mass => Text::pair("a mass", "масса"),
         }
     }
 }

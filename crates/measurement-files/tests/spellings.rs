@@ -2,12 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may stop the test")]
 
+use diagnostic::Text;
 use measurement_files::{Codes, Kind, Sheet, decoded};
 use proptest::prelude::*;
 
 const KIND: Kind<'_> = Kind {
     columns: "run x_mm y_mm dx_um temp_c note",
-    expected: "expected: run,x_mm,y_mm,dx_um",
+    expected: Text::pair("expected: run,x_mm,y_mm,dx_um", "ожидалось: run,x_mm,y_mm,dx_um"),
     passes_over: None,
     may_be_empty: false,
     codes: Codes::MEASUREMENTS,
@@ -155,7 +156,7 @@ proptest! {
         let sheet = match Sheet::read("a.csv", &bytes, &KIND, None) {
             Ok(sheet) => sheet,
             Err(refusal) => {
-                let message = refusal.diagnostic.message;
+                let message = refusal.diagnostic.message.english();
                 prop_assert!(spelling.comma && message.contains("no other number tells which"), "{message}");
                 // Nothing in the table speaks for a decimal comma: every number could be a thousand times larger.
                 let could_be_group = |v: i32| (1..1000).contains(&(v.abs() / 1000));
@@ -204,7 +205,8 @@ fn refused(text: &str) -> (String, String, String) {
     };
     let span = refusal.diagnostic.span.unwrap_or(0..0);
     let place = text[span.start as usize..span.end as usize].to_owned();
-    (refusal.diagnostic.message, place, refusal.diagnostic.help.unwrap_or_default())
+    let help = refusal.diagnostic.help.unwrap_or_default();
+    (refusal.diagnostic.message.english().to_owned(), place, help.english().to_owned())
 }
 
 fn check(text: &str, message: &str, place: &str, help: &str) {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use toml::Spanned;
 
@@ -21,13 +21,20 @@ pub(crate) fn start_codes(
     for code in written {
         let name = code.get_ref();
         let problem = match codes.iter().find(|entry| entry.code.to_string() == *name) {
-            None => format!("`{name}` has no row in [codes]"),
+            None => both!("`{name}` has no row in [codes]", "для `{name}` нет строки в [codes]"),
             Some(entry) if matches!(entry.action, Action::Refuse { .. }) => {
-                format!("`{name}` is a refused code")
+                both!("`{name}` is a refused code", "`{name}` отвергнута")
             }
-            Some(entry) if entry.group == 0 => format!("`{name}` holds for one block only (group 0)"),
+            Some(entry) if entry.group == 0 => both!(
+                "`{name}` holds for one block only (group 0)",
+                "`{name}` действует только один кадр (группа 0)"
+            ),
             Some(entry) => match found.iter().find(|other| other.group == entry.group) {
-                Some(other) => format!("`{name}` excludes {}, of the same group", other.code),
+                Some(other) => both!(
+                    "`{name}` excludes {}, of the same group",
+                    "`{name}` исключает {} из той же группы",
+                    other.code
+                ),
                 None => {
                     found.push(entry);
                     continue;
@@ -35,9 +42,21 @@ pub(crate) fn start_codes(
             },
         };
         wrong.push(
-            Diagnostic::error(Code(807), format!("{problem}: it cannot hold at the start"))
-                .at(wide(code.span()), "expected a modal code of the table")
-                .help("write codes as the table writes them: `G17`, not `G017`"),
+            Diagnostic::error(
+                Code(807),
+                both!(
+                    "{problem}: it cannot hold at the start",
+                    "{problem:#}: в начале она действовать не может"
+                ),
+            )
+            .at(
+                wide(code.span()),
+                both!("expected a modal code of the table", "ожидалась модальная функция из таблицы"),
+            )
+            .help(both!(
+                "write codes as the table writes them: `G17`, not `G017`",
+                "пишите функции так, как в таблице: `G17`, а не `G017`"
+            )),
         );
     }
     found.into_iter().map(|entry| entry.code).collect()
@@ -47,17 +66,32 @@ pub(crate) fn start_codes(
 pub(crate) fn letters(written: &Spanned<String>, wrong: &mut Vec<Diagnostic>) {
     let text = written.get_ref();
     let problem = if let Some(bad) = text.chars().find(|c| !c.is_ascii_uppercase()) {
-        Some(format!("`{bad}` is not a capital letter"))
+        Some(both!("`{bad}` is not a capital letter", "`{bad}` — не прописная буква"))
     } else if let Some((_, twice)) = text.char_indices().find(|(at, c)| text[..*at].contains(*c)) {
-        Some(format!("`{twice}` stands twice"))
+        Some(both!("`{twice}` stands twice", "`{twice}` стоит дважды"))
     } else {
-        "GMNXYZF".chars().find(|c| !text.contains(*c)).map(|missing| format!("`{missing}` is missing"))
+        "GMNXYZF"
+            .chars()
+            .find(|c| !text.contains(*c))
+            .map(|missing| both!("`{missing}` is missing", "нет `{missing}`"))
     };
     if let Some(problem) = problem {
         wrong.push(
-            Diagnostic::error(Code(808), format!("these cannot be the letters of words: {problem}"))
-                .at(wide(written.span()), "expected each letter of a word once")
-                .help("letters = \"ABCDEFGHIJKLMNOPQRSTUVWXYZ\" takes all"),
+            Diagnostic::error(
+                Code(808),
+                both!(
+                    "these cannot be the letters of words: {problem}",
+                    "это не могут быть буквы слов: {problem:#}"
+                ),
+            )
+            .at(
+                wide(written.span()),
+                both!("expected each letter of a word once", "ожидалась каждая буква слова один раз"),
+            )
+            .help(both!(
+                "letters = \"ABCDEFGHIJKLMNOPQRSTUVWXYZ\" takes all",
+                "letters = \"ABCDEFGHIJKLMNOPQRSTUVWXYZ\" берёт все"
+            )),
         );
     }
 }
@@ -65,7 +99,7 @@ pub(crate) fn letters(written: &Spanned<String>, wrong: &mut Vec<Diagnostic>) {
 /// Numbers within what a control or this program can mean.
 pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     let (numbers, cycles, output) = (&grammar.numbers, &grammar.cycles, &grammar.output);
-    let mut report = |span: std::ops::Range<usize>, message: String, expected: &str| {
+    let mut report = |span: std::ops::Range<usize>, message: Text, expected: Text| {
         wrong.push(Diagnostic::error(Code(806), message).at(wide(span), expected));
     };
     for (what, decimals) in [
@@ -77,8 +111,12 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         if *decimals.get_ref() > 9 {
             report(
                 decimals.span(),
-                format!("{what} = {} is no control's resolution", decimals.get_ref()),
-                "expected 0 to 9",
+                both!(
+                    "{what} = {} is no control's resolution",
+                    "{what} = {} — такой дискреты нет ни у одной стойки",
+                    decimals.get_ref()
+                ),
+                both!("expected 0 to 9", "ожидалось от 0 до 9"),
             );
         }
     }
@@ -88,8 +126,12 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     {
         report(
             share.span(),
-            format!("arc_radius_tolerance_share = {} is out of range", share.get_ref()),
-            &format!("expected 0 to {MOST_SHARE} of the radius"),
+            both!(
+                "arc_radius_tolerance_share = {} is out of range",
+                "arc_radius_tolerance_share = {} вне границ",
+                share.get_ref()
+            ),
+            both!("expected 0 to {MOST_SHARE} of the radius", "ожидалось от 0 до {MOST_SHARE} радиуса"),
         );
     }
     for (what, length, most) in [
@@ -102,8 +144,8 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
         if !(found > 0.0 && found <= most) {
             report(
                 length.span(),
-                format!("{what} = {found} is out of range"),
-                &format!("expected above 0, up to {most} mm"),
+                both!("{what} = {found} is out of range", "{what} = {found} вне границ"),
+                both!("expected above 0, up to {most} mm", "ожидалось больше 0 и не больше {most} мм"),
             );
         }
     }
@@ -111,22 +153,29 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     if !(*scaling_step.get_ref() > 0.0 && *scaling_step.get_ref() <= 1.0) {
         report(
             scaling_step.span(),
-            format!("scaling_step = {} is out of range", scaling_step.get_ref()),
-            "expected above 0, up to 1",
+            both!(
+                "scaling_step = {} is out of range",
+                "scaling_step = {} вне границ",
+                scaling_step.get_ref()
+            ),
+            both!("expected above 0, up to 1", "ожидалось больше 0 и не больше 1"),
         );
     }
     if *output.max_block_number.get_ref() == 0 {
         report(
             output.max_block_number.span(),
-            "max_block_number = 0 leaves no number".to_owned(),
-            "expected 9999 or more",
+            both!(
+                "max_block_number = 0 leaves no number",
+                "max_block_number = 0 не оставляет ни одного номера"
+            ),
+            both!("expected 9999 or more", "ожидалось 9999 или больше"),
         );
     }
     if !output.centre_words.get_ref() && !output.radius_word {
         report(
             output.centre_words.span(),
-            "no form of arc is left".to_owned(),
-            "expected centre_words or radius_word",
+            both!("no form of arc is left", "не остаётся ни одного вида дуги"),
+            both!("expected centre_words or radius_word", "ожидалось centre_words или radius_word"),
         );
     }
     if let Some(mark) = &grammar.text.block_delete
@@ -134,8 +183,12 @@ pub(crate) fn numbers(grammar: &Grammar, wrong: &mut Vec<Diagnostic>) {
     {
         report(
             mark.span(),
-            format!("`{}` cannot mark a deleted block", mark.get_ref()),
-            "expected a mark like \"/\"",
+            both!(
+                "`{}` cannot mark a deleted block",
+                "`{}` не может быть знаком пропуска кадра",
+                mark.get_ref()
+            ),
+            both!("expected a mark like \"/\"", "ожидался знак вроде \"/\""),
         );
     }
 }

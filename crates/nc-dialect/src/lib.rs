@@ -9,6 +9,7 @@ mod action;
 mod checks;
 mod describe;
 mod load;
+mod russian;
 mod shipped;
 mod table;
 

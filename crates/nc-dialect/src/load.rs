@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
@@ -14,6 +14,7 @@ use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks::{self, wide};
+use crate::russian;
 use crate::table::{
     CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
     RotaryFeedName, RoundBrackets, SemicolonRule, StartUnit, TWord, TurningRules, UnderG40, UnderG49,
@@ -254,11 +255,16 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
 }
 
 fn refused_by_toml(error: &toml::de::Error) -> Diagnostic {
-    let diagnostic =
-        Diagnostic::error(Code(801), format!("the grammar cannot be read: {}", error.message().trim()))
-            .help("docs/dialects.md lists every field of a grammar");
+    let diagnostic = Diagnostic::error(
+        Code(801),
+        both!("the grammar cannot be read: {}", "таблица диалекта не читается: {}", error.message().trim()),
+    )
+    .help(both!(
+        "docs/dialects.md lists every field of a grammar",
+        "все поля таблицы диалекта описаны в docs/dialects.md"
+    ));
     match error.span() {
-        Some(span) => diagnostic.at(wide(span), "here"),
+        Some(span) => diagnostic.at(wide(span), both!("here", "здесь")),
         None => diagnostic,
     }
 }
@@ -280,9 +286,12 @@ fn tenths(digits: &str) -> Option<u16> {
 }
 
 fn no_code(key: &Spanned<String>, example: &str) -> Diagnostic {
-    Diagnostic::error(Code(802), format!("`{}` is not a code", key.get_ref()))
-        .at(wide(key.span()), format!("expected a key like {example}"))
-        .help("write the capital letter and the number; keys with a point stand in quotes")
+    Diagnostic::error(Code(802), both!("`{}` is not a code", "`{}` — не функция", key.get_ref()))
+        .at(wide(key.span()), both!("expected a key like {example}", "ожидался ключ вида {example}"))
+        .help(both!(
+            "write the capital letter and the number; keys with a point stand in quotes",
+            "напишите прописную букву и число; ключ с точкой берётся в кавычки"
+        ))
 }
 
 fn action(code: GCode, key: &Spanned<String>, row: &CodeRow) -> Result<Action, Diagnostic> {
@@ -292,21 +301,34 @@ fn action(code: GCode, key: &Spanned<String>, row: &CodeRow) -> Result<Action, D
     let Some(does) = &row.does else {
         return Err(Diagnostic::error(
             Code(805),
-            format!("{code} says neither what it does nor why it is refused"),
+            both!(
+                "{code} says neither what it does nor why it is refused",
+                "у {code} не сказано ни что она делает, ни почему отвергнута"
+            ),
         )
-        .at(wide(key.span()), "expected `does`, or `refuse` with `help`")
-        .help(format!(
+        .at(
+            wide(key.span()),
+            both!(
+                "expected `does`, or `refuse` with `help`",
+                "ожидалось `does` или `refuse` вместе с `help`"
+            ),
+        )
+        .help(both!(
             "write `{} = {{ group = {}, does = \"pass\" }}` if it moves nothing",
+            "если она ничего не двигает, напишите `{} = {{ group = {}, does = \"pass\" }}`",
             key.get_ref(),
             row.group
         )));
     };
     action_named(does.get_ref(), code).ok_or_else(|| {
-        let nearest =
-            nearest(does.get_ref()).map_or(String::new(), |name| format!("did you mean \"{name}\"? "));
-        Diagnostic::error(Code(804), format!("`{}` is not something a code does", does.get_ref()))
-            .at(wide(does.span()), format!("{code} cannot do this"))
-            .help(format!("{nearest}known are: {}", ACTION_NAMES.join(", ")))
+        let nearest = nearest(does.get_ref())
+            .map_or(Text::EMPTY, |name| both!("did you mean \"{name}\"? ", "имелось в виду \"{name}\"? "));
+        Diagnostic::error(
+            Code(804),
+            both!("`{}` is not something a code does", "`{}` — такого функции не делают", does.get_ref()),
+        )
+        .at(wide(does.span()), both!("{code} cannot do this", "{code} этого не может"))
+        .help(both!("{nearest}known are: {}", "{nearest:#}известны: {}", ACTION_NAMES.join(", ")))
     })
 }
 
@@ -316,21 +338,24 @@ fn refusal(
     does: bool,
     refuse: Option<&str>,
     help: Option<&str>,
-) -> Result<Option<(String, String)>, Diagnostic> {
+) -> Result<Option<(Text, Text)>, Diagnostic> {
     let name = key.get_ref();
     let wrong =
-        |message: String, label: &str| Err(Diagnostic::error(Code(805), message).at(wide(key.span()), label));
+        |message: Text, label: Text| Err(Diagnostic::error(Code(805), message).at(wide(key.span()), label));
     match (refuse, help) {
-        (Some(_), _) if does => {
-            wrong(format!("{name} both does something and is refused"), "keep one of the two")
-        }
-        (Some(reason), Some(help)) => Ok(Some((reason.to_owned(), help.to_owned()))),
-        (Some(_), None) => {
-            wrong(format!("{name} is refused without a way out"), "add `help`: what the user can do")
-        }
-        (None, Some(_)) => {
-            wrong(format!("{name} has a way out but is not refused"), "add `refuse` or remove `help`")
-        }
+        (Some(_), _) if does => wrong(
+            both!("{name} both does something and is refused", "{name} и что-то делает, и отвергнута"),
+            both!("keep one of the two", "оставьте одно из двух"),
+        ),
+        (Some(reason), Some(help)) => Ok(Some((russian::text(reason), russian::text(help)))),
+        (Some(_), None) => wrong(
+            both!("{name} is refused without a way out", "{name} отвергнута, а выхода не указано"),
+            both!("add `help`: what the user can do", "добавьте `help`: что делать"),
+        ),
+        (None, Some(_)) => wrong(
+            both!("{name} has a way out but is not refused", "у {name} указан выход, а она не отвергнута"),
+            both!("add `refuse` or remove `help`", "добавьте `refuse` или уберите `help`"),
+        ),
         (None, None) => Ok(None),
     }
 }
@@ -340,8 +365,11 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
     if let Some(axes) = &row.loses_position {
         for axis in axes.get_ref().chars() {
             let Some(index) = "XYZ".find(axis) else {
-                return Err(Diagnostic::error(Code(806), format!("`{axis}` is not a linear axis"))
-                    .at(wide(axes.span()), "expected some of X, Y, Z"));
+                return Err(Diagnostic::error(
+                    Code(806),
+                    both!("`{axis}` is not a linear axis", "`{axis}` — не линейная ось"),
+                )
+                .at(wide(axes.span()), both!("expected some of X, Y, Z", "ожидались какие-то из X, Y, Z")));
             };
             loses_position[index] = true;
         }
@@ -353,7 +381,7 @@ fn m_code(number: u16, key: &Spanned<String>, row: &MRow) -> Result<MCode, Diagn
         loses_position,
         ends_program: row.ends_program,
         changes_tool: row.changes_tool,
-        switches: row.switches.clone(),
+        switches: row.switches.as_deref().map(russian::text),
         tip: None,
         refuse,
     })
@@ -365,8 +393,17 @@ fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnosti
         && name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     if !sound {
-        return Err(Diagnostic::error(Code(802), format!("`{name}` is not a command's name"))
-            .at(wide(key.span()), "expected capital letters, at least two"));
+        return Err(Diagnostic::error(
+            Code(802),
+            both!("`{name}` is not a command's name", "`{name}` — не имя команды"),
+        )
+        .at(
+            wide(key.span()),
+            both!(
+                "expected capital letters, at least two",
+                "ожидались прописные латинские буквы, не меньше двух"
+            ),
+        ));
     }
     // With few arguments it does something, with more it is refused.
     let does = row.does.is_some() && row.passes_with.is_none();
@@ -374,8 +411,15 @@ fn command(key: &Spanned<String>, row: &CommandRow) -> Result<Command, Diagnosti
     let action = match &row.does {
         None => None,
         Some(does) => Some(action_named(does.get_ref(), GCode(0)).ok_or_else(|| {
-            Diagnostic::error(Code(804), format!("`{}` is not something a command does", does.get_ref()))
-                .at(wide(does.span()), format!("{name} cannot do this"))
+            Diagnostic::error(
+                Code(804),
+                both!(
+                    "`{}` is not something a command does",
+                    "`{}` — такого команды не делают",
+                    does.get_ref()
+                ),
+            )
+            .at(wide(does.span()), both!("{name} cannot do this", "{name} этого не может"))
         })?),
     };
     Ok(Command { name: name.clone(), action, refuse, passes_with: row.passes_with })
@@ -399,8 +443,21 @@ fn lathe(row: &LatheRow, wrong: &mut Vec<Diagnostic>) -> Option<LatheSign> {
             [letter @ b'A'..=b'Z', count @ b'2'..=b'8'] => Some((*letter, *count - b'0')),
             _ => {
                 wrong.push(
-                    Diagnostic::error(Code(806), format!("`{}` is no letter and count", written.get_ref()))
-                        .at(wide(written.span()), "expected a letter and how many digits, like T4"),
+                    Diagnostic::error(
+                        Code(806),
+                        both!(
+                            "`{}` is no letter and count",
+                            "`{}` — не буква с числом цифр",
+                            written.get_ref()
+                        ),
+                    )
+                    .at(
+                        wide(written.span()),
+                        both!(
+                            "expected a letter and how many digits, like T4",
+                            "ожидались буква и число цифр, например T4"
+                        ),
+                    ),
                 );
                 return None;
             }
@@ -414,8 +471,8 @@ fn lathe(row: &LatheRow, wrong: &mut Vec<Diagnostic>) -> Option<LatheSign> {
         without: row.without.to_ascii_uppercase().into_bytes(),
         digits,
         sure: row.sure,
-        says: row.says.clone(),
-        mill: row.mill.clone(),
+        says: russian::text(&row.says),
+        mill: russian::text(&row.mill),
     })
 }
 
@@ -429,9 +486,18 @@ fn unique<T, K: Ord>(
     for pair in rows.windows(2) {
         if key(&pair[0].1) == key(&pair[1].1) {
             wrong.push(
-                Diagnostic::error(Code(803), "a code stands twice in the table")
-                    .at(wide(pair[1].0.clone()), "the same code as in another row")
-                    .help("remove one of the rows: `G1` and `G01` are the same code"),
+                Diagnostic::error(
+                    Code(803),
+                    both!("a code stands twice in the table", "функция стоит в таблице дважды"),
+                )
+                .at(
+                    wide(pair[1].0.clone()),
+                    both!("the same code as in another row", "та же функция, что и в другой строке"),
+                )
+                .help(both!(
+                    "remove one of the rows: `G1` and `G01` are the same code",
+                    "уберите одну из строк: `G1` и `G01` — одна и та же функция"
+                )),
             );
         }
     }

@@ -11,7 +11,7 @@ fn changed(from: &str, to: &str) -> String {
     let shown = wrong.iter().map(|diagnostic| {
         let span = diagnostic.span.clone().expect("every message about a grammar has a place");
         let found = &text[span.start as usize..span.end as usize];
-        let help = diagnostic.help.as_deref().unwrap_or("-");
+        let help = diagnostic.help.as_ref().map(|help| help.english()).unwrap_or("-");
         format!("{diagnostic}\n  at `{found}`: {}\n  help: {help}", diagnostic.label)
     });
     shown.collect::<Vec<_>>().join("\n")

@@ -1,6 +1,6 @@
 //! Blocks out: passed as they are, or rewritten.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use nc_syntax::dialect::{GCode, Semicolon};
 use nc_syntax::{Block, Dialect, Item, ItemKind, PlainLine, Value};
 
@@ -112,17 +112,29 @@ impl<'d> Emitter<'d> {
         out: &mut Vec<u8>,
     ) -> Result<(), Diagnostic> {
         let Some((first, later)) = pieces.split_first() else {
-            return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a block was replaced by nothing")
-                .at(block.offset..block.offset + block.bytes.len() as u64, "this block")
-                .help("this is a fault of vpost; please report it with the program"));
+            return Err(Diagnostic::error(
+                WORD_NOT_EDITABLE,
+                both!("a block was replaced by nothing", "кадр заменён пустотой"),
+            )
+            .at(block.offset..block.offset + block.bytes.len() as u64, both!("this block", "этот кадр"))
+            .help(both!(
+                "this is a fault of vpost; please report it with the program",
+                "это ошибка vpost; сообщите о ней, приложив программу"
+            )));
         };
         let written = |edit: &WordEdit| {
             if let WordEdit::Write { counts, .. } = edit { counts.unsigned_abs() } else { 0 }
         };
         if pieces.iter().flat_map(|piece| &piece.words).any(|(_, edit)| written(edit) >= MOST_STEPS) {
-            return Err(Diagnostic::error(WORD_NOT_EDITABLE, "a corrected word of more than 15 digits")
-                .at(block.file_range(), "exact in no control")
-                .help("no machine goes there: check the unit and the decimal points of this block"));
+            return Err(Diagnostic::error(
+                WORD_NOT_EDITABLE,
+                both!("a corrected word of more than 15 digits", "исправленное слово длиннее 15 цифр"),
+            )
+            .at(block.file_range(), both!("exact in no control", "точно этого не хранит ни одна стойка"))
+            .help(both!(
+                "no machine goes there: check the unit and the decimal points of this block",
+                "так далеко не ходит ни один станок: проверьте единицу и десятичные точки этого кадра"
+            )));
         }
         let separator = self.habits.learn(block);
         let in_force = self.modes.motion_for(self.dialect, block);
@@ -334,13 +346,13 @@ impl<'d> Emitter<'d> {
         }
         Err(Diagnostic::error(
             BLOCK_TOO_LONG,
-            format!("the corrected block has {} characters, the control takes {limit}", text.len()),
+            both!("the corrected block has {} characters, the control takes {limit}", "в исправленном кадре {} знаков, а стойка принимает {limit}", text.len()),
         )
         .at(
             block.file_range(),
-            format!("becomes `{}`", String::from_utf8_lossy(text)),
+            both!("becomes `{}`", "станет `{}`", String::from_utf8_lossy(text)),
         )
-        .help("move the comment to a line of its own, or raise `max_block_bytes` in the grammar if the control takes more"))
+        .help(both!("move the comment to a line of its own, or raise `max_block_bytes` in the grammar if the control takes more", "перенесите комментарий в отдельную строку или увеличьте `max_block_bytes` в таблице диалекта, если стойка принимает больше")))
     }
 
     /// First of the numbers for `count` inserted blocks.

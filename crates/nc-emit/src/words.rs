@@ -1,6 +1,6 @@
 //! Words of a block: which there are, and what they are for.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 
@@ -21,9 +21,12 @@ pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, V
         }
         if found.is_some() {
             let letter = char::from(wanted);
-            return Err(Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has two {letter} words"))
-                .at(block.file_span(item.span), format!("second {letter}"))
-                .help("leave one of them"));
+            return Err(Diagnostic::error(
+                WORD_NOT_EDITABLE,
+                both!("the block has two {letter} words", "в кадре два слова {letter}"),
+            )
+            .at(block.file_span(item.span), both!("second {letter}", "второе {letter}"))
+            .help(both!("leave one of them", "оставьте одно")));
         }
         found = Some((item.span, value));
     }
@@ -32,19 +35,33 @@ pub(crate) fn find_word(block: &Block<'_>, wanted: u8) -> Result<Option<(Span, V
 
 /// A word that should be there is not.
 pub(crate) fn missing(block: &Block<'_>, letter: u8) -> Diagnostic {
-    Diagnostic::error(WORD_NOT_EDITABLE, format!("the block has no {} word to keep", char::from(letter)))
-        .at(block.file_range(), "this block")
-        .help("this is a fault of vpost; please report it with the program")
+    Diagnostic::error(
+        WORD_NOT_EDITABLE,
+        both!(
+            "the block has no {} word to keep",
+            "в кадре нет слова {}, которое надо сохранить",
+            char::from(letter)
+        ),
+    )
+    .at(block.file_range(), both!("this block", "этот кадр"))
+    .help(both!(
+        "this is a fault of vpost; please report it with the program",
+        "это ошибка vpost; сообщите о ней, приложив программу"
+    ))
 }
 
 /// A word whose value is no plain number cannot be replaced by one.
 pub(crate) fn not_a_number(block: &Block<'_>, letter: u8, span: Span) -> Diagnostic {
     Diagnostic::error(
         WORD_NOT_EDITABLE,
-        format!("{} has no plain number, so it cannot be corrected", char::from(letter)),
+        both!(
+            "{} has no plain number, so it cannot be corrected",
+            "у {} не простое число, исправить его нельзя",
+            char::from(letter)
+        ),
     )
-    .at(block.file_span(span), "expected a number such as 10.5")
-    .help("write the value as a number")
+    .at(block.file_span(span), both!("expected a number such as 10.5", "ожидалось число, например 10.5"))
+    .help(both!("write the value as a number", "напишите значение числом"))
 }
 
 /// The code of a G word.

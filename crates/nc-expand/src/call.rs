@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::rc::Rc;
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{Macros, PointFree};
 
 use crate::codes;
@@ -24,9 +25,12 @@ impl<'a> Run<'a, '_> {
         call: &Call,
         place: Place,
     ) -> Result<(), Stop> {
-        let mut program = whole("the number of a program", self.known(&call.program)?)?;
+        let mut program =
+            whole(&Text::pair("the number of a program", "номер программы"), self.known(&call.program)?)?;
         let mut passes = match &call.repeats {
-            Some(repeats) => whole("the count of a call", self.known(repeats)?)?,
+            Some(repeats) => {
+                whole(&Text::pair("the count of a call", "число повторений вызова"), self.known(repeats)?)?
+            }
             None => 1,
         };
         let packed = call.repeats.is_none() && call.arguments.is_none() && program > 9999;
@@ -34,13 +38,14 @@ impl<'a> Run<'a, '_> {
             if u32::try_from(program).is_ok_and(|number| source.programs.contains_key(&number)) {
                 return Err(say(
                     codes::COMBINATION,
-                    format!(
+                    both!(
                         "P{program} is a program of this file, and {} times O{:04}",
+                        "P{program} — программа этого файла, но и O{1:04}, повторённая {0} раз",
                         program / 10_000,
                         program % 10_000
                     ),
-                    "controls differ",
-                    "write the count as an L word",
+                    both!("controls differ", "у стоек по-разному"),
+                    both!("write the count as an L word", "напишите число повторений словом L"),
                 ));
             }
             (passes, program) = (program / 10_000, program % 10_000);
@@ -52,11 +57,15 @@ impl<'a> Run<'a, '_> {
         if arguments.is_some() && passes > 1 {
             return Err(say(
                 codes::ARGUMENT,
-                format!(
-                    "G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told"
+                both!(
+                    "G65 with L{passes}: whether the second pass starts with the arguments or with what the first left is not told",
+                    "G65 с L{passes}: начинается ли второй проход с аргументов или с того, что оставил первый, не сказано"
                 ),
-                "repeated with its own variables",
-                "write the call as often as it shall run",
+                both!("repeated with its own variables", "повторяется со своими переменными"),
+                both!(
+                    "write the call as often as it shall run",
+                    "напишите вызов столько раз, сколько он должен исполниться"
+                ),
             ));
         }
         if passes == 0 {
@@ -92,9 +101,16 @@ impl<'a> Run<'a, '_> {
                     None => {
                         return Err(say(
                             codes::ARGUMENT,
-                            format!("{} is no argument of a macro", *letter as char),
-                            "G, L, N, O and P are the call's own",
-                            "pass the value with another letter",
+                            both!(
+                                "{} is no argument of a macro",
+                                "{} — не аргумент макроса",
+                                *letter as char
+                            ),
+                            both!(
+                                "G, L, N, O and P are the call's own",
+                                "G, L, N, O и P принадлежат самому вызову"
+                            ),
+                            both!("pass the value with another letter", "передайте значение другой буквой"),
                         ));
                     }
                 },
@@ -102,9 +118,9 @@ impl<'a> Run<'a, '_> {
             if variable > 33 {
                 return Err(say(
                     codes::ARGUMENT,
-                    "more than ten groups of I, J and K",
-                    "too many",
-                    "pass fewer arguments",
+                    both!("more than ten groups of I, J and K", "больше десяти групп I, J и K"),
+                    both!("too many", "слишком много"),
+                    both!("pass fewer arguments", "передайте меньше аргументов"),
                 ));
             }
             let mut value = self.evaluate(value)?;
@@ -125,12 +141,13 @@ impl<'a> Run<'a, '_> {
             b'D' | b'H' | b'M' | b'S' | b'T' => Ok(number),
             b'B' | b'E' | b'F' => Err(say(
                 codes::ARGUMENT,
-                format!(
+                both!(
                     "argument {}{number} has no point: parameters of the control say what it counts",
+                    "у аргумента {}{number} нет точки: что он считает, решают параметры стойки",
                     letter as char
                 ),
-                "0.001, 0.01 or 1?",
-                format!("write `{}{number}.`", letter as char),
+                both!("0.001, 0.01 or 1?", "0.001, 0.01 или 1?"),
+                both!("write `{}{number}.`", "напишите `{}{number}.`", letter as char),
             )),
             _ => {
                 let numbers = &self.dialect.numbers;
@@ -183,9 +200,9 @@ impl<'a> Run<'a, '_> {
         }
         Err(say(
             codes::PROGRAM_MISSING,
-            format!("file {} holds no O{number:04}", source.name),
-            "called here",
-            "correct the O number in that file",
+            both!("file {} holds no O{number:04}", "в файле {} нет O{number:04}", source.name),
+            both!("called here", "вызвана здесь"),
+            both!("correct the O number in that file", "исправьте номер O в том файле"),
         ))
     }
 
@@ -205,17 +222,27 @@ impl<'a> Run<'a, '_> {
                 Err(error) => {
                     return Err(say(
                         codes::UNREADABLE_FILE,
-                        format!("subprogram file {name} cannot be read: {error}"),
-                        "called here",
-                        "check the file in the folder given with `--include`",
+                        both!(
+                            "subprogram file {name} cannot be read: {error}",
+                            "файл подпрограммы {name} не читается: {error}"
+                        ),
+                        both!("called here", "вызвана здесь"),
+                        both!(
+                            "check the file in the folder given with `--include`",
+                            "проверьте файл в папке, заданной ключом `--include`"
+                        ),
                     ));
                 }
                 Ok(text) => {
                     if let Err(diagnostic) = nc_syntax::looks_like_program(&text) {
                         return Err(say(
                             codes::UNREADABLE_FILE,
-                            format!("subprogram file {name}: {}", diagnostic.message),
-                            "called here",
+                            both!(
+                                "subprogram file {name}: {}",
+                                "файл подпрограммы {name}: {:#}",
+                                diagnostic.message
+                            ),
+                            both!("called here", "вызвана здесь"),
                             diagnostic.help.unwrap_or_default(),
                         ));
                     }
@@ -235,9 +262,12 @@ impl<'a> Run<'a, '_> {
         };
         Err(say(
             codes::PROGRAM_MISSING,
-            format!("subprogram {what} is not in this file, and no file {looked} was found"),
-            "called here",
-            "`--include DIR` with the folder that holds it",
+            both!(
+                "subprogram {what} is not in this file, and no file {looked} was found",
+                "подпрограммы {what} нет в этом файле, и файл {looked} не найден"
+            ),
+            both!("called here", "вызвана здесь"),
+            both!("`--include DIR` with the folder that holds it", "`--include DIR` с папкой, где она лежит"),
         ))
     }
 
@@ -257,7 +287,10 @@ impl<'a> Run<'a, '_> {
                     None => None,
                 };
                 if !matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
-                    return Err(faults::no_call("`return` outside a subroutine"));
+                    return Err(faults::no_call(&both!(
+                        "`return` outside a subroutine",
+                        "`return` вне подпрограммы"
+                    )));
                 }
                 self.leave(true);
                 let returned = value.is_some();
@@ -278,7 +311,8 @@ impl<'a> Run<'a, '_> {
                 let label = match &o.label {
                     Label::Known(label) => *label,
                     Label::Computed(number) => {
-                        let number = whole("the label of a call", self.known(number)?)?;
+                        let number =
+                            whole(&Text::pair("the label of a call", "метка вызова"), self.known(number)?)?;
                         self.names.id(number.to_string().as_bytes())
                     }
                 };
@@ -365,9 +399,12 @@ impl<'a> Run<'a, '_> {
             Some(statement) => Ok(Place { file, statement: statement + 1 }),
             None => Err(say(
                 codes::PROGRAM_MISSING,
-                format!("file {name}.ngc holds no o<{name}> sub"),
-                "called here",
-                "the subroutine must have the name of its file",
+                both!("file {name}.ngc holds no o<{name}> sub", "в файле {name}.ngc нет o<{name}> sub"),
+                both!("called here", "вызвана здесь"),
+                both!(
+                    "the subroutine must have the name of its file",
+                    "имя подпрограммы должно совпадать с именем файла"
+                ),
             )),
         }
     }
@@ -376,9 +413,15 @@ impl<'a> Run<'a, '_> {
 fn leaves(name: &str) -> Stop {
     say(
         codes::PATH,
-        format!("subprogram {name} leads out of the folder it is looked for in"),
-        "called here",
-        "name the file only, and give its folder with `--include DIR`",
+        both!(
+            "subprogram {name} leads out of the folder it is looked for in",
+            "имя подпрограммы {name} выводит из папки, где её ищут"
+        ),
+        both!("called here", "вызвана здесь"),
+        both!(
+            "name the file only, and give its folder with `--include DIR`",
+            "назовите только файл, а его папку задайте ключом `--include DIR`"
+        ),
     )
 }
 

@@ -5,6 +5,7 @@
 //! number format makes of values that differ by rounding only is told by no manual. Where such a difference
 //! would decide, the work is refused ([`Fault::TooClose`]).
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{Flow, Macros};
 use units::math;
 
@@ -23,11 +24,11 @@ const LINUXCNC_NEAR: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Fault {
     /// The operation has no result.
-    Arithmetic(String),
+    Arithmetic(Text),
     /// The control's rounding decides.
     TooClose(f64, f64),
     /// A whole number was needed.
-    NotWhole(&'static str, f64),
+    NotWhole(Text, f64),
     /// The variable does not exist in the control.
     NoVariable(f64),
 }
@@ -102,7 +103,10 @@ impl Rules {
             }
         };
         if !value.is_finite() {
-            return Err(Fault::Arithmetic("the result is larger than any number".to_owned()));
+            return Err(Fault::Arithmetic(both!(
+                "the result is larger than any number",
+                "результат больше любого числа"
+            )));
         }
         Ok(if rounded { Value::Rounded(value) } else { Value::Number(value) })
     }
@@ -135,7 +139,7 @@ impl Rules {
         let whole = number.round();
         let slack = if self.fanuc() { 1e-9 } else { LINUXCNC_EQUAL };
         if (number - whole).abs() > slack {
-            return Err(Fault::NotWhole("the number of a variable", number));
+            return Err(Fault::NotWhole(Text::pair("the number of a variable", "номер переменной"), number));
         }
         if !(0.0..=1e9).contains(&whole) {
             return Err(Fault::NoVariable(number));
@@ -145,7 +149,7 @@ impl Rules {
 
     /// A function's value, and whether its last digits are in doubt.
     fn function(self, function: Function, v: f64, rounded: bool) -> Result<(f64, bool), Fault> {
-        let arithmetic = |message: String| Err(Fault::Arithmetic(message));
+        let arithmetic = |message: Text| Err(Fault::Arithmetic(message));
         Ok(match function {
             Function::Abs => (v.abs(), rounded),
             Function::Sin => (math::sin(v.to_radians()), true),
@@ -153,14 +157,19 @@ impl Rules {
             Function::Tan => (math::tan(v.to_radians()), true),
             Function::Atan => (math::atan(v).to_degrees(), true),
             Function::Asin | Function::Acos if !(-1.0..=1.0).contains(&v) => {
-                return arithmetic(format!("no angle has the sine or cosine {v}"));
+                return arithmetic(both!(
+                    "no angle has the sine or cosine {v}",
+                    "угла с синусом или косинусом {v} нет"
+                ));
             }
             Function::Asin => (math::asin(v).to_degrees(), true),
             Function::Acos => (math::acos(v).to_degrees(), true),
             Function::Exp => (math::exp(v), true),
-            Function::Ln if v <= 0.0 => return arithmetic(format!("the logarithm of {v}")),
+            Function::Ln if v <= 0.0 => return arithmetic(both!("the logarithm of {v}", "логарифм {v}")),
             Function::Ln => (math::ln(v), true),
-            Function::Sqrt if v < 0.0 => return arithmetic(format!("the square root of {v}")),
+            Function::Sqrt if v < 0.0 => {
+                return arithmetic(both!("the square root of {v}", "квадратный корень из {v}"));
+            }
             Function::Sqrt => (v.sqrt(), rounded),
             Function::Fix | Function::Fup => {
                 if self.undecided(v, v.round(), rounded) {
@@ -182,15 +191,18 @@ impl Rules {
                 None => (self.half_away(v, rounded)?, false),
             },
             Function::Bcd | Function::Bin => {
-                let whole = whole("BCD and BIN", v)?;
+                let whole = whole(&Text::pair("BCD and BIN", "BCD и BIN"), v)?;
                 if !(0..100_000_000).contains(&whole) {
-                    return arithmetic(format!("BCD or BIN of {v}"));
+                    return arithmetic(both!("BCD or BIN of {v}", "BCD или BIN от {v}"));
                 }
                 let (from, to) = if function == Function::Bcd { (10, 16) } else { (16, 10) };
                 let (mut left, mut place, mut sum) = (whole, 1, 0);
                 while left > 0 {
                     if left % from > 9 {
-                        return arithmetic(format!("{v} is no binary coded decimal"));
+                        return arithmetic(both!(
+                            "{v} is no binary coded decimal",
+                            "{v} — не двоично-десятичное число"
+                        ));
                     }
                     sum += left % from * place;
                     place *= to;
@@ -212,16 +224,18 @@ impl Rules {
 
     /// An operator's value, and whether its last digits are in doubt.
     fn binary(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<(f64, bool), Fault> {
-        let arithmetic = |message: String| Err(Fault::Arithmetic(message));
+        let arithmetic = |message: Text| Err(Fault::Arithmetic(message));
         let value = match operator {
             Operator::Add => a + b,
             Operator::Subtract => a - b,
             Operator::Multiply => a * b,
             Operator::Divide | Operator::Modulo if b == 0.0 => {
-                return arithmetic(format!("{a} is divided by zero"));
+                return arithmetic(both!("{a} is divided by zero", "{a} делится на ноль"));
             }
             Operator::Divide => a / b,
-            Operator::Modulo if self.fanuc() => (whole("MOD", a)? % whole("MOD", b)?) as f64,
+            Operator::Modulo if self.fanuc() => {
+                (whole(&Text::pair("MOD", "MOD"), a)? % whole(&Text::pair("MOD", "MOD"), b)?) as f64
+            }
             Operator::Modulo => {
                 if self.undecided(a / b, (a / b).round(), rounded) {
                     return Err(Fault::TooClose(a, (a / b).round() * b));
@@ -230,7 +244,7 @@ impl Rules {
                 if rest < 0.0 { rest + b.abs() } else { rest }
             }
             Operator::Power if a < 0.0 && b.fract() != 0.0 => {
-                return arithmetic(format!("{a} to the power of {b}"));
+                return arithmetic(both!("{a} to the power of {b}", "{a} в степени {b}"));
             }
             Operator::Power => return Ok((math::powf(a, b), true)),
             Operator::Atan2 => {
@@ -255,7 +269,10 @@ impl Rules {
     /// Fanuc: bit by bit. LinuxCNC: everything but 0 is true.
     fn logic(self, operator: Operator, a: f64, b: f64, rounded: bool) -> Result<f64, Fault> {
         if self.fanuc() {
-            let (a, b) = (whole("AND, OR and XOR", a)?, whole("AND, OR and XOR", b)?);
+            let (a, b) = (
+                whole(&Text::pair("AND, OR and XOR", "AND, OR и XOR"), a)?,
+                whole(&Text::pair("AND, OR and XOR", "AND, OR и XOR"), b)?,
+            );
             return Ok(match operator {
                 Operator::And => a & b,
                 Operator::Or => a | b,
@@ -303,9 +320,9 @@ fn near(a: f64, b: f64, share: f64) -> bool {
 }
 
 /// The value as an integer of 32 bits.
-fn whole(what: &'static str, v: f64) -> Result<i64, Fault> {
+fn whole(what: &Text, v: f64) -> Result<i64, Fault> {
     if v.fract() != 0.0 || v.abs() > 4_294_967_295.0 {
-        return Err(Fault::NotWhole(what, v));
+        return Err(Fault::NotWhole(what.clone(), v));
     }
     Ok(v as i64)
 }

@@ -1,5 +1,6 @@
 //! Expressions: text to tree.
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::Macros;
 
 use crate::siemens;
@@ -131,7 +132,7 @@ impl Operator {
 }
 
 /// Why a text is no expression.
-pub(crate) type Fault = String;
+pub(crate) type Fault = Text;
 
 /// Reads statements and expressions from the bytes of a block.
 pub(crate) struct Parser<'t, 'n> {
@@ -167,7 +168,11 @@ impl<'t, 'n> Parser<'t, 'n> {
     }
 
     pub(crate) fn expect(&mut self, byte: u8) -> Result<(), Fault> {
-        if self.take(byte) { Ok(()) } else { Err(format!("`{}` was expected", byte as char)) }
+        if self.take(byte) {
+            Ok(())
+        } else {
+            Err(both!("`{}` was expected", "ожидалось `{}`", byte as char))
+        }
     }
 
     /// Takes a word of letters, if it is next.
@@ -194,7 +199,10 @@ impl<'t, 'n> Parser<'t, 'n> {
         let found = self.operators(first, 0)?;
         let inside = std::mem::replace(&mut self.kinds, outside);
         if self.macros == Macros::Siemens && inside == [true; 2] {
-            return Err("comparisons beside AND or OR need brackets around each".to_owned());
+            return Err(both!(
+                "comparisons beside AND or OR need brackets around each",
+                "сравнения рядом с AND и OR берут каждое в скобки"
+            ));
         }
         Ok(found)
     }
@@ -237,11 +245,17 @@ impl<'t, 'n> Parser<'t, 'n> {
     pub(crate) fn operand(&mut self) -> Result<Expression, Fault> {
         self.cost += 1;
         if self.cost > MOST_PARTS {
-            return Err(format!("more than {MOST_PARTS} values in one statement"));
+            return Err(both!(
+                "more than {MOST_PARTS} values in one statement",
+                "в одном операторе больше {MOST_PARTS} значений"
+            ));
         }
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(format!("more than {DEEPEST} brackets and functions inside one another"));
+            return Err(both!(
+                "more than {DEEPEST} brackets and functions inside one another",
+                "вложенных скобок и функций больше {DEEPEST}"
+            ));
         }
         let found = self.operand_inside();
         self.depth -= 1;
@@ -265,8 +279,8 @@ impl<'t, 'n> Parser<'t, 'n> {
                 Ok(Expression::Negative(Box::new(self.operand()?)))
             }
             Some(b'A'..=b'Z') => self.function(),
-            Some(other) => Err(format!("`{}` starts no value", other as char)),
-            None => Err("a value was expected at the end".to_owned()),
+            Some(other) => Err(both!("`{}` starts no value", "с `{}` значение не начинается", other as char)),
+            None => Err(both!("a value was expected at the end", "в конце ожидалось значение")),
         }
     }
 
@@ -287,12 +301,16 @@ impl<'t, 'n> Parser<'t, 'n> {
                     .filter(|b| b.is_ascii_digit())
                     .map(|b| *b as char)
                     .collect();
-                let number =
-                    digits.parse().map_err(|_| format!("#{digits} is no variable of any control"))?;
+                let number = digits.parse().map_err(|_| {
+                    both!(
+                        "#{digits} is no variable of any control",
+                        "#{digits} — такой переменной нет ни у одной стойки"
+                    )
+                })?;
                 Ok(Expression::Variable(Variable::Numbered(number)))
             }
             Some(b'#' | b'[') => Ok(Expression::Indirect(Box::new(self.operand()?))),
-            _ => Err("a number was expected after `#`".to_owned()),
+            _ => Err(both!("a number was expected after `#`", "после `#` ожидалось число")),
         }
     }
 
@@ -300,7 +318,10 @@ impl<'t, 'n> Parser<'t, 'n> {
     pub(crate) fn name(&mut self) -> Result<NameId, Fault> {
         self.expect(b'<')?;
         let rest = &self.text[self.at..];
-        let length = rest.iter().position(|byte| *byte == b'>').ok_or("a name without its `>`")?;
+        let length = rest
+            .iter()
+            .position(|byte| *byte == b'>')
+            .ok_or_else(|| both!("a name without its `>`", "у имени нет своей `>`"))?;
         self.at += length + 1;
         Ok(self.names.id(&rest[..length]))
     }
@@ -314,7 +335,11 @@ impl<'t, 'n> Parser<'t, 'n> {
         }
         let sound = digits.len() <= 40 && digits.matches('.').count() <= 1 && digits != ".";
         // Digits and a point only: the standard reader is correctly rounded and sees nothing else.
-        digits.parse().ok().filter(|_| sound).ok_or_else(|| format!("`{digits}` is not a number"))
+        digits
+            .parse()
+            .ok()
+            .filter(|_| sound)
+            .ok_or_else(|| both!("`{digits}` is not a number", "`{digits}` — не число"))
     }
 
     fn function(&mut self) -> Result<Expression, Fault> {
@@ -325,7 +350,10 @@ impl<'t, 'n> Parser<'t, 'n> {
         if name == b"EXISTS" && self.macros == Macros::LinuxCnc {
             self.expect(b'[')?;
             let Expression::Variable(variable @ Variable::Named(_)) = self.variable()? else {
-                return Err("EXISTS asks for a name: EXISTS[#<name>]".to_owned());
+                return Err(both!(
+                    "EXISTS asks for a name: EXISTS[#<name>]",
+                    "EXISTS требует имени: EXISTS[#<name>]"
+                ));
             };
             self.expect(b']')?;
             return Ok(Expression::Exists(variable));
@@ -334,12 +362,15 @@ impl<'t, 'n> Parser<'t, 'n> {
             return self.two(Operator::Power);
         }
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
-            return Err(format!("`{shown}` is no function"));
+            return Err(both!("`{shown}` is no function", "`{shown}` — не функция"));
         };
         let fanuc_only = matches!(function, Function::Bcd | Function::Bin)
             || matches!(&name[..], b"ATN" | b"SQR" | b"RND");
         if fanuc_only && self.macros != Macros::Fanuc {
-            return Err(format!("`{shown}` is no function of this dialect"));
+            return Err(both!(
+                "`{shown}` is no function of this dialect",
+                "функции `{shown}` в этом диалекте нет"
+            ));
         }
         if *function != Function::Atan {
             return Ok(Expression::Unary(*function, Box::new(self.bracketed()?)));
@@ -359,7 +390,10 @@ impl<'t, 'n> Parser<'t, 'n> {
             return Ok(Expression::Binary(Operator::Atan2, Box::new(y), Box::new(x)));
         }
         if self.macros == Macros::LinuxCnc {
-            return Err("ATAN needs two values: ATAN[y]/[x]".to_owned());
+            return Err(both!(
+                "ATAN needs two values: ATAN[y]/[x]",
+                "ATAN требует двух значений: ATAN[y]/[x]"
+            ));
         }
         self.at = before;
         Ok(Expression::Unary(Function::Atan, Box::new(y)))
@@ -381,7 +415,7 @@ impl<'t, 'n> Parser<'t, 'n> {
             Some(_) => {
                 let rest = String::from_utf8_lossy(&self.text[self.at..]).into_owned();
                 let short: String = rest.chars().take(20).collect();
-                Err(format!("`{short}` cannot follow"))
+                Err(both!("`{short}` cannot follow", "`{short}` здесь следовать не может"))
             }
         }
     }

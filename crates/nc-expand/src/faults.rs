@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::dialect::Macros;
 
 use crate::codes;
@@ -19,7 +19,7 @@ pub(crate) enum Stop {
     /// There is no value.
     Fault(Fault),
     /// Code, message, label, help; the place is the statement.
-    Said(Box<(Code, String, String, String)>),
+    Said(Box<(Code, Text, Text, Text)>),
     /// Ready, with its place.
     Diagnostic(Box<Diagnostic>),
     /// Ready, about another file that could not be read in.
@@ -27,13 +27,8 @@ pub(crate) enum Stop {
 }
 
 /// A stop in words.
-pub(crate) fn say(
-    code: Code,
-    message: impl Into<String>,
-    label: impl Into<String>,
-    help: impl Into<String>,
-) -> Stop {
-    Stop::Said(Box::new((code, message.into(), label.into(), help.into())))
+pub(crate) fn say(code: Code, message: Text, label: Text, help: Text) -> Stop {
+    Stop::Said(Box::new((code, message, label, help)))
 }
 
 /// The message, at the statement where execution ended.
@@ -42,7 +37,7 @@ pub(crate) fn diagnostic(stop: &Stop, span: Range<u64>, names: &Names, macros: M
         Stop::Diagnostic(diagnostic) | Stop::InFile(diagnostic, ..) => (**diagnostic).clone(),
         Stop::Said(said) => {
             let (code, message, label, help) = &**said;
-            Diagnostic::error(*code, message.as_str()).at(span, label.as_str()).help(help.as_str())
+            Diagnostic::error(*code, message.clone()).at(span, label.clone()).help(help.clone())
         }
         Stop::Unknown(variable) => unknown(*variable, span, names, macros),
         Stop::Fault(fault) => arithmetic(fault, span),
@@ -62,48 +57,75 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
         Variable::Numbered(_) => false,
     };
     let why = if local {
-        "it is read before anything sets it"
+        both!("it is read before anything sets it", "её читают раньше, чем ей что-то присвоено")
     } else if system {
-        "the control sets it while the program runs"
+        both!("the control sets it while the program runs", "её задаёт стойка во время исполнения")
     } else {
-        "nothing in this program sets it before, and an earlier program may have"
+        both!(
+            "nothing in this program sets it before, and an earlier program may have",
+            "в этой программе ей до этого ничего не присвоено, а прежняя могла присвоить"
+        )
     };
-    Diagnostic::error(codes::UNKNOWN_VALUE, format!("{shown} is known on the machine only: {why}"))
-        .at(span, format!("needs the value of {shown}"))
-        .help(format!("`--set \"{shown}=12.5\"` with the value that it has there"))
+    Diagnostic::error(
+        codes::UNKNOWN_VALUE,
+        both!(
+            "{shown} is known on the machine only: {why}",
+            "значение {shown} известно только на станке: {why:#}"
+        ),
+    )
+    .at(span, both!("needs the value of {shown}", "нужно значение {shown}"))
+    .help(both!(
+        "`--set \"{shown}=12.5\"` with the value that it has there",
+        "`--set \"{shown}=12.5\"` с тем значением, какое у неё на станке"
+    ))
 }
 
 fn arithmetic(fault: &Fault, span: Range<u64>) -> Diagnostic {
     match fault {
-        Fault::Arithmetic(what) => {
-            Diagnostic::error(codes::ARITHMETIC, format!("{what}: this has no result"))
-                .at(span, "computed here")
-                .help("correct the expression, or the values given with `--set`")
-        }
+        Fault::Arithmetic(what) => Diagnostic::error(
+            codes::ARITHMETIC,
+            both!("{what}: this has no result", "{what:#}: результата нет"),
+        )
+        .at(span, both!("computed here", "вычисляется здесь"))
+        .help(both!(
+            "correct the expression, or the values given with `--set`",
+            "исправьте выражение или значения, заданные ключом `--set`"
+        )),
         Fault::TooClose(a, b) => Diagnostic::error(
             codes::TOO_CLOSE,
-            format!("{a} and {b} differ by rounding only: the control's own rounding decides"),
+            both!(
+                "{a} and {b} differ by rounding only: the control's own rounding decides",
+                "{a} и {b} различаются только округлением: решит округление самой стойки"
+            ),
         )
-        .at(span, "decided here")
-        .help("compare with a margin, as in `IF[ABS[#1-#2]LT0.0005]`, or count turns with whole numbers"),
-        Fault::NotWhole(what, value) => {
-            Diagnostic::error(codes::BAD_VALUE, format!("{what}: {value} is not a whole number"))
-                .at(span, "a whole number was expected")
-                .help("round it where it is computed, as in `ROUND[#1]`")
-        }
-        Fault::NoVariable(number) => {
-            Diagnostic::error(codes::BAD_VALUE, format!("the control has no variable #{number}"))
-                .at(span, "computed here")
-                .help("correct the number of the variable")
-        }
+        .at(span, both!("decided here", "решается здесь"))
+        .help(both!(
+            "compare with a margin, as in `IF[ABS[#1-#2]LT0.0005]`, or count turns with whole numbers",
+            "сравнивайте с запасом, например `IF[ABS[#1-#2]LT0.0005]`, или считайте проходы целыми числами"
+        )),
+        Fault::NotWhole(what, value) => Diagnostic::error(
+            codes::BAD_VALUE,
+            both!("{what}: {value} is not a whole number", "{what:#}: {value} — не целое число"),
+        )
+        .at(span, both!("a whole number was expected", "ожидалось целое число"))
+        .help(both!(
+            "round it where it is computed, as in `ROUND[#1]`",
+            "округлите его там, где оно вычисляется, например `ROUND[#1]`"
+        )),
+        Fault::NoVariable(number) => Diagnostic::error(
+            codes::BAD_VALUE,
+            both!("the control has no variable #{number}", "переменной #{number} у стойки нет"),
+        )
+        .at(span, both!("computed here", "вычисляется здесь"))
+        .help(both!("correct the number of the variable", "исправьте номер переменной")),
     }
 }
 
 /// A whole number that is not negative.
-pub(crate) fn whole(what: &'static str, value: f64) -> Result<u64, Stop> {
+pub(crate) fn whole(what: &Text, value: f64) -> Result<u64, Stop> {
     let rounded = value.round();
     if (value - rounded).abs() > 1e-4 || !(0.0..=9e15).contains(&rounded) {
-        return Err(Stop::Fault(Fault::NotWhole(what, value)));
+        return Err(Stop::Fault(Fault::NotWhole(what.clone(), value)));
     }
     Ok(rounded as u64)
 }
@@ -111,55 +133,79 @@ pub(crate) fn whole(what: &'static str, value: f64) -> Result<u64, Stop> {
 pub(crate) fn too_many_steps(limit: u64) -> Stop {
     say(
         codes::STEPS,
-        format!("the program is still running after {limit} repeated steps"),
-        "reached once more",
-        "a loop that never ends? correct its condition, or split the program",
+        both!(
+            "the program is still running after {limit} repeated steps",
+            "после {limit} повторных шагов программа всё ещё не кончилась"
+        ),
+        both!("reached once more", "сюда попали ещё раз"),
+        both!(
+            "a loop that never ends? correct its condition, or split the program",
+            "цикл без конца? исправьте его условие или разделите программу"
+        ),
     )
 }
 
 pub(crate) fn too_long(limit: u64) -> Stop {
     say(
         codes::SIZE,
-        format!("the expanded program is longer than {limit} bytes"),
-        "grows here",
-        "calls or loops that multiply? correct the counts, or split the program",
+        both!(
+            "the expanded program is longer than {limit} bytes",
+            "развёрнутая программа длиннее {limit} байт"
+        ),
+        both!("grows here", "растёт здесь"),
+        both!(
+            "calls or loops that multiply? correct the counts, or split the program",
+            "вызовы или циклы умножают друг друга? исправьте числа повторений или разделите программу"
+        ),
     )
 }
 
 pub(crate) fn too_deep(limit: usize) -> Stop {
     say(
         codes::DEPTH,
-        format!("calls inside one another: more than {limit}"),
-        "one call too many",
-        "a program that calls itself without end? controls refuse it too",
+        both!("calls inside one another: more than {limit}", "вложенных вызовов больше {limit}"),
+        both!("one call too many", "лишний вызов"),
+        both!(
+            "a program that calls itself without end? controls refuse it too",
+            "программа без конца вызывает себя? стойки этого тоже не примут"
+        ),
     )
 }
 
 /// * `what` – block number or label, as it is corrected
-pub(crate) fn label(shown: &str, what: &str, why: &str) -> Stop {
+pub(crate) fn label(shown: &str, what: &Text, why: &Text) -> Stop {
     say(
         codes::LABEL,
-        format!("{shown} cannot be gone to: {why}"),
-        "leads there",
-        format!("correct the {what}"),
+        both!("{shown} cannot be gone to: {why}", "к {shown} не перейти: {why:#}"),
+        both!("leads there", "ведёт туда"),
+        both!("correct the {what}", "исправьте {what:#}"),
     )
 }
 
 pub(crate) fn endless() -> Stop {
     say(
         codes::RETURN,
-        "M99 in the main program: it starts again without end",
-        "no call to return from",
-        "end the program with M30; correct it once and repeat it on the control",
+        both!(
+            "M99 in the main program: it starts again without end",
+            "M99 в главной программе: она начинается снова без конца"
+        ),
+        both!("no call to return from", "возвращаться не из чего"),
+        both!(
+            "end the program with M30; correct it once and repeat it on the control",
+            "закончите программу функцией M30; исправьте её один раз, а повторяйте на стойке"
+        ),
     )
 }
 
-pub(crate) fn no_call(what: &str) -> Stop {
+pub(crate) fn no_call(what: &Text) -> Stop {
     say(
         codes::RETURN,
-        format!("{what}: there is no call to return from"),
-        "reached here",
-        "`sub`, `endsub` and `return` belong together, and M98 and M99",
+        both!("{what}: there is no call to return from", "{what:#}: возвращаться не из чего"),
+        both!("reached here", "сюда дошло исполнение"),
+        both!(
+            "`sub`, `endsub` and `return` belong together, and M98 and M99",
+            "`sub`, `endsub` и `return` стоят вместе, как и M98 с M99"
+        ),
     )
 }
 
@@ -170,51 +216,69 @@ pub(crate) fn no_return(names: &Names, kind: CallKind) -> Stop {
     };
     say(
         codes::RETURN,
-        format!("subprogram {name} ends without {way}"),
-        "the end of it",
-        format!("end the subprogram with {way}"),
+        both!("subprogram {name} ends without {way}", "подпрограмма {name} кончается без {way}"),
+        both!("the end of it", "её конец"),
+        both!("end the subprogram with {way}", "закончите подпрограмму: {way}"),
     )
 }
 
 pub(crate) fn runs_into(number: u32) -> Stop {
     say(
         codes::RETURN,
-        format!("the main program runs into O{number:04}"),
-        "reached without a call",
-        "end the main program with M30 before it",
+        both!("the main program runs into O{number:04}", "главная программа переходит в O{number:04}"),
+        both!("reached without a call", "дошло без вызова"),
+        both!(
+            "end the main program with M30 before it",
+            "закончите перед ней главную программу функцией M30"
+        ),
     )
 }
 
 pub(crate) fn nothing_executed(span: Range<u64>) -> Diagnostic {
-    Diagnostic::error(codes::NOTHING_EXECUTED, "the file defines subroutines and executes nothing")
-        .at(span, "defined here, called nowhere")
-        .help("correct the program that calls it, with `--include DIR` naming this file's folder: the moves depend on the call")
+    Diagnostic::error(codes::NOTHING_EXECUTED, both!("the file defines subroutines and executes nothing", "в файле подпрограммы, и ничего не исполняется"))
+        .at(span, both!("defined here, called nowhere", "определена здесь, не вызвана нигде"))
+        .help(both!("correct the program that calls it, with `--include DIR` naming this file's folder: the moves depend on the call", "исправляйте программу, которая её вызывает, назвав папку этого файла: `--include DIR`; движения зависят от вызова"))
 }
 
 pub(crate) fn block_delete() -> Stop {
     say(
         codes::BLOCK_DELETE,
-        "flow behind block delete: the switch on the panel makes two programs of it",
-        "executed or not?",
-        "remove the `/`, or the statement, and correct the program you mean to run",
+        both!(
+            "flow behind block delete: the switch on the panel makes two programs of it",
+            "ветвление в кадре с пропуском: переключатель на пульте делает из программы две"
+        ),
+        both!("executed or not?", "исполнять или нет?"),
+        both!(
+            "remove the `/`, or the statement, and correct the program you mean to run",
+            "уберите `/` или оператор и исправляйте ту программу, которую будете исполнять"
+        ),
     )
 }
 
 pub(crate) fn no_code(letter: char, value: f64) -> Stop {
     say(
         codes::BAD_VALUE,
-        format!("{letter} with the computed value {value} is not taken"),
-        "computed here",
-        "write the code or the count as a plain number",
+        both!(
+            "{letter} with the computed value {value} is not taken",
+            "{letter} с вычисленным значением {value} не принимается"
+        ),
+        both!("computed here", "вычисляется здесь"),
+        both!("write the code or the count as a plain number", "напишите функцию или счётчик простым числом"),
     )
 }
 
 pub(crate) fn too_large(letter: char, value: f64) -> Stop {
     say(
         codes::BAD_VALUE,
-        format!("{letter} with the computed value {value} has more than 15 digits"),
-        "computed here",
-        "correct the expression, or the values given with `--set`",
+        both!(
+            "{letter} with the computed value {value} has more than 15 digits",
+            "у {letter} с вычисленным значением {value} больше 15 цифр"
+        ),
+        both!("computed here", "вычисляется здесь"),
+        both!(
+            "correct the expression, or the values given with `--set`",
+            "исправьте выражение или значения, заданные ключом `--set`"
+        ),
     )
 }
 
@@ -223,21 +287,30 @@ pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names)
     match protected {
         Protected::Alarm => say(
             codes::ALARM,
-            "the program stops itself with an alarm here",
-            "reached with the values given",
-            "give the values the program expects with `--set`, or remove the line",
+            both!(
+                "the program stops itself with an alarm here",
+                "программа здесь сама останавливается аварией"
+            ),
+            both!("reached with the values given", "при заданных значениях исполнение доходит сюда"),
+            both!(
+                "give the values the program expects with `--set`, or remove the line",
+                "задайте ключом `--set` те значения, которых ждёт программа, или уберите строку"
+            ),
         ),
         Protected::System => say(
             codes::SYSTEM_WRITE,
-            format!("the program writes {shown}, which the control acts on"),
-            "an offset, a position or a switch",
-            "set it on the control, and remove the line",
+            both!(
+                "the program writes {shown}, which the control acts on",
+                "программа записывает {shown}, а стойка по ней действует"
+            ),
+            both!("an offset, a position or a switch", "коррекция, положение или переключатель"),
+            both!("set it on the control, and remove the line", "задайте её на стойке и уберите строку"),
         ),
         Protected::None => say(
             codes::SYSTEM_WRITE,
-            format!("{shown} cannot be written"),
-            "no such variable",
-            "correct the number of the variable",
+            both!("{shown} cannot be written", "{shown} записать нельзя"),
+            both!("no such variable", "такой переменной нет"),
+            both!("correct the number of the variable", "исправьте номер переменной"),
         ),
     }
 }
@@ -245,14 +318,29 @@ pub(crate) fn protected(protected: Protected, variable: Variable, names: &Names)
 pub(crate) fn lost_assignment(span: Range<u64>, shown: &str) -> Diagnostic {
     Diagnostic::warning(
         codes::LOST_ASSIGNMENT,
-        format!("{shown} keeps its value after the program, and the expanded program does not write it"),
+        both!(
+            "{shown} keeps its value after the program, and the expanded program does not write it",
+            "{shown} сохраняет своё значение после программы, а развёрнутая программа его не записывает"
+        ),
     )
-    .at(span, "the first such variable")
-    .help("if another program or the operator reads it, set it on the control")
+    .at(span, both!("the first such variable", "первая такая переменная"))
+    .help(both!(
+        "if another program or the operator reads it, set it on the control",
+        "если её читает другая программа или оператор, задайте её на стойке"
+    ))
 }
 
 pub(crate) fn lost_output(span: Range<u64>) -> Diagnostic {
-    Diagnostic::warning(codes::LOST_OUTPUT, "what the program prints is left out of the expanded program")
-        .at(span, "the first such block")
-        .help("nothing moves by it; the text is kept as a comment")
+    Diagnostic::warning(
+        codes::LOST_OUTPUT,
+        both!(
+            "what the program prints is left out of the expanded program",
+            "вывод программы на печать в развёрнутую программу не входит"
+        ),
+    )
+    .at(span, both!("the first such block", "первый такой кадр"))
+    .help(both!(
+        "nothing moves by it; the text is kept as a comment",
+        "движения он не вызывает; текст сохранён комментарием"
+    ))
 }

@@ -1,5 +1,6 @@
 //! Statements of flow and calls: text to what they do.
 
+use diagnostic::{Text, both};
 use nc_syntax::Block;
 use nc_syntax::dialect::Macros;
 
@@ -7,7 +8,7 @@ use crate::expression::{Expression, Parser};
 use crate::statement::Control;
 
 /// `#1=…`
-pub(crate) fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), String> {
+pub(crate) fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Expression), Text> {
     let target = parser.variable()?;
     parser.expect(b'=')?;
     let value = if parser.macros == Macros::Fanuc { parser.expression()? } else { parser.operand()? };
@@ -15,7 +16,7 @@ pub(crate) fn assignment(parser: &mut Parser<'_, '_>) -> Result<(Expression, Exp
 }
 
 /// Passes over a letter with its value.
-pub(crate) fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), String> {
+pub(crate) fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), Text> {
     match parser.peek() {
         Some(b'A'..=b'Z') => {
             parser.at += 1;
@@ -25,12 +26,16 @@ pub(crate) fn skip_word(parser: &mut Parser<'_, '_>) -> Result<(), String> {
             parser.at += 1;
             Ok(())
         }
-        other => Err(format!("`{}` starts no word", other.map_or(' ', |byte| byte as char))),
+        other => Err(both!(
+            "`{}` starts no word",
+            "с `{}` слово не начинается",
+            other.map_or(' ', |byte| byte as char)
+        )),
     }
 }
 
 /// Statements of custom macro B.
-pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String> {
+pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, Text> {
     if parser.word(b"IF") {
         let condition = parser.bracketed()?;
         if parser.word(b"GOTO") {
@@ -39,7 +44,7 @@ pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String>
         if parser.word(b"THEN") {
             return Ok(Control::IfThen(condition, vec![assignment(parser)?]));
         }
-        return Err("GOTO or THEN was expected".to_owned());
+        return Err(both!("GOTO or THEN was expected", "ожидалось GOTO или THEN"));
     }
     if parser.word(b"GOTO") {
         return Ok(Control::Goto(parser.operand()?));
@@ -47,7 +52,7 @@ pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String>
     if parser.word(b"WHILE") {
         let condition = Some(parser.bracketed()?);
         if !parser.word(b"DO") {
-            return Err("DO was expected".to_owned());
+            return Err(both!("DO was expected", "ожидалось DO"));
         }
         return Ok(Control::While { condition, number: loop_number(parser)?, end: 0 });
     }
@@ -63,13 +68,13 @@ pub(crate) fn fanuc_flow(parser: &mut Parser<'_, '_>) -> Result<Control, String>
             return Ok(Control::Output);
         }
     }
-    Err("this is no statement of this dialect".to_owned())
+    Err(both!("this is no statement of this dialect", "такого оператора в этом диалекте нет"))
 }
 
-fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, String> {
+fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, Text> {
     match parser.operand()? {
         Expression::Number(number @ (1.0 | 2.0 | 3.0)) => Ok(number as u32),
-        _ => Err("DO and END take 1, 2 or 3".to_owned()),
+        _ => Err(both!("DO and END take 1, 2 or 3", "DO и END принимают 1, 2 или 3")),
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use diagnostic::{Text, both};
+
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
 use crate::program::{Found, Source};
@@ -38,15 +40,22 @@ pub(crate) enum CallKind {
 impl<'a> Run<'a, '_> {
     pub(crate) fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {
         let value = self.known(label)?;
-        let number = faults::whole("a block number", value)?;
-        let refuse = |why| faults::label(&format!("N{number}"), "block number", why);
+        let number = faults::whole(&Text::pair("a block number", "номер кадра"), value)?;
+        let refuse =
+            |why: Text| faults::label(&format!("N{number}"), &both!("block number", "номер кадра"), &why);
         match source.label(section, number) {
             Found::Statement(statement) => {
                 self.at.statement = statement;
                 Ok(())
             }
-            Found::Missing => Err(refuse("there is no such block in this program")),
-            Found::Twice => Err(refuse("the number stands before more than one block")),
+            Found::Missing => Err(refuse(both!(
+                "there is no such block in this program",
+                "такого кадра в этой программе нет"
+            ))),
+            Found::Twice => Err(refuse(both!(
+                "the number stands before more than one block",
+                "этот номер стоит не перед одним кадром"
+            ))),
         }
     }
 
@@ -58,14 +67,22 @@ impl<'a> Run<'a, '_> {
         to: NameId,
         direction: Direction,
     ) -> Result<(), Stop> {
-        let refuse = |why| faults::label(&self.names.name(to).to_ascii_uppercase(), "label", why);
+        let refuse = |why: Text| {
+            faults::label(&self.names.name(to).to_ascii_uppercase(), &both!("label", "метку"), &why)
+        };
         match source.named(to, place.statement, direction) {
             Found::Statement(statement) => {
                 self.at.statement = statement;
                 Ok(())
             }
-            Found::Missing => Err(refuse("there is no such label in this direction")),
-            Found::Twice => Err(refuse("the label stands before more than one block")),
+            Found::Missing => Err(refuse(both!(
+                "there is no such label in this direction",
+                "в эту сторону такой метки нет"
+            ))),
+            Found::Twice => Err(refuse(both!(
+                "the label stands before more than one block",
+                "эта метка стоит не перед одним кадром"
+            ))),
         }
     }
 
@@ -83,7 +100,10 @@ impl<'a> Run<'a, '_> {
             };
         }
         if matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Name(_))) {
-            return Err(faults::no_call("M99 in a subroutine that an O-word called"));
+            return Err(faults::no_call(&both!(
+                "M99 in a subroutine that an O-word called",
+                "M99 в подпрограмме, которую вызвало слово O"
+            )));
         }
         let to = match to {
             Some(label) => Some(self.known(label)?),

@@ -1,5 +1,7 @@
 //! LinuxCNC's O-words: `o100 sub`, `o<name> call [1] [2]`, `o1 while [#1 LT 3]`.
 
+use diagnostic::{Text, both};
+
 use crate::expression::{Expression, Parser};
 use crate::value::NameId;
 
@@ -47,7 +49,7 @@ pub(crate) enum OWord {
 }
 
 /// Reads an O-word.
-pub(crate) fn parse(parser: &mut Parser<'_, '_>) -> Result<OStatement, String> {
+pub(crate) fn parse(parser: &mut Parser<'_, '_>) -> Result<OStatement, Text> {
     parser.expect(b'O')?;
     let label = match parser.peek() {
         Some(b'<') => Label::Known(parser.name()?),
@@ -64,12 +66,12 @@ pub(crate) fn parse(parser: &mut Parser<'_, '_>) -> Result<OStatement, String> {
     };
     let word = word(parser)?;
     if matches!(label, Label::Computed(_)) && !matches!(word, OWord::Call(_)) {
-        return Err("only a call may compute its label".to_owned());
+        return Err(both!("only a call may compute its label", "вычислять метку может только вызов"));
     }
     Ok(OStatement { label, word, next: 0, end: 0, foot: false })
 }
 
-fn word(parser: &mut Parser<'_, '_>) -> Result<OWord, String> {
+fn word(parser: &mut Parser<'_, '_>) -> Result<OWord, Text> {
     // Longer words first: `endwhile` is not `end`.
     if parser.word(b"SUB") {
         return Ok(OWord::Sub);
@@ -86,7 +88,11 @@ fn word(parser: &mut Parser<'_, '_>) -> Result<OWord, String> {
             arguments.push(parser.bracketed()?);
         }
         if arguments.len() > 30 {
-            return Err(format!("{} arguments, and a call takes 30", arguments.len()));
+            return Err(both!(
+                "{} arguments, and a call takes 30",
+                "аргументов {}, а вызов принимает 30",
+                arguments.len()
+            ));
         }
         return Ok(OWord::Call(arguments));
     }
@@ -123,9 +129,9 @@ fn word(parser: &mut Parser<'_, '_>) -> Result<OWord, String> {
     if parser.word(b"CONTINUE") {
         return Ok(OWord::Continue);
     }
-    Err("no word of flow follows the label".to_owned())
+    Err(both!("no word of flow follows the label", "за меткой нет слова управления"))
 }
 
-fn value(parser: &mut Parser<'_, '_>) -> Result<Option<Expression>, String> {
+fn value(parser: &mut Parser<'_, '_>) -> Result<Option<Expression>, Text> {
     if parser.peek() == Some(b'[') { Ok(Some(parser.bracketed()?)) } else { Ok(None) }
 }

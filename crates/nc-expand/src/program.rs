@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Dialect, Macros};
 use nc_syntax::{Block, ItemKind, Reader};
 
@@ -60,12 +60,21 @@ impl<'a> Source<'a> {
                 let (mut kind, flags) = compiler.kind(&block);
                 if dialect.flow.macros == Macros::LinuxCnc && aborts(&block) {
                     kind = Kind::Broken(Box::new(
-                        Diagnostic::error(codes::ALARM, "the program stops itself here")
-                            .at(
-                                block.file_span(crate::statement::whole(&block)),
+                        Diagnostic::error(
+                            codes::ALARM,
+                            both!("the program stops itself here", "программа здесь сама останавливается"),
+                        )
+                        .at(
+                            block.file_span(crate::statement::whole(&block)),
+                            both!(
                                 "reached with the values given",
-                            )
-                            .help("give other values with `--set`, or remove the line"),
+                                "при заданных значениях исполнение доходит сюда"
+                            ),
+                        )
+                        .help(both!(
+                            "give other values with `--set`, or remove the line",
+                            "задайте ключом `--set` другие значения или уберите строку"
+                        )),
                     ));
                 }
                 match kind {
@@ -176,7 +185,10 @@ impl<'a> Source<'a> {
             if statement.section != section {
                 section = statement.section;
                 if let Some((start, _)) = loops.pop() {
-                    return Err(self.unmatched(start, "this loop has no END in its program"));
+                    return Err(self.unmatched(
+                        start,
+                        both!("this loop has no END in its program", "у этого цикла нет END в его программе"),
+                    ));
                 }
             }
             let Kind::Complex(complex) = &statement.kind else { continue };
@@ -184,7 +196,10 @@ impl<'a> Source<'a> {
                 Some(Control::While { number, .. }) => loops.push((index, *number)),
                 Some(Control::EndWhile { number, .. }) => {
                     let Some((start, _)) = loops.pop().filter(|(_, n)| n == number) else {
-                        return Err(self.unmatched(index, "this END closes no loop"));
+                        return Err(self.unmatched(
+                            index,
+                            both!("this END closes no loop", "это END не закрывает никакого цикла"),
+                        ));
                     };
                     if let Some(Control::While { end, .. }) = control(&mut self.statements[start as usize]) {
                         *end = index;
@@ -196,7 +211,13 @@ impl<'a> Source<'a> {
                 Some(Control::For { .. }) => open.push(Open::new(NameId(u32::MAX), Construct::For, index)),
                 Some(Control::EndFor { .. }) => {
                     let Some(head) = open.pop_if(|top| top.kind == Construct::For).map(|top| top.head) else {
-                        return Err(self.unmatched(index, "this ENDFOR closes no FOR that is open here"));
+                        return Err(self.unmatched(
+                            index,
+                            both!(
+                                "this ENDFOR closes no FOR that is open here",
+                                "это ENDFOR не закрывает никакого FOR, открытого здесь"
+                            ),
+                        ));
                     };
                     if let Some(Control::For { end, .. }) = control(&mut self.statements[head as usize]) {
                         *end = index;
@@ -213,11 +234,17 @@ impl<'a> Source<'a> {
             }
         }
         if let Some((start, _)) = loops.pop() {
-            return Err(self.unmatched(start, "this loop has no END in its program"));
+            return Err(self.unmatched(
+                start,
+                both!("this loop has no END in its program", "у этого цикла нет END в его программе"),
+            ));
         }
         match open.pop() {
             None => Ok(()),
-            Some(left) => Err(self.unmatched(left.head, "this O-word has no end in its file")),
+            Some(left) => Err(self.unmatched(
+                left.head,
+                both!("this O-word has no end in its file", "у этого слова O нет конца в его файле"),
+            )),
         }
     }
 
@@ -236,8 +263,12 @@ impl<'a> Source<'a> {
             OWord::Call(_) | OWord::Return(_) => {}
             OWord::Sub => {
                 if self.subroutines.insert(label, index).is_some() {
-                    let message = format!("subroutine {} is defined twice", names.name(label));
-                    return Err(self.unmatched(index, &message));
+                    let message = both!(
+                        "subroutine {} is defined twice",
+                        "подпрограмма {} определена дважды",
+                        names.name(label)
+                    );
+                    return Err(self.unmatched(index, message));
                 }
                 open.push(Open::new(label, Construct::Sub, index));
             }
@@ -249,7 +280,13 @@ impl<'a> Source<'a> {
             }
             OWord::ElseIf(_) | OWord::Else => {
                 if !matches(open, Construct::If) {
-                    return Err(self.unmatched(index, "this branch belongs to no `if` that is open here"));
+                    return Err(self.unmatched(
+                        index,
+                        both!(
+                            "this branch belongs to no `if` that is open here",
+                            "эта ветвь не относится ни к одному `if`, открытому здесь"
+                        ),
+                    ));
                 }
                 if let Some(top) = open.last_mut() {
                     let before = std::mem::replace(&mut top.last, index);
@@ -260,7 +297,13 @@ impl<'a> Source<'a> {
             OWord::Break | OWord::Continue => {
                 let Some(around) = open.iter_mut().rev().find(|o| o.label == label && o.kind.is_loop())
                 else {
-                    return Err(self.unmatched(index, "this belongs to no loop that is open here"));
+                    return Err(self.unmatched(
+                        index,
+                        both!(
+                            "this belongs to no loop that is open here",
+                            "это не относится ни к одному циклу, открытому здесь"
+                        ),
+                    ));
                 };
                 around.parts.push(index);
             }
@@ -273,7 +316,10 @@ impl<'a> Source<'a> {
                     _ => Construct::Repeat,
                 };
                 if !matches(open, kind) {
-                    return Err(self.unmatched(index, "this closes nothing that is open here"));
+                    return Err(self.unmatched(
+                        index,
+                        both!("this closes nothing that is open here", "здесь нечего закрывать"),
+                    ));
                 }
                 if let Some(top) = open.pop() {
                     self.set(top.last, |o| o.next = index);
@@ -296,10 +342,10 @@ impl<'a> Source<'a> {
         }
     }
 
-    fn unmatched(&self, at: u32, message: &str) -> Box<Diagnostic> {
+    fn unmatched(&self, at: u32, message: Text) -> Box<Diagnostic> {
         let span = self.statements.get(at as usize).map_or(0..0, |statement| self.span(statement));
-        Box::new(Diagnostic::error(codes::STRUCTURE, message).at(span, "without its partner").help(
-            "loops, branches and subroutines end where they begin: in the same file, inside one another",
+        Box::new(Diagnostic::error(codes::STRUCTURE, message).at(span, both!("without its partner", "без пары")).help(
+            both!("loops, branches and subroutines end where they begin: in the same file, inside one another", "циклы, ветви и подпрограммы кончаются там, где начинаются: в том же файле, одни внутри других"),
         ))
     }
 }

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, Dialect, Macros};
 
 use crate::evaluate::{Rules, Variables, number};
@@ -392,7 +393,10 @@ impl<'a> Run<'a, '_> {
         let head = source.statements.get(start as usize).map(|statement| &statement.kind);
         let last = self.counts.iter().rev().find(|(head, _)| *head == start).map(|(_, last)| *last);
         let (Some(Kind::Complex(complex)), Some(last)) = (head, last) else {
-            return Err(faults::no_call("ENDFOR of a loop that was not entered by its FOR"));
+            return Err(faults::no_call(&both!(
+                "ENDFOR of a loop that was not entered by its FOR",
+                "ENDFOR цикла, в который вошли не через его FOR"
+            )));
         };
         let Some(Control::For { variable, .. }) = complex.control else { return Ok(()) };
         let next = self.known(&Expression::Variable(variable))? + 1.0;
@@ -450,7 +454,10 @@ impl<'a> Run<'a, '_> {
             && self.names.is_whole(id)
             && v.fract() != 0.0
         {
-            return Err(Stop::Fault(crate::evaluate::Fault::NotWhole("a variable of DEF INT", v)));
+            return Err(Stop::Fault(crate::evaluate::Fault::NotWhole(
+                Text::pair("a variable of DEF INT", "переменная DEF INT"),
+                v,
+            )));
         }
         // A variable that does not exist is found out by reading it.
         self.store.value(variable).map_err(Stop::Fault)?;

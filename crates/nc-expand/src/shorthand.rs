@@ -11,7 +11,7 @@
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, GCode, PlaneCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
 use units::math;
@@ -127,18 +127,14 @@ impl Words<'_, '_> {
     pub(crate) fn idle(&self) -> bool {
         self.block.items.iter().all(|item| matches!(item.kind, ItemKind::Comment | ItemKind::Name))
     }
-    fn refuse(&self, span: Span, message: &str, label: &str, help: &str) -> Fault {
+    fn refuse(&self, span: Span, message: Text, label: Text, help: Text) -> Fault {
         self.fault(codes::SHORTHAND, span, message, label, help)
     }
     pub(crate) fn whole(&self) -> Span {
         whole(self.block)
     }
-    pub(crate) fn fault(&self, code: Code, span: Span, message: &str, label: &str, help: &str) -> Fault {
-        Box::new(
-            Diagnostic::error(code, message.to_owned())
-                .at(self.block.file_span(span), label.to_owned())
-                .help(help.to_owned()),
-        )
+    pub(crate) fn fault(&self, code: Code, span: Span, message: Text, label: Text, help: Text) -> Fault {
+        Box::new(Diagnostic::error(code, message).at(self.block.file_span(span), label).help(help))
     }
 }
 
@@ -254,13 +250,14 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<
         None => Ok((writer.out.text, writer.out.segments)),
         Some(corner) => {
             let words = Words { block: &corner.block, dialect };
-            Err(words.refuse(corner.comma, NO_NEXT, "nothing follows", POST_IT))
+            Err(words.refuse(corner.comma, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
         }
     }
 }
 
-const NO_NEXT: &str = "a corner without a next line";
-const POST_IT: &str = "post roundings as arcs and chamfers as lines";
+const NO_NEXT: Text = Text::pair("a corner without a next line", "сопряжение без следующей прямой");
+const POST_IT: Text =
+    Text::pair("post roundings as arcs and chamfers as lines", "выводите скругления дугами, а фаски прямыми");
 
 struct Writer<'d> {
     dialect: &'d Dialect,
@@ -290,24 +287,35 @@ impl<'d> Writer<'d> {
     fn corner<'a>(&mut self, block: &Block<'a>, before: [Option<f64>; 3]) -> Result<Corner<'a>, Fault> {
         let words = Words { block, dialect: self.dialect };
         let Some(&Item { kind: ItemKind::CommaWord { letter, value }, span }) = words.comma() else {
-            return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, "", POST_IT));
+            return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, Text::EMPTY, POST_IT));
         };
-        let refuse = |label: &str| words.refuse(span, "a corner that cannot be written out", label, POST_IT);
+        let refuse = |label: Text| {
+            words.refuse(
+                span,
+                both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
+                label,
+                POST_IT,
+            )
+        };
         let (b'R' | b'C', Value::Number(size)) = (letter, value) else {
-            return Err(refuse("only a rounding `,R` or a chamfer `,C` with a number can"));
+            return Err(refuse(both!(
+                "only a rounding `,R` or a chamfer `,C` with a number can",
+                "развернуть можно только скругление `,R` или фаску `,C` с числом"
+            )));
         };
         let [first, second, _] = self.state.plane;
         self.state.step(&words);
         self.plain_line(&words, span)?;
         let [Some(u), Some(v)] = [before[first], before[second]] else {
-            return Err(refuse(
+            return Err(refuse(both!(
                 "where the line starts is not known: name both axes of the plane before it, in G90",
-            ));
+                "неизвестно, откуда начинается прямая: назовите до неё обе оси плоскости при G90"
+            )));
         };
         let to = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
         let size = self.dialect.numbers.length(size, self.state.inch).to_f64();
         if size <= 0.0 {
-            return Err(refuse("its size must be above zero"));
+            return Err(refuse(both!("its size must be above zero", "размер должен быть больше нуля")));
         }
         Ok(Corner {
             block: block.clone(),
@@ -326,23 +334,31 @@ impl<'d> Writer<'d> {
         let others = words.actions().any(|(action, _)| !matches!(action, Action::Line | Action::Absolute));
         let moves = self.state.plane[..2].iter().any(|axis| words.number(AXES[*axis]).is_some());
         let label = if self.state.motion != Motion::Line {
-            "G1 was expected on both sides of a corner"
+            both!("G1 was expected on both sides of a corner", "по обе стороны сопряжения ожидалось G1")
         } else if !self.state.absolute {
-            "under G91; write G90"
+            both!("under G91; write G90", "при G91; напишите G90")
         } else if self.state.polar.is_some() {
-            "under G16; write the points in X and Y"
+            both!("under G16; write the points in X and Y", "при G16; напишите точки в X и Y")
         } else if words.skipped() {
-            "behind block delete there are two corners"
+            both!("behind block delete there are two corners", "в кадре с пропуском сопряжений два")
         } else if others {
-            "another code stands in a block of the corner"
+            both!("another code stands in a block of the corner", "в кадре сопряжения стоит другая функция")
         } else if words.number(normal).is_some() || b"ABCUVWIJKR".iter().any(|l| words.number(*l).is_some()) {
-            "a word that leaves the plane, or belongs to an arc"
+            both!(
+                "a word that leaves the plane, or belongs to an arc",
+                "слово, которое уводит из плоскости или относится к дуге"
+            )
         } else if !moves {
-            "a line in the plane was expected"
+            both!("a line in the plane was expected", "ожидалась прямая в плоскости")
         } else {
             return Ok(());
         };
-        Err(words.refuse(span, "a corner that cannot be written out", label, POST_IT))
+        Err(words.refuse(
+            span,
+            both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
+            label,
+            POST_IT,
+        ))
     }
 
     /// Writes the line with the corner, what lies between, the corner, and this line.
@@ -362,8 +378,16 @@ impl<'d> Writer<'d> {
         let [first, second, _] = self.state.plane;
         let next = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
         let Some(shape) = Shape::of(corner, next) else {
-            let label = "the lines are too short for it, or go straight on or back";
-            return Err(at.refuse(corner.comma, "a corner that cannot be written out", label, POST_IT));
+            let label = both!(
+                "the lines are too short for it, or go straight on or back",
+                "прямые для него слишком коротки или идут прямо вперёд или назад"
+            );
+            return Err(at.refuse(
+                corner.comma,
+                both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
+                label,
+                POST_IT,
+            ));
         };
         let mut line = if corner.behind_corner { b"G1 ".to_vec() } else { Vec::new() };
         self.point(&mut line, shape.from);
@@ -399,12 +423,12 @@ impl<'d> Writer<'d> {
 
     /// A block under G16, or the one that switches it on.
     fn polar(&mut self, words: &Words<'_, '_>, on: Option<Span>) -> Result<(), Fault> {
-        let refuse = |span: Span, label: &str| {
+        let refuse = |span: Span, label: Text| {
             words.refuse(
                 span,
-                "polar words that cannot be written out",
+                both!("polar words that cannot be written out", "полярные слова, которые нельзя развернуть"),
                 label,
-                "write the points in X and Y, G15 in force",
+                both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
             )
         };
         let plane = self.state.plane;
@@ -420,7 +444,10 @@ impl<'d> Writer<'d> {
                 {
                     return Err(refuse(
                         span,
-                        "what its words mean under G16 differs from control to control",
+                        both!(
+                            "what its words mean under G16 differs from control to control",
+                            "что значат её слова при G16, у стоек по-разному"
+                        ),
                     ));
                 }
                 _ => {}
@@ -435,10 +462,19 @@ impl<'d> Writer<'d> {
         let (held, at) = (self.state.polar, self.state.at);
         self.state.step(words);
         if let (Some(span), true) = (plane_word, on.is_some() || off) {
-            return Err(refuse(span, "motion in the block that switches G16: are its words polar?"));
+            return Err(refuse(
+                span,
+                both!(
+                    "motion in the block that switches G16: are its words polar?",
+                    "движение в кадре, который включает G16: полярны ли его слова?"
+                ),
+            ));
         }
         if self.state.plane != plane && on.is_none() && !off {
-            return Err(refuse(whole(words.block), "the plane changes under G16"));
+            return Err(refuse(
+                whole(words.block),
+                both!("the plane changes under G16", "при G16 меняется плоскость"),
+            ));
         }
         let (Some(span), Some(held), true) = (plane_word, held, owned) else {
             self.unswitched(words, on);
@@ -447,28 +483,34 @@ impl<'d> Writer<'d> {
         if words.skipped() || !self.state.absolute {
             return Err(refuse(
                 span,
-                "in G90, and not behind block delete: else the pole is where the tool stands",
+                both!(
+                    "in G90, and not behind block delete: else the pole is where the tool stands",
+                    "ожидалось G90 и без пропуска кадра: иначе полюс там, где стоит инструмент"
+                ),
             ));
         }
         if self.state.motion == Motion::None {
-            return Err(refuse(span, "no motion code is in force"));
+            return Err(refuse(span, both!("no motion code is in force", "функция движения не действует")));
         }
         if self.state.motion == Motion::Arc && b"IJK".iter().any(|letter| words.number(*letter).is_some()) {
-            return Err(refuse(span, "an arc under G16 takes R"));
+            return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
         }
         if self.state.motion == Motion::Arc && words.number(b'R').is_none() {
-            return Err(refuse(span, "an arc under G16 takes R"));
+            return Err(refuse(span, both!("an arc under G16 takes R", "дуга при G16 принимает R")));
         }
         let radius = words.length(AXES[plane[0]], self.state.inch).or(held[0]);
         let angle = words.length(AXES[plane[1]], false).or(held[1]);
         let (Some(radius), Some(angle)) = (radius, angle) else {
             return Err(refuse(
                 span,
-                "radius and angle were expected, until each has been named once under G16",
+                both!(
+                    "radius and angle were expected, until each has been named once under G16",
+                    "ожидались радиус и угол, пока каждый не назван при G16 хотя бы раз"
+                ),
             ));
         };
         if radius < 0.0 {
-            return Err(refuse(span, "a radius below zero"));
+            return Err(refuse(span, both!("a radius below zero", "радиус меньше нуля")));
         }
         self.state.polar = Some([Some(radius), Some(angle)]);
         let (sin, cos) = math::sin_cos_deg(angle);

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use diagnostic::{Text, both};
+
 use crate::expression::{Expression, Function, Operator, Parser};
 use crate::o_word::{Label, OStatement, OWord};
 use crate::statement::{Control, Direction};
@@ -72,13 +74,15 @@ fn name<'t>(parser: &mut Parser<'t, '_>) -> Option<&'t [u8]> {
 }
 
 /// A value: number, variable, function, bracket, NOT.
-pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, String> {
+pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, Text> {
     if parser.take(b'(') {
         let inside = parser.expression()?;
         parser.expect(b')')?;
         return Ok(inside);
     }
-    let Some(found) = name(parser) else { return Err("a value was expected".to_owned()) };
+    let Some(found) = name(parser) else {
+        return Err(both!("a value was expected", "ожидалось значение"));
+    };
     let upper = found.to_ascii_uppercase();
     let shown = String::from_utf8_lossy(&upper).into_owned();
     match &upper[..] {
@@ -91,7 +95,10 @@ pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, String>
         _ => {}
     }
     if parser.peek() == Some(b'[') {
-        return Err(format!("`{shown}[`: no fields of variables are known"));
+        return Err(both!(
+            "`{shown}[`: no fields of variables are known",
+            "`{shown}[`: массивы переменных неизвестны"
+        ));
     }
     if parser.peek() != Some(b'(') {
         return Ok(Expression::Variable(Variable::Named(parser.names.id(found))));
@@ -108,7 +115,9 @@ pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, String>
         b"TRUNC" => Expression::Unary(Function::Fix, Box::new(first)),
         _ => match FUNCTIONS.iter().find(|(known, _)| *known == &upper[..]) {
             Some((_, function)) => Expression::Unary(*function, Box::new(first)),
-            None => return Err(format!("`{shown}` is no function that is known")),
+            None => {
+                return Err(both!("`{shown}` is no function that is known", "функция `{shown}` неизвестна"));
+            }
         },
     };
     parser.expect(b')')?;
@@ -116,8 +125,8 @@ pub(crate) fn operand(parser: &mut Parser<'_, '_>) -> Result<Expression, String>
 }
 
 /// A label: a name, or a block number as `N100`.
-pub(crate) fn label(parser: &mut Parser<'_, '_>) -> Result<NameId, String> {
-    let found = name(parser).ok_or("a label was expected")?;
+pub(crate) fn label(parser: &mut Parser<'_, '_>) -> Result<NameId, Text> {
+    let found = name(parser).ok_or_else(|| both!("a label was expected", "ожидалась метка"))?;
     Ok(parser.names.id(found))
 }
 
@@ -137,7 +146,7 @@ fn keyword(parser: &mut Parser<'_, '_>) -> Vec<u8> {
 }
 
 /// One flow item of a block.
-pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
+pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
     let start = parser.at;
     let word = keyword(parser);
     let said = match &word[..] {
@@ -147,7 +156,8 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
             if parser.peek().is_none() {
                 o_word(parser, b"if", OWord::If(condition))
             } else {
-                let direction = direction(&keyword(parser)).ok_or("GOTOF or GOTOB was expected")?;
+                let direction = direction(&keyword(parser))
+                    .ok_or_else(|| both!("GOTOF or GOTOB was expected", "ожидалось GOTOF или GOTOB"))?;
                 Said::Control(Control::Jump { condition: Some(condition), to: label(parser)?, direction })
             }
         }
@@ -161,7 +171,12 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
         b"ENDWHILE" => o_word(parser, b"while", OWord::EndWhile),
         b"ENDLOOP" => o_word(parser, b"loop", OWord::EndWhile),
         b"REPEAT" if parser.peek().is_none() => o_word(parser, b"repeat", OWord::Do),
-        b"REPEAT" => return Err("REPEAT with a label repeats a part of the program".to_owned()),
+        b"REPEAT" => {
+            return Err(both!(
+                "REPEAT with a label repeats a part of the program",
+                "REPEAT с меткой повторяет часть программы"
+            ));
+        }
         b"UNTIL" => {
             let condition = Box::new(parser.expression()?);
             let goes_on = Expression::Binary(Operator::Equal, condition, Box::new(Expression::Number(0.0)));
@@ -171,7 +186,7 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, String> {
             let variable = target(parser)?;
             let from = parser.expression()?;
             if !parser.word(b"TO") {
-                return Err("TO was expected".to_owned());
+                return Err(both!("TO was expected", "ожидалось TO"));
             }
             let to = parser.expression()?;
             Said::Control(Control::For { variable, from, to, end: 0 })
@@ -197,15 +212,16 @@ fn o_word(parser: &mut Parser<'_, '_>, kind: &[u8], word: OWord) -> Said {
 }
 
 /// `R1=5 R2=R1*2`
-fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
+fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, Text> {
     let mut found = Vec::new();
     while parser.peek().is_some() {
         let target = Expression::Variable(target(parser)?);
         let value = parser.expression()?;
         if found.iter().any(|(set, _)| reads(&value, set)) {
-            return Err(
-                "it reads a variable that the same block sets: write it in a block of its own".to_owned()
-            );
+            return Err(both!(
+                "it reads a variable that the same block sets: write it in a block of its own",
+                "читает переменную, которую задаёт тот же кадр: напишите отдельным кадром"
+            ));
         }
         found.push((target, value));
     }
@@ -213,12 +229,15 @@ fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expressio
 }
 
 /// A variable that may be set, and `=`.
-fn target(parser: &mut Parser<'_, '_>) -> Result<Variable, String> {
-    let found = name(parser).ok_or("a variable was expected")?;
+fn target(parser: &mut Parser<'_, '_>) -> Result<Variable, Text> {
+    let found = name(parser).ok_or_else(|| both!("a variable was expected", "ожидалась переменная"))?;
     let id = parser.names.id(found);
     if !is_parameter(found) && !parser.names.is_declared(id) {
         let shown = String::from_utf8_lossy(found).to_ascii_uppercase();
-        return Err(format!("{shown} is not declared: `DEF REAL {shown}` was expected before it"));
+        return Err(both!(
+            "{shown} is not declared: `DEF REAL {shown}` was expected before it",
+            "{shown} не объявлена: перед этим ожидалось `DEF REAL {shown}`"
+        ));
     }
     parser.expect(b'=')?;
     Ok(Variable::Named(id))
@@ -241,17 +260,22 @@ pub(crate) fn is_parameter(name: &[u8]) -> bool {
 }
 
 /// `DEF REAL A=5, B`: variables that begin with a value, or with zero.
-fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, String> {
+fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression)>, Text> {
     let whole = match &keyword(parser)[..] {
         b"REAL" => false,
         b"INT" | b"BOOL" => true,
-        _ => return Err("DEF takes REAL, INT or BOOL here".to_owned()),
+        _ => return Err(both!("DEF takes REAL, INT or BOOL here", "DEF принимает здесь REAL, INT или BOOL")),
     };
     let mut found = Vec::new();
     loop {
-        let target = name(parser).ok_or("the name of a variable was expected")?.to_vec();
+        let target = name(parser)
+            .ok_or_else(|| both!("the name of a variable was expected", "ожидалось имя переменной"))?
+            .to_vec();
         if is_parameter(&target) || target.len() < 2 {
-            return Err("R parameters and single letters cannot be declared".to_owned());
+            return Err(both!(
+                "R parameters and single letters cannot be declared",
+                "параметры R и отдельные буквы не объявляют"
+            ));
         }
         let id = parser.names.id(&target);
         parser.names.declare(id, whole);

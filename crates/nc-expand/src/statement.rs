@@ -1,6 +1,6 @@
 //! Blocks as statements: what is copied, what is computed, where it goes on.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, Macros};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value as WordValue};
 
@@ -177,7 +177,10 @@ impl Compiler<'_, '_> {
             Kind::Broken(wrong(
                 block,
                 item.span,
-                "plain numbers were expected, since the flat program sets no variables",
+                &both!(
+                    "plain numbers were expected, since the flat program sets no variables",
+                    "ожидались простые числа: развёрнутая программа переменных не задаёт"
+                ),
             ))
         } else if needs_work(block, self.dialect) {
             match self.complex(block) {
@@ -267,15 +270,23 @@ impl Compiler<'_, '_> {
             complex.number = self.flags(&block.items, block.bytes).number;
         }
         if complex.control.is_some() && !complex.assignments.is_empty() {
-            return Err(wrong(block, whole(block), "an assignment beside flow cannot be read"));
+            return Err(wrong(
+                block,
+                whole(block),
+                &both!(
+                    "an assignment beside flow cannot be read",
+                    "присваивание рядом с переходом не читается"
+                ),
+            ));
         }
         let apart = matches!(self.dialect.flow.macros, Macros::Fanuc | Macros::Siemens);
         if apart && complex.has_words && !complex.assignments.is_empty() {
-            let message = "an assignment and words stand in one block";
+            let message =
+                both!("an assignment and words stand in one block", "в одном кадре присваивание и слова");
             return Err(Box::new(
                 Diagnostic::error(codes::COMBINATION, message)
-                    .at(block.file_span(whole(block)), "which comes first?")
-                    .help("write them in two blocks"),
+                    .at(block.file_span(whole(block)), both!("which comes first?", "что из них первое?"))
+                    .help(both!("write them in two blocks", "напишите их двумя кадрами")),
             ));
         }
         Ok(complex)
@@ -329,9 +340,10 @@ impl Compiler<'_, '_> {
     }
 
     /// The expression of a word, behind its letter.
-    fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, String> {
+    fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, Text> {
         if self.dialect.flow.macros == Macros::Siemens {
-            let value = siemens::value_of(text).ok_or("a value was expected")?;
+            let value =
+                siemens::value_of(text).ok_or_else(|| both!("a value was expected", "ожидалось значение"))?;
             let mut parser = Parser::new(&text[value], Macros::Siemens, self.names);
             let value = parser.expression()?;
             parser.end()?;
@@ -367,15 +379,18 @@ impl Compiler<'_, '_> {
         let Some(kind) = call_of(rest).filter(|_| self.dialect.flow.macros != Macros::Siemens) else {
             return Ok(None);
         };
-        let conflict = |message: &str, help: &str| {
+        let conflict = |message: Text, help: Text| {
             Err(Box::new(
-                Diagnostic::error(codes::COMBINATION, message.to_owned())
-                    .at(block.file_span(whole(block)), "whose are the words?")
+                Diagnostic::error(codes::COMBINATION, message)
+                    .at(block.file_span(whole(block)), both!("whose are the words?", "чьи это слова?"))
                     .help(help),
             ))
         };
         if complex.control.is_some() {
-            return conflict("a call stands beside flow", "write them in two blocks");
+            return conflict(
+                both!("a call stands beside flow", "вызов стоит рядом с переходом"),
+                both!("write them in two blocks", "напишите их двумя кадрами"),
+            );
         }
         if kind != Taken::Macro {
             // P and L beside a code that takes them too.
@@ -396,15 +411,24 @@ impl Compiler<'_, '_> {
                 );
                 if !simple {
                     return conflict(
-                        "a subprogram is called beside another code",
-                        "write them in two blocks",
+                        both!(
+                            "a subprogram is called beside another code",
+                            "подпрограмма вызвана рядом с другой функцией"
+                        ),
+                        both!("write them in two blocks", "напишите их двумя кадрами"),
                     );
                 }
             }
             if self.dialect.flow.macros == Macros::LinuxCnc
                 && rest.words().any(|word| !b"NMPL".contains(&word.letter))
             {
-                return conflict("a subprogram is called beside other words", "write them in two blocks");
+                return conflict(
+                    both!(
+                        "a subprogram is called beside other words",
+                        "подпрограмма вызвана рядом с другими словами"
+                    ),
+                    both!("write them in two blocks", "напишите их двумя кадрами"),
+                );
             }
         }
         let mut program = None;
@@ -416,7 +440,13 @@ impl Compiler<'_, '_> {
                     && word.letter == b'G'
                     && word.g_code() != Some(nc_syntax::dialect::GCode(650))
                 {
-                    return conflict("a macro is called beside another code", "write them in two blocks");
+                    return conflict(
+                        both!(
+                            "a macro is called beside another code",
+                            "макрос вызван рядом с другой функцией"
+                        ),
+                        both!("write them in two blocks", "напишите их двумя кадрами"),
+                    );
                 }
                 continue;
             }
@@ -430,7 +460,11 @@ impl Compiler<'_, '_> {
                     .word_value(rest.text(word.span), false, complex)
                     .map_err(|fault| wrong_at(block, rest, word.span, &fault))?,
                 WordValue::Missing => {
-                    return Err(wrong(block, whole(block), "a letter has no number"));
+                    return Err(wrong(
+                        block,
+                        whole(block),
+                        &both!("a letter has no number", "у буквы нет числа"),
+                    ));
                 }
             };
             match word.letter {
@@ -444,16 +478,31 @@ impl Compiler<'_, '_> {
         complex.control = Some(match kind {
             Taken::Return => {
                 if repeats.is_some() {
-                    return conflict("M99 with L changes the count of its call", "write M99 without L");
+                    return conflict(
+                        both!(
+                            "M99 with L changes the count of its call",
+                            "M99 с L меняет число повторений своего вызова"
+                        ),
+                        both!("write M99 without L", "напишите M99 без L"),
+                    );
                 }
                 Control::Return { to: program }
             }
             _ => {
                 let Some(program) = program else {
                     return Err(Box::new(
-                        Diagnostic::error(codes::SYNTAX, "a call without P: which program?")
-                            .at(block.file_span(whole(block)), "a P word was expected")
-                            .help("write the number of the program, as in `M98 P1000`"),
+                        Diagnostic::error(
+                            codes::SYNTAX,
+                            both!("a call without P: which program?", "вызов без P: какая программа?"),
+                        )
+                        .at(
+                            block.file_span(whole(block)),
+                            both!("a P word was expected", "ожидалось слово P"),
+                        )
+                        .help(both!(
+                            "write the number of the program, as in `M98 P1000`",
+                            "напишите номер программы, например `M98 P1000`"
+                        )),
                     ));
                 };
                 let arguments = (kind == Taken::Macro).then_some(arguments);
@@ -474,7 +523,7 @@ impl Compiler<'_, '_> {
         let text = block.text(span);
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
         let mut parser = Parser::new(text, self.dialect.flow.macros, self.names);
-        let mut read = || -> Result<Option<Control>, String> {
+        let mut read = || -> Result<Option<Control>, Text> {
             if parser.macros == Macros::Siemens {
                 cut.push(span);
                 return Ok(match siemens::statement(&mut parser)? {
@@ -506,7 +555,10 @@ impl Compiler<'_, '_> {
             } else if fanuc {
                 Some(fanuc_flow(&mut parser)?)
             } else {
-                return Err("this is no statement of this dialect".to_owned());
+                return Err(both!(
+                    "this is no statement of this dialect",
+                    "такого оператора в этом диалекте нет"
+                ));
             };
             parser.end()?;
             Ok(control)
@@ -517,7 +569,11 @@ impl Compiler<'_, '_> {
             Ok(None) => Ok(()),
             Ok(found) => {
                 if complex.control.is_some() {
-                    return Err(wrong(block, span, "two statements stand in one block"));
+                    return Err(wrong(
+                        block,
+                        span,
+                        &both!("two statements stand in one block", "в одном кадре два оператора"),
+                    ));
                 }
                 complex.control = found;
                 Ok(())
@@ -558,17 +614,23 @@ pub(crate) fn whole(block: &Block<'_>) -> Span {
     Span { start, end }
 }
 
-fn wrong(block: &Block<'_>, span: Span, fault: &str) -> Fault {
+fn wrong(block: &Block<'_>, span: Span, fault: &Text) -> Fault {
     let found: String = String::from_utf8_lossy(block.text(span)).chars().take(60).collect();
     Box::new(
-        Diagnostic::error(codes::SYNTAX, format!("`{}` cannot be read: {fault}", found.trim()))
-            .at(block.file_span(span), "not understood")
-            .help("write it as the control's manual does, or post the program without variables and flow"),
+        Diagnostic::error(
+            codes::SYNTAX,
+            both!("`{}` cannot be read: {fault}", "`{}` не читается: {fault:#}", found.trim()),
+        )
+        .at(block.file_span(span), both!("not understood", "непонятно"))
+        .help(both!(
+            "write it as the control's manual does, or post the program without variables and flow",
+            "напишите так, как в руководстве стойки, или выведите программу без переменных и переходов"
+        )),
     )
 }
 
 /// The same where the words were read from a copy: the place is the block.
-fn wrong_at(block: &Block<'_>, rest: &Block<'_>, span: Span, fault: &str) -> Fault {
+fn wrong_at(block: &Block<'_>, rest: &Block<'_>, span: Span, fault: &Text) -> Fault {
     let own = std::ptr::eq(block, rest);
     if own { wrong(block, span, fault) } else { wrong(block, whole(block), fault) }
 }

@@ -1,6 +1,6 @@
 //! G2 and G3: the words of an arc, and what they say of its circle.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use toolpath::{Arc, Feed, Motion, Shape};
 
 use crate::arc::{self, Circle, Fault, Tolerance};
@@ -26,7 +26,7 @@ pub(crate) fn circular(
     let frame = require_frame(env, words, state)?.clone();
     let start = state.axes;
     let end = end(words, state, &frame)?;
-    let what = "the arc";
+    let what = &Text::pair("the arc", "дуга");
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
     let turning = from.rotary_deg != to.rotary_deg;
@@ -40,11 +40,17 @@ pub(crate) fn circular(
         return Err(words
             .refuse(
                 codes::FRAME,
-                format!("an arc under {}", state.transform.name()),
+                both!("an arc under {}", "дуга, пока действует {:#}", state.transform.name()),
                 words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                "the frame makes it an ellipse or turns it out of its plane",
+                both!(
+                    "the frame makes it an ellipse or turns it out of its plane",
+                    "система координат делает из неё эллипс или поворачивает её из плоскости"
+                ),
             )
-            .help("let the CAM write the arc as lines, or scale all axes alike"));
+            .help(both!(
+                "let the CAM write the arc as lines, or scale all axes alike",
+                "выводите дугу из CAM прямыми или масштабируйте все оси одинаково"
+            )));
     };
     // The words say the circle in program coordinates. A shifted frame has the same circle in axis
     // commands; a turned or mirrored one must be asked.
@@ -60,8 +66,13 @@ pub(crate) fn circular(
         Some(_) if words.has(CENTRE_LETTERS) => {
             let span = words.span(ARC_LETTERS);
             return Err(words
-                .refuse(codes::ARC_WORDS, "R and a centre in one arc", span, "which one?")
-                .help(format!("remove R or {}", words.names(CENTRE_LETTERS))));
+                .refuse(
+                    codes::ARC_WORDS,
+                    both!("R and a centre in one arc", "в одной дуге и R, и центр"),
+                    span,
+                    both!("which one?", "какое из двух?"),
+                )
+                .help(both!("remove R or {}", "уберите R или {}", words.names(CENTRE_LETTERS))));
         }
         Some(radius) => {
             arc::by_radius(start_2d, end_2d, radius * state.units.mm(), turn, tolerance.absolute_mm)
@@ -100,20 +111,31 @@ fn turns(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<u32> {
         if (1..=MOST).contains(&turns) {
             return Ok(turns);
         }
-        let message = format!("an arc of {turns} turns");
+        let message = both!("an arc of {turns} turns", "дуга в несколько оборотов: {turns}");
         return Err(words
-            .refuse(codes::ARC_WORDS, message, words.span(P), format!("1 to {MOST} were expected"))
-            .help("write P1, or no P, for an arc of at most one turn"));
+            .refuse(
+                codes::ARC_WORDS,
+                message,
+                words.span(P),
+                both!("1 to {MOST} were expected", "ожидалось от 1 до {MOST}"),
+            )
+            .help(both!(
+                "write P1, or no P, for an arc of at most one turn",
+                "для дуги не больше оборота напишите P1 или ничего"
+            )));
     }
     match words.plain(b'P') {
         Some(turns) if (turns - 1.0).abs() > 1e-9 => Err(words
             .refuse(
                 codes::ARC_WORDS,
-                "P beside an arc",
+                both!("P beside an arc", "P рядом с дугой"),
                 words.span(P),
-                "turns on some controls, nothing on others",
+                both!(
+                    "turns on some controls, nothing on others",
+                    "на одних стойках обороты, на других ничего"
+                ),
             )
-            .help("write one block for each turn")),
+            .help(both!("write one block for each turn", "напишите на каждый оборот свой кадр"))),
         _ => Ok(1),
     }
 }
@@ -134,10 +156,22 @@ fn centre(
         let letter = across.first();
         // `K0` on a G17 arc is how some posts write nothing.
         if words.coordinate(letter, inch) != Some(0.0) {
-            let message = format!("{} on an arc whose plane has {one} and {two}", letter as char);
+            let message = both!(
+                "{} on an arc whose plane has {one} and {two}",
+                "{} у дуги, в плоскости которой {one} и {two}",
+                letter as char
+            );
             return Err(words
-                .refuse(codes::ARC_WORDS, message, words.span(across), "not in this plane")
-                .help("select the arc's plane with G17, G18 or G19, or remove the word"));
+                .refuse(
+                    codes::ARC_WORDS,
+                    message,
+                    words.span(across),
+                    both!("not in this plane", "не в этой плоскости"),
+                )
+                .help(both!(
+                    "select the arc's plane with G17, G18 or G19, or remove the word",
+                    "выберите плоскость дуги функцией G17, G18 или G19 или уберите слово"
+                )));
         }
     }
     if !words.has(in_plane) {
@@ -152,11 +186,17 @@ fn centre(
         (ArcCentres::Absolute, _) => Err(words
             .refuse(
                 codes::ARC_WORDS,
-                "half a centre under absolute arc centres",
+                both!(
+                    "half a centre under absolute arc centres",
+                    "половина центра при абсолютных центрах дуг"
+                ),
                 words.span(in_plane),
-                format!("{one} and {two} were expected"),
+                both!("{one} and {two} were expected", "ожидались {one} и {two}"),
             )
-            .help(format!("write both {one} and {two}, or G91.1 for centres from the start"))),
+            .help(both!(
+                "write both {one} and {two}, or G91.1 for centres from the start",
+                "напишите и {one}, и {two} или включите G91.1: центр от начала дуги"
+            ))),
     }
 }
 
@@ -164,20 +204,19 @@ fn without_centre(words: &Words<'_, '_, '_>, one: char, two: char) -> Box<Diagno
     words
         .refuse(
             codes::ARC_WITHOUT_CENTRE,
-            "arc without centre",
+            both!("arc without centre", "дуга без центра"),
             words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            format!("neither {one}/{two} nor R in this block, and neither is modal"),
+            both!("neither {one}/{two} nor R in this block, and neither is modal", "в этом кадре нет ни {one}/{two}, ни R, а модально ни одно из них не действует"),
         )
-        .help(format!(
-            "post the program again so that each arc block has its {one} and {two} (some posts drop unchanged ones), or add R"
+        .help(both!("post the program again so that each arc block has its {one} and {two} (some posts drop unchanged ones), or add R", "выведите программу заново, чтобы в каждом кадре дуги были {one} и {two} (некоторые постпроцессоры опускают повторные), или добавьте R"
         ))
 }
 
 fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diagnostic> {
     let [one, two] = shown_letters(state);
     let (unit_mm, unit) = match state.units {
-        Units::Millimetre => (1.0, "mm"),
-        Units::Inch => (25.4, "inch"),
+        Units::Millimetre => (1.0, Text::pair("mm", "мм")),
+        Units::Inch => (25.4, Text::pair("inch", "дюйма")),
     };
     let show = |mm: f64| shortest(mm / unit_mm);
     let centre = words.span(ARC_LETTERS);
@@ -185,26 +224,39 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
         Fault::NoRadius => words
             .refuse(
                 codes::ARC_WORDS,
-                "an arc that starts or ends in its centre",
+                both!(
+                    "an arc that starts or ends in its centre",
+                    "дуга начинается или кончается в своём центре"
+                ),
                 centre,
-                "no direction leads from there",
+                both!("no direction leads from there", "оттуда нет направления"),
             )
-            .help(format!("write the distance from the start to the centre as {one} and {two}, or a line")),
+            .help(both!(
+                "write the distance from the start to the centre as {one} and {two}, or a line",
+                "напишите расстояние от начала до центра словами {one} и {two} или прямую"
+            )),
         Fault::RadiiDiffer { start_mm, end_mm, allowed_mm } => {
-            let message = "the ends of the arc lie at different distances from its centre";
-            let label = format!(
+            let message = both!(
+                "the ends of the arc lie at different distances from its centre",
+                "концы дуги лежат на разных расстояниях от её центра"
+            );
+            let label = both!(
                 "radius {} at the start, {} {unit} at the end, {} allowed",
+                "радиус в начале {}, в конце {} {unit:#}, допускается {}",
                 show(start_mm),
                 show(end_mm),
                 show(allowed_mm)
             );
             let mode = match state.arc_centres {
-                ArcCentres::Incremental => "measured from the start (G91.1)",
-                ArcCentres::Absolute => "absolute (G90.1)",
+                ArcCentres::Incremental => {
+                    both!("measured from the start (G91.1)", "отсчитанные от начала (G91.1)")
+                }
+                ArcCentres::Absolute => both!("absolute (G90.1)", "абсолютные (G90.1)"),
             };
-            words
-                .refuse(codes::RADII_DIFFER, message, centre, label)
-                .help(format!("correct the end or the centre; {one} and {two} are read as {mode}"))
+            words.refuse(codes::RADII_DIFFER, message, centre, label).help(both!(
+                "correct the end or the centre; {one} and {two} are read as {mode}",
+                "исправьте конец или центр; {one} и {two} прочитаны как {mode:#}"
+            ))
         }
         Fault::RadiusTooSmall { radius_mm, chord_mm } => {
             // Rounded up, so that the number can be typed as it stands.
@@ -212,20 +264,32 @@ fn no_circle(words: &Words<'_, '_, '_>, state: &Modal, fault: Fault) -> Box<Diag
             words
                 .refuse(
                     codes::RADIUS_TOO_SMALL,
-                    "arc radius is smaller than half the chord",
+                    both!("arc radius is smaller than half the chord", "радиус дуги меньше половины хорды"),
                     centre,
-                    format!("R{} {unit}, chord is {} {unit}", show(radius_mm), show(chord_mm)),
+                    both!(
+                        "R{} {unit}, chord is {} {unit}",
+                        "R{} {unit:#}, а хорда {} {unit:#}",
+                        show(radius_mm),
+                        show(chord_mm)
+                    ),
                 )
-                .help(format!("use {one}/{two} centre form, or R of at least {}", shortest(least)))
+                .help(both!(
+                    "use {one}/{two} centre form, or R of at least {}",
+                    "задайте центр словами {one}/{two} или R не меньше {}",
+                    shortest(least)
+                ))
         }
         Fault::FullCircleByRadius => words
             .refuse(
                 codes::ARC_WORDS,
-                "a full circle by R",
+                both!("a full circle by R", "полная окружность через R"),
                 centre,
-                "start and end are the same point: R has no centre",
+                both!(
+                    "start and end are the same point: R has no centre",
+                    "начало и конец в одной точке: по R центра не найти"
+                ),
             )
-            .help(format!("use {one}/{two} centre form")),
+            .help(both!("use {one}/{two} centre form", "задайте центр словами {one}/{two}")),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Drilling cycles: which blocks make a hole, and where.
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{CycleCode, CycleLevels, GCode};
 use smallvec::SmallVec;
 use toolpath::{Cycle, CycleKind, Frame, Hole, Motion, Position};
@@ -40,45 +41,70 @@ pub(crate) fn repeats(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outco
         // Once is once, whoever counts.
         if count.is_some_and(|count| count != 1) && !counts {
             let span = words.span(Letters::of(&[letter]));
-            let message = format!("{} in a drilling cycle", words.text(span));
+            let message = both!("{} in a drilling cycle", "{} в цикле сверления", words.text(span));
             return Err(words
                 .refuse(
                     codes::CYCLE_WORDS,
                     message,
                     span,
-                    "counts holes on some controls, is another depth or nothing on others",
+                    both!("counts holes on some controls, is another depth or nothing on others", "на одних стойках число отверстий, на других ещё одна глубина или ничего"),
                 )
-                .help("write each hole in a block of its own, or what the control's manual says as cycles.repeats in a copy of the grammar"));
+                .help(both!("write each hole in a block of its own, or what the control's manual says as cycles.repeats in a copy of the grammar", "напишите каждое отверстие отдельным кадром или укажите сказанное в руководстве стойки как cycles.repeats в копии таблицы диалекта")));
         }
     }
     if k.is_some() && l.is_some() {
         return Err(words
-            .refuse(codes::CYCLE_WORDS, "K and L both count repetitions", words.span(both), "which one?")
-            .help("remove one of the two"));
+            .refuse(
+                codes::CYCLE_WORDS,
+                both!("K and L both count repetitions", "и K, и L считают повторения"),
+                words.span(both),
+                both!("which one?", "какое из двух?"),
+            )
+            .help(both!("remove one of the two", "уберите одно из двух")));
     }
     let count = k.or(l).unwrap_or(1);
     if count == 0 && !env.dialect.zero_repeats_define {
-        let message = "a drilling cycle repeated zero times";
+        let message = both!("a drilling cycle repeated zero times", "цикл сверления с нулём повторений");
         return Err(words
-            .refuse(codes::CYCLE_WORDS, message, words.span(both), "an error on this control")
-            .help("write the words in the block of the first hole"));
+            .refuse(
+                codes::CYCLE_WORDS,
+                message,
+                words.span(both),
+                both!("an error on this control", "на этой стойке это ошибка"),
+            )
+            .help(both!(
+                "write the words in the block of the first hole",
+                "напишите эти слова в кадре первого отверстия"
+            )));
     }
     if k.is_some() && words.has(Letters::of(b"IJ")) {
         let span = words.span(Letters::of(b"IJK"));
         return Err(words
             .refuse(
                 codes::CYCLE_WORDS,
-                "K beside I or J in a drilling cycle",
+                both!("K beside I or J in a drilling cycle", "K рядом с I или J в цикле сверления"),
                 span,
-                "a count of holes, or the smallest peck? controls differ",
+                both!(
+                    "a count of holes, or the smallest peck? controls differ",
+                    "число отверстий или наименьший проход? у стоек по-разному"
+                ),
             )
-            .help("write each hole in a block of its own, with its pecks as Q"));
+            .help(both!(
+                "write each hole in a block of its own, with its pecks as Q",
+                "напишите каждое отверстие отдельным кадром, глубину прохода словом Q"
+            )));
     }
     if count > MOST_REPEATS {
-        let message = format!("{count} repetitions of a drilling cycle");
+        let message =
+            both!("{count} repetitions of a drilling cycle", "число повторений цикла сверления: {count}");
         return Err(words
-            .refuse(codes::CYCLE_WORDS, message, words.span(both), format!("at most {MOST_REPEATS}"))
-            .help("split the block"));
+            .refuse(
+                codes::CYCLE_WORDS,
+                message,
+                words.span(both),
+                both!("at most {MOST_REPEATS}", "не больше {MOST_REPEATS}"),
+            )
+            .help(both!("split the block", "разделите кадр")));
     }
     Ok(count)
 }
@@ -98,11 +124,14 @@ pub(crate) fn holes(
         return Err(words
             .refuse(
                 codes::INVERSE_TIME,
-                "a drilling cycle under G93",
+                both!("a drilling cycle under G93", "цикл сверления при G93"),
                 words.span(AXIS_LETTERS),
-                "no control feeds a cycle by inverse time",
+                both!(
+                    "no control feeds a cycle by inverse time",
+                    "ни одна стойка не ведёт цикл по обратному времени"
+                ),
             )
-            .help("program G94 before it"));
+            .help(both!("program G94 before it", "запрограммируйте перед ним G94")));
     }
     own_feed(words, state)?;
     settle(words, state)?;
@@ -120,24 +149,36 @@ pub(crate) fn holes(
         return Err(words
             .refuse(
                 codes::SIMULTANEOUS,
-                "a rotary axis turns in a drilling cycle",
+                both!(
+                    "a rotary axis turns in a drilling cycle",
+                    "в цикле сверления вращается поворотная ось"
+                ),
                 words.span(ROTARY_LETTERS),
-                "turns here",
+                both!("turns here", "вращается здесь"),
             )
-            .help("turn the rotary axis in a block of its own before the cycle"));
+            .help(both!(
+                "turn the rotary axis in a block of its own before the cycle",
+                "поверните ось отдельным кадром до цикла"
+            )));
     }
     let (r_mm, bottom_mm) = levels(env, words, state, &cycle, normal, &shift)?;
     if let ReturnLevel::Undecided { line } = state.return_level {
         return Err(words
             .refuse(
                 codes::BLOCK_DELETE,
-                "whether G98 or G99 is in force depends on the block delete switch",
+                both!(
+                    "whether G98 or G99 is in force depends on the block delete switch",
+                    "действует G98 или G99 — зависит от переключателя пропуска кадров"
+                ),
                 words.span(AXIS_LETTERS.or(R)),
-                format!("line {line} and those behind it change it and may be skipped"),
+                both!(
+                    "line {line} and those behind it change it and may be skipped",
+                    "кадры со строки {line} его меняют и могут быть пропущены"
+                ),
             )
-            .help("write G98 or G99 in this block"));
+            .help(both!("write G98 or G99 in this block", "напишите G98 или G99 в этом кадре")));
     }
-    let mut at = require_known(words, &state.axes, "the drilling cycle")?;
+    let mut at = require_known(words, &state.axes, &Text::pair("the drilling cycle", "цикл сверления"))?;
     // Nothing but a motion code makes an unknown axis known again, and that ends the cycle: where the
     // first hole finds the axis known, the start of the series did.
     let began_mm = cycle.initial.known().unwrap_or(at.linear_mm[normal]);
@@ -211,11 +252,14 @@ fn no_scaling(words: &Words<'_, '_, '_>, state: &Modal, normal: usize, cycle: &C
     Err(words
         .refuse(
             codes::FRAME,
-            format!("a drilling cycle under {}", state.transform.name()),
+            both!("a drilling cycle under {}", "цикл сверления, пока действует {:#}", state.transform.name()),
             words.span(AXIS_LETTERS.or(R).or(Q)),
-            "what becomes of its depth, pecks and shifts is told by no manual",
+            both!(
+                "what becomes of its depth, pecks and shifts is told by no manual",
+                "что станет с глубиной, проходами и сдвигами, не сказано ни в одном руководстве"
+            ),
         )
-        .help("scale or mirror the holes in the CAM"))
+        .help(both!("scale or mirror the holes in the CAM", "масштабируйте или отразите отверстия в CAM")))
 }
 
 fn position(at: Position) -> Axes {
@@ -255,8 +299,13 @@ fn read_words(
     if let Some(value) = words.coordinate(b'Q', inch) {
         if value == 0.0 && matches!(cycle.kind, CycleCode::PeckFull | CycleCode::PeckChip) {
             return Err(words
-                .refuse(codes::CYCLE_WORDS, "a peck of depth zero", words.span(Q), "Q must not be 0")
-                .help("write the depth of one peck"));
+                .refuse(
+                    codes::CYCLE_WORDS,
+                    both!("a peck of depth zero", "проход нулевой глубины"),
+                    words.span(Q),
+                    both!("Q must not be 0", "Q не может быть 0"),
+                )
+                .help(both!("write the depth of one peck", "напишите глубину одного прохода")));
         }
         cycle.peck_mm = Some((value * unit_mm).abs());
     }
@@ -297,27 +346,38 @@ fn levels(
         CycleLevels::Held if !depth_may_follow => Ok(held),
         CycleLevels::Held | CycleLevels::Unstated => {
             let depth = LINEAR[normal] as char;
-            let message = format!(
-                "R and {depth} were written under another of G90 and G91, and controls differ in what they mean now"
+            let message = both!(
+                "R and {depth} were written under another of G90 and G91, and controls differ in what they mean now",
+                "R и {depth} написаны при другой из G90 и G91; что они значат теперь, у стоек по-разному"
             );
             Err(words
                 .refuse(
                     codes::CYCLE_WORDS,
                     message,
                     words.span(AXIS_LETTERS.or(R)),
-                    format!("R and {depth} are taken from an earlier block"),
+                    both!(
+                        "R and {depth} are taken from an earlier block",
+                        "R и {depth} взяты из прежнего кадра"
+                    ),
                 )
-                .help(format!("write R and {depth} again in this block")))
+                .help(both!(
+                    "write R and {depth} again in this block",
+                    "напишите R и {depth} заново в этом кадре"
+                )))
         }
     }
 }
 
 fn incomplete(words: &Words<'_, '_, '_>, missing: &str) -> Box<diagnostic::Diagnostic> {
-    let message = format!("the drilling cycle has no {missing}");
-    let label = format!("{missing} was expected here or in an earlier block of this cycle");
-    words
-        .refuse(codes::CYCLE_INCOMPLETE, message, words.span(AXIS_LETTERS.or(R)), label)
-        .help(format!("write {missing} on the block that starts the cycle"))
+    let message = both!("the drilling cycle has no {missing}", "в цикле сверления нет {missing}");
+    let label = both!(
+        "{missing} was expected here or in an earlier block of this cycle",
+        "{missing} ожидалось здесь или в прежнем кадре этого цикла"
+    );
+    words.refuse(codes::CYCLE_INCOMPLETE, message, words.span(AXIS_LETTERS.or(R)), label).help(both!(
+        "write {missing} on the block that starts the cycle",
+        "напишите {missing} в кадре, который начинает цикл"
+    ))
 }
 
 const fn kind(code: CycleCode) -> CycleKind {

@@ -7,13 +7,14 @@
 //! where forgetting is enough (a later block that needs it is refused, one that names all axes makes both states
 //! equal again), and refused where it is not.
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::Side;
 use toolpath::Kinematics;
 
 use crate::codes;
 use crate::modal::{
-    Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress, ReturnLevel,
-    Stated, ToolLength, Units, Why, XWords,
+    ArcCentres, Aside, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming, Progress,
+    ReturnLevel, Stated, ToolLength, Units, Why, XWords,
 };
 use crate::words::{Outcome, Words};
 
@@ -68,109 +69,120 @@ pub(crate) fn merge(words: &Words<'_, '_, '_>, aside: &Aside, executed: &Modal) 
         None => Ok(both),
         Some((with, without)) => {
             let span = words.codes.first().map_or_else(|| words.span(words.letters), |code| code.span);
-            let message = format!(
-                "after line {line} either {with} or {without} is in force, depending on the block delete switch"
+            let message = both!(
+                "after line {line} either {with} or {without} is in force, depending on the block delete switch",
+                "после строки {line} состояние зависит от переключателя пропуска кадров: {with:#} или {without:#}"
             );
             Err(words
                 .refuse(
                     codes::BLOCK_DELETE,
                     message,
                     span,
-                    format!("{with} where the blocks with `/` are executed, {without} where they are skipped"),
+                    both!("{with} where the blocks with `/` are executed, {without} where they are skipped", "{with:#}, если кадры с `/` исполнены, {without:#}, если пропущены"),
                 )
-                .help("write the code in a block without `/`, or take it back in a block with `/`, so that both ways lead to one state"))
+                .help(both!("write the code in a block without `/`, or take it back in a block with `/`, so that both ways lead to one state", "напишите функцию в кадре без `/` или отмените её в кадре с `/`, чтобы оба случая вели к одному состоянию")))
         }
     }
 }
 
 /// What is in force after execution and after skipping, where the two cannot be served by one text.
-fn difference(skipped: &Modal, executed: &Modal) -> Option<(String, String)> {
-    fn pair<T: PartialEq>(with: &T, without: &T, name: impl Fn(&T) -> String) -> Option<(String, String)> {
+fn difference(skipped: &Modal, executed: &Modal) -> Option<(Text, Text)> {
+    fn pair<T: PartialEq>(with: &T, without: &T, name: impl Fn(&T) -> Text) -> Option<(Text, Text)> {
         (with != without).then(|| (name(with), name(without)))
     }
     let (with, without) = (executed, skipped);
-    pair(&with.distance, &without.distance, |v| {
-        match v {
-            Distance::Absolute => "G90",
-            Distance::Incremental => "G91",
-        }
-        .to_owned()
+    pair(&with.distance, &without.distance, |v| match v {
+        Distance::Absolute => Text::same("G90"),
+        Distance::Incremental => Text::same("G91"),
     })
     .or_else(|| {
-        pair(&with.units, &without.units, |v| {
-            match v {
-                Units::Inch => "inch",
-                Units::Millimetre => "millimetre",
-            }
-            .to_owned()
+        pair(&with.units, &without.units, |v| match v {
+            Units::Inch => both!("inch", "дюймы"),
+            Units::Millimetre => both!("millimetre", "миллиметры"),
         })
     })
     .or_else(|| {
         pair(&with.x_words, &without.x_words, |v| match v {
-            XWords::Diameter | XWords::DiameterOfAbsolute => format!("X as {v:?}"),
-            XWords::Radius => "X as a radius".to_owned(),
-            XWords::Unstated => "X as nobody said".to_owned(),
+            XWords::Diameter => both!("X as Diameter", "X — диаметр"),
+            XWords::DiameterOfAbsolute => both!("X as DiameterOfAbsolute", "X — диаметр при G90"),
+            XWords::Radius => both!("X as a radius", "X — радиус"),
+            XWords::Unstated => both!("X as nobody said", "что такое X, не сказано"),
         })
     })
-    .or_else(|| pair(&with.plane, &without.plane, |v| format!("plane {v:?}")))
+    .or_else(|| pair(&with.plane, &without.plane, |v| both!("plane {v:?}", "плоскость {v:?}")))
     .or_else(|| {
-        pair(&with.feed_mode, &without.feed_mode, |v| {
-            match v {
-                FeedMode::InverseTime => "G93",
-                FeedMode::PerMinute => "G94",
-                FeedMode::PerRevolution => "G95",
-            }
-            .to_owned()
+        pair(&with.feed_mode, &without.feed_mode, |v| match v {
+            FeedMode::InverseTime => Text::same("G93"),
+            FeedMode::PerMinute => Text::same("G94"),
+            FeedMode::PerRevolution => Text::same("G95"),
         })
     })
     .or_else(|| {
-        pair(&with.arc_centres, &without.arc_centres, |v| format!("arc centres {v:?}").to_lowercase())
+        pair(&with.arc_centres, &without.arc_centres, |v| match v {
+            ArcCentres::Incremental => both!("arc centres incremental", "центры дуг в приращениях"),
+            ArcCentres::Absolute => both!("arc centres absolute", "центры дуг абсолютные"),
+        })
     })
     .or_else(|| {
-        pair(&with.compensation, &without.compensation, |v| {
-            match v {
-                Compensation::Off => "no cutter compensation",
-                Compensation::On(Side::Left) => "cutter compensation to the left",
-                Compensation::On(Side::Right) => "cutter compensation to the right",
+        pair(&with.compensation, &without.compensation, |v| match v {
+            Compensation::Off => both!("no cutter compensation", "коррекция на радиус выключена"),
+            Compensation::On(Side::Left) => {
+                both!("cutter compensation to the left", "коррекция на радиус слева")
             }
-            .to_owned()
+            Compensation::On(Side::Right) => {
+                both!("cutter compensation to the right", "коррекция на радиус справа")
+            }
         })
     })
     .or_else(|| {
         pair(&with.tool_length, &without.tool_length, |v| match v {
-            ToolLength::Off => "no tool length".to_owned(),
-            ToolLength::On { number, .. } => format!("tool length H{number}"),
-            ToolLength::Written { .. } => "the tool length of this block".to_owned(),
+            ToolLength::Off => both!("no tool length", "коррекция на длину выключена"),
+            ToolLength::On { number, .. } => both!("tool length H{number}", "коррекция на длину H{number}"),
+            ToolLength::Written { .. } => {
+                both!("the tool length of this block", "коррекция на длину этого кадра")
+            }
         })
     })
     .or_else(|| {
-        pair(&with.kinematics, &without.kinematics, |v| {
-            match v {
-                Kinematics::Axes => "neither tool centre point control nor a tilted plane",
-                Kinematics::Tip => "tool centre point control",
-                Kinematics::Plane(_) => "a tilted plane",
-            }
-            .to_owned()
+        pair(&with.kinematics, &without.kinematics, |v| match v {
+            Kinematics::Axes => both!(
+                "neither tool centre point control nor a tilted plane",
+                "ни управления по вершине инструмента, ни наклонной плоскости"
+            ),
+            Kinematics::Tip => both!("tool centre point control", "управление по вершине инструмента"),
+            Kinematics::Plane(_) => both!("a tilted plane", "наклонная плоскость"),
         })
     })
     .or_else(|| {
         pair(&with.plane_begun, &without.plane_begun, |v| {
-            if v.is_some() { "the beginning of a tilted plane" } else { "none of it" }.to_owned()
+            if v.is_some() {
+                both!("the beginning of a tilted plane", "начало наклонной плоскости")
+            } else {
+                both!("none of it", "без неё")
+            }
         })
     })
-    .or_else(|| pair(&with.transform, &without.transform, |v| v.name().to_owned()))
-    .or_else(|| pair(&with.shifts, &without.shifts, |v| format!("shift {:?} mm", v.preset_mm)))
+    .or_else(|| pair(&with.transform, &without.transform, |v| v.name()))
+    .or_else(|| pair(&with.shifts, &without.shifts, |v| both!("shift {:?} mm", "сдвиг {:?} мм", v.preset_mm)))
     .or_else(|| {
-        pair(&with.written, &without.written, |v| format!("{} work offset(s) of the program", v.len()))
+        pair(&with.written, &without.written, |v| {
+            both!("{} work offset(s) of the program", "смещений нуля, записанных программой: {}", v.len())
+        })
     })
     .or_else(|| {
         pair(&with.work_offset, &without.work_offset, |v| {
-            v.code.map_or_else(|| "no work offset".to_owned(), |code| code.to_string())
+            v.code.map_or_else(
+                || both!("no work offset", "смещение нуля не выбрано"),
+                |code| Text::same(code.to_string()),
+            )
         })
     })
     .or_else(|| {
         pair(&with.cycle, &without.cycle, |v| {
-            v.map_or_else(|| "no cycle".to_owned(), |cycle| format!("{} with its words", cycle.code))
+            v.map_or_else(
+                || both!("no cycle", "цикл не действует"),
+                |cycle| both!("{} with its words", "{} со своими словами", cycle.code),
+            )
         })
     })
 }

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, GCode, LatheSign, Macros, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
@@ -275,14 +275,19 @@ impl Evidence {
             return Err(Box::new(finding));
         }
         let (Some(bare), Some(pointed)) = (&self.first_bare, &self.first_pointed) else { return Ok(()) };
-        let message = format!(
+        let message = both!(
             "{} length(s) without a decimal point beside lengths with one: a parameter of the control decides what they are",
+            "размеров без десятичной точки рядом с размерами с точкой: {}; что они значат, решает параметр стойки",
             self.bare
         );
-        let label = format!("the first without a point; the first with one is in line {}", pointed.line);
+        let label = both!(
+            "the first without a point; the first with one is in line {}",
+            "первый без точки; первый с точкой — в строке {}",
+            pointed.line
+        );
         let diagnostic = Diagnostic::error(codes::MIXED_LENGTHS, message)
             .at(bare.span.clone(), label)
-            .help("`--decimal increments` where Z10 is ten steps (0.010 mm), `--decimal millimetres` where it is Z10.; or `decimal = \"…\"` under `[program]` in the profile");
+            .help(both!("`--decimal increments` where Z10 is ten steps (0.010 mm), `--decimal millimetres` where it is Z10.; or `decimal = \"…\"` under `[program]` in the profile", "`--decimal increments`, если Z10 — десять дискрет (0.010 мм), `--decimal millimetres`, если это Z10.; или `decimal = \"…\"` в разделе `[program]` профиля"));
         Err(Box::new((diagnostic, bare.line)))
     }
 
@@ -299,10 +304,22 @@ impl Evidence {
             });
             let diagnostic = Diagnostic::doubt(
                 codes::UNIT_UNSTATED,
-                format!("the program states neither {inch} nor {millimetre}, and is read in millimetres"),
+                both!(
+                    "the program states neither {inch} nor {millimetre}, and is read in millimetres",
+                    "в программе нет ни {inch}, ни {millimetre}; она прочитана в миллиметрах"
+                ),
             )
-            .at(at.span.clone(), "the first length; the control reads it in the unit of the program before")
-            .help(format!("write {millimetre} (or {inch}) at the start of the program"));
+            .at(
+                at.span.clone(),
+                both!(
+                    "the first length; the control reads it in the unit of the program before",
+                    "первый размер; стойка прочтёт его в единице прежней программы"
+                ),
+            )
+            .help(both!(
+                "write {millimetre} (or {inch}) at the start of the program",
+                "напишите {millimetre} (или {inch}) в начале программы"
+            ));
             doubts.push((diagnostic, at.line));
         }
         doubts.extend(self.cut());
@@ -318,10 +335,10 @@ impl Evidence {
             let step = units::decimal::Decimal { mantissa: 1, decimals }.to_f64();
             let diagnostic = Diagnostic::doubt(
                 codes::BARE_LENGTHS,
-                format!("{} length(s) without a decimal point are read as increments of {step} mm", self.bare),
+                both!("{} length(s) without a decimal point are read as increments of {step} mm", "размеров без десятичной точки: {}; они прочитаны в дискретах по {step} мм", self.bare),
             )
-            .at(at.span.clone(), "the first; on a control set to calculator-type input it is a thousand times as long")
-            .help("`--decimal increments` says that this is right, `--decimal millimetres` that it is not; or `decimal = \"…\"` under `[program]` in the profile");
+            .at(at.span.clone(), both!("the first; on a control set to calculator-type input it is a thousand times as long", "первый; на стойке с вводом «как на калькуляторе» он в тысячу раз больше"))
+            .help(both!("`--decimal increments` says that this is right, `--decimal millimetres` that it is not; or `decimal = \"…\"` under `[program]` in the profile", "`--decimal increments` говорит, что это верно, `--decimal millimetres` — что нет; или `decimal = \"…\"` в разделе `[program]` профиля"));
             doubts.push((diagnostic, at.line));
         }
         if let Some(at) = &self.first_unknown {
@@ -330,16 +347,14 @@ impl Evidence {
             let quoted: Vec<String> = named.iter().map(|code| format!("\"{code}\"")).collect();
             let diagnostic = Diagnostic::doubt(
                 codes::UNKNOWN_M_CODE,
-                format!(
-                    "{} M code(s) that the table of dialect {} does not have: {}{more}",
+                both!("{} M code(s) that the table of dialect {} does not have: {}{more}", "функций M, которых нет в таблице диалекта {1}: {0} ({2}{more})",
                     self.unknown,
                     questions.dialect.name,
                     named.join(", ")
                 ),
             )
-            .at(at.span.clone(), "the first; taken for something that moves neither an axis nor the frame")
-            .help(format!(
-                "where the machine's manual says so, write `harmless = [{}{more}]` under `[m_codes]` in the profile",
+            .at(at.span.clone(), both!("the first; taken for something that moves neither an axis nor the frame", "первая; принята за такую, что не двигает ни оси, ни системы координат"))
+            .help(both!("where the machine's manual says so, write `harmless = [{}{more}]` under `[m_codes]` in the profile", "если так сказано в руководстве станка, впишите `harmless = [{}{more}]` в раздел `[m_codes]` профиля",
                 quoted.join(", ")
             ));
             doubts.push((diagnostic, at.line));
@@ -354,18 +369,27 @@ impl Evidence {
         }
         let (message, label, at) = match (&self.cut_number, &self.opened) {
             (Some(at), _) => (
-                "the program ends with a number, and neither an end code nor a line end follows",
-                "perhaps not all of its digits are there",
+                both!(
+                    "the program ends with a number, and neither an end code nor a line end follows",
+                    "программа кончается числом, за которым нет ни функции конца, ни конца строки"
+                ),
+                both!("perhaps not all of its digits are there", "возможно, часть цифр пропала"),
                 at,
             ),
-            (None, Some(at)) => {
-                ("a `%` opens the program, and neither a `%` nor an end code closes it", "opened here", at)
-            }
+            (None, Some(at)) => (
+                both!(
+                    "a `%` opens the program, and neither a `%` nor an end code closes it",
+                    "программа открыта знаком `%`, а не закрыта ни `%`, ни функцией конца"
+                ),
+                both!("opened here", "открыта здесь"),
+                at,
+            ),
             (None, None) => return None,
         };
-        let diagnostic = Diagnostic::doubt(codes::CUT_OFF, message)
-            .at(at.span.clone(), label)
-            .help("compare it with the program as posted, and end it with M30");
+        let diagnostic = Diagnostic::doubt(codes::CUT_OFF, message).at(at.span.clone(), label).help(both!(
+            "compare it with the program as posted, and end it with M30",
+            "сравните с программой, выведенной постпроцессором, и закончите её функцией M30"
+        ));
         Some((diagnostic, at.line))
     }
 
@@ -380,14 +404,18 @@ impl Evidence {
         let [x, y, z] = self.names;
         let tells = rows.iter().any(|(sign, _)| sign.sure) || rows.len() > 1 || (x && z && !y);
         let (sign, place) = rows.first().filter(|_| tells)?;
-        let mut message = format!("this is a program of a lathe, and dialect {} is of mills", dialect.name);
+        let mut message = both!(
+            "this is a program of a lathe, and dialect {} is of mills",
+            "это программа токарного станка, а диалект {} — фрезерный",
+            dialect.name
+        );
         if !sign.sure && x && z && !y {
-            message.push_str("; it never names Y");
+            message.push(&both!("; it never names Y", "; Y в ней не встречается"));
         }
-        let diagnostic = Diagnostic::error(codes::LATHE, message)
-            .at(place.span.clone(), sign.says.as_str())
-            .help(format!(
+        let diagnostic =
+            Diagnostic::error(codes::LATHE, message).at(place.span.clone(), sign.says.clone()).help(both!(
                 "use {} and the profile of a lathe; if it is a mill's: {}",
+                "возьмите {:#} и профиль токарного станка; если программа фрезерная: {:#}",
                 lathe_dialect(&dialect.name),
                 sign.mill
             ));
@@ -396,12 +424,12 @@ impl Evidence {
 }
 
 /// What a lathe's dialect of the same control is called.
-fn lathe_dialect(mill: &str) -> &'static str {
+fn lathe_dialect(mill: &str) -> Text {
     match mill {
-        "fanuc" => "the dialect fanuc-lathe",
-        "linuxcnc" => "the dialect linuxcnc-lathe",
-        "sinumerik" => "the dialect sinumerik-turn",
-        _ => "a dialect of lathes (`vpost grammar list`)",
+        "fanuc" => both!("the dialect fanuc-lathe", "диалект fanuc-lathe"),
+        "linuxcnc" => both!("the dialect linuxcnc-lathe", "диалект linuxcnc-lathe"),
+        "sinumerik" => both!("the dialect sinumerik-turn", "диалект sinumerik-turn"),
+        _ => both!("a dialect of lathes (`vpost grammar list`)", "токарный диалект (`vpost grammar list`)"),
     }
 }
 

@@ -3,6 +3,7 @@
 //! All of them end in [`toolpath::Frame`]: axis = T(word) + zero + shifts + tool length, T being the
 //! rotation, scaling or mirror in force. What a manual leaves open is refused.
 
+use diagnostic::{Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, FramePart, OffsetL20};
 use toolpath::{Frame, Kinematics};
@@ -52,29 +53,71 @@ pub(crate) fn execute(
 ) -> Outcome<bool> {
     let (Some(action), Some(span)) = (demand.frame, demand.owner_span) else { return Ok(false) };
     if let Some(motion) = demand.written_motion {
-        let message = format!("{} and {} in one block", words.text(span), words.text(motion));
+        let message =
+            both!("{} and {} in one block", "{} и {} в одном кадре", words.text(span), words.text(motion));
         return Err(words
-            .refuse(codes::FRAME, message, span, "moves the frame: before or after the motion?")
-            .help("write the two codes in two blocks"));
+            .refuse(
+                codes::FRAME,
+                message,
+                span,
+                both!(
+                    "moves the frame: before or after the motion?",
+                    "смещает систему координат: до движения или после?"
+                ),
+            )
+            .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами")));
     }
     if words.has(ROTARY_LETTERS.or(SECONDARY_LETTERS)) {
         let letters = ROTARY_LETTERS.or(SECONDARY_LETTERS);
-        let message = format!("{} shifts an axis that is not X, Y or Z", words.text(span));
+        let message = both!(
+            "{} shifts an axis that is not X, Y or Z",
+            "{} смещает ось, которая не X, не Y и не Z",
+            words.text(span)
+        );
         return Err(words
-            .refuse(codes::FRAME, message, words.span(letters), "no offset of such an axis is known")
-            .help("remove the word where it is zero; else set the offset on the control"));
+            .refuse(
+                codes::FRAME,
+                message,
+                words.span(letters),
+                both!("no offset of such an axis is known", "смещения такой оси неизвестны"),
+            )
+            .help(both!(
+                "remove the word where it is zero; else set the offset on the control",
+                "уберите слово, если оно нулевое; иначе задайте смещение на стойке"
+            )));
     }
     if [before, state].iter().any(|state| state.compensation != Compensation::Off) {
-        return Err(refuse(words, span, "under cutter compensation", "the compensated path jumps with it")
-            .help("cancel the compensation with G40 before it"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("under cutter compensation", "при коррекции на радиус"),
+            both!("the compensated path jumps with it", "эквидистанта прыгает вместе с ней"),
+        )
+        .help(both!(
+            "cancel the compensation with G40 before it",
+            "отмените перед ней коррекцию функцией G40"
+        )));
     }
     if state.cycle.is_some() {
-        return Err(refuse(words, span, "while a drilling cycle is in force", "a cycle is running here")
-            .help("cancel the cycle with G80 before, and write it again with R and Z afterwards"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("while a drilling cycle is in force", "во время цикла сверления"),
+            both!("a cycle is running here", "здесь действует цикл"),
+        )
+        .help(both!(
+            "cancel the cycle with G80 before, and write it again with R and Z afterwards",
+            "отмените цикл до этого функцией G80, а после напишите его снова, с R и Z"
+        )));
     }
     if before.work_offset != state.work_offset || before.tool_length != state.tool_length {
-        return Err(refuse(words, span, "beside another offset", "in which order? controls differ")
-            .help("write the two codes in two blocks"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("beside another offset", "рядом с другим смещением"),
+            both!("in which order? controls differ", "в каком порядке? у стоек по-разному"),
+        )
+        .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами")));
     }
     let turns = matches!(
         action,
@@ -85,9 +128,20 @@ pub(crate) fn execute(
             | Action::ProgramFrame { .. }
     );
     if !turns && !state.transform.is_none() {
-        let under = format!("under {}", state.transform.name());
-        return Err(refuse(words, span, &under, "its words may be turned, scaled or not")
-            .help("cancel the rotation, scaling or mirror before it"));
+        let under = both!("under {}", "пока действует {:#}", state.transform.name());
+        return Err(refuse(
+            words,
+            span,
+            &under,
+            both!(
+                "its words may be turned, scaled or not",
+                "её слова могут быть повёрнуты и масштабированы, а могут и нет"
+            ),
+        )
+        .help(both!(
+            "cancel the rotation, scaling or mirror before it",
+            "отмените перед этим поворот, масштабирование или зеркальное отображение"
+        )));
     }
     let mut states_position = false;
     match action {
@@ -107,10 +161,16 @@ pub(crate) fn execute(
                     return Err(refuse(
                         words,
                         span,
-                        "without a shift of this program",
-                        "brings back what an earlier program left",
+                        &both!("without a shift of this program", "без сдвига в этой программе"),
+                        both!(
+                            "brings back what an earlier program left",
+                            "возвращает то, что осталось от прежней программы"
+                        ),
                     )
-                    .help("write the shift with G92 or G52, or use a work offset"));
+                    .help(both!(
+                        "write the shift with G92 or G52, or use a work offset",
+                        "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля"
+                    )));
                 };
                 state.shifts.preset_mm = kept;
             }
@@ -153,25 +213,30 @@ pub(crate) fn settle(words: &Words<'_, '_, '_>, state: &mut Modal) -> Outcome<()
         return Ok(());
     }
     let names = open.names();
-    let message =
-        "the first motion after a rotation, scaling or mirror was switched must be absolute and whole";
-    let label = format!("{names} were expected, in G90: controls differ in where they start otherwise");
+    let message = both!(
+        "the first motion after a rotation, scaling or mirror was switched must be absolute and whole",
+        "первое движение после смены поворота, масштаба или зеркального отображения должно быть абсолютным и полным"
+    );
+    let label = both!(
+        "{names} were expected, in G90: controls differ in where they start otherwise",
+        "ожидались {names} при G90: откуда иначе начинать, у стоек по-разному"
+    );
     Err(words
         .refuse(codes::FRAME, message, words.span(AXIS_LETTERS), label)
-        .help(format!("write {names} in this block, in G90")))
+        .help(both!("write {names} in this block, in G90", "напишите {names} в этом кадре, при G90")))
 }
 
-fn refuse(words: &Words<'_, '_, '_>, span: Span, what: &str, label: &str) -> Refusal {
-    words.refuse(codes::FRAME, format!("{} {what}", words.text(span)), span, label)
+fn refuse(words: &Words<'_, '_, '_>, span: Span, what: &Text, label: Text) -> Refusal {
+    words.refuse(codes::FRAME, both!("{} {what}", "{} {what:#}", words.text(span)), span, label)
 }
 
 fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
     let letters = AXIS_LETTERS.or(ARC_LETTERS);
     if words.has(letters) {
-        let message = format!("{} takes no words", words.text(span));
+        let message = both!("{} takes no words", "{} не принимает слов", words.text(span));
         return Err(words
-            .refuse(codes::FRAME, message, words.span(letters), "whose are they?")
-            .help("write them in a block of their own"));
+            .refuse(codes::FRAME, message, words.span(letters), both!("whose are they?", "чьи они?"))
+            .help(both!("write them in a block of their own", "напишите их отдельным кадром")));
     }
     Ok(())
 }
@@ -179,14 +244,28 @@ fn no_words(words: &Words<'_, '_, '_>, span: Span) -> Outcome<()> {
 /// Words of X, Y, Z in mm; at least one.
 fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<[Option<f64>; 3]> {
     if words.has(ARC_LETTERS) {
-        let message = format!("{} takes no {}", words.text(span), words.names(ARC_LETTERS));
+        let message =
+            both!("{} takes no {}", "{} не принимает {}", words.text(span), words.names(ARC_LETTERS));
         return Err(words
-            .refuse(codes::FRAME, message, words.span(ARC_LETTERS), "X, Y and Z were expected")
-            .help("remove the word"));
+            .refuse(
+                codes::FRAME,
+                message,
+                words.span(ARC_LETTERS),
+                both!("X, Y and Z were expected", "ожидались X, Y и Z"),
+            )
+            .help(both!("remove the word", "уберите слово")));
     }
     if !words.has(LINEAR_LETTERS) {
-        return Err(refuse(words, span, "without X, Y or Z", "shifts what, by how much?")
-            .help("write the axes and their values, or remove the code"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("without X, Y or Z", "без X, Y и Z"),
+            both!("shifts what, by how much?", "смещает что и насколько?"),
+        )
+        .help(both!(
+            "write the axes and their values, or remove the code",
+            "напишите оси и их значения или уберите функцию"
+        )));
     }
     let inch = state.units == Units::Inch;
     Ok(LINEAR.map(|letter| words.coordinate(letter, inch).map(|value| value * state.units.mm())))
@@ -194,9 +273,13 @@ fn shift_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<
 
 pub(crate) fn absolute(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<()> {
     if state.distance == Distance::Incremental {
-        return Err(
-            refuse(words, span, "under G91", "added or set? controls differ").help("write G90 before it")
-        );
+        return Err(refuse(
+            words,
+            span,
+            &both!("under G91", "при G91"),
+            both!("added or set? controls differ", "прибавить или установить? у стоек по-разному"),
+        )
+        .help(both!("write G90 before it", "напишите перед ней G90")));
     }
     Ok(())
 }
@@ -212,8 +295,16 @@ fn local_shift(
     let shift = shift_words(words, span, state)?;
     let one = env.dialect.frames.local_is_preset;
     if !one && state.shifts.preset_mm != [0.0; 3] {
-        return Err(refuse(words, span, "after G92", "whether the two shifts add up depends on the control")
-            .help("use one of the two"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("after G92", "после G92"),
+            both!(
+                "whether the two shifts add up depends on the control",
+                "складываются ли два сдвига, зависит от стойки"
+            ),
+        )
+        .help(both!("use one of the two", "обойдитесь одним из двух")));
     }
     let target = if one { &mut state.shifts.preset_mm } else { &mut state.shifts.local_mm };
     for i in 0..3 {
@@ -236,17 +327,31 @@ fn preset(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, state: &
     let wanted = shift_words(words, span, state)?;
     let rules = &env.dialect.frames;
     if !rules.local_is_preset && state.shifts.local_mm != [0.0; 3] {
-        return Err(refuse(words, span, "after G52", "whether the two shifts add up depends on the control")
-            .help("use one of the two"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("after G52", "после G52"),
+            both!(
+                "whether the two shifts add up depends on the control",
+                "складываются ли два сдвига, зависит от стойки"
+            ),
+        )
+        .help(both!("use one of the two", "обойдитесь одним из двух")));
     }
     if !rules.local_is_preset && state.tool_length.applied_mm() != [0.0; 3] {
         return Err(refuse(
             words,
             span,
-            "with a tool length in force",
-            "with or without the length? a parameter decides",
+            &both!("with a tool length in force", "при действующей коррекции на длину"),
+            both!(
+                "with or without the length? a parameter decides",
+                "с учётом длины или без него? решает параметр"
+            ),
         )
-        .help("write G49 before it, or use a work offset"));
+        .help(both!(
+            "write G49 before it, or use a work offset",
+            "напишите перед ней G49 или возьмите смещение нуля"
+        )));
     }
     let mut preset = state.shifts.preset_mm;
     for i in 0..3 {
@@ -278,8 +383,13 @@ fn cancel_preset(
     let shifts = [state.shifts.preset_mm, state.shifts.local_mm];
     let shifted = shifts.iter().flatten().any(|shift| shift.abs() > NO_SHIFT_MM);
     if !words.has(LINEAR_LETTERS) && shifted {
-        return Err(refuse(words, span, "without axes", "which axes lose their shift?")
-            .help("write X0 Y0 Z0 beside it"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("without axes", "без осей"),
+            both!("which axes lose their shift?", "у каких осей снимается сдвиг?"),
+        )
+        .help(both!("write X0 Y0 Z0 beside it", "напишите рядом X0 Y0 Z0")));
     }
     for (i, letter) in LINEAR.into_iter().enumerate() {
         if words.has(Letters::of(&[letter])) {
@@ -301,18 +411,30 @@ fn write_offset(
     if !matches!(l, Some(2 | 20)) {
         let at = if words.has(L) { words.span(L) } else { span };
         return Err(words
-            .refuse(codes::FRAME, format!("{} that writes no work offset", words.text(span)), at, "L2 or L20 was expected")
-            .help("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block"));
+            .refuse(codes::FRAME, both!("{} that writes no work offset", "{} записывает не смещение нуля", words.text(span)), at, both!("L2 or L20 was expected", "ожидалось L2 или L20"))
+            .help(both!("tool tables and parameters: set them on the control, give lengths with --tool, and delete the block", "таблицы инструмента и параметры задайте на стойке, длины дайте ключом --tool, а кадр удалите")));
     }
     if words.has(R) {
         return Err(words
-            .refuse(codes::FRAME, "a work offset with a rotation", words.span(R), "turns the frame")
-            .help("rotate in the CAM, or align the workpiece, and remove R"));
+            .refuse(
+                codes::FRAME,
+                both!("a work offset with a rotation", "смещение нуля с поворотом"),
+                words.span(R),
+                both!("turns the frame", "поворачивает систему координат"),
+            )
+            .help(both!(
+                "rotate in the CAM, or align the workpiece, and remove R",
+                "поверните в CAM или выставьте деталь и уберите R"
+            )));
     }
     let Some(p) = words.whole(b'P')? else {
-        return Err(
-            refuse(words, span, "without P", "which work offset?").help("write P1 for G54, P2 for G55")
-        );
+        return Err(refuse(
+            words,
+            span,
+            &both!("without P", "без P"),
+            both!("which work offset?", "какое смещение нуля?"),
+        )
+        .help(both!("write P1 for G54, P2 for G55", "напишите P1 для G54, P2 для G55")));
     };
     let values = shift_words(words, span, state)?;
     let rules = &env.dialect.frames;
@@ -322,27 +444,43 @@ fn write_offset(
         (_, 0) if rules.l20 == OffsetL20::Position => match active_name(env, state) {
             Some(name) => name,
             None => {
-                return Err(refuse(words, span, "without a work offset in force", "P0 is the one in force")
-                    .help("write P1 for G54, or G54 before it"));
+                return Err(refuse(
+                    words,
+                    span,
+                    &both!("without a work offset in force", "без действующего смещения нуля"),
+                    both!("P0 is the one in force", "P0 — то, которое действует"),
+                )
+                .help(both!("write P1 for G54, or G54 before it", "напишите P1 для G54 или G54 перед ней")));
             }
         },
         (_, 0) => {
             return Err(words
                 .refuse(
                     codes::FRAME,
-                    "writes the external work offset",
+                    both!("writes the external work offset", "записывает внешнее смещение нуля"),
                     words.span(P),
-                    "shifts all work offsets",
+                    both!("shifts all work offsets", "смещает все смещения нуля"),
                 )
-                .help("add it to the work offsets, which P1 to P6 write"));
+                .help(both!(
+                    "add it to the work offsets, which P1 to P6 write",
+                    "прибавьте его к смещениям нуля, которые записывают P1–P6"
+                )));
         }
         (_, p) => match offset_of_number(env, p) {
             Some(name) => name,
             None => {
-                let message = format!("there is no work offset P{p}");
+                let message = both!("there is no work offset P{p}", "смещения нуля P{p} нет");
                 return Err(words
-                    .refuse(codes::FRAME, message, words.span(P), "P1 is G54, P2 is G55 and so on")
-                    .help("write the number of a work offset of this control"));
+                    .refuse(
+                        codes::FRAME,
+                        message,
+                        words.span(P),
+                        both!("P1 is G54, P2 is G55 and so on", "P1 — это G54, P2 — G55 и так далее"),
+                    )
+                    .help(both!(
+                        "write the number of a work offset of this control",
+                        "напишите номер смещения нуля этой стойки"
+                    )));
             }
         },
     };
@@ -361,10 +499,24 @@ fn write_offset(
             (Some(value), _) if !adds => value,
             (None, Some(old)) => old[i],
             _ => {
-                let message = format!("work offset {name} is written in part, and the rest is not given");
+                let message = both!(
+                    "work offset {name} is written in part, and the rest is not given",
+                    "смещение нуля {name} записано частично, а остальное не задано"
+                );
                 return Err(words
-                    .refuse(codes::WORK_OFFSET, message, span, "the axes left out keep what nobody said")
-                    .help(format!("write X, Y and Z here, or give it with `--work-offset {name}=X,Y,Z`")));
+                    .refuse(
+                        codes::WORK_OFFSET,
+                        message,
+                        span,
+                        both!(
+                            "the axes left out keep what nobody said",
+                            "у опущенных осей остаётся то, чего никто не сказал"
+                        ),
+                    )
+                    .help(both!(
+                        "write X, Y and Z here, or give it with `--work-offset {name}=X,Y,Z`",
+                        "напишите здесь X, Y и Z или задайте его ключом `--work-offset {name}=X,Y,Z`"
+                    )));
             }
         };
     }
@@ -418,16 +570,24 @@ fn program_frame(
         return Err(words
             .refuse(
                 codes::FRAME,
-                format!("{} beside something else", words.text(span)),
+                both!("{} beside something else", "{} рядом с чем-то ещё", words.text(span)),
                 at,
-                "a block of its own was expected",
+                both!("a block of its own was expected", "ожидался отдельный кадр"),
             )
-            .help("write it in a block of its own"));
+            .help(both!("write it in a block of its own", "напишите её отдельным кадром")));
     }
     let none = !words.has(allowed);
     if none && adds {
-        return Err(refuse(words, span, "without words", "adds what to the frame?")
-            .help("write the axes and their values, or remove it"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("without words", "без слов"),
+            both!("adds what to the frame?", "что прибавить к системе координат?"),
+        )
+        .help(both!(
+            "write the axes and their values, or remove it",
+            "напишите оси и их значения или уберите её"
+        )));
     }
     let (mut shift, mut transform) =
         if adds { (state.shifts.local_mm, state.transform) } else { ([0.0; 3], Transform::None) };
@@ -439,8 +599,16 @@ fn program_frame(
             let turned =
                 transform.frame([0.0; 3]).map(|frame| (frame.to_machine(by), frame.to_machine([0.0; 3])));
             let Some((end, start)) = turned else {
-                return Err(refuse(words, span, "in a frame without inverse", "leads nowhere")
-                    .help("cancel the frame with TRANS alone before it"));
+                return Err(refuse(
+                    words,
+                    span,
+                    &both!("in a frame without inverse", "в необратимой системе координат"),
+                    both!("leads nowhere", "никуда не ведёт"),
+                )
+                .help(both!(
+                    "cancel the frame with TRANS alone before it",
+                    "отмените перед этим систему координат: TRANS отдельным кадром"
+                )));
             };
             (0..3).for_each(|i| shift[i] += end[i] - start[i]);
         }
@@ -465,8 +633,19 @@ fn program_frame(
                 if value != 0.0 {
                     let at = words.span(Letters::of(&[LINEAR[i]]));
                     return Err(words
-                        .refuse(codes::FRAME, "a mirror about a place that is not zero", at, "0 was expected")
-                        .help("shift the zero with ATRANS before it, and write 0"));
+                        .refuse(
+                            codes::FRAME,
+                            both!(
+                                "a mirror about a place that is not zero",
+                                "зеркальное отображение не относительно нуля"
+                            ),
+                            at,
+                            both!("0 was expected", "ожидался 0"),
+                        )
+                        .help(both!(
+                            "shift the zero with ATRANS before it, and write 0",
+                            "сместите перед ним нуль командой ATRANS и напишите 0"
+                        )));
                 }
                 // Twice is none.
                 about[i] = if about[i].is_some() { None } else { Some(0.0) };
@@ -486,8 +665,9 @@ fn in_which_order(
     span: Span,
     transform: &Transform,
 ) -> Box<diagnostic::Diagnostic> {
-    let under = format!("under {}", transform.name());
-    refuse(words, span, &under, "the two together are neither").help("write one of the two in the CAM")
+    let under = both!("under {}", "пока действует {:#}", transform.name());
+    refuse(words, span, &under, both!("the two together are neither", "вместе они ни то, ни другое"))
+        .help(both!("write one of the two in the CAM", "выполните одно из двух в CAM"))
 }
 
 /// The angle of ROT in the plane, degrees: `RPL=`, or the word of the axis that stands upright on the plane.
@@ -496,14 +676,24 @@ fn rotation_words(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outco
     let out = words.letters.and(AXIS_LETTERS).without(Letters::of(&[normal]));
     if !out.is_empty() {
         return Err(words
-            .refuse(codes::FRAME, "a rotation out of the plane", words.span(out), "tilts the frame")
-            .help("post without tilted planes"));
+            .refuse(
+                codes::FRAME,
+                both!("a rotation out of the plane", "поворот из плоскости"),
+                words.span(out),
+                both!("tilts the frame", "наклоняет систему координат"),
+            )
+            .help(both!("post without tilted planes", "выводите программу без наклонных плоскостей")));
     }
     // RPL= is a word of L.
     match (words.coordinate(b'L', false), words.coordinate(normal, false)) {
         (Some(angle), None) | (None, Some(angle)) => Ok(angle),
-        _ => Err(refuse(words, span, "by two angles", "RPL= or the plane's normal was expected")
-            .help("write RPL= alone")),
+        _ => Err(refuse(
+            words,
+            span,
+            &both!("by two angles", "с двумя углами"),
+            both!("RPL= or the plane's normal was expected", "ожидалось RPL= или нормаль плоскости"),
+        )
+        .help(both!("write RPL= alone", "напишите одно RPL="))),
     }
 }
 
@@ -527,9 +717,20 @@ fn transform(
     absolute(words, span, state)?;
     let again = matches!((action, state.transform), (Action::MirrorOn, Transform::Mirror(_)));
     if !state.transform.is_none() && !again {
-        let under = format!("under {}", state.transform.name());
-        return Err(refuse(words, span, &under, "in which order? controls and parameters differ")
-            .help("cancel the one before it, or do one of the two in the CAM"));
+        let under = both!("under {}", "пока действует {:#}", state.transform.name());
+        return Err(refuse(
+            words,
+            span,
+            &under,
+            both!(
+                "in which order? controls and parameters differ",
+                "в каком порядке? зависит от стойки и её параметров"
+            ),
+        )
+        .help(both!(
+            "cancel the one before it, or do one of the two in the CAM",
+            "отмените перед ней прежнюю или выполните одно из двух в CAM"
+        )));
     }
     let inch = state.units == Units::Inch;
     let unit_mm = state.units.mm();
@@ -542,31 +743,41 @@ fn transform(
                 return Err(words
                     .refuse(
                         codes::FRAME,
-                        "a rotation out of the plane",
+                        both!("a rotation out of the plane", "поворот из плоскости"),
                         words.span(across),
-                        "tilts the frame",
+                        both!("tilts the frame", "наклоняет систему координат"),
                     )
-                    .help("select the plane with G17, G18 or G19; post tilted planes as plain axes"));
+                    .help(both!("select the plane with G17, G18 or G19; post tilted planes as plain axes", "выберите плоскость функцией G17, G18 или G19; наклонные плоскости выводите обычными осями")));
             }
             let (Some(first), Some(second)) = (at(LINEAR[u]), at(LINEAR[v])) else {
                 let names = Letters::of(&[LINEAR[u], LINEAR[v]]).names();
-                let message = format!("a rotation without {names}");
+                let message = both!("a rotation without {names}", "поворот без {names}");
                 return Err(words
-                    .refuse(codes::FRAME, message, span, "about which point?")
-                    .help(format!("write {names} of the centre, and R")));
+                    .refuse(codes::FRAME, message, span, both!("about which point?", "вокруг какой точки?"))
+                    .help(both!("write {names} of the centre, and R", "напишите {names} центра и R")));
             };
             let Some(angle_deg) = words.coordinate(b'R', false) else {
                 return Err(words
-                    .refuse(codes::FRAME, "a rotation without R", span, "by a parameter's angle")
-                    .help("write the angle as R"));
+                    .refuse(
+                        codes::FRAME,
+                        both!("a rotation without R", "поворот без R"),
+                        span,
+                        both!("by a parameter's angle", "на угол из параметра"),
+                    )
+                    .help(both!("write the angle as R", "напишите угол словом R")));
             };
             Ok(Transform::Rotation { plane: state.plane, centre_mm: [first, second], angle_deg })
         }
         Action::ScalingOn => {
             let (Some(x), Some(y), Some(z)) = (at(b'X'), at(b'Y'), at(b'Z')) else {
                 return Err(words
-                    .refuse(codes::FRAME, "a scaling without X, Y and Z", span, "about which point?")
-                    .help("write X, Y and Z of the centre"));
+                    .refuse(
+                        codes::FRAME,
+                        both!("a scaling without X, Y and Z", "масштабирование без X, Y и Z"),
+                        span,
+                        both!("about which point?", "вокруг какой точки?"),
+                    )
+                    .help(both!("write X, Y and Z of the centre", "напишите X, Y и Z центра")));
             };
             let factor = |letter: u8| {
                 let (number, _) = words.number(letter)?;
@@ -580,11 +791,11 @@ fn transform(
                     return Err(words
                         .refuse(
                             codes::FRAME,
-                            "a scaling without its factor",
+                            both!("a scaling without its factor", "масштабирование без коэффициента"),
                             span,
-                            "P above zero, or I, J and K, were expected",
+                            both!("P above zero, or I, J and K, were expected", "ожидалось P больше нуля или I, J и K"),
                         )
-                        .help("write P2. to double; negative factors are mirrors: G51.1"));
+                        .help(both!("write P2. to double; negative factors are mirrors: G51.1", "напишите P2., чтобы удвоить; отрицательный коэффициент — это зеркальное отображение: G51.1")));
                 }
             };
             Ok(Transform::Scaling { centre_mm: [x, y, z], factors })
@@ -594,10 +805,18 @@ fn transform(
             let mut all = if let Transform::Mirror(all) = state.transform { all } else { [None; 3] };
             for i in 0..3 {
                 if about[i].is_some() && all[i].is_some() {
-                    let message = format!("{} is mirrored already", LINEAR[i] as char);
+                    let message = both!("{} is mirrored already", "{} уже отражена", LINEAR[i] as char);
                     return Err(words
-                        .refuse(codes::FRAME, message, span, "twice, or anew? controls differ")
-                        .help("cancel the mirror with G50.1 before it"));
+                        .refuse(
+                            codes::FRAME,
+                            message,
+                            span,
+                            both!("twice, or anew? controls differ", "дважды или заново? у стоек по-разному"),
+                        )
+                        .help(both!(
+                            "cancel the mirror with G50.1 before it",
+                            "отмените перед этим зеркальное отображение функцией G50.1"
+                        )));
                 }
                 all[i] = about[i].or(all[i]);
             }
@@ -610,8 +829,16 @@ fn transform(
 fn mirror_off(words: &Words<'_, '_, '_>, span: Span, state: &mut Modal) -> Outcome<()> {
     let Transform::Mirror(mut about) = state.transform else { return Ok(()) };
     if !words.has(LINEAR_LETTERS) {
-        return Err(refuse(words, span, "without axes", "which axes are no longer mirrored?")
-            .help("write the mirrored axes beside it, as in G50.1 X0 Y0"));
+        return Err(refuse(
+            words,
+            span,
+            &both!("without axes", "без осей"),
+            both!("which axes are no longer mirrored?", "какие оси больше не отражать?"),
+        )
+        .help(both!(
+            "write the mirrored axes beside it, as in G50.1 X0 Y0",
+            "напишите рядом отражённые оси, например G50.1 X0 Y0"
+        )));
     }
     for i in 0..3 {
         if words.has(Letters::of(&[LINEAR[i]])) {

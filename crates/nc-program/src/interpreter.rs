@@ -1,6 +1,6 @@
 //! Block by block: check the whole block, then commit it.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use nc_syntax::dialect::{Action, GCode, MCode, Side};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
@@ -297,9 +297,9 @@ fn after_end(block: &Block<'_>) -> Outcome<()> {
     match motion {
         None => Ok(()),
         Some(word) => Err(Box::new(
-            Diagnostic::error(codes::AFTER_END, "motion behind the end of the program")
-                .at(block.file_span(word.span), "nothing before this line leads here, so it would stay uncorrected")
-                .help("put a second program or a subprogram in a file of its own; or delete these blocks, or write them as a comment"),
+            Diagnostic::error(codes::AFTER_END, both!("motion behind the end of the program", "движение после конца программы"))
+                .at(block.file_span(word.span), both!("nothing before this line leads here, so it would stay uncorrected", "сюда ничто не ведёт, и это осталось бы неисправленным"))
+                .help(both!("put a second program or a subprogram in a file of its own; or delete these blocks, or write them as a comment", "вынесите вторую программу или подпрограмму в отдельный файл; или удалите эти кадры, или сделайте их комментарием")),
         )),
     }
 }
@@ -342,11 +342,14 @@ fn opened_twice(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::AFTER_END,
-            "two `%` stand in front of the program",
+            both!("two `%` stand in front of the program", "перед программой два знака `%`"),
             whole,
-            "the second `%` closes what the first opens, so this may be behind the end",
+            both!(
+                "the second `%` closes what the first opens, so this may be behind the end",
+                "второй `%` закрывает то, что открыл первый, так что это может быть уже за концом"
+            ),
         )
-        .help("delete one of the two `%`")
+        .help(both!("delete one of the two `%`", "удалите один из двух `%`"))
 }
 
 /// M codes that the dialect's table names.
@@ -361,11 +364,22 @@ fn miscellaneous(
         if row.loses_position.contains(&true) {
             let own = matches!(moved.motions.as_slice(), [] | [Motion::Uncorrected { .. }]);
             if !own {
-                let message =
-                    format!("{} moves the axes itself, in a block that moves them too", words.text(span));
+                let message = both!(
+                    "{} moves the axes itself, in a block that moves them too",
+                    "{} сама двигает оси, и кадр двигает их тоже",
+                    words.text(span)
+                );
                 return Err(words
-                    .refuse(codes::COMBINATION, message, span, "before or after the motion? controls differ")
-                    .help("write it in a block of its own"));
+                    .refuse(
+                        codes::COMBINATION,
+                        message,
+                        span,
+                        both!(
+                            "before or after the motion? controls differ",
+                            "до движения или после? у стоек по-разному"
+                        ),
+                    )
+                    .help(both!("write it in a block of its own", "напишите её отдельным кадром")));
             }
             moved.motions = leave(env, row, words.block.line, state);
         }

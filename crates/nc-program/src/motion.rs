@@ -1,6 +1,6 @@
 //! What the axis words of a block make the axes do.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::Span;
 use smallvec::{SmallVec, smallvec};
 use toolpath::{Division, Feed, FeedRate, Motion, Shape};
@@ -120,10 +120,22 @@ fn untransformed(
     let spared = may_spare && words.has(LINEAR_LETTERS) && !words.has(touched);
     match demand.owner_span {
         Some(span) if !state.transform.is_none() && !spared => {
-            let message = format!("{} under {}", words.text(span), state.transform.name());
+            let message =
+                both!("{} under {}", "{}, пока действует {:#}", words.text(span), state.transform.name());
             Err(words
-                .refuse(codes::FRAME, message, span, "controls forbid it, or differ in what it does")
-                .help("cancel the rotation, scaling or mirror before it"))
+                .refuse(
+                    codes::FRAME,
+                    message,
+                    span,
+                    both!(
+                        "controls forbid it, or differ in what it does",
+                        "стойки это запрещают или делают по-разному"
+                    ),
+                )
+                .help(both!(
+                    "cancel the rotation, scaling or mirror before it",
+                    "отмените перед этим поворот, масштабирование или зеркальное отображение"
+                )))
         }
         _ => Ok(()),
     }
@@ -135,8 +147,13 @@ fn dwell_beside(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> {
     if state.cycle.is_some() || arc {
         let span = words.span(Letters::of(b"P").or(AXIS_LETTERS));
         return Err(words
-            .refuse(codes::WORDS_OF_TWO, "a dwell beside an arc or a cycle", span, "whose is P?")
-            .help("write the dwell in a block of its own"));
+            .refuse(
+                codes::WORDS_OF_TWO,
+                both!("a dwell beside an arc or a cycle", "выдержка рядом с дугой или циклом"),
+                span,
+                both!("whose is P?", "чьё это P?"),
+            )
+            .help(both!("write the dwell in a block of its own", "напишите выдержку отдельным кадром")));
     }
     Ok(())
 }
@@ -157,20 +174,29 @@ fn by_mode(
             return Err(words
                 .refuse(
                     codes::CYCLE_WORDS,
-                    "Q without a hole",
+                    both!("Q without a hole", "Q без отверстия"),
                     span,
-                    "does it hold for the next one? controls differ",
+                    both!(
+                        "does it hold for the next one? controls differ",
+                        "действует ли оно для следующего? у стоек по-разному"
+                    ),
                 )
-                .help("write Q in a block that drills"));
+                .help(both!("write Q in a block that drills", "напишите Q в кадре, который сверлит")));
         } else if words.has(Letters::of(b"IJ")) {
-            return Err(stray(words, "no arc is in force, and nothing is drilled here"));
+            return Err(stray(
+                words,
+                both!(
+                    "no arc is in force, and nothing is drilled here",
+                    "дуга не действует, и ничего здесь не сверлится"
+                ),
+            ));
         }
         return Ok(());
     }
     match state.motion {
         MotionMode::Rapid(_) | MotionMode::Line(_) => {
             if words.has(ARC_LETTERS) {
-                return Err(stray(words, "this block is no arc"));
+                return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
             }
             if words.has(AXIS_LETTERS) {
                 let rapid = matches!(state.motion, MotionMode::Rapid(_));
@@ -179,7 +205,7 @@ fn by_mode(
         }
         MotionMode::Thread(_) => {
             if words.has(ARC_LETTERS.without(turning::thread_lead(env))) {
-                return Err(stray(words, "this block is no arc"));
+                return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
             }
             turning::require_lead(env, words)?;
             if words.has(AXIS_LETTERS) {
@@ -199,26 +225,45 @@ fn by_mode(
             }
         }
         MotionMode::None if words.has(AXIS_LETTERS) => {
-            let message = format!("{} without a motion code", words.names(AXIS_LETTERS));
+            let message =
+                both!("{} without a motion code", "{} без функции движения", words.names(AXIS_LETTERS));
             return Err(words
                 .refuse(
                     codes::NO_MOTION_CODE,
                     message,
                     words.span(AXIS_LETTERS),
-                    "no G0, G1, G2, G3 or cycle is in force",
+                    both!(
+                        "no G0, G1, G2, G3 or cycle is in force",
+                        "не действует ни G0, ни G1, ни G2, ни G3, ни цикл"
+                    ),
                 )
-                .help("write the motion code in this block"));
+                .help(both!(
+                    "write the motion code in this block",
+                    "напишите функцию движения в этом кадре"
+                )));
         }
         MotionMode::Undecided { line } if words.has(AXIS_LETTERS.or(ARC_LETTERS)) => {
-            let message = "the motion code in force depends on the block delete switch";
-            let label = format!("line {line} changes the motion code and may be skipped");
+            let message = both!(
+                "the motion code in force depends on the block delete switch",
+                "какая функция движения действует, зависит от переключателя пропуска кадров"
+            );
+            let label = both!(
+                "line {line} changes the motion code and may be skipped",
+                "строка {line} меняет функцию движения и может быть пропущена"
+            );
             return Err(words
                 .refuse(codes::BLOCK_DELETE, message, words.span(AXIS_LETTERS.or(ARC_LETTERS)), label)
-                .help("write the motion code in this block"));
+                .help(both!(
+                    "write the motion code in this block",
+                    "напишите функцию движения в этом кадре"
+                )));
         }
         MotionMode::None | MotionMode::Undecided { .. } => {
             if words.has(ARC_LETTERS) {
-                return Err(stray(words, "no arc and no cycle is in force"));
+                return Err(stray(
+                    words,
+                    both!("no arc and no cycle is in force", "не действует ни дуга, ни цикл"),
+                ));
             }
         }
     }
@@ -253,7 +298,7 @@ fn straight(
         motions.push(Motion::Rapid { start: start.partial(), end: end.partial() });
         return Ok(());
     }
-    let what = "the feed move";
+    let what = &Text::pair("the feed move", "рабочий ход");
     let from = require_known(words, &start, what)?;
     let to = require_known(words, &end, what)?;
     if cuts && compensated(before, state) {
@@ -293,16 +338,27 @@ pub(crate) fn feed_rate(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<Fee
     match words.plain(b'F') {
         Some(value) if value > 0.0 => Ok(rate(state, value)),
         Some(_) => Err(words
-            .refuse(codes::INVERSE_TIME, "inverse time must be above zero", words.span(F), "1/F minutes")
-            .help("write F as one over the minutes of this motion")),
+            .refuse(
+                codes::INVERSE_TIME,
+                both!("inverse time must be above zero", "обратное время должно быть больше нуля"),
+                words.span(F),
+                both!("1/F minutes", "1/F минут"),
+            )
+            .help(both!(
+                "write F as one over the minutes of this motion",
+                "напишите F как единицу, делённую на минуты этого движения"
+            ))),
         None => Err(words
             .refuse(
                 codes::INVERSE_TIME,
-                "a feed motion under G93 without F",
+                both!("a feed motion under G93 without F", "рабочий ход при G93 без F"),
                 words.span(AXIS_LETTERS),
-                "F was expected in this block",
+                both!("F was expected in this block", "в этом кадре ожидалось F"),
             )
-            .help("G93 needs F on each feed block; or program G94")),
+            .help(both!(
+                "G93 needs F on each feed block; or program G94",
+                "при G93 нужно F в каждом рабочем кадре; или запрограммируйте G94"
+            ))),
     }
 }
 
@@ -314,11 +370,14 @@ pub(crate) fn own_feed(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<()> 
     Err(words
         .refuse(
             codes::INVERSE_TIME,
-            "a feed behind G93 without F",
+            both!("a feed behind G93 without F", "рабочий ход после G93 без F"),
             words.span(AXIS_LETTERS),
-            "the last F was an inverse time",
+            both!("the last F was an inverse time", "последнее F было обратным временем"),
         )
-        .help("write F in this block, or beside the code that ends G93"))
+        .help(both!(
+            "write F in this block, or beside the code that ends G93",
+            "напишите F в этом кадре или рядом с функцией, которая отменяет G93"
+        )))
 }
 
 /// G4: X, U, P (and whatever F or S the control reads there) are a time.
@@ -331,8 +390,13 @@ fn dwell(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<()> {
     if unclear {
         let span = words.span(others.or(TIME));
         return Err(words
-            .refuse(codes::WORDS_OF_TWO, "a dwell and a motion in one block", span, "time or coordinate?")
-            .help("write the dwell in a block of its own"));
+            .refuse(
+                codes::WORDS_OF_TWO,
+                both!("a dwell and a motion in one block", "выдержка и движение в одном кадре"),
+                span,
+                both!("time or coordinate?", "время или координата?"),
+            )
+            .help(both!("write the dwell in a block of its own", "напишите выдержку отдельным кадром")));
     }
     Ok(())
 }
@@ -346,11 +410,17 @@ fn dwell_by_setting(words: &Words<'_, '_, '_>, demand: &Demand<'_>) -> Outcome<(
     Err(words
         .refuse(
             codes::WORDS_OF_TWO,
-            "a dwell and a motion in one block",
+            both!("a dwell and a motion in one block", "выдержка и движение в одном кадре"),
             words.span(others),
-            "no time: this control takes it from elsewhere, and these are a motion's words",
+            both!(
+                "no time: this control takes it from elsewhere, and these are a motion's words",
+                "не время: эта стойка берёт его из другого слова, а это слова движения"
+            ),
         )
-        .help("write the dwell in a block of its own, and its time as the control takes it"))
+        .help(both!(
+            "write the dwell in a block of its own, and its time as the control takes it",
+            "напишите выдержку отдельным кадром, а её время так, как берёт стойка"
+        )))
 }
 
 /// G53 with axis words: they are axis commands, tool length included.
@@ -366,14 +436,17 @@ fn machine_coordinates(
         return Err(words
             .refuse(
                 codes::COMBINATION,
-                "machine coordinates with an arc or a cycle",
+                both!(
+                    "machine coordinates with an arc or a cycle",
+                    "координаты станка вместе с дугой или циклом"
+                ),
                 span,
-                "moves straight on every control",
+                both!("moves straight on every control", "на любой стойке идёт по прямой"),
             )
-            .help("write G0 in this block"));
+            .help(both!("write G0 in this block", "напишите в этом кадре G0")));
     }
     if words.has(ARC_LETTERS) {
-        return Err(stray(words, "this block is no arc"));
+        return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
     }
     let lengths = if state.edge_unsaid {
         // It may be that of any tool, and one that no profile gives lies along Z.
@@ -387,11 +460,14 @@ fn machine_coordinates(
         return Err(words
             .refuse(
                 codes::TOOL_LENGTH,
-                "machine coordinates while a tool length is in force",
+                both!(
+                    "machine coordinates while a tool length is in force",
+                    "координаты станка при действующей коррекции на длину"
+                ),
                 words.span(along),
-                "the place of the tip, or of the spindle?",
+                both!("the place of the tip, or of the spindle?", "место вершины или шпинделя?"),
             )
-            .help("write D0 in this block, or before it"));
+            .help(both!("write D0 in this block, or before it", "напишите D0 в этом кадре или перед ним")));
     }
     if state.distance == Distance::Incremental {
         // Some controls ignore G53 under G91, some refuse it, some obey: the end is not known.
@@ -431,28 +507,48 @@ fn no_cycle(words: &Words<'_, '_, '_>, state: &Modal, demand: &Demand<'_>) -> Ou
         Some(span) if state.cycle.is_some() => Err(words
             .refuse(
                 codes::COMBINATION,
-                "a reference return or probe move while a drilling cycle is in force",
+                both!(
+                    "a reference return or probe move while a drilling cycle is in force",
+                    "выход в исходное положение или движение щупа во время цикла сверления"
+                ),
                 span,
-                "a cycle is running here",
+                both!("a cycle is running here", "здесь действует цикл"),
             )
-            .help("cancel the cycle with G80 first")),
+            .help(both!("cancel the cycle with G80 first", "сначала отмените цикл функцией G80"))),
         _ => Ok(()),
     }
 }
 
 fn whose(words: &Words<'_, '_, '_>, demand: &Demand<'_>, motion: Span) -> Box<Diagnostic> {
     let owner = demand.owner_span.map_or_else(String::new, |span| words.text(span));
-    let message = format!("{owner} and {} both take the axis words of this block", words.text(motion));
+    let message = both!(
+        "{owner} and {} both take the axis words of this block",
+        "слова осей этого кадра принимают и {owner}, и {}",
+        words.text(motion)
+    );
     words
-        .refuse(codes::WORDS_OF_TWO, message, words.span(AXIS_LETTERS.or(ARC_LETTERS)), "whose are they?")
-        .help("write the two codes in two blocks")
+        .refuse(
+            codes::WORDS_OF_TWO,
+            message,
+            words.span(AXIS_LETTERS.or(ARC_LETTERS)),
+            both!("whose are they?", "чьи они?"),
+        )
+        .help(both!("write the two codes in two blocks", "напишите эти две функции двумя кадрами"))
 }
 
-fn stray(words: &Words<'_, '_, '_>, why: &str) -> Box<Diagnostic> {
+fn stray(words: &Words<'_, '_, '_>, why: Text) -> Box<Diagnostic> {
     let names = words.names(ARC_LETTERS);
     words
-        .refuse(codes::STRAY_ARC_WORD, format!("{names} has no meaning here"), words.span(ARC_LETTERS), why)
-        .help("write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs")
+        .refuse(
+            codes::STRAY_ARC_WORD,
+            both!("{names} has no meaning here", "{names} здесь ничего не значит"),
+            words.span(ARC_LETTERS),
+            why,
+        )
+        .help(both!(
+            "write G2 or G3 for an arc, or remove the word; corner roundings must be posted as arcs",
+            "для дуги напишите G2 или G3 или уберите слово; скругления углов выводите дугами"
+        ))
 }
 
 /// The control would offset a path that turns with the workpiece.
@@ -460,20 +556,36 @@ fn compensated_turn(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::SIMULTANEOUS,
-            format!("{} turn at feed rate under cutter compensation", words.names(ROTARY_LETTERS)),
+            both!(
+                "{} turn at feed rate under cutter compensation",
+                "{} вращается на рабочей подаче при коррекции на радиус",
+                words.names(ROTARY_LETTERS)
+            ),
             words.span(ROTARY_LETTERS),
-            "what the control offsets is no path in space while a rotary axis turns",
+            both!(
+                "what the control offsets is no path in space while a rotary axis turns",
+                "пока вращается поворотная ось, то, что стойка смещает на радиус, — не путь в пространстве"
+            ),
         )
-        .help("cancel the compensation with G40 before this block; let the CAM write the tool's centre")
+        .help(both!(
+            "cancel the compensation with G40 before this block; let the CAM write the tool's centre",
+            "отмените коррекцию функцией G40 до этого кадра; выводите из CAM путь центра инструмента"
+        ))
 }
 
 pub(crate) fn arc_while_turning(words: &Words<'_, '_, '_>) -> Box<Diagnostic> {
     words
         .refuse(
             codes::SIMULTANEOUS,
-            "a rotary axis turns along an arc",
+            both!("a rotary axis turns along an arc", "вдоль дуги вращается поворотная ось"),
             words.span(AXIS_LETTERS),
-            "seen from the workpiece this is no arc, and no arc corrects it",
+            both!(
+                "seen from the workpiece this is no arc, and no arc corrects it",
+                "для детали это не дуга, и дугой её не исправить"
+            ),
         )
-        .help("let the CAM write lines, or turn the rotary axis in a block of its own")
+        .help(both!(
+            "let the CAM write lines, or turn the rotary axis in a block of its own",
+            "выводите из CAM прямые или поверните ось отдельным кадром"
+        ))
 }

@@ -1,6 +1,6 @@
 //! Where a block's axis words lead, and what is said where that cannot be known.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use toolpath::{AXIS_NAMES, Frame, Position};
@@ -29,17 +29,33 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
     let span = words.span(AXIS_LETTERS);
     if state.work_offset.rewritten {
         let name = frames::active_name(env, state).unwrap_or_default();
-        let message = format!("G10 wrote work offset {name} while it was in force");
+        let message = both!(
+            "G10 wrote work offset {name} while it was in force",
+            "G10 записала смещение нуля {name}, пока оно действовало"
+        );
         return words
-            .refuse(codes::FRAME, message, span, "in force at once or not? controls differ")
-            .help(format!("write {name} again after the G10 block"));
+            .refuse(
+                codes::FRAME,
+                message,
+                span,
+                both!("in force at once or not? controls differ", "действует ли сразу? у стоек по-разному"),
+            )
+            .help(both!("write {name} again after the G10 block", "напишите {name} снова после кадра G10"));
     }
     match state.work_offset.code.and_then(|code| env.dialect.code(code)).map(|entry| &entry.action) {
         Some(Action::WorkOffset(name)) => missing_offset(words, name, span),
         Some(Action::BaseFrame) => missing_offset(words, BASE_FRAME, span),
         _ => words
-            .refuse(codes::WORK_OFFSET, "no work offset is in force", span, "coordinates of which zero?")
-            .help("program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`"),
+            .refuse(
+                codes::WORK_OFFSET,
+                both!("no work offset is in force", "не действует ни одно смещение нуля"),
+                span,
+                both!("coordinates of which zero?", "координаты от какого нуля?"),
+            )
+            .help(both!(
+                "program G54 before the first motion and give it with `--work-offset G54=X,Y,Z`",
+                "запрограммируйте G54 до первого движения и задайте его ключом `--work-offset G54=X,Y,Z`"
+            )),
     }
 }
 
@@ -48,26 +64,38 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
 pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
     if words.has(crate::words::SECONDARY_LETTERS) {
         let letters = crate::words::SECONDARY_LETTERS;
-        let message = format!("{} cannot be resolved", words.names(letters));
+        let message =
+            both!("{} cannot be resolved", "{}: как это понимать, неизвестно", words.names(letters));
         return Err(words
             .refuse(
                 codes::SECONDARY_AXIS,
                 message,
                 words.span(letters),
-                "an increment on some controls, an axis on others",
+                both!(
+                    "an increment on some controls, an axis on others",
+                    "на одних стойках приращение, на других отдельная ось"
+                ),
             )
-            .help("program X, Y, Z instead (with G91 for increments)"));
+            .help(both!(
+                "program X, Y, Z instead (with G91 for increments)",
+                "пишите вместо этого X, Y, Z (для приращений при G91)"
+            )));
     }
     if words.has(ROTARY_LETTERS) {
         for (i, letter) in ROTARY.iter().enumerate() {
             let bit = Letters::of(&[*letter]);
             if words.has(bit) && !env.setup.has_rotary[i] {
                 let name = *letter as char;
-                let message = format!("the machine has no axis {name}");
-                let label = format!("rotary axes of the profile's chain: {}", env.setup.rotary_names());
-                return Err(words
-                    .refuse(codes::NO_SUCH_AXIS, message, words.span(bit), label)
-                    .help(format!("name {name} in `chain` of the profile, or remove the word")));
+                let message = both!("the machine has no axis {name}", "на станке нет оси {name}");
+                let label = both!(
+                    "rotary axes of the profile's chain: {}",
+                    "поворотные оси в цепи профиля: {:#}",
+                    env.setup.rotary_names()
+                );
+                return Err(words.refuse(codes::NO_SUCH_AXIS, message, words.span(bit), label).help(both!(
+                    "name {name} in `chain` of the profile, or remove the word",
+                    "назовите {name} в `chain` профиля или уберите слово"
+                )));
             }
         }
     }
@@ -156,7 +184,12 @@ pub(crate) fn increment_base(words: &Words<'_, '_, '_>, axis: Axis, index: usize
         Axis::Unknown(lost) => {
             let name = AXIS_NAMES[index];
             let span = words.span(Letters::of(&[name as u8]));
-            Err(unknown(words, "an increment from an unknown position", span, &[(name, lost)]))
+            Err(unknown(
+                words,
+                both!("an increment from an unknown position", "приращение из неизвестного положения"),
+                span,
+                &[(name, lost)],
+            ))
         }
     }
 }
@@ -165,7 +198,7 @@ pub(crate) fn increment_base(words: &Words<'_, '_, '_>, axis: Axis, index: usize
 ///
 /// `what` names the motion: `the feed move`.
 #[inline]
-pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Outcome<Position> {
+pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &Text) -> Outcome<Position> {
     let [x, y, z] = axes.linear;
     let [a, b, c] = axes.rotary;
     if let (Axis::At(x), Axis::At(y), Axis::At(z), Axis::At(a), Axis::At(b), Axis::At(c)) = (x, y, z, a, b, c)
@@ -176,7 +209,7 @@ pub(crate) fn require_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) 
 }
 
 #[cold]
-fn not_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Box<Diagnostic> {
+fn not_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &Text) -> Box<Diagnostic> {
     let [x, y, z] = axes.linear;
     let [a, b, c] = axes.rotary;
     let lost: Vec<(char, Lost)> = [x, y, z, a, b, c]
@@ -187,8 +220,9 @@ fn not_known(words: &Words<'_, '_, '_>, axes: &Axes, what: &str) -> Box<Diagnost
             Axis::Unknown(lost) => Some((name, lost)),
         })
         .collect();
-    let message = format!("{what} starts from an unknown position");
-    unknown(words, &message, words.span(AXIS_LETTERS), &lost)
+    let message =
+        both!("{what} starts from an unknown position", "{what:#} начинается из неизвестного положения");
+    unknown(words, message, words.span(AXIS_LETTERS), &lost)
 }
 
 /// Refuses unknown rotary axes: what a linear axis must be told depends on them.
@@ -203,32 +237,46 @@ pub(crate) fn require_rotary(words: &Words<'_, '_, '_>, axes: &Axes) -> Outcome<
             Axis::Unknown(lost) => Some((AXIS_NAMES[3 + i], lost)),
         })
         .collect();
-    let message = "a motion of linear axes while a rotary axis is unknown";
+    let message = both!(
+        "a motion of linear axes while a rotary axis is unknown",
+        "движение линейных осей, а положение поворотной неизвестно"
+    );
     Err(unknown(words, message, words.span(AXIS_LETTERS), &lost))
 }
 
-fn unknown(words: &Words<'_, '_, '_>, message: &str, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
+fn unknown(words: &Words<'_, '_, '_>, message: Text, span: Span, lost: &[(char, Lost)]) -> Box<Diagnostic> {
     let names: Vec<String> = lost.iter().map(|(name, _)| format!("{name}…")).collect();
     let changed =
         |(_, lost): &(char, Lost)| matches!(lost.why, Why::Miscellaneous { changes_tool: true, .. });
     let tool_change = if lost.iter().any(changed) {
-        ", or say where a tool change leaves the axes: `tool_change = { keeps = \"XYZ\" }` or a position, under `[program]` in the profile"
+        Text::pair(
+            ", or say where a tool change leaves the axes: `tool_change = { keeps = \"XYZ\" }` or a position, under `[program]` in the profile",
+            "; или скажите, где оставляет оси смена инструмента: `tool_change = { keeps = \"XYZ\" }` или положение, в разделе `[program]` профиля",
+        )
     } else {
-        ""
+        Text::EMPTY
     };
     let rotary_from_start = |(name, lost): &(char, Lost)| lost.why == Why::Start && "ABC".contains(*name);
     let start = if lost.iter().all(rotary_from_start) {
         let places: Vec<String> = lost.iter().map(|(name, _)| format!("{name}=0")).collect();
-        format!(", or say where it stands then, as in `--start-at {}`", places.join(","))
+        both!(
+            ", or say where it stands then, as in `--start-at {}`",
+            "; или скажите, где она тогда стоит, например `--start-at {}`",
+            places.join(",")
+        )
     } else {
-        String::new()
+        Text::EMPTY
     };
-    let help = format!("program a rapid `G90 G0 {}` before this block{tool_change}{start}", names.join(" "));
+    let help = both!(
+        "program a rapid `G90 G0 {}` before this block{tool_change}{start}",
+        "запрограммируйте перед этим кадром быстрый ход `G90 G0 {}`{tool_change:#}{start:#}",
+        names.join(" ")
+    );
     words.refuse(codes::POSITION_UNKNOWN, message, span, reasons(lost)).help(help)
 }
 
 /// `X, Y not known since the start of the program; Z not known since the reference return in line 12`.
-fn reasons(lost: &[(char, Lost)]) -> String {
+fn reasons(lost: &[(char, Lost)]) -> Text {
     let mut parts: Vec<(Lost, String)> = Vec::new();
     for (name, lost) in lost {
         match parts.iter_mut().find(|(known, _)| known == lost) {
@@ -239,39 +287,67 @@ fn reasons(lost: &[(char, Lost)]) -> String {
             None => parts.push((*lost, name.to_string())),
         }
     }
-    let parts: Vec<String> =
-        parts.iter().map(|(lost, names)| format!("{names} not known since {}", lost.since())).collect();
-    parts.join("; ")
+    let parts: Vec<Text> = parts
+        .iter()
+        .map(|(lost, names)| {
+            both!("{names} not known since {}", "положение {names} неизвестно {:#}", lost.since())
+        })
+        .collect();
+    Text::join(&parts, "; ")
 }
 
 impl Lost {
     /// What happened, to follow upon `not known since`.
     #[must_use]
-    pub fn since(self) -> String {
+    pub fn since(self) -> Text {
         let line = self.line;
         match self.why {
-            Why::Start => "the start of the program".to_owned(),
-            Why::Reference => format!("the reference return in line {line}"),
-            Why::MachineCoordinates => format!("G53 under G91 in line {line}, which some controls ignore"),
-            Why::Probe => format!("the probe move in line {line}"),
+            Why::Start => both!("the start of the program", "с начала программы"),
+            Why::Reference => both!(
+                "the reference return in line {line}",
+                "после выхода в исходное положение в строке {line}"
+            ),
+            Why::MachineCoordinates => both!(
+                "G53 under G91 in line {line}, which some controls ignore",
+                "после G53 при G91 в строке {line}, которую некоторые стойки не исполняют"
+            ),
+            Why::Probe => both!("the probe move in line {line}", "после движения щупа в строке {line}"),
             Why::Miscellaneous { code, changes_tool: true } => {
-                format!("the tool change M{code} in line {line}")
-            }
-            Why::Miscellaneous { code, changes_tool: false } => format!("M{code} in line {line}"),
-            Why::BlockDelete => {
-                format!("line {line}, which moves or not, depending on the block delete switch")
-            }
-            Why::ToolLength => {
-                format!(
-                    "the tool length changed in line {line}, for which some controls move the axis at once"
+                both!(
+                    "the tool change M{code} in line {line}",
+                    "после смены инструмента M{code} в строке {line}"
                 )
             }
-            Why::ToolOffset => format!("D chose a tool offset in line {line}"),
-            Why::MachineWords => format!("G53 in line {line}"),
-            Why::Frame => format!("the frame changed in line {line}"),
-            Why::Kinematics => format!("tool centre point control was switched in line {line}"),
-            Why::TiltedPlane => format!("the tilted plane in line {line}"),
-            Why::Units => format!("the unit changed in line {line}"),
+            Why::Miscellaneous { code, changes_tool: false } => {
+                both!("M{code} in line {line}", "после M{code} в строке {line}")
+            }
+            Why::BlockDelete => {
+                both!(
+                    "line {line}, which moves or not, depending on the block delete switch",
+                    "со строки {line}: движется ли она, зависит от переключателя пропуска кадров"
+                )
+            }
+            Why::ToolLength => {
+                both!(
+                    "the tool length changed in line {line}, for which some controls move the axis at once",
+                    "с тех пор как в строке {line} сменилась коррекция на длину: некоторые стойки тут же перемещают ось"
+                )
+            }
+            Why::ToolOffset => {
+                both!("D chose a tool offset in line {line}", "после корректора D в строке {line}")
+            }
+            Why::MachineWords => both!("G53 in line {line}", "после G53 в строке {line}"),
+            Why::Frame => {
+                both!("the frame changed in line {line}", "после смены системы координат в строке {line}")
+            }
+            Why::Kinematics => both!(
+                "tool centre point control was switched in line {line}",
+                "после переключения управления по вершине инструмента в строке {line}"
+            ),
+            Why::TiltedPlane => {
+                both!("the tilted plane in line {line}", "после наклонной плоскости в строке {line}")
+            }
+            Why::Units => both!("the unit changed in line {line}", "после смены единицы в строке {line}"),
         }
     }
 }

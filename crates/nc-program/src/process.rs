@@ -8,6 +8,7 @@
 
 use std::fmt;
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::{Action, CodeEntry, CycleCode, Dialect, GCode};
 use nc_syntax::{Block, ItemKind, Word};
 use smallvec::SmallVec;
@@ -127,10 +128,11 @@ impl fmt::Display for Tilted {
         let Self([zero, x, z]) = self;
         let places = |parts: &[i64; 3], steps: f64| parts.map(|part| part as f64 / steps);
         let ([x0, y0, z0], x, z) = (places(zero, 1e6), places(x, 1e9), places(z, 1e9));
-        write!(
-            f,
-            "a tilted plane with its zero at X{x0} Y{y0} Z{z0}, its X along {x:?} and its Z along {z:?}"
+        both!(
+            "a tilted plane with its zero at X{x0} Y{y0} Z{z0}, its X along {x:?} and its Z along {z:?}",
+            "наклонная плоскость с нулём в X{x0} Y{y0} Z{z0}, X вдоль {x:?} и Z вдоль {z:?}"
         )
+        .fmt(f)
     }
 }
 
@@ -228,15 +230,20 @@ impl Process {
 
     /// What is in force here and what there, where that differs, in words: `S1000` and `S2000`.
     #[must_use]
-    pub fn differences(&self, other: &Self) -> Vec<[String; 2]> {
-        fn text<T: fmt::Display>(value: Option<&T>, none: &str) -> String {
-            value.map_or_else(|| none.to_owned(), T::to_string)
+    pub fn differences(&self, other: &Self) -> Vec<[Text; 2]> {
+        fn text<T: fmt::Display>(value: Option<&T>, none: &Text) -> Text {
+            value.map_or_else(|| none.clone(), |value| both!("{value}", "{value:#}"))
         }
-        let mut pairs =
-            vec![[&self.cycle, &other.cycle].map(|cycle| text(cycle.as_ref(), "no cycle of the spindle"))];
-        pairs.push([self, other].map(|p| text(p.tilted.as_ref(), "no tilted plane")));
+        let mut pairs = vec![
+            [&self.cycle, &other.cycle]
+                .map(|cycle| text(cycle.as_ref(), &both!("no cycle of the spindle", "без цикла шпинделя"))),
+        ];
+        pairs.push(
+            [self, other]
+                .map(|p| text(p.tilted.as_ref(), &both!("no tilted plane", "без наклонной плоскости"))),
+        );
         for (at, letter) in LETTERS.iter().enumerate() {
-            let none = format!("no {}", *letter as char);
+            let none = both!("no {}", "без {}", *letter as char);
             pairs.push([self, other].map(|p| text(p.words[at].as_ref(), &none)));
         }
         let mut groups: Vec<u8> = self.modes.iter().chain(&other.modes).map(|mode| mode.group).collect();
@@ -244,7 +251,10 @@ impl Process {
         groups.dedup();
         for group in groups {
             let find = |p: &Self| p.modes.iter().find(|mode| mode.group == group).cloned();
-            pairs.push([find(self), find(other)].map(|mode| text(mode.as_ref(), "nothing of its kind")));
+            pairs.push(
+                [find(self), find(other)]
+                    .map(|mode| text(mode.as_ref(), &both!("nothing of its kind", "ничего такого"))),
+            );
         }
         pairs.retain(|[here, there]| here != there);
         pairs
@@ -415,7 +425,7 @@ mod tests {
         let deeds: Vec<&str> = one.iter().map(|(deed, _)| deed.as_str()).collect();
         assert_eq!(deeds, ["M3", "M8", "moves", "moves", "M9", "M30"]);
         let faster = states("G21 G90 G54 S2000 M3\n");
-        assert_eq!(one[0].1.differences(&faster[0].1), [["S1000", "S2000"].map(str::to_owned)]);
+        assert_eq!(one[0].1.differences(&faster[0].1), [["S1000", "S2000"].map(Text::same)]);
     }
 
     #[test]
@@ -445,7 +455,7 @@ mod tests {
         };
         let process = Process::at_start(fanuc);
         let tapping = process.in_cycle(Some(&cycle));
-        let words = ["G84 Q2.5", "no cycle of the spindle"].map(str::to_owned);
+        let words = [Text::same("G84 Q2.5"), Text::pair("no cycle of the spindle", "без цикла шпинделя")];
         assert_eq!(tapping.differences(&process), [words]);
         assert_eq!(process.in_cycle(Some(&CycleState { kind: CycleCode::Drill, ..cycle })), process);
     }

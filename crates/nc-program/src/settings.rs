@@ -1,5 +1,6 @@
 //! What the codes of a block set before anything moves, whatever their order in the block.
 
+use diagnostic::both;
 use nc_syntax::dialect::{Action, CycleCode, GCode, PlaneCode};
 use nc_syntax::{Dialect, Span};
 use toolpath::Plane;
@@ -137,14 +138,23 @@ pub(crate) fn apply<'d>(
             }
             owner => {
                 if let Some(other) = demand.owner_span {
-                    let message = format!(
+                    let message = both!(
                         "{} and {} both take the words of this block",
+                        "слова этого кадра принимают и {}, и {}",
                         words.text(other),
                         words.text(span)
                     );
                     return Err(words
-                        .refuse(codes::WORDS_OF_TWO, message, span, "whose are the axis words?")
-                        .help("write the two codes in two blocks"));
+                        .refuse(
+                            codes::WORDS_OF_TWO,
+                            message,
+                            span,
+                            both!("whose are the axis words?", "чьи это слова осей?"),
+                        )
+                        .help(both!(
+                            "write the two codes in two blocks",
+                            "напишите эти две функции двумя кадрами"
+                        )));
                 }
                 demand.owner = owner;
                 demand.owner_span = Some(span);
@@ -154,30 +164,44 @@ pub(crate) fn apply<'d>(
             }
         }
         let unwritten = match action {
-            Action::PolarOn => {
-                Some(("its words are radius and angle", "write the points in X and Y, G15 in force"))
-            }
-            Action::Turning(_) | Action::Called(_) => {
-                Some(("a cycle of the control", "let the CAM write the moves"))
-            }
+            Action::PolarOn => Some((
+                both!("its words are radius and angle", "её слова — радиус и угол"),
+                both!("write the points in X and Y, G15 in force", "напишите точки в X и Y, при G15"),
+            )),
+            Action::Turning(_) | Action::Called(_) => Some((
+                both!("a cycle of the control", "цикл стойки"),
+                both!("let the CAM write the moves", "выводите движения из CAM"),
+            )),
             _ => None,
         };
         if let Some((label, help)) = unwritten {
-            let message = format!("{} was not written out", words.text(span));
+            let message = both!("{} was not written out", "{} не расписана движениями", words.text(span));
             return Err(words.refuse(codes::REFUSED_CODE, message, span, label).help(help));
         }
         if *action == Action::PlaneReset && (state.shifts.local_mm != [0.0; 3] || !state.transform.is_none())
         {
-            let message = format!("{} while a frame of the program is in force", words.text(span));
+            let message = both!(
+                "{} while a frame of the program is in force",
+                "{} при действующей системе координат программы",
+                words.text(span)
+            );
             return Err(words
-                .refuse(codes::FRAME, message, span, "does it end the frame too?")
-                .help("end the frame with TRANS alone before it"));
+                .refuse(
+                    codes::FRAME,
+                    message,
+                    span,
+                    both!("does it end the frame too?", "отменяет ли она и её?"),
+                )
+                .help(both!(
+                    "end the frame with TRANS alone before it",
+                    "отмените перед этим систему координат: TRANS отдельным кадром"
+                )));
         }
         if let Action::Refuse { reason, help } = action {
-            let message = format!("{} is refused: {reason}", words.text(span));
+            let message = both!("{} is refused: {reason}", "{} не принимается: {reason:#}", words.text(span));
             return Err(words
-                .refuse(codes::REFUSED_CODE, message, span, "not understood")
-                .help(help.as_str()));
+                .refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
+                .help(help.clone()));
         }
     }
     tool_length::tool(env, words, state)?;
@@ -233,36 +257,72 @@ fn work_offset(
     let may_be_numbered = name.is_none() || (env.dialect.frames.p_selects_numbered && code == FIRST);
     let number = match words.number(b'P') {
         None if name.is_none() => {
-            let message = format!("{} without P", words.text(span));
+            let message = both!("{} without P", "{} без P", words.text(span));
             return Err(words
-                .refuse(codes::WORK_OFFSET, message, span, "which of the numbered work offsets?")
-                .help("write P1 for the first"));
+                .refuse(
+                    codes::WORK_OFFSET,
+                    message,
+                    span,
+                    both!("which of the numbered work offsets?", "какое из нумерованных смещений нуля?"),
+                )
+                .help(both!("write P1 for the first", "для первого напишите P1")));
         }
         None => None,
         Some(_) if other && !may_be_numbered => None,
         Some(_) if other => {
-            let message = format!("P beside {} may belong to two codes", words.text(span));
+            let message = both!(
+                "P beside {} may belong to two codes",
+                "P рядом с {} может относиться к двум функциям",
+                words.text(span)
+            );
             return Err(words
                 .refuse(
                     codes::WORDS_OF_TWO,
                     message,
                     words.span(P),
-                    "a work offset's number, or another code's P?",
+                    both!(
+                        "a work offset's number, or another code's P?",
+                        "номер смещения нуля или P другой функции?"
+                    ),
                 )
-                .help(format!("write {} and its P in a block of their own", words.text(span))));
+                .help(both!(
+                    "write {} and its P in a block of their own",
+                    "напишите {} и её P отдельным кадром",
+                    words.text(span)
+                )));
         }
         Some(_) if may_be_numbered => words.whole(b'P')?,
         Some(_) => {
-            let message = format!("P beside {} has no meaning here", words.text(span));
+            let message = both!(
+                "P beside {} has no meaning here",
+                "P рядом с {} здесь ничего не значит",
+                words.text(span)
+            );
             return Err(words
-                .refuse(codes::FRAME, message, words.span(P), "another work offset on some controls")
-                .help("remove P, or write the numbered work offset in the form this control has"));
+                .refuse(
+                    codes::FRAME,
+                    message,
+                    words.span(P),
+                    both!(
+                        "another work offset on some controls",
+                        "на некоторых стойках другое смещение нуля"
+                    ),
+                )
+                .help(both!(
+                    "remove P, or write the numbered work offset in the form this control has",
+                    "уберите P или напишите нумерованное смещение нуля так, как принято на этой стойке"
+                )));
         }
     };
     if number == Some(0) {
         return Err(words
-            .refuse(codes::WORK_OFFSET, "there is no work offset P0", words.span(P), "they count from 1")
-            .help("write the number of the work offset"));
+            .refuse(
+                codes::WORK_OFFSET,
+                both!("there is no work offset P0", "смещения нуля P0 нет"),
+                words.span(P),
+                both!("they count from 1", "счёт идёт с 1"),
+            )
+            .help(both!("write the number of the work offset", "напишите номер смещения нуля")));
     }
     let name = match (number, name) {
         (Some(number), _) => frames::numbered(number),
@@ -286,10 +346,18 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
     };
     let Some(span) = off.or(wanted.shift.map(|(_, span)| span)) else { return Ok(()) };
     if state.compensation != Compensation::Off {
-        let message = format!("{} under cutter compensation", words.text(span));
+        let message = both!("{} under cutter compensation", "{} при коррекции на радиус", words.text(span));
         return Err(words
-            .refuse(codes::FRAME, message, span, "the compensated path jumps with it")
-            .help("cancel the compensation with G40 before it"));
+            .refuse(
+                codes::FRAME,
+                message,
+                span,
+                both!("the compensated path jumps with it", "эквидистанта прыгает вместе с ней"),
+            )
+            .help(both!(
+                "cancel the compensation with G40 before it",
+                "отмените перед ней коррекцию функцией G40"
+            )));
     }
     if off.is_some() {
         frames::unsettle(state, Transform::None);
@@ -301,10 +369,25 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
         (Action::PresetSuspend, _) => (shifts.preset_mm, shifts.kept_mm) = ([0.0; 3], Some(shifts.preset_mm)),
         (_, Some(kept)) => shifts.preset_mm = kept,
         (_, None) => {
-            let message = format!("{} without a shift of this program", words.text(span));
+            let message = both!(
+                "{} without a shift of this program",
+                "{} без сдвига в этой программе",
+                words.text(span)
+            );
             return Err(words
-                .refuse(codes::FRAME, message, span, "brings back what an earlier program left")
-                .help("write the shift with G92 or G52, or use a work offset"));
+                .refuse(
+                    codes::FRAME,
+                    message,
+                    span,
+                    both!(
+                        "brings back what an earlier program left",
+                        "возвращает то, что осталось от прежней программы"
+                    ),
+                )
+                .help(both!(
+                    "write the shift with G92 or G52, or use a work offset",
+                    "задайте сдвиг функцией G92 или G52 или возьмите смещение нуля"
+                )));
         }
     }
     Ok(())
@@ -313,19 +396,34 @@ fn switches(words: &Words<'_, '_, '_>, state: &mut Modal, wanted: &Wanted<'_>) -
 /// What may not change while a rotation, scaling or mirror is in force.
 fn transformed(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
     let what = if before.plane != after.plane {
-        "plane"
+        both!("plane", "плоскость")
     } else if before.units != after.units {
-        "unit"
+        both!("unit", "единица")
     } else if before.work_offset != after.work_offset {
-        "work offset"
+        both!("work offset", "смещение нуля")
     } else {
         return Ok(());
     };
-    let message = format!("the {what} changes under {}", before.transform.name());
+    let message = both!(
+        "the {what} changes under {}",
+        "{what:#} меняется, пока действует {:#}",
+        before.transform.name()
+    );
     let span = words.codes.first().map_or_else(|| words.span(Letters::of(b"H")), |code| code.span);
     Err(words
-        .refuse(codes::FRAME, message, span, "controls differ in what the centre means then")
-        .help("cancel the rotation, scaling or mirror before, and write it again afterwards"))
+        .refuse(
+            codes::FRAME,
+            message,
+            span,
+            both!(
+                "controls differ in what the centre means then",
+                "что тогда значит центр, у стоек по-разному"
+            ),
+        )
+        .help(both!(
+            "cancel the rotation, scaling or mirror before, and write it again afterwards",
+            "отмените до этого поворот, масштабирование или зеркальное отображение, а после напишите снова"
+        )))
 }
 
 /// Applies the dialect's state at the start of a program. A work offset that the setup lacks is
@@ -477,15 +575,15 @@ fn motion(env: &Environment<'_>, state: &mut Modal, wanted: &Wanted<'_>) {
 /// would make of them is told by no manual.
 fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outcome<()> {
     let what = if before.plane != after.plane {
-        "plane"
+        both!("plane", "плоскость")
     } else if before.units != after.units {
-        "unit"
+        both!("unit", "единица")
     } else if before.work_offset != after.work_offset {
-        "work offset"
+        both!("work offset", "смещение нуля")
     } else if before.tool_length != after.tool_length {
-        "tool length"
+        both!("tool length", "коррекция на длину")
     } else if before.shifts != after.shifts || before.transform != after.transform {
-        "frame"
+        both!("frame", "система координат")
     } else {
         return Ok(());
     };
@@ -493,11 +591,17 @@ fn cycle_frame(words: &Words<'_, '_, '_>, before: &Modal, after: &Modal) -> Outc
     Err(words
         .refuse(
             codes::CYCLE_WORDS,
-            format!("the {what} changes while a drilling cycle is in force"),
+            both!(
+                "the {what} changes while a drilling cycle is in force",
+                "{what:#} меняется во время цикла сверления"
+            ),
             span,
-            "a cycle is running here",
+            both!("a cycle is running here", "здесь действует цикл"),
         )
-        .help("cancel the cycle with G80 before, and write it again with R and Z afterwards"))
+        .help(both!(
+            "cancel the cycle with G80 before, and write it again with R and Z afterwards",
+            "отмените цикл до этого функцией G80, а после напишите его снова, с R и Z"
+        )))
 }
 
 /// The refusal of an offset nobody gave.
@@ -509,11 +613,10 @@ pub(crate) fn missing_offset(
     words
         .refuse(
             codes::WORK_OFFSET,
-            format!("work offset {name} is not given"),
+            both!("work offset {name} is not given", "смещение нуля {name} не задано"),
             span,
-            "given by no profile, file or option",
+            both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
         )
-        .help(format!(
-            "`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile"
+        .help(both!("`--work-offset {name}=X,Y,Z` with the machine coordinates of the program's zero, or `{name} = [X, Y, Z]` under `[work_offsets_mm]` in the profile", "`--work-offset {name}=X,Y,Z` с координатами станка, где лежит нуль программы, или `{name} = [X, Y, Z]` в разделе `[work_offsets_mm]` профиля"
         ))
 }

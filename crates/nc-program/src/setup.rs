@@ -1,3 +1,4 @@
+use diagnostic::{Text, both};
 use toolpath::{AXIS_NAMES, RotaryChain, TiltRule};
 
 use crate::modal::ToolLength;
@@ -31,19 +32,24 @@ impl TipControl {
     ///
     /// * `path` – what cannot be proven: "no path under it"
     /// * `without` – what to post without
-    pub(crate) fn unknown(self, path: &str, without: &str) -> Option<(String, String)> {
+    pub(crate) fn unknown(self, path: &Text, without: &Text) -> Option<(Text, Text)> {
         match self {
             Self::Undeclared => Some((
-                "with which centres the control computes is not said".to_owned(),
-                format!(
-                    "declare what the control computes with as `[kinematics]` in the profile, or post without {without}"
+                both!(
+                    "with which centres the control computes is not said",
+                    "не сказано, с какими центрами поворота считает стойка"
+                ),
+                both!(
+                    "declare what the control computes with as `[kinematics]` in the profile, or post without {without}",
+                    "скажите, с чем считает стойка, в разделе `[kinematics]` профиля или выводите программу без {without:#}"
                 ),
             )),
             Self::Unproven => Some((
-                format!(
-                    "with lost motion of linear axes, with `[[effect]]`, and with engines other than `rigid-body`, {path} can be proven"
+                both!(
+                    "with lost motion of linear axes, with `[[effect]]`, and with engines other than `rigid-body`, {path} can be proven",
+                    "при люфте линейных осей, при `[[effect]]` и для методов, кроме `rigid-body`, путь {path:#} не доказать"
                 ),
-                format!("post without {without}"),
+                both!("post without {without}", "выводите программу без {without:#}"),
             )),
             Self::Declared => None,
         }
@@ -117,9 +123,9 @@ impl Setup {
     }
 
     /// The rotary axes as text: `A, C`, or `none`.
-    pub(crate) fn rotary_names(&self) -> String {
+    pub(crate) fn rotary_names(&self) -> Text {
         let names: Vec<String> =
             (0..3).filter(|&i| self.has_rotary[i]).map(|i| AXIS_NAMES[3 + i].to_string()).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+        if names.is_empty() { both!("none", "нет") } else { Text::same(names.join(", ")) }
     }
 }

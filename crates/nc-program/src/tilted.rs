@@ -4,7 +4,7 @@
 //! it does so wherever the rotary axes stand no manual promises; so nothing moves in a plane on which the tool does not
 //! stand upright.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::Action;
 use smallvec::SmallVec;
@@ -44,7 +44,7 @@ pub struct Begun {
     directions: [Option<Three>; 4],
 }
 
-fn refuse(words: &Words<'_, '_, '_>, span: Span, message: String, label: &str) -> Refusal {
+fn refuse(words: &Words<'_, '_, '_>, span: Span, message: Text, label: Text) -> Refusal {
     words.refuse(codes::TILTED_PLANE, message, span, label)
 }
 
@@ -61,30 +61,57 @@ pub(crate) fn define(
     state: &mut Modal,
 ) -> Outcome<()> {
     let code = words.text(span);
-    let unknown = env.setup.tip_control.unknown("no path in it", "tilted planes");
+    let unknown = env
+        .setup
+        .tip_control
+        .unknown(&both!("no path in it", "в ней"), &both!("tilted planes", "наклонных плоскостей"));
     if let Some((label, help)) = unknown {
-        let message = format!("{code} is refused: it tilts the working plane");
-        return Err(refuse(words, span, message, &label).help(help));
+        let message = both!(
+            "{code} is refused: it tilts the working plane",
+            "{code} не принимается: она наклоняет рабочую плоскость"
+        );
+        return Err(refuse(words, span, message, label).help(help));
     }
     match state.kinematics {
         Kinematics::Axes => {}
         Kinematics::Tip => {
-            let message = format!("{code} under tool centre point control");
-            let label = "are X, Y and Z in the plane's coordinates then, or in the workpiece's?";
-            return Err(
-                refuse(words, span, message, label).help("switch tool centre point control off before")
+            let message = both!(
+                "{code} under tool centre point control",
+                "{code} при управлении по вершине инструмента"
             );
+            let label = both!(
+                "are X, Y and Z in the plane's coordinates then, or in the workpiece's?",
+                "в чьих координатах тогда X, Y и Z: плоскости или детали?"
+            );
+            return Err(refuse(words, span, message, label).help(both!(
+                "switch tool centre point control off before",
+                "отключите до этого управление по вершине инструмента"
+            )));
         }
         Kinematics::Plane(_) => {
-            let message = format!("{code} inside a tilted plane");
-            return Err(refuse(words, span, message, "in the coordinates of which plane?")
-                .help("cancel the plane before with G69"));
+            let message = both!("{code} inside a tilted plane", "{code} в наклонной плоскости");
+            return Err(refuse(
+                words,
+                span,
+                message,
+                both!("in the coordinates of which plane?", "в координатах какой плоскости?"),
+            )
+            .help(both!("cancel the plane before with G69", "отмените до этого плоскость функцией G69")));
         }
     }
     if state.tool_length.applied_mm() != [0.0; 3] {
-        let message = format!("{code} with a tool length in force");
-        return Err(refuse(words, span, message, "along which axis is the length then?")
-            .help("write G49 before it, and G43 with its H behind G53.1, or in the plane"));
+        let message =
+            both!("{code} with a tool length in force", "{code} при действующей коррекции на длину");
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!("along which axis is the length then?", "вдоль какой оси тогда длина?"),
+        )
+        .help(both!(
+            "write G49 before it, and G43 with its H behind G53.1, or in the plane",
+            "напишите перед ней G49, а G43 с H — после G53.1 или в плоскости"
+        )));
     }
     absolute(words, span, state)?;
     // Some posts write `R0.` with each plane.
@@ -93,9 +120,15 @@ pub(crate) fn define(
             words,
             span,
             R,
-            "turns the plane about its zero, before or behind its own angles?",
+            both!(
+                "turns the plane about its zero, before or behind its own angles?",
+                "поворачивает плоскость вокруг её нуля: до её углов или после?"
+            ),
         )
-        .help("write the turn into the plane's angles, points or vectors, and remove R"));
+        .help(both!(
+            "write the turn into the plane's angles, points or vectors, and remove R",
+            "учтите поворот в углах, точках или векторах плоскости и уберите R"
+        )));
     }
     let origin = match words.whole(b'P')?.unwrap_or(0) {
         form @ (0 | 1) => {
@@ -106,10 +139,23 @@ pub(crate) fn define(
         }
         form @ (2 | 3) => by_blocks(words, span, form, state)?,
         form => {
-            let what = if form == 4 { "by projected angles" } else { "by a form that no manual has" };
-            let message = format!("{code} P{form} defines a plane {what}");
-            return Err(refuse(words, words.span(P), message, "which turn that is, is not certain")
-                .help("write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z"));
+            let what = if form == 4 {
+                both!("by projected angles", "через углы проекций")
+            } else {
+                both!("by a form that no manual has", "в виде, которого нет ни в одном руководстве")
+            };
+            let message =
+                both!("{code} P{form} defines a plane {what}", "{code} P{form} задаёт плоскость {what:#}");
+            return Err(refuse(
+                words,
+                words.span(P),
+                message,
+                both!("which turn that is, is not certain", "какой это поворот, неясно"),
+            )
+            .help(both!(
+                "write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z",
+                "задайте плоскость углами Эйлера: P0 и I, J, K вокруг Z, новой X и новой Z"
+            )));
         }
     };
     let Some((origin, turn)) = origin else { return Ok(()) };
@@ -127,15 +173,27 @@ fn lose(words: &Words<'_, '_, '_>, state: &mut Modal) {
     naming::forget_all(words, state, Why::TiltedPlane);
 }
 
-fn stray(words: &Words<'_, '_, '_>, span: Span, letters: Letters, label: &str) -> Refusal {
-    let message = format!("{} beside {}", words.names(letters), words.text(span));
+fn stray(words: &Words<'_, '_, '_>, span: Span, letters: Letters, label: Text) -> Refusal {
+    let message = both!("{} beside {}", "{} рядом с {}", words.names(letters), words.text(span));
     refuse(words, words.span(letters), message, label)
 }
 
 fn unfinished(words: &Words<'_, '_, '_>, span: Span) -> Box<Diagnostic> {
-    let message = "the definition of a tilted plane is not whole".to_owned();
-    refuse(words, span, message, "points and vectors of one plane stand in blocks one behind the other")
-        .help("write all its blocks, Q1 and Q2, of three points Q3 too, before anything else")
+    let message =
+        both!("the definition of a tilted plane is not whole", "наклонная плоскость задана не полностью");
+    refuse(
+        words,
+        span,
+        message,
+        both!(
+            "points and vectors of one plane stand in blocks one behind the other",
+            "точки и векторы одной плоскости стоят в кадрах, идущих подряд"
+        ),
+    )
+    .help(both!(
+        "write all its blocks, Q1 and Q2, of three points Q3 too, before anything else",
+        "напишите прежде всего остального все её кадры: Q1 и Q2, для трёх точек ещё Q3"
+    ))
 }
 
 /// X, Y and Z of the block, program coordinates, mm: all of them.
@@ -143,9 +201,20 @@ fn point(words: &Words<'_, '_, '_>, span: Span, state: &Modal) -> Outcome<Three>
     let inch = state.units == Units::Inch;
     let values = LINEAR.map(|letter| words.coordinate(letter, inch));
     let [Some(x), Some(y), Some(z)] = values else {
-        let message = format!("{} without X, Y and Z", words.text(span));
-        return Err(refuse(words, span, message, "where the axes stand, or at zero? controls differ")
-            .help("write X, Y and Z of the plane's zero, or of the point"));
+        let message = both!("{} without X, Y and Z", "{} без X, Y и Z", words.text(span));
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!(
+                "where the axes stand, or at zero? controls differ",
+                "там, где стоят оси, или в нуле? у стоек по-разному"
+            ),
+        )
+        .help(both!(
+            "write X, Y and Z of the plane's zero, or of the point",
+            "напишите X, Y и Z нуля плоскости или точки"
+        )));
     };
     Ok([x, y, z].map(|value| value * state.units.mm()))
 }
@@ -159,37 +228,62 @@ fn three(words: &Words<'_, '_, '_>) -> Three {
 fn by_angles(words: &Words<'_, '_, '_>, span: Span, form: u32) -> Outcome<Turn> {
     let angles = three(words);
     if !words.has(CENTRE_LETTERS) {
-        let message = format!("{} without an angle", words.text(span));
-        return Err(refuse(words, span, message, "a plane that is not tilted, or as the last one?")
-            .help("write I, J and K in degrees"));
+        let message = both!("{} without an angle", "{} без угла", words.text(span));
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!(
+                "a plane that is not tilted, or as the last one?",
+                "без наклона или как прошлая плоскость?"
+            ),
+        )
+        .help(both!("write I, J and K in degrees", "напишите I, J и K в градусах")));
     }
     let order = words.whole(b'Q')?;
     if form == 0 {
         if order.is_some_and(|order| order != 313) {
-            return Err(stray(words, span, Q, "another order of Euler angles on some controls").help(
+            return Err(stray(
+                words,
+                span,
+                Q,
+                both!(
+                    "another order of Euler angles on some controls",
+                    "на некоторых стойках другой порядок углов Эйлера"
+                ),
+            )
+            .help(both!(
                 "write the plane by I about Z, J about the new X and K about the new Z, and remove Q",
-            ));
+                "задайте плоскость словами I вокруг Z, J вокруг новой X и K вокруг новой Z и уберите Q"
+            )));
         }
         return Ok(TiltedPlane::turn_by_euler(angles));
     }
     if order != Some(123) {
-        let message = format!("{} P1 without Q123", words.text(span));
+        let message = both!("{} P1 without Q123", "{} P1 без Q123", words.text(span));
         let at = if words.has(Q) { words.span(Q) } else { span };
-        return Err(refuse(words, at, message, "whether I, J, K then change places, controls differ").help(
-            "write Q123, and one angle: I about X, J about Y or K about Z; or the plane by Euler angles (P0)",
+        return Err(refuse(words, at, message, both!("whether I, J, K then change places, controls differ", "меняются ли тогда местами I, J, K, у стоек по-разному")).help(
+            both!("write Q123, and one angle: I about X, J about Y or K about Z; or the plane by Euler angles (P0)", "напишите Q123 и один угол: I вокруг X, J вокруг Y или K вокруг Z; или задайте плоскость углами Эйлера (P0)"),
         ));
     }
     let mut turns = (0..3).filter(|axis| angles[*axis] != 0.0);
     let axis = turns.next().unwrap_or(0);
     if turns.next().is_some() {
-        let message = format!("{} P1 with more than one angle", words.text(span));
+        let message =
+            both!("{} P1 with more than one angle", "{} P1 больше чем с одним углом", words.text(span));
         return Err(refuse(
             words,
             words.span(CENTRE_LETTERS),
             message,
-            "about axes that stand, or that turn? controls differ",
+            both!(
+                "about axes that stand, or that turn? controls differ",
+                "вокруг неподвижных осей или поворачивающихся? у стоек по-разному"
+            ),
         )
-        .help("write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z"));
+        .help(both!(
+            "write the plane by Euler angles: P0 and I, J, K about Z, the new X and the new Z",
+            "задайте плоскость углами Эйлера: P0 и I, J, K вокруг Z, новой X и новой Z"
+        )));
     }
     Ok(TiltedPlane::turn_about(axis, angles[axis]))
 }
@@ -210,22 +304,37 @@ fn by_blocks(
     let last = if form == 2 { 3 } else { 2 };
     let least = if form == 2 { 0 } else { 1 };
     let Some(q) = words.whole(b'Q')?.filter(|q| (least..=last).contains(q)) else {
-        let message = format!("{code} P{form} without the number of its block");
+        let message =
+            both!("{code} P{form} without the number of its block", "{code} P{form} без номера своего кадра");
         let at = if words.has(Q) { words.span(Q) } else { span };
-        return Err(refuse(words, at, message, &format!("Q{least} to Q{last} were expected"))
-            .help("write Q1 beside the plane's zero"));
+        return Err(refuse(
+            words,
+            at,
+            message,
+            both!("Q{least} to Q{last} were expected", "ожидались Q{least}–Q{last}"),
+        )
+        .help(both!("write Q1 beside the plane's zero", "напишите Q1 рядом с нулём плоскости")));
     };
     let place = q as usize;
     if begun.points[place].is_some() || begun.directions[place].is_some() {
-        let message = format!("{code} P{form} Q{q} stands twice");
-        return Err(refuse(words, words.span(Q), message, "which one?").help("remove one of the two"));
+        let message = both!("{code} P{form} Q{q} stands twice", "{code} P{form} Q{q} стоит дважды");
+        return Err(refuse(words, words.span(Q), message, both!("which one?", "какое из двух?"))
+            .help(both!("remove one of the two", "уберите одно из двух")));
     }
     let has_point = form == 2 || q == 1;
     let without = if has_point { Letters::NONE } else { LINEAR_LETTERS };
     let without = if form == 2 { without.or(CENTRE_LETTERS) } else { without };
     if words.has(without) {
-        return Err(stray(words, span, without, "has no meaning in this block of the plane")
-            .help("remove the word, or write it in the block that it belongs to"));
+        return Err(stray(
+            words,
+            span,
+            without,
+            both!("has no meaning in this block of the plane", "в этом кадре плоскости ничего не значит"),
+        )
+        .help(both!(
+            "remove the word, or write it in the block that it belongs to",
+            "уберите слово или напишите его в том кадре, к которому оно относится"
+        )));
     }
     if has_point {
         let at = point(words, span, state)?;
@@ -234,37 +343,62 @@ fn by_blocks(
                 words,
                 span,
                 LINEAR_LETTERS,
-                "a shift in the plane, or in the workpiece? controls differ",
+                both!(
+                    "a shift in the plane, or in the workpiece? controls differ",
+                    "сдвиг в плоскости или в детали? у стоек по-разному"
+                ),
             )
-            .help("write the plane's zero as its first point, and zeros or nothing as Q0"));
+            .help(both!(
+                "write the plane's zero as its first point, and zeros or nothing as Q0",
+                "напишите нуль плоскости первой точкой, а Q0 — с нулями или совсем не пишите"
+            )));
         }
         begun.points[place] = Some(at);
     }
     if form == 3 {
         let Some(direction) = unit(three(words)) else {
-            let message = format!("{code} P3 Q{q} with a vector of no length");
-            return Err(
-                refuse(words, span, message, "no direction").help("write I, J and K of the direction")
-            );
+            let message =
+                both!("{code} P3 Q{q} with a vector of no length", "{code} P3 Q{q} с нулевым вектором");
+            return Err(refuse(words, span, message, both!("no direction", "направления нет"))
+                .help(both!("write I, J and K of the direction", "напишите I, J и K направления")));
         };
         begun.directions[place] = Some(direction);
     }
     let plane = match (form, begun.points, begun.directions) {
         (2, [_, Some(zero), Some(on_x), Some(beside)], _) => {
             let Some(turn) = TiltedPlane::turn_by_points([zero, on_x, beside]) else {
-                let message = "three points of a tilted plane lie on one line".to_owned();
-                return Err(refuse(words, span, message, "no plane, or any")
-                    .help("write three points that span the plane"));
+                let message = both!(
+                    "three points of a tilted plane lie on one line",
+                    "три точки наклонной плоскости лежат на одной прямой"
+                );
+                return Err(refuse(
+                    words,
+                    span,
+                    message,
+                    both!("no plane, or any", "плоскости нет или подходит любая"),
+                )
+                .help(both!(
+                    "write three points that span the plane",
+                    "напишите три точки не на одной прямой"
+                )));
             };
             Some((zero, turn))
         }
         (3, [_, Some(zero), ..], [_, Some(x), Some(z), _]) => {
             let turn = TiltedPlane::turn_by_directions(x, z).map_err(|lean| {
-                let message = "the two vectors of a tilted plane are not at right angles".to_owned();
-                let label =
-                    format!("by {:.4} degrees: which of the two stays is not certain", lean.to_degrees());
-                refuse(words, span, message, &label)
-                    .help("write the vectors with more decimals, or the plane by angles or points")
+                let message = both!(
+                    "the two vectors of a tilted plane are not at right angles",
+                    "два вектора наклонной плоскости не под прямым углом"
+                );
+                let label = both!(
+                    "by {:.4} degrees: which of the two stays is not certain",
+                    "на {:.4} градуса: какой из двух остаётся, неясно",
+                    lean.to_degrees()
+                );
+                refuse(words, span, message, label).help(both!(
+                    "write the vectors with more decimals, or the plane by angles or points",
+                    "напишите векторы с большим числом знаков или задайте плоскость углами или точками"
+                ))
             })?;
             Some((zero, turn))
         }
@@ -286,14 +420,18 @@ pub(crate) fn align(
     let code = words.text(span);
     let others = AXIS_LETTERS.or(ARC_LETTERS).or(Letters::of(b"PQHD"));
     if words.has(others) {
-        return Err(stray(words, span, others, "chooses or moves something, as the control has it")
-            .help("write the code alone in its block, and say which way the control turns as `branch` and `turn` under `[kinematics]` in the profile"));
+        return Err(stray(words, span, others, both!("chooses or moves something, as the control has it", "что-то выбирает или двигает, у каждой стойки своё"))
+            .help(both!("write the code alone in its block, and say which way the control turns as `branch` and `turn` under `[kinematics]` in the profile", "напишите функцию отдельным кадром, а куда поворачивает стойка, скажите ключами `branch` и `turn` раздела `[kinematics]` профиля")));
     }
     let Kinematics::Plane(plane) = state.kinematics else {
-        let message = format!("{code} without a tilted plane");
-        return Err(
-            refuse(words, span, message, "turns the tool to which plane?").help("write G68.2 before it")
-        );
+        let message = both!("{code} without a tilted plane", "{code} без наклонной плоскости");
+        return Err(refuse(
+            words,
+            span,
+            message,
+            both!("turns the tool to which plane?", "к какой плоскости повернуть инструмент?"),
+        )
+        .help(both!("write G68.2 before it", "напишите перед ней G68.2")));
     };
     let stand = state.axes.rotary.map(Axis::known);
     let angles = env.setup.rotary_chain.angles_for(plane.normal(), &env.setup.tilt_rule, stand);
@@ -301,31 +439,31 @@ pub(crate) fn align(
     let angles = angles.map_err(|why| {
         let (label, help) = match why {
             NoAngles::NotTwoAxes => (
-                "this machine has not two rotary axes that tilt the tool".to_owned(),
-                "turn the axes by their own words before G68.2, and leave the code out".to_owned(),
+                both!("this machine has not two rotary axes that tilt the tool", "у этого станка нет двух поворотных осей, наклоняющих инструмент"),
+                both!("turn the axes by their own words before G68.2, and leave the code out", "поверните оси их собственными словами до G68.2 и не пишите эту функцию"),
             ),
             NoAngles::OutOfReach => (
-                "no angles within travel stand the tool upright on the plane, or none of the profile's branch".to_owned(),
-                "check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`".to_owned(),
+                both!("no angles within travel stand the tool upright on the plane, or none of the profile's branch", "в пределах хода нет углов, при которых инструмент перпендикулярен плоскости, или нет таких на ветви, названной в профиле"),
+                both!("check the plane, `travel_deg` of the rotary axes and `branch` under `[kinematics]`", "проверьте плоскость, `travel_deg` поворотных осей и `branch` в разделе `[kinematics]`"),
             ),
             NoAngles::TwoWays => (
-                "two pairs of angles stand the tool upright on the plane".to_owned(),
-                "say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then".to_owned(),
+                both!("two pairs of angles stand the tool upright on the plane", "инструмент перпендикулярен плоскости при двух парах углов"),
+                both!("say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then", "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"),
             ),
             NoAngles::Free(axis) => (
-                format!("the tool stands along {}, which may stand anywhere then", name(axis)),
-                format!("turn {} by its own word before G68.2, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there", name(axis)),
+                both!("the tool stands along {}, which may stand anywhere then", "инструмент стоит вдоль {}, и эта ось может быть где угодно", name(axis)),
+                both!("turn {} by its own word before G68.2, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there", "поверните {} её собственным словом до G68.2; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`", name(axis)),
             ),
             NoAngles::Turns(axis) => (
-                format!("{} has travel for several turns", name(axis)),
-                "say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile".to_owned(),
+                both!("{} has travel for several turns", "ход {} — несколько оборотов", name(axis)),
+                both!("say which one the control takes: `turn = \"shortest\"` or `turn = \"principal\"` under `[kinematics]` in the profile", "скажите, какой берёт стойка: `turn = \"shortest\"` или `turn = \"principal\"` в разделе `[kinematics]` профиля"),
             ),
             NoAngles::Unknown(axis) => (
-                format!("where {} stands before is not known", name(axis)),
-                format!("write a rapid that names {} before G68.2", name(axis)),
+                both!("where {} stands before is not known", "где до этого стоит {}, неизвестно", name(axis)),
+                both!("write a rapid that names {} before G68.2", "напишите до G68.2 быстрый ход, в котором названа {}", name(axis)),
             ),
         };
-        let message = format!("where {code} turns the rotary axes is not certain");
+        let message = both!("where {code} turns the rotary axes is not certain", "куда {code} повернёт поворотные оси, неясно");
         words.refuse(codes::PLANE_ANGLES, message, span, label).help(help)
     })?;
     for axis in (0..3).filter(|axis| env.setup.has_rotary[*axis]) {
@@ -365,24 +503,46 @@ pub(crate) fn check(
     let aligns = matches!(demand.frame, Some(Action::AlignTool));
     let ends = words.codes.iter().any(|code| code.entry.action == Action::RotationOff);
     let (what, help) = match demand.owner {
-        Owner::Frame if !defines && !aligns => ("moves the frame", "cancel the plane with G69 before it"),
+        Owner::Frame if !defines && !aligns => (
+            both!("moves the frame", "смещает систему координат"),
+            both!("cancel the plane with G69 before it", "отмените перед ней плоскость функцией G69"),
+        ),
         Owner::Reference | Owner::MachineCoordinates | Owner::Probe
             if !ends || demand.owner == Owner::Probe =>
         {
-            ("moves axes of the machine, or of the plane", "cancel the plane with G69 in a block before it")
+            (
+                both!("moves axes of the machine, or of the plane", "двигает оси станка или оси плоскости"),
+                both!(
+                    "cancel the plane with G69 in a block before it",
+                    "отмените плоскость функцией G69 в кадре перед ней"
+                ),
+            )
         }
         _ if before.work_offset != state.work_offset => (
-            "chooses another work offset",
-            "cancel the plane with G69 before it, and write it again afterwards",
+            both!("chooses another work offset", "выбирает другое смещение нуля"),
+            both!(
+                "cancel the plane with G69 before it, and write it again afterwards",
+                "отмените перед ней плоскость функцией G69, а после задайте её снова"
+            ),
         ),
-        _ if !ends && words.codes.iter().any(|code| is_rival(env, code.entry.group, &code.entry.action)) => {
-            ("may end the plane on some controls", "cancel the plane with G69")
-        }
+        _ if !ends && words.codes.iter().any(|code| is_rival(env, code.entry.group, &code.entry.action)) => (
+            both!("may end the plane on some controls", "на некоторых стойках может отменить плоскость"),
+            both!("cancel the plane with G69", "отмените плоскость функцией G69"),
+        ),
         _ => return Ok(()),
     };
     let span = span();
-    let message = format!("{} inside a tilted plane", words.text(span));
-    Err(refuse(words, span, message, &format!("{what}: controls differ in what that means here")).help(help))
+    let message = both!("{} inside a tilted plane", "{} в наклонной плоскости", words.text(span));
+    Err(refuse(
+        words,
+        span,
+        message,
+        both!(
+            "{what}: controls differ in what that means here",
+            "{what:#}: что это здесь значит, у стоек по-разному"
+        ),
+    )
+    .help(help))
 }
 
 /// A code of the group of G68.2 that is passed elsewhere.
@@ -408,15 +568,24 @@ pub(crate) fn check_motions(
     }
     let span = words.span(AXIS_LETTERS);
     if before.axes.rotary != state.axes.rotary {
-        let message = "a rotary axis turns inside a tilted plane";
+        let message = both!(
+            "a rotary axis turns inside a tilted plane",
+            "в наклонной плоскости вращается поворотная ось"
+        );
         return Err(words
             .refuse(
                 codes::PLANE_ANGLES,
                 message,
                 span,
-                "the plane turns with it on some controls, on others not",
+                both!(
+                    "the plane turns with it on some controls, on others not",
+                    "на одних стойках плоскость поворачивается вместе с ней, на других нет"
+                ),
             )
-            .help("turn the axis before G68.2, or let G53.1 do it"));
+            .help(both!(
+                "turn the axis before G68.2, or let G53.1 do it",
+                "поверните ось до G68.2 или предоставьте это G53.1"
+            )));
     }
     if motions.iter().all(|motion| matches!(motion, Motion::Uncorrected { .. })) {
         return Ok(());
@@ -426,21 +595,30 @@ pub(crate) fn check_motions(
         env.setup.rotary_chain.tool_direction(state.axes.rotary.map(|axis| axis.known().unwrap_or(0.0)));
     let off_rad = plane.off_normal_rad(stands);
     if off_rad > UPRIGHT_RAD {
-        let message = "the rotary axes do not stand the tool upright on the tilted plane";
-        let label = format!("it leans by {} degrees", angle(off_rad));
+        let message = both!(
+            "the rotary axes do not stand the tool upright on the tilted plane",
+            "поворотные оси не ставят инструмент перпендикулярно наклонной плоскости"
+        );
+        let label = both!("it leans by {} degrees", "наклон {} градуса", angle(off_rad));
         return Err(words
             .refuse(codes::PLANE_ANGLES, message, span, label)
-            .help("write the angles that belong to the plane before G68.2, with as many decimals as the plane has, or G53.1 behind it"));
+            .help(both!("write the angles that belong to the plane before G68.2, with as many decimals as the plane has, or G53.1 behind it", "напишите до G68.2 углы этой плоскости с тем же числом знаков, что и у неё, или после неё G53.1")));
     }
     let tool_mm = env.setup.tool_vector(&state.tool_length);
     if tool_mm[0] != 0.0 || tool_mm[1] != 0.0 {
         return Err(refuse(
             words,
             span,
-            "a tool beside the spindle's axis in a tilted plane".to_owned(),
-            "along which axes is it then?",
+            both!(
+                "a tool beside the spindle's axis in a tilted plane",
+                "в наклонной плоскости инструмент не на оси шпинделя"
+            ),
+            both!("along which axes is it then?", "вдоль каких осей он тогда?"),
         )
-        .help("give the tool's length along Z alone, or post without tilted planes"));
+        .help(both!(
+            "give the tool's length along Z alone, or post without tilted planes",
+            "задайте длину инструмента только вдоль Z или выводите без наклонных плоскостей"
+        )));
     }
     Ok(())
 }

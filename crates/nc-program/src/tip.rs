@@ -1,5 +1,6 @@
 //! Tool centre point control: G43.4, TRAORI, M codes of the machine. X, Y and Z then say where the tip is.
 
+use diagnostic::both;
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, TipSwitch};
 use toolpath::Kinematics;
@@ -51,10 +52,14 @@ pub(crate) fn switch(
     state: &mut Modal,
 ) -> Outcome<()> {
     let Some((kinematics, span)) = wanted(env, words, before) else { return Ok(()) };
-    let unknown = env.setup.tip_control.unknown("no path under it", "tool centre point control");
+    let unknown = env.setup.tip_control.unknown(
+        &both!("no path under it", "при нём"),
+        &both!("tool centre point control", "управления по вершине инструмента"),
+    );
     if let (Kinematics::Tip, Some((label, help))) = (kinematics, unknown) {
-        let message = format!(
+        let message = both!(
             "{} is refused: it moves the axes so that the tool's tip follows the path (tool centre point)",
+            "{} не принимается: она ведёт оси так, чтобы по пути шла вершина инструмента",
             words.text(span)
         );
         return Err(words.refuse(codes::TIP_CONTROL, message, span, label).help(help));
@@ -67,15 +72,21 @@ pub(crate) fn switch(
             // What is not on cannot be switched off.
             return Ok(());
         }
-        let message = format!("{} inside a tilted plane", words.text(span));
+        let message = both!("{} inside a tilted plane", "{} в наклонной плоскости", words.text(span));
         return Err(words
             .refuse(
                 codes::TILTED_PLANE,
                 message,
                 span,
-                "is the tip then in the plane's coordinates, or in the workpiece's?",
+                both!(
+                    "is the tip then in the plane's coordinates, or in the workpiece's?",
+                    "в чьих координатах тогда вершина: плоскости или детали?"
+                ),
             )
-            .help("cancel the plane with G69 before it, or post the points of the plane without it"));
+            .help(both!(
+                "cancel the plane with G69 before it, or post the points of the plane without it",
+                "отмените перед ней плоскость функцией G69 или выводите точки плоскости без неё"
+            )));
     }
     state.kinematics = kinematics;
     if state.axes.rotary.iter().any(|axis| *axis != Axis::At(0.0)) {
@@ -110,21 +121,46 @@ pub(crate) fn check(
     };
     let (message, help) = if state.compensation != Compensation::Off {
         (
-            "cutter compensation under tool centre point control",
-            "correct the radius in the CAM: in which plane it is corrected while the tool turns, controls differ",
+            both!(
+                "cutter compensation under tool centre point control",
+                "коррекция на радиус при управлении по вершине инструмента"
+            ),
+            both!(
+                "correct the radius in the CAM: in which plane it is corrected while the tool turns, controls differ",
+                "учтите радиус в CAM: в какой плоскости его учитывают, пока инструмент поворачивается, у стоек по-разному"
+            ),
         )
     } else if !state.transform.is_none() {
         (
-            "a rotation, scaling or mirror under tool centre point control",
-            "cancel it before, or let the CAM write the points",
+            both!(
+                "a rotation, scaling or mirror under tool centre point control",
+                "поворот, масштабирование или зеркальное отображение при управлении по вершине инструмента"
+            ),
+            both!(
+                "cancel it before, or let the CAM write the points",
+                "отмените его раньше или выводите точки из CAM"
+            ),
         )
     } else if state.cycle.is_some() {
         (
-            "a drilling cycle under tool centre point control",
-            "switch it off for the cycle: along which axis it drills, controls differ",
+            both!(
+                "a drilling cycle under tool centre point control",
+                "цикл сверления при управлении по вершине инструмента"
+            ),
+            both!(
+                "switch it off for the cycle: along which axis it drills, controls differ",
+                "отключите управление на время цикла: вдоль какой оси сверлить, у стоек по-разному"
+            ),
         )
     } else {
         return Ok(());
     };
-    Err(words.refuse(codes::TIP_CONTROL, message, span(), "X, Y and Z say where the tip is here").help(help))
+    Err(words
+        .refuse(
+            codes::TIP_CONTROL,
+            message,
+            span(),
+            both!("X, Y and Z say where the tip is here", "X, Y и Z здесь — положение вершины"),
+        )
+        .help(help))
 }

@@ -1,5 +1,6 @@
 //! T, H, G43, G44, G49 and G43.1: which tool length is in force.
 
+use diagnostic::{Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::LengthAfter;
 
@@ -34,15 +35,19 @@ pub(crate) fn tool(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut
     }
     if words.has(T) {
         if env.dialect.t_may_change_tool {
-            let message = format!("{} may change the tool at once", words.text(words.span(T)));
+            let message = both!(
+                "{} may change the tool at once",
+                "{} может сразу сменить инструмент",
+                words.text(words.span(T))
+            );
             return Err(words
                 .refuse(
                     codes::TOOL_LENGTH,
                     message,
                     words.span(T),
-                    "brings in a length that no word of the program names, and moves the axes",
+                    both!("brings in a length that no word of the program names, and moves the axes", "вводит длину, которой не называет ни одно слово программы, и двигает оси"),
                 )
-                .help("correct the operations of each tool apart, without T and M6, the length given in the profile's tool.default_mm; or write t_word = \"selects\" in a copy of the grammar where M6 changes the tool"));
+                .help(both!("correct the operations of each tool apart, without T and M6, the length given in the profile's tool.default_mm; or write t_word = \"selects\" in a copy of the grammar where M6 changes the tool", "исправляйте переходы каждого инструмента отдельно, без T и M6, задав длину ключом tool.default_mm профиля; или, если инструмент меняет M6, впишите t_word = \"selects\" в копию таблицы диалекта")));
         }
         state.tool_selected = words.whole(b'T').ok().flatten();
     }
@@ -67,11 +72,21 @@ fn turret(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -
         return Err(words
             .refuse(
                 codes::TOOL_LENGTH,
-                format!("{} is not a tool and its offset", words.text(span)),
+                both!(
+                    "{} is not a tool and its offset",
+                    "{} — не номер инструмента с номером корректора",
+                    words.text(span)
+                ),
                 span,
-                "which digits are the offset's depends on a parameter (5028)",
+                both!(
+                    "which digits are the offset's depends on a parameter (5028)",
+                    "какие цифры относятся к корректору, зависит от параметра 5028"
+                ),
             )
-            .help("write two digits for the tool and two for its offset, like T0101; T0100 for no offset"));
+            .help(both!(
+                "write two digits for the tool and two for its offset, like T0101; T0100 for no offset",
+                "напишите две цифры инструмента и две корректора, например T0101; T0100 — без коррекции"
+            )));
     }
     state.tool_selected = Some(number / 100);
     state.tool_loaded = state.tool_selected;
@@ -96,11 +111,14 @@ fn edge(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut Modal) -> 
         (_, None) => Err(words
             .refuse(
                 codes::TOOL_LENGTH,
-                "an offset of a tool that the program has not called",
+                both!(
+                    "an offset of a tool that the program has not called",
+                    "корректор инструмента, который программа не вызывала"
+                ),
                 span,
-                "of which tool?",
+                both!("of which tool?", "какого инструмента?"),
             )
-            .help("write T before it")),
+            .help(both!("write T before it", "напишите перед ним T"))),
         (Some(edge), Some(_)) => Err(further_edge(words, edge, span)),
     }
 }
@@ -126,11 +144,14 @@ fn edge_of_loaded(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &mut 
             return Err(words
                 .refuse(
                     codes::TOOL_LENGTH,
-                    "a tool change, and no tool was called before",
+                    both!(
+                        "a tool change, and no tool was called before",
+                        "смена инструмента, а до неё ни один инструмент не вызван"
+                    ),
                     span,
-                    "which tool?",
+                    both!("which tool?", "какой инструмент?"),
                 )
-                .help("write T before it"));
+                .help(both!("write T before it", "напишите перед ним T")));
         }
         state.tool_loaded = state.tool_selected;
         state.edge_unsaid = true;
@@ -157,11 +178,17 @@ fn further_edge(words: &Words<'_, '_, '_>, edge: u32, span: Span) -> Box<diagnos
     words
         .refuse(
             codes::TOOL_LENGTH,
-            format!("D{edge} is a further edge of the tool"),
+            both!("D{edge} is a further edge of the tool", "D{edge} — ещё одна режущая кромка инструмента"),
             span,
-            "the profile has one offset for each tool",
+            both!(
+                "the profile has one offset for each tool",
+                "в профиле у каждого инструмента один корректор"
+            ),
         )
-        .help("write D1, or give the edge a tool of its own")
+        .help(both!(
+            "write D1, or give the edge a tool of its own",
+            "напишите D1 или заведите для кромки отдельный инструмент"
+        ))
 }
 
 /// The number of a tool that the program calls by its name.
@@ -169,9 +196,8 @@ fn named(env: &Environment<'_>, words: &Words<'_, '_, '_>, span: Span, name: &st
     let known = env.setup.tool_names.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
     known.map(|(_, number)| *number).ok_or_else(|| {
         words
-            .refuse(codes::TOOL_LENGTH, format!("the tool \"{name}\" is not given"), span, "which length has it?")
-            .help(format!(
-                "write `names = {{ \"{name}\" = 1 }}` and its length `lengths_mm = {{ H1 = 120.0 }}` under `[tool]` in the profile"
+            .refuse(codes::TOOL_LENGTH, both!("the tool \"{name}\" is not given", "инструмент \"{name}\" не задан"), span, both!("which length has it?", "какая у него длина?"))
+            .help(both!("write `names = {{ \"{name}\" = 1 }}` and its length `lengths_mm = {{ H1 = 120.0 }}` under `[tool]` in the profile", "впишите `names = {{ \"{name}\" = 1 }}` и его длину `lengths_mm = {{ H1 = 120.0 }}` в раздел `[tool]` профиля"
             ))
     })
 }
@@ -185,11 +211,11 @@ pub(crate) fn edge_is_said(words: &Words<'_, '_, '_>, state: &Modal) -> Outcome<
     Err(words
         .refuse(
             codes::TOOL_LENGTH,
-            "which tool is in, and which of its edges counts, is not said",
+            both!("which tool is in, and which of its edges counts, is not said", "не сказано, какой инструмент в шпинделе и какая его кромка считается"),
             words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-            "moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)",
+            both!("moves by a tool length that a parameter chooses (MD20270 CUTTING_EDGE_DEFAULT)", "идёт с длиной, которую выбирает параметр MD20270 CUTTING_EDGE_DEFAULT"),
         )
-        .help("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1"))
+        .help(both!("write T, M6 and D1 before it; or, where D alone is missing, `edge_at_change = 1` under `[program]` in the profile, where MD20270 is 1", "напишите перед ним T, M6 и D1; если нет только D, а MD20270 равен 1, впишите `edge_at_change = 1` в раздел `[program]` профиля")))
 }
 
 /// Brings in the offset of a number; 0 is none.
@@ -208,22 +234,20 @@ fn take(
         return Err(words
             .refuse(
                 codes::TOOL_LENGTH,
-                format!("tool offset {offset:02} is not given"),
+                both!("tool offset {offset:02} is not given", "корректор {offset:02} не задан"),
                 span,
-                "given by no profile, file or option",
+                both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах"),
             )
             .help(if env.dialect.turning.is_some() {
-                format!(
-                    "`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile"
+                both!("`--tool H{offset}=X,0,Z` in mm, X a radius, or `lengths_mm = {{ H{offset} = [X, 0, Z] }}` under `[tool]` in the profile", "`--tool H{offset}=X,0,Z` в мм, где X — радиус, или `lengths_mm = {{ H{offset} = [X, 0, Z] }}` в разделе `[tool]` профиля"
                 )
             } else {
-                format!(
-                    "`--tool H{offset}=120` for a length of 120 mm, or `lengths_mm = {{ H{offset} = 120.0 }}` under `[tool]` in the profile"
+                both!("`--tool H{offset}=120` for a length of 120 mm, or `lengths_mm = {{ H{offset} = 120.0 }}` under `[tool]` in the profile", "`--tool H{offset}=120` для длины 120 мм или `lengths_mm = {{ H{offset} = 120.0 }}` в разделе `[tool]` профиля"
                 )
             }));
     };
     let length = ToolLength::On { number: offset, negative: false, applied_mm };
-    bring_in(env, words, span, &format!("tool offset {offset:02}"), length, state)
+    bring_in(env, words, span, &both!("tool offset {offset:02}", "корректор {offset:02}"), length, state)
 }
 
 /// Brings a length into force, unless by it the tip would be at the gauge point or above it, where nobody has said from
@@ -232,7 +256,7 @@ fn bring_in(
     env: &Environment<'_>,
     words: &Words<'_, '_, '_>,
     span: Span,
-    name: &str,
+    name: &Text,
     length: ToolLength,
     state: &mut Modal,
 ) -> Outcome<()> {
@@ -241,10 +265,13 @@ fn bring_in(
     if let Some([x, y, z]) = length.ends_mm().filter(|_| asked)
         && (z < 0.0 || [x, y, z] == [0.0; 3])
     {
-        let message = format!("{name} shifts Z by {z} mm: a tool {z} mm long");
+        let message = both!(
+            "{name} shifts Z by {z} mm: a tool {z} mm long",
+            "{name:#} смещает Z на {z} мм: длина инструмента {z} мм"
+        );
         return Err(words
-            .refuse(codes::TOOL_LENGTH, message, span, "the machine's angles act along the tool: how long is it?")
-            .help("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that"));
+            .refuse(codes::TOOL_LENGTH, message, span, both!("the machine's angles act along the tool: how long is it?", "угловые погрешности станка действуют на вылете инструмента: каков он?"))
+            .help(both!("where tools are touched off, write what the control's length would be with the bare spindle nose touched off, like `gauge_point_mm = -470.0` under `[tool]` in the profile; a tool is as long as its length lies above that", "если длины сняты касанием, впишите в раздел `[tool]` профиля длину, которую стойка получила бы при касании самим торцом шпинделя, например `gauge_point_mm = -470.0`; инструмент длиннее ровно на разницу")));
     }
     state.tool_length = length;
     Ok(())
@@ -269,10 +296,14 @@ pub(crate) fn under_compensation_off(
             Ok(())
         }
         LengthAfter::Unstated => {
-            let message = format!("{} while a tool length is in force", words.text(span));
+            let message = both!(
+                "{} while a tool length is in force",
+                "{} при действующей коррекции на длину",
+                words.text(span)
+            );
             Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, "ends every tool offset on some controls, cutter compensation alone on others")
-                .help("write the tool length (G43 and its H) again in this block, or what the control's manual says as tool_length.under_g40 in a copy of the grammar"))
+                .refuse(codes::TOOL_LENGTH, message, span, both!("ends every tool offset on some controls, cutter compensation alone on others", "на одних стойках отменяет все коррекции инструмента, на других только коррекцию на радиус"))
+                .help(both!("write the tool length (G43 and its H) again in this block, or what the control's manual says as tool_length.under_g40 in a copy of the grammar", "напишите коррекцию на длину (G43 и H) в этом кадре заново или укажите сказанное в руководстве стойки как tool_length.under_g40 в копии таблицы диалекта")))
         }
     }
 }
@@ -293,10 +324,10 @@ pub(crate) fn length(
             if env.dialect.length_under_g49 == LengthAfter::Unstated
                 && (!in_force.is_none() || words.has(H.or(Letters::of(b"D")))) =>
         {
-            let message = format!("{} with a tool length", words.text(span));
+            let message = both!("{} with a tool length", "{} с коррекцией на длину", words.text(span));
             return Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, "adds a tool offset on some controls, ends the length on others")
-                .help("end the length with G43 H0, or write what the control's manual says as tool_length.under_g49 in a copy of the grammar"));
+                .refuse(codes::TOOL_LENGTH, message, span, both!("adds a tool offset on some controls, ends the length on others", "на одних стойках прибавляет коррекцию инструмента, на других отменяет длину"))
+                .help(both!("end the length with G43 H0, or write what the control's manual says as tool_length.under_g49 in a copy of the grammar", "отмените длину кадром G43 H0 или укажите сказанное в руководстве стойки как tool_length.under_g49 в копии таблицы диалекта")));
         }
         (Some((Length::Off, _)), _) => {
             state.tool_length = ToolLength::Off;
@@ -312,30 +343,52 @@ pub(crate) fn length(
         (None, _) if loaded => match state.tool_loaded {
             Some(number) => number,
             None => {
-                let message = "the length of the loaded tool, and no tool was loaded before";
+                let message = both!(
+                    "the length of the loaded tool, and no tool was loaded before",
+                    "длина инструмента в шпинделе, а до этого инструмент не устанавливали"
+                );
                 return Err(words
-                    .refuse(codes::TOOL_LENGTH, message, span, "takes the tool in the spindle: which one?")
-                    .help("program T and M6 before it, or H in this block"));
+                    .refuse(
+                        codes::TOOL_LENGTH,
+                        message,
+                        span,
+                        both!(
+                            "takes the tool in the spindle: which one?",
+                            "берёт инструмент в шпинделе: какой?"
+                        ),
+                    )
+                    .help(both!(
+                        "program T and M6 before it, or H in this block",
+                        "запрограммируйте перед ней T и M6 или H в этом кадре"
+                    )));
             }
         },
         (_, ToolLength::On { number, .. }) => number,
         (_, ToolLength::Off | ToolLength::Written { .. }) => {
-            let message = "tool length without H";
+            let message = both!("tool length without H", "коррекция на длину без H");
             return Err(words
-                .refuse(codes::TOOL_LENGTH, message, span, "an H word was expected in this block")
-                .help("write the number of the length, e.g. H1; H0 is no length"));
+                .refuse(
+                    codes::TOOL_LENGTH,
+                    message,
+                    span,
+                    both!("an H word was expected in this block", "в этом кадре ожидалось слово H"),
+                )
+                .help(both!(
+                    "write the number of the length, e.g. H1; H0 is no length",
+                    "напишите номер длины, например H1; H0 — без длины"
+                )));
         }
     };
     let Some(vector) = env.setup.tool(number) else {
-        let message = format!("tool length H{number} is not given");
+        let message = both!("tool length H{number} is not given", "длина инструмента H{number} не задана");
         let at = if words.has(H) { words.span(H) } else { span };
-        return Err(words.refuse(codes::TOOL_LENGTH, message, at, "given by no profile, file or option").help(
-            format!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile"),
+        return Err(words.refuse(codes::TOOL_LENGTH, message, at, both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах")).help(
+            both!("`--tool H{number}=120` for a length of 120 mm, or `lengths_mm = {{ H{number} = 120.0 }}` under `[tool]` in the profile", "`--tool H{number}=120` для длины 120 мм или `lengths_mm = {{ H{number} = 120.0 }}` в разделе `[tool]` профиля"),
         ));
     };
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
     let length = ToolLength::On { number, negative, applied_mm };
-    bring_in(env, words, span, &format!("H{number}"), length, state)
+    bring_in(env, words, span, &Text::same(format!("H{number}")), length, state)
 }
 
 /// G43.1: the words are the length; axes left out keep what they had.
@@ -349,9 +402,13 @@ pub(crate) fn from_words(
     let Some(span) = demand.owner_span else { return Ok(()) };
     let others = ARC_LETTERS.or(ROTARY_LETTERS).or(SECONDARY_LETTERS).or(Letters::of(b"H"));
     let message = if words.has(others) || !words.has(LINEAR_LETTERS) {
-        format!("{} takes X, Y and Z", words.text(span))
+        both!("{} takes X, Y and Z", "{} принимает X, Y и Z", words.text(span))
     } else if demand.written_motion.is_some() || compensated(before, state) || state.cycle.is_some() {
-        format!("{} beside a motion, a cycle or cutter compensation", words.text(span))
+        both!(
+            "{} beside a motion, a cycle or cutter compensation",
+            "{} рядом с движением, циклом или коррекцией на радиус",
+            words.text(span)
+        )
     } else {
         let mut applied_mm = state.tool_length.applied_mm();
         for i in 0..3 {
@@ -359,11 +416,26 @@ pub(crate) fn from_words(
                 applied_mm[i] = value * state.units.mm();
             }
         }
-        bring_in(env, words, span, "this length", ToolLength::Written { applied_mm }, state)?;
+        bring_in(
+            env,
+            words,
+            span,
+            &both!("this length", "эта длина"),
+            ToolLength::Written { applied_mm },
+            state,
+        )?;
         frames::refresh(state);
         return Ok(());
     };
     Err(words
-        .refuse(codes::TOOL_LENGTH, message, span, "the length is in the words of this block")
-        .help("write it in a block of its own with X, Y and Z alone"))
+        .refuse(
+            codes::TOOL_LENGTH,
+            message,
+            span,
+            both!("the length is in the words of this block", "длина стоит в словах этого кадра"),
+        )
+        .help(both!(
+            "write it in a block of its own with X, Y and Z alone",
+            "напишите её отдельным кадром, только с X, Y и Z"
+        )))
 }

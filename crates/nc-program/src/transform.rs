@@ -1,5 +1,6 @@
 //! Rotation, scaling and mirror: what stands between the words and the work offset.
 
+use diagnostic::Text;
 use toolpath::{Frame, Plane};
 use units::math;
 
@@ -33,12 +34,15 @@ pub enum Transform {
 impl Transform {
     /// Its name for people.
     #[must_use]
-    pub const fn name(&self) -> &'static str {
+    pub const fn name(&self) -> Text {
         match self {
-            Self::None => "no rotation, scaling or mirror",
-            Self::Rotation { .. } => "a rotation",
-            Self::Scaling { .. } => "a scaling",
-            Self::Mirror(_) => "a mirror",
+            Self::None => Text::pair(
+                "no rotation, scaling or mirror",
+                "ни поворота, ни масштаба, ни зеркального отображения",
+            ),
+            Self::Rotation { .. } => Text::pair("a rotation", "поворот"),
+            Self::Scaling { .. } => Text::pair("a scaling", "масштабирование"),
+            Self::Mirror(_) => Text::pair("a mirror", "зеркальное отображение"),
         }
     }
 

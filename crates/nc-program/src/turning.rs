@@ -1,5 +1,6 @@
 //! What is different in a lathe's program: X words are diameters, there is no Y, arcs lie in X and Z.
 
+use diagnostic::both;
 use nc_syntax::dialect::{Action, GCode};
 use toolpath::{Motion, Plane, Shape};
 
@@ -38,11 +39,11 @@ pub(crate) fn read(words: &mut Words<'_, '_, '_>, state: &mut Modal) -> Outcome<
             return Err(words
                 .refuse(
                     codes::UNLIMITED_SPEED,
-                    format!("{} without a limit of the spindle's speed", words.text(code.span)),
+                    both!("{} without a limit of the spindle's speed", "{} без ограничения частоты вращения шпинделя", words.text(code.span)),
                     code.span,
-                    "towards the axis the speed rises without end",
+                    both!("towards the axis the speed rises without end", "к оси частота растёт без предела"),
                 )
-                .help("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)"));
+                .help(both!("write the limit before it: G50 S3000 (Fanuc system A), G92 S3000 (B and C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)", "напишите перед ней ограничение: G50 S3000 (Fanuc, система A), G92 S3000 (B и C), G96 D3000 (LinuxCNC), LIMS=3000 (Sinumerik)")));
         }
     }
     Ok(())
@@ -63,11 +64,11 @@ pub(crate) fn require_lead(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> 
     Err(words
         .refuse(
             codes::NO_TURNING,
-            format!("a thread without {name}"),
+            both!("a thread without {name}", "резьба без {name}"),
             words.span(AXIS_LETTERS),
-            format!("{name} is its lead"),
+            both!("{name} is its lead", "{name} — её ход"),
         )
-        .help(format!("write {name} in this block")))
+        .help(both!("write {name} in this block", "напишите {name} в этом кадре")))
 }
 
 /// A face that was corrected leaves its plane by less than this share of its way.
@@ -90,11 +91,18 @@ pub(crate) fn check_motions(words: &Words<'_, '_, '_>, state: &Modal, motions: &
             return Err(words
                 .refuse(
                     codes::BELOW_THE_AXIS,
-                    "turning below the axis",
+                    both!("turning below the axis", "точение ниже оси"),
                     words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                    format!("X is negative here: {:.4} mm on the radius", start[0].min(end[0])),
+                    both!(
+                        "X is negative here: {:.4} mm on the radius",
+                        "X здесь отрицателен: {:.4} мм по радиусу",
+                        start[0].min(end[0])
+                    ),
                 )
-                .help("a face may pass the centre; what is turned needs X above zero"));
+                .help(both!(
+                    "a face may pass the centre; what is turned needs X above zero",
+                    "торец может зайти за центр, а для точения X должен быть больше нуля"
+                )));
         }
     }
     Ok(())
@@ -107,20 +115,29 @@ pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Moda
     let places = !matches!(demand.owner, Owner::Dwell | Owner::DwellBySetting | Owner::Arguments);
     let absent = Y.or(ROTARY_LETTERS);
     if places && words.has(absent) {
-        let message = format!("{} on a lathe of two axes", words.names(absent));
+        let message =
+            both!("{} on a lathe of two axes", "{} на двухосевом токарном станке", words.names(absent));
         return Err(words
-            .refuse(codes::NO_TURNING, message, words.span(absent), "the axes are X and Z")
-            .help("correct the turning apart from what is milled or drilled off the axis"));
+            .refuse(
+                codes::NO_TURNING,
+                message,
+                words.span(absent),
+                both!("the axes are X and Z", "оси — X и Z"),
+            )
+            .help(both!(
+                "correct the turning apart from what is milled or drilled off the axis",
+                "исправляйте точение отдельно от того, что фрезеруется или сверлится вне оси"
+            )));
     }
     if places && words.has(X) && state.x_words == XWords::Unstated {
         return Err(words
             .refuse(
                 codes::X_UNSTATED,
-                "whether X is a diameter or a radius is not said",
+                both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
                 words.span(X),
-                "half of what is written, or all of it?",
+                both!("half of what is written, or all of it?", "половина написанного или всё?"),
             )
-            .help("write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile, or G7 or G8 where the control has them"));
+            .help(both!("write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile, or G7 or G8 where the control has them", "впишите `x = \"diameter\"` (или \"radius\") в раздел `[program]` профиля или G7, G8 в программу, если они есть у стойки")));
     }
     let increments = words.by_increment != [false; 3];
     if increments && matches!(demand.owner, Owner::Frame | Owner::MachineCoordinates | Owner::Length) {
@@ -129,22 +146,22 @@ pub(crate) fn check(words: &Words<'_, '_, '_>, demand: &Demand<'_>, state: &Moda
         return Err(words
             .refuse(
                 codes::NO_TURNING,
-                "an increment where a place was expected",
+                both!("an increment where a place was expected", "приращение там, где ожидалось место"),
                 span,
-                "U and W add to X and Z",
+                both!("U and W add to X and Z", "U и W прибавляются к X и Z"),
             )
-            .help("write the place with X and Z"));
+            .help(both!("write the place with X and Z", "напишите место словами X и Z")));
     }
     let arc = matches!(state.motion, MotionMode::Arc(..)) && demand.owner == Owner::Motion;
     if arc && words.has(AXIS_LETTERS.or(ARC_LETTERS)) && state.plane != Plane::Zx {
         return Err(words
             .refuse(
                 codes::NO_TURNING,
-                "an arc out of the plane of X and Z",
+                both!("an arc out of the plane of X and Z", "дуга не в плоскости X и Z"),
                 words.span(AXIS_LETTERS.or(ARC_LETTERS)),
-                "a lathe turns arcs in G18",
+                both!("a lathe turns arcs in G18", "токарный станок режет дуги в G18"),
             )
-            .help("write G18 before it"));
+            .help(both!("write G18 before it", "напишите перед ней G18")));
     }
     Ok(())
 }

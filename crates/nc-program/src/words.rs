@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, CodeEntry, GCode};
 use nc_syntax::{Block, Dialect, Invalid, ItemKind, Letters, Number, Span, Value};
 use smallvec::SmallVec;
@@ -88,13 +88,23 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     words.letter(b'T', index, item.span)?;
                 }
                 ItemKind::Word { letter, value: Value::Expression } => {
-                    return Err(words.not_static(item.span, &format!("the value of {}", letter as char)));
+                    return Err(
+                        words.not_static(item.span, &both!("the value of {}", "значение {}", letter as char))
+                    );
                 }
                 ItemKind::Word { letter, value: Value::Missing } => {
-                    let message = format!("{} has no number", letter as char);
+                    let message = both!("{} has no number", "у {} нет числа", letter as char);
                     return Err(words
-                        .refuse(codes::BAD_NUMBER, message, item.span, "a number was expected after it")
-                        .help("write the number, or remove the letter"));
+                        .refuse(
+                            codes::BAD_NUMBER,
+                            message,
+                            item.span,
+                            both!("a number was expected after it", "после буквы ожидалось число"),
+                        )
+                        .help(both!(
+                            "write the number, or remove the letter",
+                            "допишите число или уберите букву"
+                        )));
                 }
                 ItemKind::Comment | ItemKind::Name => {}
                 ItemKind::Skip => {
@@ -102,27 +112,51 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                         || !words.m_codes.is_empty()
                         || !words.letters.without(Letters::of(b"NO")).is_empty()
                     {
-                        let message = "block delete stands in the middle of a block";
+                        let message = both!(
+                            "block delete stands in the middle of a block",
+                            "знак пропуска стоит посреди кадра"
+                        );
                         return Err(words
-                            .refuse(codes::BLOCK_DELETE, message, item.span, "only the rest may be skipped")
-                            .help("write the words after `/` in a block of their own that starts with `/`"));
+                            .refuse(
+                                codes::BLOCK_DELETE,
+                                message,
+                                item.span,
+                                both!(
+                                    "only the rest may be skipped",
+                                    "пропустить можно было бы только остаток"
+                                ),
+                            )
+                            .help(both!(
+                                "write the words after `/` in a block of their own that starts with `/`",
+                                "напишите слова после `/` отдельным кадром, который начинается с `/`"
+                            )));
                     }
                 }
                 ItemKind::Percent => words.percent = true,
                 ItemKind::CommaWord { letter, .. } => {
-                    let message = format!("a corner by `,{}` cannot be resolved", letter as char);
+                    let message = both!(
+                        "a corner by `,{}` cannot be resolved",
+                        "сопряжение `,{}` не развернуть",
+                        letter as char
+                    );
                     return Err(words
                         .refuse(
                             codes::STRAY_ARC_WORD,
                             message,
                             item.span,
-                            "its shape depends on the next block",
+                            both!(
+                                "its shape depends on the next block",
+                                "его форма зависит от следующего кадра"
+                            ),
                         )
-                        .help("post roundings as arcs and chamfers as lines"));
+                        .help(both!(
+                            "post roundings as arcs and chamfers as lines",
+                            "выводите скругления дугами, а фаски прямыми"
+                        )));
                 }
                 ItemKind::BracketCommand => words.command(item.span)?,
                 ItemKind::Flow => {
-                    return Err(words.not_static(item.span, "this"));
+                    return Err(words.not_static(item.span, &both!("this", "это")));
                 }
                 ItemKind::Invalid(reason) => return Err(Box::new(block.unreadable_at(reason, item.span))),
             }
@@ -142,10 +176,20 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             }
             if self.has(Letters::of(&[letter])) {
                 let span = self.span(Letters::of(&[own, letter]));
-                let message = format!("{} stands beside {} in this block", own as char, letter as char);
-                let help = format!("write {} or {}", letter as char, own as char);
+                let message = both!(
+                    "{} stands beside {} in this block",
+                    "в этом кадре {} стоит рядом с {}",
+                    own as char,
+                    letter as char
+                );
+                let help = both!("write {} or {}", "напишите {} или {}", letter as char, own as char);
                 return Err(self
-                    .refuse(codes::LETTER_TWICE, message, span, "both say where one axis goes")
+                    .refuse(
+                        codes::LETTER_TWICE,
+                        message,
+                        span,
+                        both!("both say where one axis goes", "оба слова говорят, куда идёт одна ось"),
+                    )
                     .help(help));
             }
             self.by_increment[axis] = true;
@@ -217,11 +261,16 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         match whole(number).and_then(|value| u32::try_from(value).ok()) {
             Some(value) => Ok(Some(value)),
             None => {
-                let message = format!("{} is not a whole number from 0 to {}", self.text(span), u32::MAX);
-                let label = format!("{} takes a whole number", letter as char);
+                let message = both!(
+                    "{} is not a whole number from 0 to {}",
+                    "{} — не целое число от 0 до {}",
+                    self.text(span),
+                    u32::MAX
+                );
+                let label = both!("{} takes a whole number", "{} принимает целое число", letter as char);
                 Err(self
                     .refuse(codes::BAD_NUMBER, message, span, label)
-                    .help("write a whole number without sign"))
+                    .help(both!("write a whole number without sign", "напишите целое число без знака")))
             }
         }
     }
@@ -249,13 +298,7 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         String::from_utf8_lossy(self.block.text(span)).into_owned()
     }
 
-    pub(crate) fn refuse(
-        &self,
-        code: Code,
-        message: impl Into<String>,
-        span: Span,
-        label: impl Into<String>,
-    ) -> Refusal {
+    pub(crate) fn refuse(&self, code: Code, message: Text, span: Span, label: Text) -> Refusal {
         Refusal(Box::new(Diagnostic::error(code, message).at(self.file_span(span), label)))
     }
 
@@ -267,11 +310,20 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         let bit = Letters::of(&[letter]);
         if self.letters.any(bit) {
             let first = self.number(letter).map_or_else(String::new, |(_, first)| self.text(first));
-            let message =
-                format!("{} stands twice in this block: {first} and {}", letter as char, self.text(span));
+            let message = both!(
+                "{} stands twice in this block: {first} and {}",
+                "{} стоит в этом кадре дважды: {first} и {}",
+                letter as char,
+                self.text(span)
+            );
             return Err(self
-                .refuse(codes::LETTER_TWICE, message, span, format!("{first} stands before it"))
-                .help("remove one of the two"));
+                .refuse(
+                    codes::LETTER_TWICE,
+                    message,
+                    span,
+                    both!("{first} stands before it", "перед ним стоит {first}"),
+                )
+                .help(both!("remove one of the two", "уберите одно из двух")));
         }
         self.letters = self.letters.or(bit);
         self.at[usize::from(letter - b'A')] = index as u32 + 1;
@@ -281,21 +333,37 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
     fn preparatory(&mut self, number: Number, span: Span) -> Outcome<()> {
         let entry = number.tenths().and_then(|tenths| self.dialect.code(GCode(tenths)));
         let Some(entry) = entry else {
-            let message = format!("{} is not in the table of dialect {}", self.text(span), self.dialect.name);
-            return Err(self.refuse(codes::UNKNOWN_CODE, message, span, "it may move an axis or the frame").help(
-                "if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`",
+            let message = both!(
+                "{} is not in the table of dialect {}",
+                "{} нет в таблице диалекта {}",
+                self.text(span),
+                self.dialect.name
+            );
+            return Err(self.refuse(codes::UNKNOWN_CODE, message, span, both!("it may move an axis or the frame", "может двигать ось или сместить систему координат")).help(
+                both!("if it does neither, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`", "если она не делает ни того, ни другого, добавьте для неё строку в копию таблицы диалекта и дайте её ключом `--dialect my.toml`"),
             ));
         };
         if let Some(other) = self.codes.iter().find(|other| conflict(other.entry, entry)) {
             let (first, second) = (self.text(other.span), self.text(span));
             let message = if other.entry.code == entry.code {
-                format!("{second} stands twice in this block")
+                both!("{second} stands twice in this block", "{second} стоит в этом кадре дважды")
             } else {
-                format!("{first} and {second} stand in one block and exclude each other")
+                both!(
+                    "{first} and {second} stand in one block and exclude each other",
+                    "{first} и {second} стоят в одном кадре и исключают друг друга"
+                )
             };
             return Err(self
-                .refuse(codes::SAME_GROUP, message, span, format!("{first} stands before it"))
-                .help("write them in two blocks, or remove one"));
+                .refuse(
+                    codes::SAME_GROUP,
+                    message,
+                    span,
+                    both!("{first} stands before it", "перед ним стоит {first}"),
+                )
+                .help(both!(
+                    "write them in two blocks, or remove one",
+                    "напишите их двумя кадрами или уберите одну"
+                )));
         }
         self.codes.push(Preparatory { entry, span });
         Ok(())
@@ -307,18 +375,18 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
             let row = self.dialect.m_code(value);
             if let Some(what) = row.and_then(|row| row.switches.as_ref()) {
                 let code = GCode(value.saturating_mul(10)).to_string().replace('G', "M");
-                let message = format!("{code} is refused: {what}");
+                let message = both!("{code} is refused: {what}", "{code} не принимается: {what:#}");
                 return Err(self
-                    .refuse(codes::REFUSED_CODE, message, span, "what follows would run in another frame")
-                    .help(format!(
-                        "where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile; where it switches tool centre point control, name it there under `[kinematics]`"
+                    .refuse(codes::REFUSED_CODE, message, span, both!("what follows would run in another frame", "дальше всё шло бы в другой системе координат"))
+                    .help(both!("where it does nothing of the kind on this machine, write `harmless = [\"{code}\"]` under `[m_codes]` in the profile; where it switches tool centre point control, name it there under `[kinematics]`", "если на этом станке она ничего такого не делает, впишите `harmless = [\"{code}\"]` в раздел `[m_codes]` профиля; если она включает управление по вершине инструмента, назовите её там в разделе `[kinematics]`"
                     )));
             }
             if let Some((reason, help)) = row.and_then(|row| row.refuse.as_ref()) {
-                let message = format!("{} is refused: {reason}", self.text(span));
+                let message =
+                    both!("{} is refused: {reason}", "{} не принимается: {reason:#}", self.text(span));
                 return Err(self
-                    .refuse(codes::REFUSED_CODE, message, span, "not understood")
-                    .help(help.as_str()));
+                    .refuse(codes::REFUSED_CODE, message, span, both!("not understood", "не исполняется"))
+                    .help(help.clone()));
             }
             self.m_codes.push((value, span));
         }
@@ -333,20 +401,48 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
                     self.commands.extend(row.action.as_ref().map(|action| (action, span)));
                     return Ok(());
                 }
-                Some((reason, help)) => (format!("{} is refused: {reason}", row.name), help.as_str()),
+                Some((reason, help)) => (
+                    both!("{} is refused: {reason}", "{} не принимается: {reason:#}", row.name),
+                    help.clone(),
+                ),
             },
             None => (
-                format!("a command that the table of dialect {} does not have", self.dialect.name),
-                "if it moves neither an axis nor the frame, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`",
+                both!(
+                    "a command that the table of dialect {} does not have",
+                    "команда, которой нет в таблице диалекта {}",
+                    self.dialect.name
+                ),
+                both!(
+                    "if it moves neither an axis nor the frame, add a row for it to a copy of the grammar and pass that with `--dialect my.toml`",
+                    "если она не двигает ни оси, ни системы координат, добавьте для неё строку в копию таблицы диалекта и дайте её ключом `--dialect my.toml`"
+                ),
             ),
         };
-        Err(self.refuse(codes::COMMAND, message, span, "it may move the frame or an axis").help(help))
+        Err(self
+            .refuse(
+                codes::COMMAND,
+                message,
+                span,
+                both!("it may move the frame or an axis", "может сместить систему координат или двигать ось"),
+            )
+            .help(help))
     }
 
-    fn not_static(&self, span: Span, what: &str) -> Box<Diagnostic> {
-        let message = format!("{what} is known only while the program runs");
-        self.refuse(codes::NOT_STATIC, message, span, "a plain number was expected")
-            .help("post the program without variables and flow; values must be static")
+    fn not_static(&self, span: Span, what: &Text) -> Box<Diagnostic> {
+        let message = both!(
+            "{what} is known only while the program runs",
+            "{what:#} станет известно только при исполнении программы"
+        );
+        self.refuse(
+            codes::NOT_STATIC,
+            message,
+            span,
+            both!("a plain number was expected", "ожидалось простое число"),
+        )
+        .help(both!(
+            "post the program without variables and flow; values must be static",
+            "выведите программу без переменных и переходов, с постоянными числами"
+        ))
     }
 }
 
@@ -381,8 +477,8 @@ fn whole(number: Number) -> Option<u64> {
 pub(crate) struct Refusal(Box<Diagnostic>);
 
 impl Refusal {
-    pub(crate) fn help(mut self, help: impl Into<String>) -> Box<Diagnostic> {
-        self.0.help = Some(help.into());
+    pub(crate) fn help(mut self, help: Text) -> Box<Diagnostic> {
+        self.0.help = Some(help);
         self.0
     }
 }

@@ -100,7 +100,7 @@ fn bare_lengths_alone_are_counted() {
     assert_eq!(verdict("fanuc", "G21\nG0 X10000 Y0\nZ5000\n"), [(242, 2, "X10000".to_owned())]);
     let questions = Questions::new(dialect("fanuc"), &Setup::default());
     let doubts = Evidence::of(b"G21\nG0 X10000 Y0\nZ5000\n", &questions).doubts(&questions);
-    assert!(doubts[0].0.message.starts_with("2 length(s)"), "{}", doubts[0].0.message);
+    assert!(doubts[0].0.message.english().starts_with("2 length(s)"), "{}", doubts[0].0.message);
 }
 
 #[test]
@@ -110,11 +110,17 @@ fn unknown_m_codes_are_one_doubt_with_their_count() {
     let doubts = Evidence::of(b"M777\nM12\nm777\n", &questions).doubts(&questions);
     let (doubt, _) = &doubts[0];
     assert!(
-        doubt.message.starts_with("3 M code(s)") && doubt.message.ends_with("M12, M777"),
+        doubt.message.english().starts_with("3 M code(s)") && doubt.message.english().ends_with("M12, M777"),
         "{}",
         doubt.message
     );
-    assert!(doubt.help.as_deref().is_some_and(|help| help.contains("harmless = [\"M12\", \"M777\"]")));
+    assert!(
+        doubt
+            .help
+            .as_ref()
+            .map(|help| help.english())
+            .is_some_and(|help| help.contains("harmless = [\"M12\", \"M777\"]"))
+    );
 }
 
 #[test]

@@ -222,7 +222,13 @@ fn offsets_and_lengths_that_nobody_gave() {
     let run = run_with(dialect("fanuc"), &empty, "G90 G17\nM3 S1000\nG28 Z0\nG0 X1.\n");
     let (line, diagnostics) = run.refused.expect("no offset is given");
     assert_eq!((line, diagnostics[0].code.0), (4, 214));
-    assert!(diagnostics[0].help.as_deref().is_some_and(|help| help.contains("--work-offset G54=X,Y,Z")));
+    assert!(
+        diagnostics[0]
+            .help
+            .as_ref()
+            .map(|help| help.english())
+            .is_some_and(|help| help.contains("--work-offset G54=X,Y,Z"))
+    );
 }
 
 #[test]
@@ -496,8 +502,8 @@ fn axes_behind_a_tool_change() {
         |tool_change: [AfterChange; 3]| run_with(dialect("fanuc"), &Setup { tool_change, ..setup() }, text);
     let refused = told([AfterChange::Unknown; 3]).refused.unwrap();
     assert_eq!((refused.0, refused.1[0].code.0), (3, 213));
-    assert!(refused.1[0].label.contains("the tool change M6 in line 2"), "{}", refused.1[0].label);
-    let help = refused.1[0].help.as_deref().unwrap_or_default();
+    assert!(refused.1[0].label.english().contains("the tool change M6 in line 2"), "{}", refused.1[0].label);
+    let help = refused.1[0].help.as_ref().map(|help| help.english()).unwrap_or_default();
     assert!(help.contains("tool_change") && !help.contains("--start-at"), "{help}");
     let stays = told([AfterChange::Stays; 3]);
     assert!(stays.steps[1].motions.is_empty());
@@ -507,10 +513,10 @@ fn axes_behind_a_tool_change() {
     assert_eq!(uncorrected(last).linear_mm, at(1.0, 2.0, 350.0));
     assert_eq!(feed(&place.steps[2].motions[0]).start.linear_mm, [1.0, 2.0, 350.0]);
     let partly = told([AfterChange::Unknown, AfterChange::Stays, AfterChange::At(350.0)]).refused.unwrap();
-    assert!(partly.1[0].label.starts_with("X not known"), "{}", partly.1[0].label);
+    assert!(partly.1[0].label.english().starts_with("X not known"), "{}", partly.1[0].label);
     // M codes that move by themselves are named, and are no tool changes.
     let pallet = run("fanuc", "G0 X1. Y2. Z50.\nM60\nG1 X5. F10.\n").refused.unwrap();
-    assert!(pallet.1[0].label.contains("M60 in line 2"), "{}", pallet.1[0].label);
+    assert!(pallet.1[0].label.english().contains("M60 in line 2"), "{}", pallet.1[0].label);
 }
 
 #[test]
@@ -542,7 +548,9 @@ fn a_tool_that_would_point_into_its_spindle_was_touched_off() {
         let run = run_with(dialect("fanuc"), setup, text);
         match &run.refused {
             None => Ok(run.steps.last().expect("a step").context.tool_mm[2]),
-            Some((line, diagnostics)) => Err((*line, diagnostics[0].code, diagnostics[0].message.clone())),
+            Some((line, diagnostics)) => {
+                Err((*line, diagnostics[0].code, diagnostics[0].message.english().to_owned()))
+            }
         }
     };
     let text = "G90 G21 G54\nG43 H1 Z100.\n";

@@ -1,24 +1,109 @@
 //! Is this a part program at all?
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::lexer::is_blank;
 
 /// First bytes of files that people hand over by mistake, and what to do about it.
-const MAGIC: [(&[u8], &str, &str); 13] = [
-    (b"\x7FELF", "a program for Linux (ELF)", "give the part program, not a program of the computer"),
-    (b"MZ\x90", "a program for Windows (EXE)", "give the part program, not a program of the computer"),
-    (b"\x89PNG", "a picture (PNG)", "give the part program, not a picture of it"),
-    (b"\xFF\xD8\xFF", "a picture (JPEG)", "give the part program, not a picture of it"),
-    (b"GIF8", "a picture (GIF)", "give the part program, not a picture of it"),
-    (b"PK\x03\x04", "a ZIP archive or an office document", "unpack it and give the part program inside"),
-    (b"\x1F\x8B", "a gzip archive", "unpack it (`gunzip`) and give the part program inside"),
-    (b"7z\xBC\xAF", "a 7-Zip archive", "unpack it and give the part program inside"),
-    (b"Rar!", "a RAR archive", "unpack it and give the part program inside"),
-    (b"%PDF-", "a PDF document", "give the part program itself"),
-    (b"\xD0\xCF\x11\xE0", "an old office document", "save it as plain text"),
-    (b"\xFF\xFE", "text in UTF-16", "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`"),
-    (b"\xFE\xFF", "text in UTF-16", "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`"),
+const MAGIC: [(&[u8], Text, Text); 13] = [
+    (
+        b"\x7FELF",
+        Text::pair("a program for Linux (ELF)", "программа для Linux (ELF)"),
+        Text::pair(
+            "give the part program, not a program of the computer",
+            "дайте управляющую программу станка, а не программу для компьютера",
+        ),
+    ),
+    (
+        b"MZ\x90",
+        Text::pair("a program for Windows (EXE)", "программа для Windows (EXE)"),
+        Text::pair(
+            "give the part program, not a program of the computer",
+            "дайте управляющую программу станка, а не программу для компьютера",
+        ),
+    ),
+    (
+        b"\x89PNG",
+        Text::pair("a picture (PNG)", "картинка (PNG)"),
+        Text::pair(
+            "give the part program, not a picture of it",
+            "дайте саму управляющую программу, а не её снимок",
+        ),
+    ),
+    (
+        b"\xFF\xD8\xFF",
+        Text::pair("a picture (JPEG)", "картинка (JPEG)"),
+        Text::pair(
+            "give the part program, not a picture of it",
+            "дайте саму управляющую программу, а не её снимок",
+        ),
+    ),
+    (
+        b"GIF8",
+        Text::pair("a picture (GIF)", "картинка (GIF)"),
+        Text::pair(
+            "give the part program, not a picture of it",
+            "дайте саму управляющую программу, а не её снимок",
+        ),
+    ),
+    (
+        b"PK\x03\x04",
+        Text::pair("a ZIP archive or an office document", "архив ZIP или офисный документ"),
+        Text::pair(
+            "unpack it and give the part program inside",
+            "распакуйте и дайте программу, которая внутри",
+        ),
+    ),
+    (
+        b"\x1F\x8B",
+        Text::pair("a gzip archive", "архив gzip"),
+        Text::pair(
+            "unpack it (`gunzip`) and give the part program inside",
+            "распакуйте (`gunzip`) и дайте программу, которая внутри",
+        ),
+    ),
+    (
+        b"7z\xBC\xAF",
+        Text::pair("a 7-Zip archive", "архив 7-Zip"),
+        Text::pair(
+            "unpack it and give the part program inside",
+            "распакуйте и дайте программу, которая внутри",
+        ),
+    ),
+    (
+        b"Rar!",
+        Text::pair("a RAR archive", "архив RAR"),
+        Text::pair(
+            "unpack it and give the part program inside",
+            "распакуйте и дайте программу, которая внутри",
+        ),
+    ),
+    (
+        b"%PDF-",
+        Text::pair("a PDF document", "документ PDF"),
+        Text::pair("give the part program itself", "дайте саму управляющую программу"),
+    ),
+    (
+        b"\xD0\xCF\x11\xE0",
+        Text::pair("an old office document", "старый офисный документ"),
+        Text::pair("save it as plain text", "сохраните как обычный текст"),
+    ),
+    (
+        b"\xFF\xFE",
+        Text::pair("text in UTF-16", "текст в UTF-16"),
+        Text::pair(
+            "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+            "сохраните как обычный текст: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+        ),
+    ),
+    (
+        b"\xFE\xFF",
+        Text::pair("text in UTF-16", "текст в UTF-16"),
+        Text::pair(
+            "save it as plain text: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+            "сохраните как обычный текст: `iconv -f UTF-16 -t UTF-8 IN > OUT`",
+        ),
+    ),
 ];
 
 /// How much of a file is looked at.
@@ -42,19 +127,32 @@ const SAMPLE: usize = 1 << 16;
 pub fn looks_like_program(bytes: &[u8]) -> Result<(), Diagnostic> {
     let padding = |byte: &u8| is_blank(*byte) || matches!(byte, b'\r' | b'\n');
     let Some(start) = bytes.iter().position(|byte| !padding(byte)) else {
-        let found = if bytes.is_empty() { "the file is empty" } else { "the file holds nothing but blanks" };
-        return Err(Diagnostic::error(Code(110), format!("{found}: nothing to correct"))
-            .help("check that the post processor wrote the program and that the name is right"));
+        let found = if bytes.is_empty() {
+            both!("the file is empty", "файл пуст")
+        } else {
+            both!("the file holds nothing but blanks", "в файле одни пробелы")
+        };
+        return Err(Diagnostic::error(
+            Code(110),
+            both!("{found}: nothing to correct", "{found:#}: исправлять нечего"),
+        )
+        .help(both!(
+            "check that the post processor wrote the program and that the name is right",
+            "проверьте, записал ли постпроцессор программу и верно ли имя файла"
+        )));
     };
-    let binary = |what: &str, help: &str| {
-        Err(Diagnostic::error(Code(111), format!("this is {what}, not a part program"))
-            .at(start as u64..start as u64 + 1, "no text from here on")
-            .help(help))
+    let binary = |what: &Text, help: Text| {
+        Err(Diagnostic::error(
+            Code(111),
+            both!("this is {what}, not a part program", "это {what:#}, а не управляющая программа"),
+        )
+        .at(start as u64..start as u64 + 1, both!("no text from here on", "отсюда и дальше не текст"))
+        .help(help))
     };
     for (magic, what, help) in MAGIC {
         // ELF starts with DEL, which is a blank elsewhere.
         if bytes.starts_with(magic) || bytes[start..].starts_with(magic) {
-            return binary(what, help);
+            return binary(&what, help);
         }
     }
     let end = bytes.iter().rposition(|byte| !padding(byte)).map_or(bytes.len(), |at| at + 1);
@@ -67,13 +165,25 @@ pub fn looks_like_program(bytes: &[u8]) -> Result<(), Diagnostic> {
     let nul = sample.iter().filter(|byte| **byte == 0).count();
     let alternate = sample.chunks_exact(2).filter(|pair| (pair[0] == 0) != (pair[1] == 0)).count();
     if nul > 0 && alternate * 10 > sample.len() / 2 * 9 {
-        return binary("text in UTF-16", "save it as plain text: `iconv -f UTF-16LE -t UTF-8 IN > OUT`");
+        return binary(
+            &Text::pair("text in UTF-16", "текст в UTF-16"),
+            Text::pair(
+                "save it as plain text: `iconv -f UTF-16LE -t UTF-8 IN > OUT`",
+                "сохраните как обычный текст: `iconv -f UTF-16LE -t UTF-8 IN > OUT`",
+            ),
+        );
     }
     let control = sample.iter().filter(|byte| **byte < 0x20 && !padding(byte)).count();
     // A run of NULs is padding wherever it stands, as between two programs of one tape.
     let runs = sample.chunk_by(|a, b| a == b).filter(|run| run[0] == 0).count();
     if (control + runs) * 20 > sample.len() - nul {
-        return binary("binary data", "give the part program itself: plain text, one block per line");
+        return binary(
+            &Text::pair("binary data", "двоичные данные"),
+            Text::pair(
+                "give the part program itself: plain text, one block per line",
+                "дайте саму управляющую программу: обычный текст, в строке один кадр",
+            ),
+        );
     }
     Ok(())
 }
@@ -131,6 +241,9 @@ mod tests {
             assert_eq!(code(bytes), Some(111));
         }
         let message = looks_like_program(b"PK\x03\x04").unwrap_err();
-        assert_eq!(message.message, "this is a ZIP archive or an office document, not a part program");
+        assert_eq!(
+            message.message.english(),
+            "this is a ZIP archive or an office document, not a part program"
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Deref;
 
+use diagnostic::Text;
 use units::decimal::Decimal;
 
 use crate::Number;
@@ -277,9 +278,9 @@ pub enum Action {
     /// Known, and refused.
     Refuse {
         /// Why.
-        reason: String,
+        reason: Text,
         /// The way out.
-        help: String,
+        help: Text,
     },
 }
 
@@ -627,11 +628,11 @@ pub struct MCode {
     pub changes_tool: bool,
     /// What it switches on some machines (kinematics, a mirror, the workpiece's place): refused unless the machine
     /// is said to have it do nothing of the kind.
-    pub switches: Option<String>,
+    pub switches: Option<Text>,
     /// Switches tool centre point control: what a profile says of the machine's own codes.
     pub tip: Option<TipSwitch>,
     /// Refused, with the way out (M98, M99).
-    pub refuse: Option<(String, String)>,
+    pub refuse: Option<(Text, Text)>,
 }
 
 impl MCode {
@@ -675,9 +676,9 @@ pub struct LatheSign {
     /// No mill's program has it; else it counts together with others.
     pub sure: bool,
     /// What it does on a lathe.
-    pub says: String,
+    pub says: Text,
     /// What to write where the program is a mill's.
-    pub mill: String,
+    pub mill: Text,
 }
 
 /// A command by name: a word of letters (Sinumerik `SCALE`) or the first word in brackets (Balt-System `(UAO,1)`).
@@ -697,7 +698,7 @@ pub struct Command {
     /// What it does, where that is more than nothing.
     pub action: Option<Action>,
     /// `None`: moves no axis and no frame, passes. Else why it is refused, and the way out.
-    pub refuse: Option<(String, String)>,
+    pub refuse: Option<(Text, Text)>,
     /// It passes with so many arguments in its brackets, and is refused with more.
     pub passes_with: Option<u32>,
 }
@@ -705,7 +706,7 @@ pub struct Command {
 impl Command {
     /// Why it is refused as it stands, and the way out; `text` is its bytes, brackets included.
     #[must_use]
-    pub fn refusal(&self, text: &[u8]) -> Option<&(String, String)> {
+    pub fn refusal(&self, text: &[u8]) -> Option<&(Text, Text)> {
         let arguments = || {
             let open = text.iter().position(|byte| *byte == b'(').map_or(text.len(), |at| at + 1);
             let commas = text[open..].iter().filter(|byte| **byte == b',').count();

@@ -1,6 +1,6 @@
 //! Messages about bytes that are not words.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 
 use crate::{Block, Invalid, MAX_BLOCK_BYTES, Span};
 
@@ -19,48 +19,86 @@ impl Block<'_> {
         let (code, message, label, help) = match why {
             Invalid::Number => (
                 101,
-                format!("`{shown}` is not a number a control reads"),
-                "expected a sign, digits and one decimal point",
-                "write it like `X-12.5`: no exponent, one sign, a point and not a comma".to_owned(),
+                both!(
+                    "`{shown}` is not a number a control reads",
+                    "`{shown}` — не то число, какие читает стойка"
+                ),
+                both!(
+                    "expected a sign, digits and one decimal point",
+                    "ожидались знак, цифры и одна десятичная точка"
+                ),
+                both!(
+                    "write it like `X-12.5`: no exponent, one sign, a point and not a comma",
+                    "пишите так: `X-12.5` — без показателя степени, один знак, точка, а не запятая"
+                ),
             ),
             Invalid::TooManyDigits => (
                 102,
-                format!("`{shown}` has more than 15 digits"),
-                "not exact in any control",
-                "round it to the decimals of the machine's input step, 3 or 4".to_owned(),
+                both!("`{shown}` has more than 15 digits", "в `{shown}` больше 15 цифр"),
+                both!("not exact in any control", "точно этого не хранит ни одна стойка"),
+                both!(
+                    "round it to the decimals of the machine's input step, 3 or 4",
+                    "округлите до дискреты ввода станка: 3 или 4 знака после точки"
+                ),
             ),
             Invalid::UnclosedComment => (
                 103,
-                "the comment is not closed".to_owned(),
-                "this bracket has no partner in its line",
-                "close the comment with `)` on the same line".to_owned(),
+                both!("the comment is not closed", "комментарий не закрыт"),
+                both!("this bracket has no partner in its line", "у этой скобки нет пары в её строке"),
+                both!(
+                    "close the comment with `)` on the same line",
+                    "закройте комментарий скобкой `)` в той же строке"
+                ),
             ),
             Invalid::UnclosedBracket => (
                 104,
-                format!("`{shown}` has a bracket without its partner"),
-                "brackets must close in the block they open in",
-                "add the missing bracket or remove this one".to_owned(),
+                both!("`{shown}` has a bracket without its partner", "в `{shown}` скобка без пары"),
+                both!(
+                    "brackets must close in the block they open in",
+                    "скобка закрывается в том же кадре, где открыта"
+                ),
+                both!(
+                    "add the missing bracket or remove this one",
+                    "добавьте недостающую скобку или уберите эту"
+                ),
             ),
             Invalid::Text => match cyrillic_twin(&shown) {
                 Some((cyrillic, latin)) => (
                     105,
-                    format!("`{shown}` starts with a Cyrillic `{cyrillic}`"),
-                    "it looks like a Latin letter, and no control reads it",
-                    format!("type the Latin `{latin}`"),
+                    both!(
+                        "`{shown}` starts with a Cyrillic `{cyrillic}`",
+                        "`{shown}` начинается с русской буквы `{cyrillic}`"
+                    ),
+                    both!(
+                        "it looks like a Latin letter, and no control reads it",
+                        "она похожа на латинскую, но ни одна стойка её не прочтёт"
+                    ),
+                    both!("type the Latin `{latin}`", "наберите латинскую `{latin}`"),
                 ),
                 None => (
                     105,
-                    format!("`{shown}` is not a word, a comment or a command of this dialect"),
-                    "expected a letter and a number",
-                    "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`"
-                        .to_owned(),
+                    both!(
+                        "`{shown}` is not a word, a comment or a command of this dialect",
+                        "`{shown}` — не слово, не комментарий и не команда этого диалекта"
+                    ),
+                    both!("expected a letter and a number", "ожидались буква и число"),
+                    both!(
+                        "if it is a remark, put it in a comment; if another control reads it, choose that one with `--dialect`",
+                        "пояснение заключите в комментарий; если это язык другой стойки, выберите её ключом `--dialect`"
+                    ),
                 ),
             },
             Invalid::TooLong => (
                 106,
-                format!("the block is {length} bytes long; the longest that is read is {MAX_BLOCK_BYTES}"),
-                "no line end within that length",
-                "check that this is a part program and that its line ends arrived with it".to_owned(),
+                both!(
+                    "the block is {length} bytes long; the longest that is read is {MAX_BLOCK_BYTES}",
+                    "длина кадра {length} байт, а читается не больше {MAX_BLOCK_BYTES}"
+                ),
+                both!("no line end within that length", "на этой длине нет конца строки"),
+                both!(
+                    "check that this is a part program and that its line ends arrived with it",
+                    "проверьте, что это управляющая программа и что при передаче не пропали концы строк"
+                ),
             ),
         };
         // A caret under a gigabyte helps nobody.

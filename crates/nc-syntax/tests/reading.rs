@@ -1,6 +1,7 @@
 //! Every trap of "Text" in the list of what breaks programs, by name.
 
 use common::{conventional, dialect};
+use diagnostic::Text;
 use nc_syntax::dialect::{Paren, PointFree, Semicolon};
 use nc_syntax::{Block, Dialect, EnvelopeFinder, Invalid, ItemKind, Place, Reader, Value};
 use proptest::prelude::*;
@@ -230,7 +231,7 @@ fn words_with_an_equals_sign() {
         refuse,
         passes_with: None,
     };
-    let refused = Some(("moves the frame".to_owned(), "do without".to_owned()));
+    let refused = Some((Text::same("moves the frame"), Text::same("do without")));
     sinumerik.commands = vec![command("MSG", None), command("SOFT", None), command("TRANS", refused)];
     assert_eq!(
         shown(b"G1 X=10.5 Y=IC(5 ) Z = R1+2 F=200;c", &sinumerik),
@@ -278,7 +279,7 @@ fn places_are_the_files() {
     while reader.next(&mut block) && block.line < 3 {}
     let diagnostic = block.unreadable().unwrap();
     assert_eq!((diagnostic.code.0, diagnostic.span), (101, Some(8..12)));
-    assert_eq!(diagnostic.message, "`Y--2` is not a number a control reads");
+    assert_eq!(diagnostic.message.english(), "`Y--2` is not a number a control reads");
 }
 
 #[test]
@@ -286,10 +287,10 @@ fn a_cyrillic_letter_is_named() {
     let (dialect, mut block) = (dialect(), Block::default());
     assert!(Reader::new("G1 Х10.5 Y2".as_bytes(), &dialect).next(&mut block));
     let diagnostic = block.unreadable().unwrap();
-    assert_eq!(diagnostic.message, "`Х10.5` starts with a Cyrillic `Х`");
-    assert_eq!(diagnostic.help.as_deref(), Some("type the Latin `X`"));
+    assert_eq!(diagnostic.message.english(), "`Х10.5` starts with a Cyrillic `Х`");
+    assert_eq!(diagnostic.help.as_ref().map(|help| help.english()), Some("type the Latin `X`"));
     assert!(Reader::new("деталь".as_bytes(), &dialect).next(&mut block));
-    assert!(block.unreadable().unwrap().message.contains("is not a word"));
+    assert!(block.unreadable().unwrap().message.english().contains("is not a word"));
 }
 
 fn lossless(text: &[u8], dialect: &Dialect) -> Result<(), TestCaseError> {

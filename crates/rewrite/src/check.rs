@@ -5,7 +5,7 @@ mod reading;
 
 use std::cell::RefCell;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_expand::Expanded;
 use path_comparison::{Comparison, Traces, compare};
 
@@ -19,7 +19,7 @@ pub struct Checked {
     /// Distances and counts, of blocks under `/` executed.
     pub comparison: Comparison,
     /// What differs, a sentence each; none where the program passes.
-    pub findings: Vec<String>,
+    pub findings: Vec<Text>,
 }
 
 /// A program that cannot be read on.
@@ -69,7 +69,10 @@ pub fn check(
     if may_skip {
         for finding in compared(Optional::Skipped, Traces::Forgotten)?.0.findings {
             if !executed.findings.contains(&finding) {
-                executed.findings.push(format!("with the blocks under `/` skipped: {finding}"));
+                executed.findings.push(both!(
+                    "with the blocks under `/` skipped: {finding}",
+                    "если кадры с `/` пропущены: {finding:#}"
+                ));
             }
         }
     }

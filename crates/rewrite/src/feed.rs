@@ -4,7 +4,7 @@
 //! to stand have to follow a crooked rotary axis, or go another way than programmed, a block could take another time.
 
 use correction::Turned;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use nc_program::Context;
 use nc_syntax::Block;
 use nc_syntax::dialect::{Dialect, RotaryFeed};
@@ -34,18 +34,23 @@ pub(crate) fn require_same(
         return Ok(());
     }
     let whole = block.file_range();
-    let message = format!(
+    let message = both!(
         "while a rotary axis turns the linear axes have to go {:.4} mm instead of {:.4} mm, and F would be another speed",
-        turned.commanded_mm, turned.programmed_mm
+        "пока вращается поворотная ось, линейным осям надо пройти {:.4} мм вместо {:.4} мм, и F стало бы другой скоростью",
+        turned.commanded_mm,
+        turned.programmed_mm
     );
     let label = match dialect.output.rotary_feed {
-        Some(_) => "F counts their way here",
-        None => "F may count their way; what it counts is not known of this control",
+        Some(_) => both!("F counts their way here", "F считает здесь их путь"),
+        None => both!(
+            "F may count their way; what it counts is not known of this control",
+            "F, возможно, считает их путь; что оно считает на этой стойке, неизвестно"
+        ),
     };
     Err(vec![
         Diagnostic::error(ROTARY_FEED, message)
             .at(whole, label)
-            .help("program this motion with inverse time (G93), which is shared out exactly; where the control's manual says what F counts, say it as `rotary_feed` in a copy of the grammar"),
+            .help(both!("program this motion with inverse time (G93), which is shared out exactly; where the control's manual says what F counts, say it as `rotary_feed` in a copy of the grammar", "запрограммируйте это движение с обратным временем (G93), оно делится точно; если руководство стойки говорит, что считает F, укажите это как `rotary_feed` в копии таблицы диалекта")),
     ])
 }
 

@@ -1,6 +1,6 @@
 //! Guards in the output: what the program was corrected for is asked of the control.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_emit::{Asked, Stated};
 use nc_program::{Compensation, ToolLength, WorkOffset};
 use nc_syntax::Block;
@@ -83,35 +83,57 @@ impl Pass<'_> {
         unit_mm: f64,
     ) -> Result<(), Vec<Diagnostic>> {
         for asked in unguarded.into_iter().flatten() {
-            let refused = |why: &str, help: &str| {
-                let what = format!("no guard of {asked} can be put in here");
+            let refused = |why: Text, help: Text| {
+                let what =
+                    both!("no guard of {asked} can be put in here", "проверку {asked} сюда не вставить");
                 Err(vec![Diagnostic::error(UNGUARDED, what).at(block.file_range(), why).help(help)])
             };
             if self.state.interpreter.modal().compensation != Compensation::Off {
                 return refused(
-                    "under cutter compensation a block without motion may change the contour",
-                    "choose work offset and length before G41 or G42, or correct without `--guard`",
+                    both!(
+                        "under cutter compensation a block without motion may change the contour",
+                        "при коррекции на радиус кадр без движения может изменить контур"
+                    ),
+                    both!(
+                        "choose work offset and length before G41 or G42, or correct without `--guard`",
+                        "выбирайте смещение нуля и длину до G41 и G42 или исправляйте без `--guard`"
+                    ),
                 );
             }
             let Some(stated) = stated else {
                 return refused(
-                    "the frame is turned or scaled here",
-                    "choose work offset and length before G68 or G51, or correct without `--guard`",
+                    both!(
+                        "the frame is turned or scaled here",
+                        "система координат здесь повёрнута или масштабирована"
+                    ),
+                    both!(
+                        "choose work offset and length before G68 or G51, or correct without `--guard`",
+                        "выбирайте смещение нуля и длину до G68 и G51 или исправляйте без `--guard`"
+                    ),
                 );
             };
             let lines =
                 nc_emit::guard(self.job.dialect, asked, &stated, unit_mm, &mut self.state.guarded.serial);
             if lines.is_empty() && matches!(asked, Asked::WorkOffset(..)) {
                 return refused(
-                    "in which variables this control keeps that work offset is not known",
-                    "use G54 to G59, or correct without `--guard`",
+                    both!(
+                        "in which variables this control keeps that work offset is not known",
+                        "в каких переменных эта стойка держит такое смещение нуля, неизвестно"
+                    ),
+                    both!(
+                        "use G54 to G59, or correct without `--guard`",
+                        "возьмите G54–G59 или исправляйте без `--guard`"
+                    ),
                 );
             }
             let longest = self.job.dialect.output.max_block_bytes as usize;
             if longest > 0 && lines.iter().any(|line| line.len() > longest) {
                 return refused(
-                    "the guard is longer than the control's longest block",
-                    "correct without `--guard`",
+                    both!(
+                        "the guard is longer than the control's longest block",
+                        "проверка длиннее самого длинного кадра стойки"
+                    ),
+                    both!("correct without `--guard`", "исправляйте без `--guard`"),
                 );
             }
             if !self.out.is_empty() && !self.out.ends_with(b"\n") && !self.out.ends_with(b"\r") {

@@ -1,6 +1,6 @@
 //! The nose of a turning tool under G41 and G42: it touches beside the tip for which paths are corrected.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Command, PathModel, Vector};
 use nc_program::{Context, Modal, ToolLength};
 use nc_syntax::Block;
@@ -56,7 +56,7 @@ pub(crate) fn reserved_mm(
 ) -> Result<f64, Vec<Diagnostic>> {
     let (Some(side), Motion::Feed(feed)) = (context.compensation, motion) else { return Ok(0.0) };
     let Some(nose_mm) = nose_mm(job, modal) else { return Ok(0.0) };
-    let refuse = |message: String, label: &str, help: &str| {
+    let refuse = |message: Text, label: Text, help: Text| {
         Err(vec![Diagnostic::error(NOSE, message).at(block.file_range(), label).help(help)])
     };
     if let Shape::Arc(arc) = &feed.shape {
@@ -67,21 +67,37 @@ pub(crate) fn reserved_mm(
         let inner = (arc.sweep_rad > 0.0) == (side == Side::Left);
         if inner && arc_mm < nose_mm {
             return refuse(
-                format!("an inner arc of {arc_mm:.3} mm, and the tool's nose has {nose_mm} mm"),
-                "the nose does not fit; controls stop here",
-                "take a tool with a smaller nose, or look whether G41 and G42 are swapped",
+                both!(
+                    "an inner arc of {arc_mm:.3} mm, and the tool's nose has {nose_mm} mm",
+                    "внутренняя дуга {arc_mm:.3} мм, а радиус при вершине резца {nose_mm} мм"
+                ),
+                both!(
+                    "the nose does not fit; controls stop here",
+                    "вершина не входит; стойки здесь останавливаются"
+                ),
+                both!(
+                    "take a tool with a smaller nose, or look whether G41 and G42 are swapped",
+                    "возьмите резец с меньшим радиусом при вершине или проверьте, не перепутаны ли G41 и G42"
+                ),
             );
         }
     }
     let beside_mm = beside_mm(job.models.axes, nose_mm, context.tool_mm, feed);
     if beside_mm > MOST_OF_TOLERANCE * job.options.tolerance_mm {
         return refuse(
-            format!(
+            both!(
                 "the nose of {nose_mm} mm touches where the machine's error is up to {:.2} um another than at its tip",
+                "закругление {nose_mm} мм касается там, где погрешность станка отличается от погрешности в вершине до {:.2} мкм",
                 beside_mm * 1e3
             ),
-            "too much of the tolerance to correct the tip's path for it",
-            "let the CAM write the tip's path, G40 in force, or accept more with `--tolerance`",
+            both!(
+                "too much of the tolerance to correct the tip's path for it",
+                "слишком большая доля допуска, чтобы исправлять путь вершины"
+            ),
+            both!(
+                "let the CAM write the tip's path, G40 in force, or accept more with `--tolerance`",
+                "выводите из CAM путь вершины, при G40, или допустите больше ключом `--tolerance`"
+            ),
         );
     }
     Ok(beside_mm)

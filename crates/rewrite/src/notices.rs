@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use correction::CorrectionError;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 use machine_model::SolveError;
 use nc_program::Context;
 use nc_syntax::Block;
@@ -63,9 +63,9 @@ impl Notice {
     fn warning(
         &self,
         code: Code,
-        message: impl FnOnce(u64, f64) -> String,
-        label: &'static str,
-        help: &'static str,
+        message: impl FnOnce(u64, f64) -> Text,
+        label: Text,
+        help: Text,
     ) -> Option<Warning> {
         let (first, line) = self.first.clone()?;
         let message = message(self.count, self.largest_mm * 1e3);
@@ -85,34 +85,45 @@ impl Notices {
     pub(crate) fn warnings(&self) -> Vec<Warning> {
         let clamped = self.clamped.warning(
             RAPID_OUTSIDE,
-            |count, _| format!("{count} rapid motion(s) end outside the calibrated volume"),
-            "the first; it takes the correction of the volume's nearest point",
-            "nothing is cut there; calibrate a larger volume if the place matters",
+            |count, _| {
+                both!(
+                    "{count} rapid motion(s) end outside the calibrated volume",
+                    "быстрые ходы кончаются вне калиброванного объёма: {count}"
+                )
+            },
+            both!(
+                "the first; it takes the correction of the volume's nearest point",
+                "первый; для него взята поправка ближайшей точки объёма"
+            ),
+            both!(
+                "nothing is cut there; calibrate a larger volume if the place matters",
+                "резания там нет; если место важно, калибруйте больший объём"
+            ),
         );
         let leaning = self.leaning.warning(
             LEANING_CYCLE,
-            |count, um| format!("{count} hole(s) are off by up to {um:.1} um along their depth"),
-            "this cycle is bound to the spindle and cannot be written as moves; its middle was put in place",
-            "the machine's drilling axis leans; thread by milling where that matters",
+            |count, um| both!("{count} hole(s) are off by up to {um:.1} um along their depth", "отверстия смещены по глубине не больше чем на {um:.1} мкм: {count}"),
+            both!("this cycle is bound to the spindle and cannot be written as moves; its middle was put in place", "этот цикл связан со шпинделем и движениями не записывается; на место поставлена его середина"),
+            both!("the machine's drilling axis leans; thread by milling where that matters", "ось сверления станка наклонена; где это важно, фрезеруйте резьбу"),
         );
         let compensated = self.compensated.warning(
             COMPENSATED,
-            |count, _| format!("{count} motion(s) under cutter compensation"),
-            "the programmed contour was corrected, not the path of the tool's centre",
-            "between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give a turning tool its nose in the profile",
+            |count, _| both!("{count} motion(s) under cutter compensation", "движения при коррекции на радиус: {count}"),
+            both!("the programmed contour was corrected, not the path of the tool's centre", "исправлен запрограммированный контур, а не путь центра инструмента"),
+            both!("between the two lies the tool radius times the error's change per mm (1 um per mm of radius at 1 mrad); post with compensation computed in CAM where that matters, or give a turning tool its nose in the profile", "между ними — радиус инструмента, умноженный на изменение погрешности на миллиметр (1 мкм на мм радиуса при 1 мрад); где это важно, считайте коррекцию в CAM, а токарному резцу задайте в профиле радиус при вершине"),
         );
         let unknown_side = self.unknown_side.warning(
             UNKNOWN_SIDE,
-            |count, um| format!("{count} motion(s) with an axis on an unknown side of its play, off by up to {um:.1} um"),
-            "the first; the middle of the play was taken, since nothing before tells from where the axis came",
-            "say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return, a tool change (M6) or `/`, feed the axis to its place from one side first",
+            |count, um| both!("{count} motion(s) with an axis on an unknown side of its play, off by up to {um:.1} um", "движения, где неизвестно, с какой стороны люфта стоит ось, отклонение до {um:.1} мкм: {count}"),
+            both!("the first; the middle of the play was taken, since nothing before tells from where the axis came", "первое; взята середина люфта: по предыдущим кадрам не узнать, откуда пришла ось"),
+            both!("say with `--start-at X,Y,Z` where the axes stand at the start; behind a reference return, a tool change (M6) or `/`, feed the axis to its place from one side first", "скажите ключом `--start-at X,Y,Z`, где стоят оси в начале; после выхода в исходное положение, смены инструмента (M6) или `/` сначала подведите ось рабочим ходом с одной стороны"),
         );
         let largest = Notice { first: self.spirals.at_largest.clone(), ..self.spirals.clone() };
         let spirals = largest.warning(
             SPIRAL,
-            |count, um| format!("{count} arc(s) end off their circle, the largest by {:.3} mm", um * 1e-3),
-            "the largest; the control cuts a spiral from the one radius to the other, and that is the path",
-            "post with more decimals where that matters",
+            |count, um| both!("{count} arc(s) end off their circle, the largest by {:.3} mm", "дуги кончаются не на своей окружности, наибольшее отклонение {:.3} мм: {count}", um * 1e-3),
+            both!("the largest; the control cuts a spiral from the one radius to the other, and that is the path", "наибольшее; стойка режет спираль от одного радиуса к другому, и это и есть путь"),
+            both!("post with more decimals where that matters", "где это важно, выводите с большим числом знаков"),
         );
         [clamped, leaning, compensated, unknown_side, spirals].into_iter().flatten().collect()
     }
@@ -121,9 +132,9 @@ impl Notices {
 /// A corrected hole under block delete: what it says would hold for the next holes only where it is executed.
 pub(crate) fn hole_skipped(block: &Block<'_>) -> Diagnostic {
     let whole = block.file_range();
-    Diagnostic::error(nc_program::codes::BLOCK_DELETE, "a hole that may be skipped has levels of its own after correction")
-        .at(whole, "its Z and R differ from those of the holes before, and the next holes would inherit them only where it is executed")
-        .help("delete the `/`, or post a program without this hole")
+    Diagnostic::error(nc_program::codes::BLOCK_DELETE, both!("a hole that may be skipped has levels of its own after correction", "у отверстия, которое могут пропустить, после исправления свои уровни"))
+        .at(whole, both!("its Z and R differ from those of the holes before, and the next holes would inherit them only where it is executed", "его Z и R не те, что у прежних отверстий, а следующие унаследовали бы их, только если оно исполнено"))
+        .help(both!("delete the `/`, or post a program without this hole", "удалите `/` или выведите программу без этого отверстия"))
 }
 
 /// The word that says where an axis stands before a motion, as `X12.5`.
@@ -153,68 +164,66 @@ pub(crate) fn refusal(
     let diagnostic = match error {
         CorrectionError::Solve(SolveError::OutsideVolume { axis, value_mm, low_mm, high_mm }) => {
             let span = word(*axis as u8).unwrap_or(whole);
-            let what = if matches!(motion, Motion::Hole(_)) { "this hole" } else { "this feed motion" };
-            Diagnostic::error(OUTSIDE, format!("{what} leaves the calibrated volume"))
-                .at(span, format!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm"))
-                .help(format!(
-                    "place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`",
+            let what = if matches!(motion, Motion::Hole(_)) { both!("this hole", "это отверстие") } else { both!("this feed motion", "этот рабочий ход") };
+            Diagnostic::error(OUTSIDE, both!("{what} leaves the calibrated volume", "{what:#} выходит из калиброванного объёма"))
+                .at(span, both!("axis {axis} would be commanded to {value_mm:.3} mm, calibrated is {low_mm} to {high_mm} mm", "ось {axis} пришлось бы вывести в {value_mm:.3} мм, а калибровано от {low_mm} до {high_mm} мм"))
+                .help(both!("place the workpiece inside the volume: `--work-offset` with {axis} moved by {:+.3} mm or further, or accept the nearest point's correction with `--outside clamp`", "поместите деталь в объём: `--work-offset`, где {axis} сдвинута на {:+.3} мм или дальше; или примите поправку ближайшей точки: `--outside clamp`",
                     if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
                 ))
         }
         CorrectionError::Solve(error @ SolveError::NotConverged { .. }) => {
-            Diagnostic::error(NOT_CONVERGED, error.to_string())
-                .at(whole, "here")
-                .help("an error table with steps this steep is no machine: run `vpost profile check`")
+            Diagnostic::error(NOT_CONVERGED, error.text())
+                .at(whole, both!("here", "здесь"))
+                .help(both!("an error table with steps this steep is no machine: run `vpost profile check`", "таблицы погрешностей с такими крутыми ступенями у станка не бывает: запустите `vpost profile check`"))
         }
-        CorrectionError::Solve(error) => Diagnostic::error(NOT_CONVERGED, error.to_string())
-            .at(whole, "here")
-            .help("choose another engine with `--engine`"),
+        CorrectionError::Solve(error) => Diagnostic::error(NOT_CONVERGED, error.text())
+            .at(whole, both!("here", "здесь"))
+            .help(both!("choose another engine with `--engine`", "выберите другой метод ключом `--engine`")),
         CorrectionError::MustNotSplit { .. } if context.thread => {
-            Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
-                .at(whole, "a thread must stay one block: it is cut in step with the spindle")
-                .help("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own")
+            Diagnostic::error(MUST_NOT_SPLIT, error.text())
+                .at(whole, both!("a thread must stay one block: it is cut in step with the spindle", "резьба остаётся одним кадром: её режут согласованно со шпинделем"))
+                .help(both!("accept that much with `--tolerance`, or cut the thread uncorrected in a program of its own", "примите такое отклонение ключом `--tolerance` или режьте резьбу без исправления, отдельной программой"))
         }
-        CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.to_string())
-            .at(whole, "this block must stay one, with none before it: cutter compensation is active")
-            .help("post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on"),
-        CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.to_string())
-            .at(word(b'Q').unwrap_or(whole), "far below what a drill bites")
-            .help("correct Q: it is the depth of one peck"),
+        CorrectionError::MustNotSplit { .. } => Diagnostic::error(MUST_NOT_SPLIT, error.text())
+            .at(whole, both!("this block must stay one, with none before it: cutter compensation is active", "кадр остаётся одним, и перед ним ничего не вставить: действует коррекция на радиус"))
+            .help(both!("post with compensation computed in CAM, or accept more with `--tolerance`; where an axis with play turns at the start-up, come to it from the side to which it goes on", "считайте коррекцию в CAM или допустите больше ключом `--tolerance`; если при включении коррекции меняет направление ось с люфтом, подходите с той стороны, в которую она пойдёт дальше")),
+        CorrectionError::TooManyPecks { .. } => Diagnostic::error(TOO_MANY_PECKS, error.text())
+            .at(word(b'Q').unwrap_or(whole), both!("far below what a drill bites", "столько сверло не снимает"))
+            .help(both!("correct Q: it is the depth of one peck", "исправьте Q: это глубина одного прохода")),
         CorrectionError::Unnamed { axis, .. } => {
             let name = AXIS_NAMES[*axis];
-            let since = context.unnamed[*axis].map_or_else(String::new, |lost| format!(" since {}", lost.since()));
+            let since = context.unnamed[*axis].map_or(Text::EMPTY, |lost| both!(" since {}", " {:#}", lost.since()));
             let all = (0..3).filter(|i| context.unnamed[*i].is_some() || i == axis);
             let words: Vec<String> = all.map(|i| stands_at(i, motion, context)).collect();
-            Diagnostic::error(UNNAMED, error.to_string())
+            Diagnostic::error(UNNAMED, error.text())
                 .at(
                     whole,
-                    format!("{name} is not named{since}; a word for it would rest on a guess of where its zero is"),
+                    both!("{name} is not named{since}; a word for it would rest on a guess of where its zero is", "{name} не названа{since:#}; её слово опиралось бы на догадку, где её нуль"),
                 )
                 .help(if context.unnamed[*axis].is_some_and(|lost| lost.line == block.line) {
-                    format!("write what changes {name} in a block of its own, and behind it a rapid that names {name}")
+                    both!("write what changes {name} in a block of its own, and behind it a rapid that names {name}", "напишите то, что меняет {name}, отдельным кадром, а за ним быстрый ход, в котором названа {name}")
                 } else {
                     let words = words.join(" ");
-                    format!("before this block say once where the tool is to be, as in `G90 G0 {words}`")
+                    both!("before this block say once where the tool is to be, as in `G90 G0 {words}`", "скажите один раз перед этим кадром, где быть инструменту, например `G90 G0 {words}`")
                 })
         }
-        CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.to_string())
-            .at(whole, "each word moves several axes here, so that none of them can be held where it stands")
-            .help("let the CAM write the rotated coordinates, or accept more with `--tolerance`"),
-        CorrectionError::Sideways { distance_um, .. } => Diagnostic::error(SIDEWAYS, error.to_string())
-            .at(whole, "before this motion an axis turns")
-            .help(format!(
-                "no command undoes what changes at once: accept it with `--tolerance {:.1}` or more, or let the axis turn in a rapid above the part",
+        CorrectionError::TurnedFrame { .. } => Diagnostic::error(nc_program::codes::FRAME, error.text())
+            .at(whole, both!("each word moves several axes here, so that none of them can be held where it stands", "здесь каждое слово двигает несколько осей, и ни одну не удержать на месте"))
+            .help(both!("let the CAM write the rotated coordinates, or accept more with `--tolerance`", "выводите из CAM повёрнутые координаты или допустите больше ключом `--tolerance`")),
+        CorrectionError::Sideways { distance_um, .. } => Diagnostic::error(SIDEWAYS, error.text())
+            .at(whole, both!("before this motion an axis turns", "перед этим движением ось меняет направление"))
+            .help(both!("no command undoes what changes at once: accept it with `--tolerance {:.1}` or more, or let the axis turn in a rapid above the part", "скачок не убрать никакой командой: примите его ключом `--tolerance {:.1}` или больше или разверните ось быстрым ходом над деталью",
                 (distance_um * 10.0).ceil() / 10.0
             )),
-        CorrectionError::NoBoundsForTurns => Diagnostic::error(NO_BOUNDS_FOR_TURNS, error.to_string())
-            .at(whole, "this motion")
-            .help("use `--engine rigid-body`, and a profile without [[effect]] entries: both other engines and effects have bounds for rotary axes that stand only"),
-        CorrectionError::Direction { .. } => Diagnostic::error(DIRECTION, error.to_string())
-            .at(whole, "this motion")
-            .help("give the rotary axes a finer `resolution_deg` in the profile, if the control takes it; or raise `orientation_urad` under [correction]"),
-        CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.to_string())
-            .at(whole, "this motion")
-            .help("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`"),
+        CorrectionError::NoBoundsForTurns => Diagnostic::error(NO_BOUNDS_FOR_TURNS, error.text())
+            .at(whole, both!("this motion", "это движение"))
+            .help(both!("use `--engine rigid-body`, and a profile without [[effect]] entries: both other engines and effects have bounds for rotary axes that stand only", "возьмите `--engine rigid-body` и профиль без разделов [[effect]]: у других методов и у эффектов есть границы только для неподвижных поворотных осей")),
+        CorrectionError::Direction { .. } => Diagnostic::error(DIRECTION, error.text())
+            .at(whole, both!("this motion", "это движение"))
+            .help(both!("give the rotary axes a finer `resolution_deg` in the profile, if the control takes it; or raise `orientation_urad` under [correction]", "задайте поворотным осям в профиле меньший `resolution_deg`, если стойка его принимает; или увеличьте `orientation_urad` в разделе [correction]")),
+        CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.text())
+            .at(whole, both!("this motion", "это движение"))
+            .help(both!("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`", "модель метода здесь скачет (интервальные — в узлах) или minimum_segment_mm профиля слишком велик: возьмите `--engine rigid-body` или `tracker` или увеличьте `--tolerance`")),
     };
     vec![diagnostic]
 }

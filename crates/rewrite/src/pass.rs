@@ -1,7 +1,7 @@
 //! One block after the other: what is done with each.
 
 use correction::Correction;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use nc_program::{Context, Questions};
 use nc_syntax::{Block, Letters, Reader};
 use smallvec::SmallVec;
@@ -191,10 +191,10 @@ impl Pass<'_> {
                 return Err(vec![
                     Diagnostic::error(
                         nc_program::codes::FRAME,
-                        format!("{} cannot say where the corrected axis stands", *letter as char),
+                        both!("{} cannot say where the corrected axis stands", "{} не может сказать, где стоит исправленная ось", *letter as char),
                     )
-                    .at(block.file_span(word.span), "the place is no whole number of output steps")
-                    .help("write the shift as a work offset (G54 to G59), or approach it with G0 in millimetres"),
+                    .at(block.file_span(word.span), both!("the place is no whole number of output steps", "это место — не целое число дискрет вывода"))
+                    .help(both!("write the shift as a work offset (G54 to G59), or approach it with G0 in millimetres", "задайте сдвиг смещением нуля (G54–G59) или подойдите к нему ходом G0 в миллиметрах")),
                 ]);
             };
             words.push((*letter, nc_emit::WordEdit::Write { counts, decimals }));

@@ -1,6 +1,6 @@
 //! What else of a refused program would be refused, whatever becomes of its first refusal.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both, russian_plural};
 use nc_program::{Interpreter, codes};
 
 use crate::job::Job;
@@ -59,9 +59,16 @@ fn same(a: &Diagnostic, b: &Diagnostic) -> bool {
 
 fn counted(mut one: Diagnostic, more: usize) -> Diagnostic {
     if more > 0 {
-        let blocks = if more == 1 { "one more block".to_owned() } else { format!("{more} more blocks") };
-        let stop = if one.label.is_empty() { "" } else { "; " };
-        one.label = format!("{}{stop}{blocks} like it", one.label);
+        let forms = ["такой же кадр", "таких же кадра", "таких же кадров"];
+        let forms = russian_plural(more as u64, forms);
+        if !one.label.is_empty() {
+            one.label.push(&Text::pair("; ", "; "));
+        }
+        one.label.push(&if more == 1 {
+            both!("one more block like it", "ещё один такой же кадр")
+        } else {
+            both!("{more} more blocks like it", "ещё {more} {forms}")
+        });
     }
     one
 }

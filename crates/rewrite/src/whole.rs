@@ -1,6 +1,6 @@
 //! A program in one piece.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use nc_emit::BlockNumbers;
 use nc_syntax::{Block, Dialect, Reader};
 
@@ -112,9 +112,9 @@ pub(crate) fn comment_position(mut reader: Reader<'_>) -> u64 {
 /// The refusal of a program that bears the mark of an earlier correction.
 pub fn corrected_before(text: &[u8]) -> Option<Diagnostic> {
     nc_emit::find_provenance(text).map(|span| {
-        Diagnostic::error(CORRECTED_BEFORE, "this program was corrected before")
-            .at(span, "its mark")
-            .help("correct the program as posted, not its corrected copy; `--force` corrects once more")
+        Diagnostic::error(CORRECTED_BEFORE, both!("this program was corrected before", "эта программа уже исправлена"))
+            .at(span, both!("its mark", "её отметка"))
+            .help(both!("correct the program as posted, not its corrected copy; `--force` corrects once more", "исправляйте программу в том виде, как её выдал постпроцессор, а не исправленную копию; `--force` исправит ещё раз"))
     })
 }
 

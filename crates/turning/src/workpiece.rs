@@ -1,5 +1,6 @@
 //! How far a turned bar bends away from the tool that presses on it.
 
+use diagnostic::Speaks;
 use machine_model::{Bounds, Range};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
@@ -97,6 +98,27 @@ pub enum WorkpieceError {
         /// Where, mm.
         at_mm: f64,
     },
+}
+
+impl Speaks for WorkpieceError {
+    fn russian(&self) -> String {
+        match self {
+            Self::NoLength => "для детали нужны диаметры в двух местах или больше, начиная с Z 0".to_owned(),
+            Self::Diameter(place) => {
+                format!("диаметр {place} детали — не место на прутке: Z возрастает от 0, диаметры больше 0")
+            }
+            Self::Modulus(modulus) => format!("модуль упругости {modulus} Н/мм² не больше 0"),
+            Self::BeyondTheBar { what, at_mm, length_mm } => {
+                let what = match *what {
+                    "steady rest" => "люнет",
+                    "tailstock" => "задняя бабка",
+                    other => other,
+                };
+                format!("{what} в Z {at_mm} мм лежит за прутком, который кончается в {length_mm} мм")
+            }
+            Self::Twice { at_mm } => format!("две опоры стоят в Z {at_mm} мм"),
+        }
+    }
 }
 
 /// Deflection of the axis under the tool, in the direction away from it, as a function of the tool's Z.

@@ -75,5 +75,5 @@ pub(crate) fn check(
     });
     let outcome = outcome.map_err(|failure| raised(py, &failure))?;
     let json = String::from_utf8_lossy(&outcome.json()).into_owned();
-    Ok((json, outcome.text(), told(&settings.warnings)))
+    Ok((json, outcome.text().english().to_owned(), told(&settings.warnings)))
 }

@@ -38,9 +38,9 @@ fn one(diagnostic: &Diagnostic, source: Option<&Source>, text: String) -> Told {
     (
         severity,
         code.to_string(),
-        message.clone(),
-        label.clone(),
-        help.clone(),
+        message.english().to_owned(),
+        label.english().to_owned(),
+        help.as_ref().map(|help| help.english().to_owned()),
         source.map(|source| source.name.clone()),
         place.map(|(line, _)| line),
         place.map(|(_, column)| column),

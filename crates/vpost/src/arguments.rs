@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use diagnostic::Language;
 pub use jobs::options::{Decimal, JobOptions, Outside, finite, size, size_or_zero};
 
 pub use crate::color::Color;
-use crate::language::Language;
 use crate::values::Given;
 
 /// Options of every job.
@@ -36,7 +36,7 @@ pub struct MessageOptions {
     pub color: Color,
     /// Language: en, ru; default: the locale's.
     ///
-    /// Of `vpost explain`; LC_ALL, LC_MESSAGES, LANG say it otherwise.
+    /// LC_ALL, LC_MESSAGES, LANG say it otherwise.
     #[arg(id = "lang", long = "lang", value_name = "LANG", global = true, help_heading = "Messages")]
     pub language: Option<Given<Language>>,
 }

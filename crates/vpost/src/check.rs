@@ -4,6 +4,7 @@ mod page;
 
 use std::path::Path;
 
+use diagnostic::both;
 use jobs::check::{Outcome, closed, limit_mm};
 use path_comparison::Traces;
 use rewrite::Checked;
@@ -19,9 +20,9 @@ use crate::settings;
 pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let settings = settings::load(shared, messages)?;
     Roles::default()
-        .reads("the program", &arguments.input)
-        .reads("the corrected program", &arguments.output)
-        .reads_all("read by the profile", &settings.files)
+        .reads(both!("the program", "программа"), &arguments.input)
+        .reads(both!("the corrected program", "исправленная программа"), &arguments.output)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let model = settings.path_model()?;
@@ -36,7 +37,8 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     progress.end();
     let limit_mm = limit_mm(&settings, &comparison);
     let outcome = Outcome::new(&settings, &comparison, findings);
-    let (passed, findings) = (outcome.passed, &outcome.findings);
+    let passed = outcome.passed;
+    let findings: Vec<String> = outcome.findings.iter().map(|finding| finding.english().to_owned()).collect();
     if arguments.json || arguments.html.is_some() {
         let text = outcome.json();
         if let Some(path) = &arguments.html {
@@ -50,7 +52,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
                 engine: model.id().name(),
                 limit_mm,
                 passed,
-                findings,
+                findings: &findings,
             };
             let json = String::from_utf8_lossy(&text);
             file::write(path, page::html(&comparison, &facts, &json).as_bytes())?;
@@ -60,7 +62,7 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         }
     }
     if !arguments.json {
-        file::print(outcome.text().as_bytes())?;
+        file::print(outcome.text().in_language(messages.language()).as_bytes())?;
     }
     if passed { Ok(()) } else { Err(Failure::Check) }
 }

@@ -81,8 +81,6 @@ const OF_PROGRAM: [&str; 12] = [
     "strict",
     "outside",
 ];
-/// Of the pages that are told.
-const OF_PAGES: [&str; 1] = ["lang"];
 /// Of the corrections alone.
 const OF_OUTPUT: [&str; 2] = ["guard", "verbose"];
 
@@ -92,8 +90,6 @@ fn reads(command: &[&str], option: &str) -> bool {
     match command {
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
-        ["explain"] => OF_PAGES.contains(&option),
-        _ if OF_PAGES.contains(&option) => false,
         ["correct" | "batch", ..] => true,
         // A plan may be written as a program.
         ["check" | "predict" | "diagnose", ..] => !OF_OUTPUT.contains(&option),
@@ -109,7 +105,7 @@ fn reads(command: &[&str], option: &str) -> bool {
 
 /// The options of [`Shared`] that not every command reads.
 fn shared_options() -> impl Iterator<Item = &'static str> {
-    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain(OF_OUTPUT).chain(OF_PAGES)
+    OF_MACHINE.into_iter().chain(OF_PROGRAM).chain(OF_OUTPUT)
 }
 
 /// The command line, each command listing what it reads.

@@ -5,6 +5,7 @@ mod program;
 use std::io::IsTerminal;
 use std::path::Path;
 
+use diagnostic::both;
 use rewrite::Manner;
 
 use crate::arguments::{self, Shared};
@@ -26,9 +27,9 @@ pub(crate) fn run(
     let path = arguments.input.as_deref().unwrap_or(Path::new("-"));
     let settings = crate::settings::load(shared, messages)?;
     Roles::default()
-        .reads("the program", path)
-        .reads_all("read by the profile", &settings.files)
-        .reads_folders("in a folder of subprograms", &shared.job.include)
+        .reads(both!("the program", "программа"), path)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
+        .reads_folders(&both!("in a folder of subprograms", "файл в папке подпрограмм"), &shared.job.include)
         .writes("--output", arguments.output.as_deref())
         .writes("--summary", arguments.summary.as_deref())
         .are_apart()?;

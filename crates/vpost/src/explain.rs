@@ -1,9 +1,9 @@
 //! What a message means, from the page that explains them all.
 
 use clap::Args;
+use diagnostic::{Language, both};
 
 use crate::file;
-use crate::language::Language;
 use crate::message::Failure;
 
 /// `docs/diagnostics.md`: an entry for each number.
@@ -24,18 +24,33 @@ pub struct Explain {
 pub(crate) fn run(arguments: &Explain, language: Language) -> Result<(), Failure> {
     let code = &arguments.code;
     let digits = code.strip_prefix("VP").or_else(|| code.strip_prefix("vp")).unwrap_or(code);
-    let page = match language {
-        Language::English => PAGE,
-        Language::Russian => PAGE_RU,
-    };
-    let entry = digits.parse::<u16>().ok().and_then(|number| entry(page, number));
+    let entry = digits.parse::<u16>().ok().and_then(|number| entry(page(language), number));
     let Some(entry) = entry else {
         return Err(Failure::option(
-            format!("there is no message `{code}`"),
-            "give the number that stands in brackets behind `error` or `warning`, like VP0509",
+            both!("there is no message `{code}`", "сообщения `{code}` нет"),
+            both!(
+                "give the number that stands in brackets behind `error` or `warning`, like VP0509",
+                "дайте номер, который стоит в скобках после слова «ошибка» или «предупреждение», например VP0509"
+            ),
         ));
     };
     file::print(format!("{entry}\n").as_bytes())
+}
+
+/// What a message is about, in the few words of its entry's heading.
+pub(crate) fn title(code: &str, language: Language) -> Option<&'static str> {
+    let heading = format!("### {code} — ");
+    let page = page(language);
+    let rest = &page[page.find(&heading)? + heading.len()..];
+    let title = rest.lines().next()?;
+    Some(title.strip_prefix("warning: ").or_else(|| title.strip_prefix("предупреждение: ")).unwrap_or(title))
+}
+
+fn page(language: Language) -> &'static str {
+    match language {
+        Language::English => PAGE,
+        Language::Russian => PAGE_RU,
+    }
 }
 
 /// The part of a page under the heading of a number, without the example that causes the message.

@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::{Axis, Command, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -103,23 +103,37 @@ fn given(profile: &Profile, axis: usize) -> Vec<usize> {
 }
 
 /// Where the axes were measured, for forms that hold functions along the measured lines and not where those ran.
-fn lines_lost(profile: &Profile) -> Vec<String> {
+fn lines_lost(profile: &Profile) -> Vec<Text> {
     let letters = (0..3).filter(|&axis| {
         let data = &profile.description.linear[axis];
         data.errors.is_some()
             && (data.measured_tool_mm != Vector::zeros() || data.measured_at_mm != Vector::zeros())
     });
-    letters.map(|axis| format!("where {} was measured (measured_at_mm)", Axis::ALL[axis].letter())).collect()
+    letters
+        .map(|axis| {
+            both!(
+                "where {} was measured (measured_at_mm)",
+                "места, где измерялась {} (measured_at_mm)",
+                Axis::ALL[axis].letter()
+            )
+        })
+        .collect()
 }
 
 /// What lies between the nodes, where that is no straight line.
-fn curves_lost(profile: &Profile, format: Format) -> Option<String> {
+fn curves_lost(profile: &Profile, format: Format) -> Option<Text> {
     (profile.interpolation == Interpolation::Monotone).then(|| {
         let back = match format {
-            Format::Csv => " (read it back with `--interpolation monotone`)",
-            Format::Linuxcnc | Format::Isg | Format::Lattice => "",
+            Format::Csv => both!(
+                " (read it back with `--interpolation monotone`)",
+                " (прочесть обратно: `--interpolation monotone`)"
+            ),
+            Format::Linuxcnc | Format::Isg | Format::Lattice => Text::EMPTY,
         };
-        format!("the profile's monotone interpolation: between its points it goes straight{back}")
+        both!(
+            "the profile's monotone interpolation: between its points it goes straight{back}",
+            "монотонной интерполяции профиля: между её точками — прямые{back:#}"
+        )
     })
 }
 
@@ -127,10 +141,13 @@ fn curves_lost(profile: &Profile, format: Format) -> Option<String> {
 pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure> {
     let profile = profile::load_mill(&arguments.profile)?.profile;
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
-        return Err(Failure::option("a step is above zero", "write `--step 50`"));
+        return Err(Failure::option(
+            both!("a step is above zero", "шаг больше нуля"),
+            both!("write `--step 50`", "напишите `--step 50`"),
+        ));
     }
     std::fs::create_dir_all(&arguments.folder)
-        .map_err(|error| Failure::file(&file::name(&arguments.folder), "make", &error))?;
+        .map_err(|error| Failure::file(&file::name(&arguments.folder), Deed::Make, &error))?;
     let lost = match arguments.format {
         Format::Linuxcnc => linuxcnc(&profile, &arguments.folder)?,
         Format::Isg => isg(&profile, &arguments.folder)?,
@@ -141,33 +158,40 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
     lost.extend(curves_lost(&profile, arguments.format));
     lost.extend(rotary_lost(&profile, arguments.format));
     if !profile.effects.is_empty() {
-        lost.push("the profile's [[effect]] entries".to_owned());
+        lost.push(both!("the profile's [[effect]] entries", "разделов [[effect]] профиля"));
     }
     if !lost.is_empty() {
-        let diagnostic = Diagnostic::warning(LOST, format!("this form does not hold {}", lost.join("; ")))
-            .help("correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well");
+        let diagnostic = Diagnostic::warning(LOST, both!("this form does not hold {}", "эта форма не вмещает {:#}", Text::join(&lost, "; ")))
+            .help(both!("correct programs with vpost to have all of the model; never both: what a control compensates must not stand in the profile as well", "чтобы была вся модель, исправляйте программы с vpost; но не оба сразу: то, что компенсирует стойка, не должно стоять и в профиле"));
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
     Ok(())
 }
 
 /// What becomes of rotary axes that have errors: only a profile holds them.
-fn rotary_lost(profile: &Profile, format: Format) -> Option<String> {
+fn rotary_lost(profile: &Profile, format: Format) -> Option<Text> {
     let machine = &profile.description;
     let axes = machine.chain.table().iter().chain(machine.chain.head());
     let crooked = axes.filter(|axis| !machine.rotary[axis.direction()].is_perfect());
     let names: Vec<String> = crooked.map(|axis| axis.letter().to_string()).collect();
     let names = names.join(", ");
     (!names.is_empty()).then(|| match format {
-        Format::Lattice => format!("the errors of {names} at any angle but 0, where the lattice has them"),
-        Format::Linuxcnc | Format::Isg | Format::Csv => format!("the errors of {names}"),
+        Format::Lattice => both!(
+            "the errors of {names} at any angle but 0, where the lattice has them",
+            "погрешностей {names} при углах, кроме 0, при котором взята решётка"
+        ),
+        Format::Linuxcnc | Format::Isg | Format::Csv => {
+            both!("the errors of {names}", "погрешностей {names}")
+        }
     })
 }
 
 /// One file per axis. No comments: LinuxCNC stops reading at the first line that is not three numbers.
-fn linuxcnc(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
-    let mut lost =
-        vec!["straightness, angles and squareness: a compensation file moves its own axis only".to_owned()];
+fn linuxcnc(profile: &Profile, folder: &Path) -> Result<Vec<Text>, Failure> {
+    let mut lost = vec![both!(
+        "straightness, angles and squareness: a compensation file moves its own axis only",
+        "прямолинейности, углов и перпендикулярности: файл компенсации двигает только свою ось"
+    )];
     for axis in 0..3 {
         let places = nodes(profile, axis);
         if places.is_empty() {
@@ -175,7 +199,11 @@ fn linuxcnc(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         }
         let letter = Axis::ALL[axis].letter();
         if places.len() > 256 {
-            lost.push(format!("all of the {} nodes of {letter}: LinuxCNC reads 256", places.len()));
+            lost.push(both!(
+                "all of the {} nodes of {letter}: LinuxCNC reads 256",
+                "всех {} узлов {letter}: LinuxCNC читает 256",
+                places.len()
+            ));
         }
         let mut text = String::new();
         for q in places.iter().take(256) {
@@ -189,7 +217,7 @@ fn linuxcnc(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// One file with a block per axis and one of angles.
-fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
+fn isg(profile: &Profile, folder: &Path) -> Result<Vec<Text>, Failure> {
     let mut text = String::from("// Errors along the measured lines, mean of both directions; mm and rad.\n");
     let mut lost = Vec::new();
     for axis in 0..3 {
@@ -199,7 +227,7 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         }
         let letter = Axis::ALL[axis].letter();
         if has_two_directions(profile, axis) {
-            lost.push(format!("the direction of motion of {letter}"));
+            lost.push(both!("the direction of motion of {letter}", "направления движения {letter}"));
         }
         let names: Vec<String> = functions.iter().map(|k| format!("E{}{letter}", Axis::ALL[*k])).collect();
         let _ = writeln!(text, "{letter} {}", names.join(" "));
@@ -224,15 +252,18 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// Vectors on a lattice over the calibrated volume, its far faces included.
-fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure> {
+fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> {
     const MOST_POINTS: f64 = 1e6;
     let volume = profile.volume();
     let cells = volume.0.map(|range| ((range.high - range.low) / arguments.step - 1e-9).ceil().max(1.0));
     // Counted before there are any.
     let points: f64 = cells.iter().map(|cells| cells + 1.0).product();
     if points > MOST_POINTS {
-        let message = format!("a lattice of {points:.3e} points, more than {MOST_POINTS:e}");
-        return Err(Failure::option(message, "use a larger `--step`"));
+        let message = both!(
+            "a lattice of {points:.3e} points, more than {MOST_POINTS:e}",
+            "решётка в {points:.3e} точек, больше {MOST_POINTS:e}"
+        );
+        return Err(Failure::option(message, both!("use a larger `--step`", "возьмите `--step` больше")));
     }
     let places: [Vec<f64>; 3] = [0, 1, 2].map(|i| {
         let range = volume.0[i];
@@ -265,9 +296,9 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure
     file::write(&arguments.folder.join("lattice.csv"), text.as_bytes())?;
     let mut lost = Vec::new();
     if (0..3).any(|i| has_two_directions(profile, i)) {
-        lost.push("the direction of motion".to_owned());
+        lost.push(both!("the direction of motion", "направления движения"));
     }
-    lost.push("other tools than the default one".to_owned());
+    lost.push(both!("other tools than the default one", "инструмента, кроме заданного по умолчанию"));
     let missed = (0..3).filter(|&axis| {
         let inside = |q: &f64| volume.0[axis].low < *q && *q < volume.0[axis].high;
         let on_plane = |q: f64| places[axis].iter().any(|place| (place - q).abs() < 1e-6);
@@ -275,8 +306,9 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure
     });
     let missed: Vec<String> = missed.map(|axis| Axis::ALL[axis].letter().to_string()).collect();
     if !missed.is_empty() {
-        lost.push(format!(
+        lost.push(both!(
             "what the tables of {} do between the lattice's points (their nodes lie elsewhere: `--step`)",
+            "хода таблиц {} между точками решётки (их узлы лежат не там: `--step`)",
             missed.join(", ")
         ));
     }
@@ -284,7 +316,7 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<String>, Failure
 }
 
 /// The tables as `vpost calibrate interferometer` reads them.
-fn own(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
+fn own(profile: &Profile, folder: &Path) -> Result<Vec<Text>, Failure> {
     for axis in 0..3 {
         let functions = given(profile, axis);
         if functions.is_empty() {
@@ -306,7 +338,10 @@ fn own(profile: &Profile, folder: &Path) -> Result<Vec<String>, Failure> {
         }
         file::write(&folder.join(format!("{}.csv", letter.to_ascii_lowercase())), text.as_bytes())?;
     }
-    let mut lost = vec!["squareness, tools and offsets: they stand in the profile".to_owned()];
+    let mut lost = vec![both!(
+        "squareness, tools and offsets: they stand in the profile",
+        "перпендикулярности, инструмента и смещений: они стоят в профиле"
+    )];
     lost.extend(lines_lost(profile));
     Ok(lost)
 }

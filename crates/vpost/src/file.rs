@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 pub(crate) use jobs::lines::{LONGEST_LINE, check_lines, ends_lines, name, read_lines};
 
 use crate::growing::{Growing, GrowingFile, Nursery, sweep};
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 use crate::source::Still;
 use crate::terminal;
 use crate::to_disk::{self, ToDisk};
+use diagnostic::{Text, both};
 
 /// Reads a file, or standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
@@ -19,7 +20,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     } else {
         std::fs::read(path)
     };
-    result.map_err(|error| Failure::file(&name(path), "read", &error))
+    result.map_err(|error| Failure::file(&name(path), Deed::Read, &error))
 }
 
 /// Reads a program. Gives up at the first megabyte that holds text and no line end, whatever follows; refuses a file that
@@ -29,7 +30,7 @@ pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, Failure> {
     if path.as_os_str() == "-" {
         return read_lines(std::io::stdin().lock(), &name);
     }
-    let fail = |error: std::io::Error| Failure::file(&name, "read", &error);
+    let fail = |error: std::io::Error| Failure::file(&name, Deed::Read, &error);
     if path.metadata().is_ok_and(|found| !found.is_file()) {
         return read_lines(std::fs::File::open(path).map_err(fail)?, &name);
     }
@@ -100,7 +101,7 @@ impl Output {
             let place = Place::Apart(tempfile::spooled_tempfile(SPOOLED_BYTES));
             return Ok(Self { path: None, place, to_disk: ToDisk::default() });
         };
-        let fail = |error: &std::io::Error| Failure::file(&name(&to), "write", error);
+        let fail = |error: &std::io::Error| Failure::file(&name(&to), Deed::Write, error);
         if let (true, Err(error)) = (to.is_symlink(), to.metadata()) {
             // It leads in a circle.
             return Err(fail(&error));
@@ -123,7 +124,7 @@ impl Output {
     /// Shows it. A file is then on the disk under its name, whatever becomes of the power.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         let named = self.path.as_deref().map_or_else(|| "standard output".to_owned(), name);
-        let fail = |error: &std::io::Error| Failure::file(&named, "write", error);
+        let fail = |error: &std::io::Error| Failure::file(&named, Deed::Write, error);
         match (self.place, self.path.as_deref()) {
             (Place::Beside(beside), Some(path)) => {
                 self.to_disk.finish(beside.file()).map_err(|error| fail(&error))?;
@@ -214,7 +215,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// A file that is written and not shown yet.
 pub(crate) fn written(path: &Path, bytes: &[u8]) -> Result<Output, Failure> {
     let mut output = Output::new(Some(path))?;
-    output.write_all(bytes).map_err(|error| Failure::file(&name(path), "write", &error))?;
+    output.write_all(bytes).map_err(|error| Failure::file(&name(path), Deed::Write, &error))?;
     Ok(output)
 }
 
@@ -228,13 +229,22 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
 
 fn printed(print: impl FnOnce(&mut std::io::StdoutLock<'_>) -> std::io::Result<()>) -> Result<(), Failure> {
     if !open_streams::is_stdout_open() {
-        let closed = std::io::Error::other("it was closed before vpost began");
-        return Err(Failure::file("standard output", "write to", &closed));
+        let closed = std::io::Error::other(both!(
+            "it was closed before vpost began",
+            "он был закрыт до начала работы vpost"
+        ));
+        return Err(Failure::place(
+            &Text::pair("standard output", "стандартный вывод"),
+            Deed::WriteTo,
+            &closed,
+        ));
     }
     let mut out = std::io::stdout().lock();
     match print(&mut out).and_then(|()| out.flush()) {
         // Whoever reads has seen enough.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::Check),
-        result => result.map_err(|error| Failure::file("standard output", "write to", &error)),
+        result => result.map_err(|error| {
+            Failure::place(&Text::pair("standard output", "стандартный вывод"), Deed::WriteTo, &error)
+        }),
     }
 }

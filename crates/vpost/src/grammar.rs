@@ -1,5 +1,7 @@
 //! `vpost grammar`.
 
+use diagnostic::both;
+
 use crate::arguments::{Grammar, GrammarCommand};
 use crate::file;
 use crate::message::{Failure, Messages};
@@ -22,8 +24,9 @@ pub(crate) fn run(arguments: &Grammar, messages: &Messages) -> Result<(), Failur
         GrammarCommand::Check { files } => {
             for path in files {
                 let dialect = load_dialect(&path.to_string_lossy())?;
-                messages.note(&format!(
+                messages.note(&both!(
                     "{}: {} ({} G codes)",
+                    "{}: {} (функций G: {})",
                     file::name(path),
                     dialect.title,
                     dialect.codes.len()

@@ -43,20 +43,20 @@ use std::process::ExitCode;
 pub use jobs::values;
 use jobs::{conditions, expand, figures, points, profile, summary};
 
-use arguments::Color;
+use arguments::{Color, MessageOptions};
 use command_line::{Arguments, Command};
 use exit_status::{DONE, REFUSED, TRY_AGAIN, USAGE};
 use interrupt::Interrupt;
-use language::Language;
 use message::{Failure, Messages};
 
 /// Runs the command and says how it ended.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::read(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = match Arguments::read(arguments.clone()) {
         Ok(arguments) => arguments,
         Err(error) => {
             if let Some(failure) = jobs::options::unread(&error) {
-                Messages::new(Color::Auto, false).failure(&failure);
+                Messages::new(Color::Auto, false, language::of_arguments(&arguments)).failure(&failure);
                 return ExitCode::from(USAGE);
             }
             let status = if error.use_stderr() { USAGE } else { DONE };
@@ -73,8 +73,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     // From here on: opening a named pipe waits, too.
     let interrupt = Interrupt::listen();
-    let messages = Messages::new(arguments.shared.messages.color, arguments.shared.messages.quiet);
-    let language = Language::chosen(arguments.shared.messages.language.as_deref().copied());
+    let MessageOptions { color, quiet, language, .. } = &arguments.shared.messages;
+    let language = language::chosen(language.as_deref().copied());
+    let messages = Messages::new(*color, *quiet, language);
     let result = match &arguments.command {
         Some(Command::Correct(a)) => correct::run(a, &arguments.shared, &messages),
         Some(Command::Batch(a)) => batch::run(a, &arguments.shared, &messages),

@@ -7,7 +7,8 @@ use clap_mangen::roff::{Roff, roman};
 use crate::arguments::{Completions, Manual};
 use crate::command_line::command;
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
+use diagnostic::Text;
 
 /// A manual page.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,11 +78,14 @@ fn page(command: &clap::Command, above: Option<&str>) -> std::io::Result<Page> {
 
 /// Prints the first page, or writes all.
 pub(crate) fn run(arguments: &Manual) -> Result<(), Failure> {
-    let pages = pages().map_err(|error| Failure::file("the manual pages", "make", &error))?;
+    let pages = pages().map_err(|error| {
+        Failure::place(&Text::pair("the manual pages", "страницы руководства"), Deed::Make, &error)
+    })?;
     let Some(folder) = &arguments.folder else {
         return pages.first().map_or(Ok(()), |page| file::print(&page.text));
     };
-    std::fs::create_dir_all(folder).map_err(|error| Failure::file(&file::name(folder), "make", &error))?;
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::file(&file::name(folder), Deed::Make, &error))?;
     pages.iter().try_for_each(|page| file::write(&folder.join(&page.file), &page.text))
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 
+use diagnostic::{Language, Text};
 pub(crate) use jobs::message::*;
 use jobs::shown::shown;
 
@@ -12,17 +13,18 @@ use crate::color::Color;
 pub(crate) struct Messages {
     wording: Wording,
     quiet: bool,
+    language: Language,
 }
 
 impl Messages {
-    pub(crate) fn new(color: Color, quiet: bool) -> Self {
+    pub(crate) fn new(color: Color, quiet: bool, language: Language) -> Self {
         let colored = match color {
             Color::Always => true,
             Color::Never => false,
             Color::Auto => std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
         };
-        let wording = if colored { Wording::colored() } else { Wording::plain() };
-        Self { wording: if quiet { wording.quiet() } else { wording }, quiet }
+        let wording = if colored { Wording::colored() } else { Wording::plain() }.speaking(language);
+        Self { wording: if quiet { wording.quiet() } else { wording }, quiet, language }
     }
 
     /// Prints a failure.
@@ -46,10 +48,15 @@ impl Messages {
     }
 
     /// Prints a line about progress or result, unless quiet.
-    pub(crate) fn note(&self, text: &str) {
+    pub(crate) fn note(&self, text: &Text) {
         if !self.quiet {
-            self.line(&shown(text));
+            self.line(&shown(text.in_language(self.language)));
         }
+    }
+
+    /// The language people are spoken to in.
+    pub(crate) fn language(&self) -> Language {
+        self.language
     }
 
     /// The user wants errors alone.

@@ -1,5 +1,7 @@
 //! `vpost profile`.
 
+use diagnostic::both;
+
 use crate::arguments::{Profile, ProfileCommand};
 use crate::message::{Failure, Messages};
 use crate::{export, file, profile, profile_new};
@@ -9,7 +11,12 @@ pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failur
     match &arguments.command {
         ProfileCommand::Check { profile: path } => {
             let loaded = profile::load(path)?;
-            messages.note(&format!("{}: a good profile of {}", file::name(path), loaded.profile.name));
+            messages.note(&both!(
+                "{}: a good profile of {}",
+                "{}: профиль станка {} в порядке",
+                file::name(path),
+                loaded.profile.name
+            ));
             Ok(())
         }
         ProfileCommand::Show { profile: path } => {

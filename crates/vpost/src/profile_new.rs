@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::{Speaks, both};
 use machine_model::{Axis, Chain};
 
 use crate::message::{Failure, Messages};
@@ -46,8 +47,9 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
     load_dialect(&arguments.control)?;
     let chain = Chain::parse(&arguments.chain).map_err(|error| {
         let help =
-            "like `--chain '[w X Y b Z t]'`; of a lathe begin with machine-profiles/generic_lathe.toml";
-        Failure::option(format!("--chain: {error}"), help)
+            both!("like `--chain '[w X Y b Z t]'`; of a lathe begin with machine-profiles/generic_lathe.toml", "например `--chain '[w X Y b Z t]'`; для токарного станка начните с machine-profiles/generic_lathe.toml");
+        let error = error.text();
+        Failure::option(both!("--chain: {error}", "--chain: {error:#}"), help)
     })?;
     let text = text(arguments, &chain)?;
     // What is wrong is said of the lines as they would stand there.
@@ -56,13 +58,14 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
     let Some(path) = &arguments.output else { return file::print(text.as_bytes()) };
     if path.exists() {
         return Err(Failure::option(
-            format!("{} is there already", file::name(path)),
-            "give another name, or remove it",
+            both!("{} is there already", "{} уже есть", file::name(path)),
+            both!("give another name, or remove it", "дайте другое имя или уберите его"),
         ));
     }
     file::write(path, text.as_bytes())?;
-    messages.note(&format!(
+    messages.note(&both!(
         "{}: a profile of {}; fill in what is measured",
+        "{}: профиль станка {}; впишите в него измеренное",
         file::name(path),
         arguments.name
     ));
@@ -88,8 +91,11 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
         let letter = axis.letter();
         let Some(Travel { range_mm, .. }) = only(&arguments.travel, |travel| travel.axis == axis) else {
             return Err(Failure::option(
-                format!("--travel of {letter} is not given once"),
-                format!("`--travel {letter}=0..500` with the ends of its travel in machine coordinates"),
+                both!("--travel of {letter} is not given once", "--travel для {letter} задан не один раз"),
+                both!(
+                    "`--travel {letter}=0..500` with the ends of its travel in machine coordinates",
+                    "`--travel {letter}=0..500` — концы её хода в координатах станка"
+                ),
             ));
         };
         let [low, high, step] = [range_mm.low, range_mm.high, arguments.resolution].map(|mm| short(mm, 6));
@@ -102,23 +108,42 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
             ),
             [table] => writeln!(text, "errors        = {}", string(&table.path)),
             _ => {
-                let help = format!("one `--table {letter}=FILE` with all six functions");
-                return Err(Failure::option(format!("--table of {letter} is given twice"), help));
+                let help = both!(
+                    "one `--table {letter}=FILE` with all six functions",
+                    "один `--table {letter}=FILE` со всеми шестью функциями"
+                );
+                return Err(Failure::option(
+                    both!("--table of {letter} is given twice", "--table для {letter} задан дважды"),
+                    help,
+                ));
             }
         };
         text.push_str("# backlash_um = 0.0\n");
     }
     let rotary = || chain.table().iter().chain(chain.head());
     if let Some(centre) = arguments.centre.iter().find(|centre| rotary().all(|axis| *axis != centre.axis)) {
-        let help = format!("put {} into `--chain`, or leave the option out", centre.axis.letter());
-        return Err(Failure::option(format!("--centre {centre} is of no axis of {chain}"), help));
+        let help = both!(
+            "put {} into `--chain`, or leave the option out",
+            "впишите {} в `--chain` или уберите ключ",
+            centre.axis.letter()
+        );
+        return Err(Failure::option(
+            both!(
+                "--centre {centre} is of no axis of {chain}",
+                "--centre {centre} не относится ни к одной оси цепи {chain}"
+            ),
+            help,
+        ));
     }
     for axis in rotary() {
         let letter = axis.letter();
         let Some(Centre { point_mm, .. }) = only(&arguments.centre, |centre| centre.axis == *axis) else {
             return Err(Failure::option(
-                format!("--centre of {letter} is not given once"),
-                format!("`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line"),
+                both!("--centre of {letter} is not given once", "--centre для {letter} задан не один раз"),
+                both!(
+                    "`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line",
+                    "`--centre {letter}=X,Y,Z` — координаты станка одной точки её оси"
+                ),
             ));
         };
         let [x, y, z] = point_mm.map(|value| short(value, 6));

@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use diagnostic::{Language, Text};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::arguments;
@@ -39,12 +40,15 @@ impl<'a> Progress<'a> {
         let percent = (done * 100.0) as u64;
         match self.style {
             Some(arguments::Progress::Linuxcnc) if shown.percent != Some(percent) => {
-                self.messages.note(&format!("FILTER_PROGRESS={percent}"));
+                self.messages.note(&Text::same(format!("FILTER_PROGRESS={percent}")));
                 shown.percent = Some(percent);
             }
             Some(arguments::Progress::Linuxcnc) => {}
             None if self.messages.are_quiet() || self.begun.elapsed() < SOON => {}
-            None => shown.bar.get_or_insert_with(bar).set_position((done * PARTS as f64) as u64),
+            None => shown
+                .bar
+                .get_or_insert_with(|| bar(self.messages.language()))
+                .set_position((done * PARTS as f64) as u64),
         }
     }
 
@@ -56,10 +60,15 @@ impl<'a> Progress<'a> {
     }
 }
 
+static TEMPLATE: Text = Text::pair(
+    "{bar:30} {percent} %  {elapsed} gone, {eta} left",
+    "{bar:30} {percent} %  прошло {elapsed}, осталось {eta}",
+);
+
 /// Its parts say how much, the clock how long.
-fn bar() -> ProgressBar {
+fn bar(language: Language) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-    let template = "{bar:30} {percent} %  {elapsed} gone, {eta} left";
+    let template = TEMPLATE.in_language(language);
     bar.set_style(ProgressStyle::with_template(template).expect("a template that was tried"));
     bar
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::file;
 use crate::message::Failure;
@@ -13,29 +13,29 @@ const TWO_ROLES: Code = Code(4);
 /// The files of one command line.
 #[derive(Debug, Default)]
 pub(crate) struct Roles<'a> {
-    read: Vec<(&'a str, &'a Path)>,
+    read: Vec<(Text, &'a Path)>,
     /// Read, too.
-    found: Vec<(&'a str, PathBuf)>,
+    found: Vec<(Text, PathBuf)>,
     written: Vec<(&'a str, &'a Path)>,
 }
 
 impl<'a> Roles<'a> {
     /// A file that is read, and what for: `the program`.
-    pub(crate) fn reads(mut self, role: &'a str, path: &'a Path) -> Self {
+    pub(crate) fn reads(mut self, role: Text, path: &'a Path) -> Self {
         self.read.push((role, path));
         self
     }
 
     /// Files that are read for the same.
-    pub(crate) fn reads_all(mut self, role: &'a str, paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
-        self.read.extend(paths.into_iter().map(|path| (role, path.as_path())));
+    pub(crate) fn reads_all(mut self, role: &Text, paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+        self.read.extend(paths.into_iter().map(|path| (role.clone(), path.as_path())));
         self
     }
 
     /// The files of folders, where subprograms are looked for.
-    pub(crate) fn reads_folders(mut self, role: &'a str, folders: &[PathBuf]) -> Self {
+    pub(crate) fn reads_folders(mut self, role: &Text, folders: &[PathBuf]) -> Self {
         let files = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();
-        self.found.extend(files.filter_map(|entry| Some((role, entry.ok()?.path()))));
+        self.found.extend(files.filter_map(|entry| Some((role.clone(), entry.ok()?.path()))));
         self
     }
 
@@ -50,19 +50,24 @@ impl<'a> Roles<'a> {
     /// # Errors
     /// The refusal of the first.
     pub(crate) fn are_apart(&self) -> Result<(), Failure> {
-        let found = self.found.iter().map(|(role, path)| (*role, path.as_path()));
-        let read = self.read.iter().copied().chain(found);
-        let mut taken: Vec<(Identity, &str)> =
-            read.filter_map(|(role, path)| Some((Identity::of(path)?, role))).collect();
+        let found = self.found.iter().map(|(role, path)| (role, path.as_path()));
+        let read = self.read.iter().map(|(role, path)| (role, *path)).chain(found);
+        let mut taken: Vec<(Identity, Text)> =
+            read.filter_map(|(role, path)| Some((Identity::of(path)?, role.clone()))).collect();
         for (option, path) in &self.written {
             let Some(identity) = Identity::of(path) else { continue };
             if let Some((_, role)) = taken.iter().find(|(other, _)| *other == identity) {
-                let message = format!("{} would be written by `{option}` and is {role}", file::name(path));
-                return Err(Failure::usage(
-                    Diagnostic::error(TWO_ROLES, message).help("give each output a file of its own"),
-                ));
+                let message = both!(
+                    "{} would be written by `{option}` and is {role}",
+                    "{} записал бы ключ `{option}`, но это {role:#}",
+                    file::name(path)
+                );
+                return Err(Failure::usage(Diagnostic::error(TWO_ROLES, message).help(both!(
+                    "give each output a file of its own",
+                    "дайте каждому выходному файлу своё имя"
+                ))));
             }
-            taken.push((identity, option));
+            taken.push((identity, Text::same(*option)));
         }
         Ok(())
     }
@@ -116,7 +121,8 @@ mod tests {
             others.push(place("soft.nc"));
         }
         for other in &others {
-            let roles = Roles::default().reads("the program", &part).writes("--summary", Some(other));
+            let roles =
+                Roles::default().reads(Text::same("the program"), &part).writes("--summary", Some(other));
             assert!(roles.are_apart().is_err(), "{}", other.display());
         }
         let (new, again, another) = (place("new.json"), place("./new.json"), place("another.json"));

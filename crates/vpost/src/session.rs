@@ -2,6 +2,7 @@
 //!
 //! For whoever runs thousands of programs through what a user gets: the fuzz targets (`tests/fuzz`).
 
+use diagnostic::Language;
 use nc_expand::Limits;
 use rewrite::Corrected;
 
@@ -30,7 +31,7 @@ impl Session {
     pub fn new(options: &[&str], limits: Limits) -> Result<Self, Refusal> {
         let line = ["vpost"].iter().chain(options).chain(&["-"]).map(std::ffi::OsString::from);
         let arguments = Arguments::read(line).map_err(|error| Refusal(error.to_string()))?;
-        let messages = Messages::new(Color::Never, true);
+        let messages = Messages::new(Color::Never, true, Language::English);
         match Settings::load(&arguments.shared.job) {
             Ok(mut settings) => {
                 settings.flow.limits = limits;

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 
 use crate::message::{Failure, Report};
 
@@ -78,9 +78,14 @@ impl Still {
 }
 
 fn changed(name: &str) -> Failure {
-    let diagnostic = Diagnostic::error(CHANGED, format!("{name} changed while it was read")).help(
+    let diagnostic = Diagnostic::error(
+        CHANGED,
+        both!("{name} changed while it was read", "{name} изменился во время чтения"),
+    )
+    .help(both!(
         "let whoever writes it finish (a post processor, a copy over the network), then run vpost again",
-    );
+        "дайте закончить тому, кто его пишет (постпроцессору, копированию по сети), и запустите vpost снова"
+    ));
     Failure::File(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

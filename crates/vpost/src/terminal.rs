@@ -5,11 +5,11 @@
 
 use std::io;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 pub(crate) use jobs::shown::{is_obeyed, shown};
 
-use crate::message::{Failure, Report};
+use crate::message::{Deed, Failure, Report};
 
 /// A program would give orders to the terminal.
 const OBEYED: Code = Code(5);
@@ -18,16 +18,20 @@ const OBEYED: Code = Code(5);
 /// what is read off a terminal may become a file.
 pub(crate) fn obeys_nothing_of(program: &mut impl io::Read) -> Result<(), Failure> {
     let mut text = Vec::new();
-    program.read_to_end(&mut text).map_err(|error| Failure::file("the output", "read", &error))?;
+    program
+        .read_to_end(&mut text)
+        .map_err(|error| Failure::place(&Text::pair("the output", "выходной файл"), Deed::Read, &error))?;
     let mut line = 1;
     for chunk in text.utf8_chunks() {
         for c in chunk.valid().chars() {
             if is_obeyed(c) {
-                let message = format!(
+                let message = both!(
                     "line {line} of the corrected program has U+{:04X}, which a terminal obeys",
+                    "в строке {line} исправленной программы стоит U+{:04X}, и терминал его исполнит",
                     u32::from(c)
                 );
-                let diagnostic = Diagnostic::error(OBEYED, message).help("write to a file: `-o OUT.nc`");
+                let diagnostic = Diagnostic::error(OBEYED, message)
+                    .help(both!("write to a file: `-o OUT.nc`", "запишите в файл: `-o OUT.nc`"));
                 return Err(Failure::File(Report { source: None, diagnostics: vec![diagnostic] }));
             }
             line += usize::from(c == '\n');

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
+use diagnostic::both;
+
 /// A disk is asked to take about so much at a time.
 const PART_BYTES: u64 = 8 << 20;
 
@@ -47,7 +49,12 @@ impl ToDisk {
     pub(crate) fn finish(self, file: &File) -> io::Result<()> {
         if let Some(Worker { ask, thread }) = self.worker {
             drop(ask);
-            thread.join().map_err(|_| io::Error::other("the thread that writes to the disk has died"))??;
+            thread.join().map_err(|_| {
+                io::Error::other(both!(
+                    "the thread that writes to the disk has died",
+                    "поток, который пишет на диск, прерван"
+                ))
+            })??;
         }
         file.sync_all()
     }

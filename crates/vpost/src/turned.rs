@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use correction::Curve;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use machine_model::{Command, Vector};
 use machine_profile::Nose;
 use nc_program::modal::FeedMode;
@@ -82,14 +82,22 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let lathe = settings.profile.lathe(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let Some(lathe) = lathe else {
         return Err(Failure::option(
-            format!("{} is no lathe: its chain is {}", settings.profile_name, settings.profile.chain()),
-            "leave `--lathe` out, or give the profile of a lathe",
+            both!(
+                "{} is no lathe: its chain is {}",
+                "{} — не токарный станок: его цепь — {}",
+                settings.profile_name,
+                settings.profile.chain()
+            ),
+            both!(
+                "leave `--lathe` out, or give the profile of a lathe",
+                "уберите `--lathe` или дайте профиль токарного станка"
+            ),
         ));
     };
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
         return Err(Failure::option(
-            format!("`--step {}` is no distance", arguments.step),
-            "write millimetres, like `--step 0.5`",
+            both!("`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step),
+            both!("write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"),
         ));
     }
     let name = file::name(&arguments.points);
@@ -101,11 +109,15 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
         let diagnostic = Diagnostic::error(
             NOTHING_TURNED,
-            "the program turns nothing that could be predicted",
+            both!(
+                "the program turns nothing that could be predicted",
+                "программа ничего не точит, предсказывать нечего"
+            ),
         )
-        .help(
+        .help(both!(
             "feeds (G1, G2, G3) that move along Z are needed; with `--step` there may be up to 200000 places",
-        );
+            "нужны рабочие ходы (G1, G2, G3) вдоль Z; мест с шагом `--step` может быть до 200000"
+        ));
         refused(vec![diagnostic])
     })?;
     for cut in &cuts {

@@ -4,6 +4,7 @@
 //! A slip of the file is tried out: the rows are written as they would be without it, predicted again and laid against the
 //! readings. A slip has no number to be fitted, so that it explains more, and more simply, than any effect where it is one.
 
+use diagnostic::{Text, both};
 use gap_diagnosis::{Measurements, Reading, Row, gap_rms_um};
 use machine_model::Vector;
 
@@ -17,7 +18,7 @@ const ROWS: usize = 12;
 /// A slip and what the gap is without it.
 pub(super) struct Slip {
     /// What was done, and how the file would have to be written.
-    pub(super) words: String,
+    pub(super) words: Text,
     /// The column to look at.
     pub(super) column: &'static str,
     pub(super) before_um: f64,
@@ -26,7 +27,7 @@ pub(super) struct Slip {
 
 /// One way to have written a row wrong, undone.
 struct Trial {
-    words: String,
+    words: Text,
     column: &'static str,
     /// The linear axes were elsewhere than the file says.
     moves: bool,
@@ -129,9 +130,12 @@ fn offset_left_in<E>(
         return None;
     }
     let after_um = left(data, offset).filter(|after| *after < SHARE_FITTED * before_um)?;
-    let words = format!(
+    let words = both!(
         "a work offset of about X {:.1} Y {:.1} Z {:.1} mm was left in: the commanded positions are not machine coordinates",
-        offset.x, offset.y, offset.z
+        "осталось смещение нуля около X {:.1} Y {:.1} Z {:.1} мм: заданные положения — не координаты станка",
+        offset.x,
+        offset.y,
+        offset.z
     );
     Some(Slip { words, column: "x_mm", before_um, after_um })
 }
@@ -141,44 +145,65 @@ fn trials(work_offsets: &[(String, [f64; 3])]) -> Vec<Trial> {
     const COMMANDS: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
     const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
     let mut all: Vec<Trial> = Vec::new();
-    let mut trial = |words: String, column: &'static str, undo: Box<dyn Fn(&mut Row)>| {
+    let mut trial = |words: Text, column: &'static str, undo: Box<dyn Fn(&mut Row)>| {
         let moves = COMMANDS.contains(&column);
         all.push(Trial { words, column, moves, undo });
     };
     for (component, column) in READINGS.into_iter().enumerate() {
-        let words = format!("the sign of {column} is flipped");
+        let words = both!("the sign of {column} is flipped", "у столбца {column} обратный знак");
         trial(words, column, Box::new(move |row| read(row, |c| c[component] = c[component].map(|v| -v))));
     }
     trial(
-        "the sign of every reading is flipped: commanded minus measured".to_owned(),
+        both!(
+            "the sign of every reading is flipped: commanded minus measured",
+            "у всех показаний обратный знак: команда минус измеренное"
+        ),
         "dx_um",
         Box::new(|row| read(row, |c| *c = c.map(|v| v.map(|v| -v)))),
     );
     for (a, b) in PAIRS {
-        let words = format!("the columns {} and {} are swapped", READINGS[a], READINGS[b]);
+        let words = both!(
+            "the columns {} and {} are swapped",
+            "столбцы {} и {} переставлены",
+            READINGS[a],
+            READINGS[b]
+        );
         trial(words, READINGS[a], Box::new(move |row| read(row, |c| c.swap(a, b))));
-        let words = format!("the columns {} and {} are swapped", COMMANDS[a], COMMANDS[b]);
+        let words = both!(
+            "the columns {} and {} are swapped",
+            "столбцы {} и {} переставлены",
+            COMMANDS[a],
+            COMMANDS[b]
+        );
         trial(words, COMMANDS[a], Box::new(move |row| row.command.linear_mm.swap((a, 0), (b, 0))));
     }
     trial(
-        "the directions of approach are inverted".to_owned(),
+        both!("the directions of approach are inverted", "направления подхода обратные"),
         "dir_x",
         Box::new(|row| row.command.direction = row.command.direction.map(|d| -d)),
     );
     for (axis, column) in ["dir_x", "dir_y", "dir_z"].into_iter().enumerate() {
-        let words = format!("the direction of approach {column} is inverted");
+        let words =
+            both!("the direction of approach {column} is inverted", "направление подхода {column} обратное");
         trial(words, column, Box::new(move |row| row.command.direction[axis] *= -1));
     }
     trial(
-        "feed_mm_min holds mm/s: the unit is wrong".to_owned(),
+        both!("feed_mm_min holds mm/s: the unit is wrong", "в feed_mm_min стоят мм/с: единица не та"),
         "feed_mm_min",
         Box::new(|row| row.conditions.feed_mm_min = row.conditions.feed_mm_min.map(|f| 60.0 * f)),
     );
     for (name, offset) in work_offsets.iter().filter(|(_, offset)| offset.iter().any(|v| *v != 0.0)) {
         for sign in [1.0, -1.0] {
             let offset = Vector::from(*offset) * sign;
-            let what = if sign > 0.0 { "is missing in" } else { "was left in" };
-            let words = format!("the work offset {name} {what} the commanded positions");
+            let what = if sign > 0.0 {
+                both!("is missing in", "вычтено из заданных положений")
+            } else {
+                both!("was left in", "осталось в заданных положениях")
+            };
+            let words = both!(
+                "the work offset {name} {what} the commanded positions",
+                "смещение нуля {name} {what:#}"
+            );
             trial(words, "x_mm", Box::new(move |row| row.command.linear_mm += offset));
         }
     }
@@ -200,7 +225,7 @@ mod tests {
         let moved: Vec<String> = trials(&[("G54".to_owned(), [10.0, 0.0, 0.0])])
             .into_iter()
             .filter(|t| t.moves)
-            .map(|t| t.words)
+            .map(|t| t.words.english().to_owned())
             .collect();
         assert_eq!(moved.len(), 5, "{moved:?}");
         assert!(moved.iter().all(|words| words.contains("_mm") || words.contains("G54")), "{moved:?}");

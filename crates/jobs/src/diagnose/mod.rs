@@ -7,6 +7,7 @@ mod measurements;
 mod model;
 mod read;
 
+use diagnostic::{Speaks, both};
 use gap_diagnosis::{Diagnosis, Options};
 use machine_model::effects::EffectKind;
 
@@ -38,11 +39,14 @@ pub fn diagnose(
     seed: u64,
     without: &[String],
 ) -> Result<Diagnosed, Failure> {
-    let without = without
-        .iter()
-        .map(|id| id.parse::<EffectKind>())
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|error| Failure::option(error.to_string(), "see docs/diagnosis.md for the library"))?;
+    let without = without.iter().map(|id| id.parse::<EffectKind>()).collect::<Result<Vec<_>, _>>().map_err(
+        |error| {
+            Failure::option(
+                error.text(),
+                both!("see docs/diagnosis.md for the library", "список эффектов — в docs/diagnosis.md"),
+            )
+        },
+    )?;
     let steps = model.profile.resolution_mm.iter().map(|step| 1e3 * step);
     let options = Options {
         without,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use diagnostic::{Speaks, both};
 use machine_model::effects::{EffectGeometry, EffectTerm};
 use machine_model::engines::build;
 use machine_profile::Profile;
@@ -36,7 +37,13 @@ impl Model {
         let profile::Loaded { profile, hash, files } = profile::load_mill(machine(options)?)?;
         let built = options.engine().map(|id| build(id, profile.engine_inputs_without_effects()));
         let engine = built.transpose().map_err(|error| {
-            Failure::option(error.to_string(), "use an engine the profile has the tables for")
+            Failure::option(
+                error.text(),
+                both!(
+                    "use an engine the profile has the tables for",
+                    "возьмите метод, для которого в профиле есть таблицы"
+                ),
+            )
         })?;
         let geometry = geometry(&profile);
         let effects = profile
@@ -44,7 +51,12 @@ impl Model {
             .iter()
             .map(|entry| EffectTerm::from_entry(&entry.id, &entry.parameters))
             .collect::<Result<Vec<_>, _>>()
-            .map_err(|error| Failure::option(error.to_string(), "correct the profile's [[effect]]"))?;
+            .map_err(|error| {
+                Failure::option(
+                    error.text(),
+                    both!("correct the profile's [[effect]]", "исправьте [[effect]] профиля"),
+                )
+            })?;
         let effects = effects.into_iter().map(|term| term.with_geometry(geometry.clone())).collect();
         Ok(Self { profile, hash, files, engine, effects, geometry })
     }

@@ -1,5 +1,6 @@
 //! A measurement file with its predictions.
 
+use diagnostic::{Speaks, Text, both};
 use gap_diagnosis::{Measurements, Row};
 use machine_profile::Profile;
 
@@ -49,15 +50,21 @@ pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Resul
         let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         high - low > SAME_RAD
     };
-    let refuse = |message: String| {
+    let refuse = |message: Text| {
         Failure::option(
-            format!("the hold-out {name}: {message}"),
-            "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
+            both!("the hold-out {name}: {message}", "контрольные измерения {name}: {message:#}"),
+            both!(
+                "give a hold-out of the same machine that moves the same axes, or diagnose without --holdout",
+                "дайте контрольные измерения того же станка с теми же осями или проводите диагностику без --holdout"
+            ),
         )
     };
     for (axis, letter) in ["A", "B", "C"].into_iter().enumerate() {
         if turns(&held.data, axis) && !turns(&measured.data, axis) {
-            return Err(refuse(format!("{letter} turns there, and stands still in the measurements")));
+            return Err(refuse(both!(
+                "{letter} turns there, and stands still in the measurements",
+                "{letter} там вращается, а в измерениях стоит"
+            )));
         }
     }
     let moves = |data: &Measurements, axis: usize| {
@@ -69,8 +76,9 @@ pub fn of_one_machine(name: &str, measured: &Measured, held: &Measured) -> Resul
     };
     let (fitted, unseen) = (letters(&measured.data), letters(&held.data));
     if !unseen.is_empty() && unseen.iter().all(|letter| !fitted.contains(letter)) {
-        return Err(refuse(format!(
+        return Err(refuse(both!(
             "it moves {}, and the measurements {}",
+            "там движутся {}, а в измерениях {}",
             unseen.join(", "),
             fitted.join(", ")
         )));
@@ -111,9 +119,13 @@ pub fn read(
         };
         for effect in &model.effects {
             row.predicted_mm += effect.displacement_mm(&row.command, &row.conditions).map_err(|error| {
+                let error = error.text();
                 Failure::option(
-                    format!("{} of the profile: {error}", effect.kind()),
-                    "give the measurements that column, or take the effect out of the profile",
+                    both!("{} of the profile: {error}", "{} профиля: {error:#}", effect.kind()),
+                    both!(
+                        "give the measurements that column, or take the effect out of the profile",
+                        "добавьте этот столбец в измерения или уберите эффект из профиля"
+                    ),
                 )
             })?;
         }

@@ -100,6 +100,8 @@ impl Engine for TangentialInterval {
         Err(outside.unwrap_or(SolveError::Undefined(
             "the target lies where the maps of two cells move apart: no command of tangential-interval reaches it; \
              use `--engine tangential-quasi-differential` or `--engine tracker`, which are continuous",
+            "цель лежит там, где отображения двух ячеек расходятся: до неё не доводит ни одна команда tangential-interval; \
+             возьмите `--engine tangential-quasi-differential` или `--engine tracker`, они непрерывны",
         )))
     }
 

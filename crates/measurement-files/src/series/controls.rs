@@ -1,6 +1,6 @@
 //! Tables of controls: LinuxCNC's triplets, Heidenhain's AXISPOS tables, ISG CSV.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use machine_model::Axis;
 
 use crate::codes::{CELL, COLUMN, QUESTION};
@@ -13,12 +13,17 @@ pub(super) fn triplets(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let (function, axis) = file.function()?;
     let name = file.name;
     if function != axis.direction() {
-        let message = format!("{name}: a compensation file holds the positioning of its own axis");
-        let help = format!("write `{name}=E{axis}{axis}`");
+        let message = both!(
+            "{name}: a compensation file holds the positioning of its own axis",
+            "{name}: в файле компенсации — позиционирование своей оси"
+        );
+        let help = both!("write `{name}=E{axis}{axis}`", "напишите `{name}=E{axis}{axis}`");
         return Err(Refusal::without_text(Diagnostic::error(QUESTION, message).help(help)));
     }
-    let values =
-        file.values("positions (COMP_FILE_TYPE = 0) or --values corrections (COMP_FILE_TYPE = 1)")?;
+    let values = file.values(&both!(
+        "positions (COMP_FILE_TYPE = 0) or --values corrections (COMP_FILE_TYPE = 1)",
+        "positions (COMP_FILE_TYPE = 0) или --values corrections (COMP_FILE_TYPE = 1)"
+    ))?;
     let mut series = Series::new(axis, function, name, Origin::Control);
     for line in file.lines() {
         let Some(Ok([nominal, forward, reverse])) = numbers(line.text).map(<[f64; 3]>::try_from) else {
@@ -38,7 +43,7 @@ pub(super) fn triplets(file: &File<'_>) -> Result<Series, Box<Refusal>> {
 /// Heidenhain: AXISPOS, optionally BACKLASH (the value towards minus), and a column named by the axis that is compensated.
 pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
     let (_, axis) = file.function()?;
-    let values = file.values("errors or --values corrections")?;
+    let values = file.values(&both!("errors or --values corrections", "errors или --values corrections"))?;
     let sign = if values == Values::Corrections { -1.0 } else { 1.0 };
     let mut header: Vec<String> = Vec::new();
     let mut found: Vec<Series> = Vec::new();
@@ -55,8 +60,14 @@ pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
         let skip = cells.len().saturating_sub(header.len());
         let cells = &cells[skip..];
         if cells.len() != header.len() {
-            let message = format!("{} numbers for {} columns", cells.len(), header.len());
-            return Err(file.refuse(CELL, line.span(), message, "give every row all columns"));
+            let message =
+                both!("{} numbers for {} columns", "чисел {}, а столбцов {}", cells.len(), header.len());
+            return Err(file.refuse(
+                CELL,
+                line.span(),
+                message,
+                both!("give every row all columns", "дайте каждой строке все столбцы"),
+            ));
         }
         let cell = |title: &str| header.iter().position(|h| h == title).map(|k| cells[k]);
         let Some(position) = cell("AXISPOS") else { continue };
@@ -75,8 +86,16 @@ pub(super) fn heidenhain(file: &File<'_>) -> Result<Vec<Series>, Box<Refusal>> {
         }
     }
     if found.is_empty() {
-        let message = "no column is named by an axis".to_owned();
-        return Err(file.refuse(COLUMN, 0..0, message, "a column X, Y or Z holds the values of that axis"));
+        let message = both!("no column is named by an axis", "ни один столбец не назван осью");
+        return Err(file.refuse(
+            COLUMN,
+            0..0,
+            message,
+            both!(
+                "a column X, Y or Z holds the values of that axis",
+                "значения оси стоят в столбце X, Y или Z"
+            ),
+        ));
     }
     Ok(found)
 }
@@ -100,8 +119,13 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
             continue;
         }
         let Some(cells) = numbers(line).filter(|n| n.len() == header.len()) else {
-            let message = format!("expected {} numbers", header.len());
-            return Err(file.refuse(CELL, whole.span(), message, "mm and rad, separated by spaces"));
+            let message = both!("expected {} numbers", "ожидалось чисел: {}", header.len());
+            return Err(file.refuse(
+                CELL,
+                whole.span(),
+                message,
+                both!("mm and rad, separated by spaces", "мм и рад, через пробел"),
+            ));
         };
         let angle = |title: &String| ["C0Y", "B0Z", "A0Z"].iter().position(|known| known == title);
         if let Some(places) = header.iter().map(angle).collect::<Option<Vec<usize>>>() {
@@ -113,22 +137,28 @@ pub(super) fn isg(file: &File<'_>) -> Result<Content, Box<Refusal>> {
         }
         let Some(axis) = header[0].chars().next().and_then(Axis::from_letter).filter(|a| a.is_linear())
         else {
-            let help = "a block begins with the axis: `X EXX EYX …`; of constant errors only C0Y, B0Z and A0Z are read";
+            let help = both!(
+                "a block begins with the axis: `X EXX EYX …`; of constant errors only C0Y, B0Z and A0Z are read",
+                "блок начинается с оси: `X EXX EYX …`; из постоянных погрешностей читаются только C0Y, B0Z и A0Z"
+            );
             return Err(file.refuse(
                 COLUMN,
                 whole.span(),
-                format!("`{}` is no linear axis", header[0]),
+                both!("`{}` is no linear axis", "`{}` — не линейная ось", header[0]),
                 help,
             ));
         };
         for (title, value) in header.iter().zip(&cells).skip(1) {
             let Some((function, own)) = symbol(title).filter(|(_, own)| *own == axis) else {
-                let message = format!("`{title}` is no error function of {axis}");
+                let message = both!(
+                    "`{title}` is no error function of {axis}",
+                    "`{title}` — не функция погрешности оси {axis}"
+                );
                 return Err(file.refuse(
                     COLUMN,
                     whole.span(),
                     message,
-                    "write EXX, EYX, … of the block's axis",
+                    both!("write EXX, EYX, … of the block's axis", "напишите EXX, EYX, … оси этого блока"),
                 ));
             };
             let same = |s: &Series| s.axis == own && s.function == function;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::Axis;
 
 use crate::codes::{QUESTION, UNREADABLE};
@@ -136,23 +136,37 @@ impl<'f> File<'f> {
         Piece::lines(self.text).map(Piece::trimmed).filter(|line| !line.text.is_empty())
     }
 
-    pub(super) fn refuse(&self, code: Code, span: Range<usize>, message: String, help: &str) -> Box<Refusal> {
-        Refusal::of(self.name, self.text, error(code, message, &span, "here", help))
+    pub(super) fn refuse(&self, code: Code, span: Range<usize>, message: Text, help: Text) -> Box<Refusal> {
+        Refusal::of(self.name, self.text, error(code, message, &span, both!("here", "здесь"), help))
     }
 
-    pub(super) fn damaged(&self, span: Range<usize>, message: String) -> Box<Refusal> {
-        self.refuse(UNREADABLE, span, message, "the file is damaged; export it again")
+    pub(super) fn damaged(&self, span: Range<usize>, message: Text) -> Box<Refusal> {
+        self.refuse(
+            UNREADABLE,
+            span,
+            message,
+            both!("the file is damaged; export it again", "файл повреждён; выведите его снова"),
+        )
     }
 
-    pub(super) fn question(&self, message: &str, help: String) -> Box<Refusal> {
-        Refusal::without_text(Diagnostic::error(QUESTION, format!("{} {message}", self.name)).help(help))
+    pub(super) fn question(&self, message: &Text, help: Text) -> Box<Refusal> {
+        Refusal::without_text(
+            Diagnostic::error(QUESTION, both!("{} {message}", "{} {message:#}", self.name)).help(help),
+        )
     }
 
     pub(super) fn function(&self) -> Result<(usize, Axis), Box<Refusal>> {
         self.told.symbol.ok_or_else(|| {
             self.question(
-                "does not say which error function it holds",
-                format!("write `{}=EXX:um`: the standard's symbol and the unit of the deviations", self.name),
+                &both!(
+                    "does not say which error function it holds",
+                    "не говорит, какая в нём функция погрешности"
+                ),
+                both!(
+                    "write `{}=EXX:um`: the standard's symbol and the unit of the deviations",
+                    "напишите `{}=EXX:um`: обозначение по стандарту и единицу отклонений",
+                    self.name
+                ),
             )
         })
     }
@@ -162,27 +176,34 @@ impl<'f> File<'f> {
         let own = if function < 3 { MM } else { RAD };
         let wanted = if own.quantity == Quantity::Length { "um, mm" } else { "urad, arcsec, um_per_mm, rad" };
         let Some(unit) = self.told.unit.or(known) else {
-            return Err(self.question(
-                "does not say the unit of its deviations",
-                format!(
-                    "write it behind the symbol, as in `{}=EXX:um`; um or mm for lengths, urad, arcsec, um_per_mm or rad for angles",
+            return Err(self.question(&both!("does not say the unit of its deviations", "не говорит, в какой единице отклонения"),
+                both!("write it behind the symbol, as in `{}=EXX:um`; um or mm for lengths, urad, arcsec, um_per_mm or rad for angles", "напишите её после обозначения, например `{}=EXX:um`; um или mm для длин, urad, arcsec, um_per_mm или rad для углов",
                     self.name
                 ),
             ));
         };
         let found = Unit::named(unit, Some(own.quantity)).filter(|unit| unit.quantity == own.quantity);
         let refusal = || {
-            let message = format!("{}: `{unit}` is no unit of this function", self.name);
-            Refusal::without_text(Diagnostic::error(QUESTION, message).help(format!("one of: {wanted}")))
+            let message = both!(
+                "{}: `{unit}` is no unit of this function",
+                "{}: `{unit}` — не единица этой функции",
+                self.name
+            );
+            Refusal::without_text(
+                Diagnostic::error(QUESTION, message).help(both!("one of: {wanted}", "одно из: {wanted}")),
+            )
         };
         Ok(found.ok_or_else(refusal)?.factor_to(own))
     }
 
-    pub(super) fn values(&self, options: &str) -> Result<Values, Box<Refusal>> {
+    pub(super) fn values(&self, options: &Text) -> Result<Values, Box<Refusal>> {
         self.told.values.ok_or_else(|| {
             self.question(
-                "is a control's table: are its numbers what the axis did, or what the control adds?",
-                format!("add `--values {options}`"),
+                &both!(
+                    "is a control's table: are its numbers what the axis did, or what the control adds?",
+                    "— таблица стойки: её числа — отклонения оси или то, что прибавляет стойка?"
+                ),
+                both!("add `--values {options}`", "добавьте `--values {options:#}`"),
             )
         })
     }

@@ -8,6 +8,7 @@ mod controls;
 mod file;
 mod renishaw;
 
+use diagnostic::{Text, both};
 pub use file::{Content, Origin, Series, SeriesReading, Told, Values, symbol};
 use file::{File, numbers};
 
@@ -64,7 +65,10 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
     let keys: Vec<&str> = functions.iter().map(|(.., key)| key.as_str()).collect();
     let kind = Kind {
         columns: &format!("position_mm run dir temp_c {}", keys.join(" ")),
-        expected: "expected: position_mm, any of EXX_um … ECZ_urad, and run, dir where there are repeats",
+        expected: Text::pair(
+            "expected: position_mm, any of EXX_um … ECZ_urad, and run, dir where there are repeats",
+            "ожидалось: position_mm, любые из EXX_um … ECZ_urad, а при повторах run и dir",
+        ),
         passes_over: Some("published_"),
         may_be_empty: false,
         codes: Codes::MEASUREMENTS,
@@ -75,9 +79,18 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
     for (axis, function, key) in functions.iter().filter(|(.., key)| sheet.has(key)) {
         let mut series = Series::new(*axis, *function, name, Origin::Instrument);
         if let Some(other) = found.first().filter(|other| other.axis != *axis) {
-            let message =
-                format!("two axes in one file: {} and {} at one position_mm", other.name(), series.name());
-            return Err(sheet.refuse_column(COLUMN, key, message, "give each axis a file of its own"));
+            let message = both!(
+                "two axes in one file: {} and {} at one position_mm",
+                "две оси в одном файле: {} и {} при одном position_mm",
+                other.name(),
+                series.name()
+            );
+            return Err(sheet.refuse_column(
+                COLUMN,
+                key,
+                message,
+                both!("give each axis a file of its own", "дайте каждой оси отдельный файл"),
+            ));
         }
         for row in sheet.rows() {
             if let Some(value) = row.number(key)? {
@@ -94,9 +107,13 @@ fn own_csv(name: &str, bytes: &[u8], ignore: &[String]) -> Result<Vec<Series>, B
         found.push(series);
     }
     if found.is_empty() {
-        return Err(
-            sheet.lacks("EXX_mm", "name error functions by symbol and unit, as in EXX_um or EBX_urad")
-        );
+        return Err(sheet.lacks(
+            "EXX_mm",
+            both!(
+                "name error functions by symbol and unit, as in EXX_um or EBX_urad",
+                "называйте функции погрешности обозначением и единицей: EXX_um, EBX_urad"
+            ),
+        ));
     }
     Ok(found)
 }

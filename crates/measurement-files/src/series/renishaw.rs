@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use diagnostic::{Text, both};
 use machine_model::Axis;
 
 use crate::codes::{AXES, CELL, RUNS, UNIT};
@@ -34,12 +35,15 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
             section = title.trim().to_uppercase();
             part.clear();
             if section == "DEVIATIONS" && !rows.is_empty() {
-                let message = "a second measurement in one file".to_owned();
+                let message = both!("a second measurement in one file", "второе измерение в одном файле");
                 return Err(file.refuse(
                     RUNS,
                     line.span(),
                     message,
-                    "export each measurement to a file of its own",
+                    both!(
+                        "export each measurement to a file of its own",
+                        "выведите каждое измерение в отдельный файл"
+                    ),
                 ));
             }
         } else if let Some((key, rest)) = line.text.split_once(':') {
@@ -57,8 +61,9 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                     if let [other] = letters[..]
                         && other != axis
                     {
-                        let message = format!(
+                        let message = both!(
                             "{}: the file says axis {}, the command line {axis}",
+                            "{}: в файле ось {}, в команде {axis}",
                             file.name,
                             rest.trim()
                         );
@@ -66,7 +71,10 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                             AXES,
                             line.span(),
                             message,
-                            "correct the symbol behind the file's name",
+                            both!(
+                                "correct the symbol behind the file's name",
+                                "исправьте обозначение после имени файла"
+                            ),
                         ));
                     }
                 }
@@ -80,9 +88,13 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
                         rows.push(Deviation { run: run as usize, target: target as usize, value, line });
                     }
                     _ => {
-                        return Err(
-                            file.damaged(line.span(), "expected run, target and deviation".to_owned())
-                        );
+                        return Err(file.damaged(
+                            line.span(),
+                            both!(
+                                "expected run, target and deviation",
+                                "ожидались проход, цель и отклонение"
+                            ),
+                        ));
                     }
                 },
                 _ => {}
@@ -91,13 +103,24 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     }
     let (announced, span) = announced_targets.unwrap_or((targets.len(), 0..0));
     if announced != targets.len() || targets.is_empty() {
-        let message = format!("{announced} targets are announced and {} are there", targets.len());
+        let message = both!(
+            "{announced} targets are announced and {} are there",
+            "целей объявлено {announced}, а есть {}",
+            targets.len()
+        );
         return Err(file.damaged(span, message));
     }
     let found = rows.iter().map(|row| row.run).max().unwrap_or(0);
     if let Some((announced, place)) = announced_runs.filter(|(count, _)| *count != found) {
-        let message = format!("{}: {announced} runs are announced and {found} are there", file.name);
-        let help = "the measurement was broken off, or the file is damaged: export complete runs";
+        let message = both!(
+            "{}: {announced} runs are announced and {found} are there",
+            "{}: проходов объявлено {announced}, а есть {found}",
+            file.name
+        );
+        let help = both!(
+            "the measurement was broken off, or the file is damaged: export complete runs",
+            "измерение оборвано, или файл повреждён: выведите полные проходы"
+        );
         return Err(file.refuse(RUNS, place, message, help));
     }
     let mut series = Series::new(axis, function, file.name, Origin::Instrument);
@@ -112,9 +135,10 @@ pub(super) fn rtl(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         };
         for row in own {
             let Some(position) = at(&row) else {
-                return Err(
-                    file.damaged(row.line.span(), format!("target {} of {}", row.target, targets.len()))
-                );
+                return Err(file.damaged(
+                    row.line.span(),
+                    both!("target {} of {}", "цель {} из {}", row.target, targets.len()),
+                ));
             };
             // Runs of the two directions are numbered through; as ISO 230-2 counts them, two make one.
             series.push(&run.div_ceil(2).to_string(), position, row.value * factor, direction);
@@ -131,7 +155,13 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let known =
         |header: &str| ["target", "position", "run"].iter().any(|word| header.to_lowercase().contains(word));
     let codes = Codes::MEASUREMENTS;
-    let table = Table::read(file.text, codes, "a target column and one column a run", known).map_err(of)?;
+    let table = Table::read(
+        file.text,
+        codes,
+        &both!("a target column and one column a run", "ожидались столбец целей и по столбцу на проход"),
+        known,
+    )
+    .map_err(of)?;
     let cells = table.records.iter().flat_map(|record| &record.cells);
     let mark = table.mark(file.text, codes.cell, cells).map_err(of)?;
     let titles: Vec<String> =
@@ -139,8 +169,14 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
     let bracket = |title: &String| Some(title.split_once('(')?.1.trim_end_matches(')').to_owned());
     let factor = file.factor(function, titles.iter().skip(1).find_map(bracket).as_deref())?;
     if bracket(&titles[0]).is_some_and(|unit| Unit::named(&unit, None) != Some(MM)) {
-        let (span, message) = (table.header.cells[0].span.clone(), format!("targets in `{}`", titles[0]));
-        return Err(file.refuse(UNIT, span, message, "give the target positions in mm"));
+        let (span, message) =
+            (table.header.cells[0].span.clone(), both!("targets in `{}`", "цели в `{}`", titles[0]));
+        return Err(file.refuse(
+            UNIT,
+            span,
+            message,
+            both!("give the target positions in mm", "дайте положения целей в мм"),
+        ));
     }
     let directions: Vec<i8> = titles
         .iter()
@@ -161,9 +197,18 @@ pub(super) fn columns_of_runs(file: &File<'_>) -> Result<Series, Box<Refusal>> {
         let number = |k: usize| {
             let (cell, text) = (&record.cells[k], value(file.text, &record.cells[k]));
             let refusal = || {
-                let what = if k == 0 { "target" } else { "number" };
-                let help = "write decimal numbers with a point";
-                file.refuse(CELL, cell.span.clone(), format!("`{text}` is no {what}"), help)
+                let what = if k == 0 {
+                    Text::pair("target", "цель")
+                } else {
+                    Text::pair("number", "число")
+                };
+                let help = both!("write decimal numbers with a point", "пишите десятичные числа с точкой");
+                file.refuse(
+                    CELL,
+                    cell.span.clone(),
+                    both!("`{text}` is no {what}", "`{text}` — не {what:#}"),
+                    help,
+                )
             };
             mark.number(&text).ok_or_else(refusal)
         };

@@ -1,5 +1,6 @@
 //! What stands in the brackets of a called cycle.
 
+use diagnostic::{Text, both};
 use nc_syntax::Span;
 
 use super::Fault;
@@ -34,9 +35,12 @@ impl Arguments {
                     return Err(words.fault(
                         codes::CALLED_CYCLE,
                         span,
-                        &format!("`{written}` in the brackets of {name}"),
-                        "plain numbers were expected",
-                        "write the numbers in the place of expressions and texts",
+                        both!("`{written}` in the brackets of {name}", "`{written}` в скобках {name}"),
+                        both!("plain numbers were expected", "ожидались простые числа"),
+                        both!(
+                            "write the numbers in the place of expressions and texts",
+                            "напишите числа вместо выражений и текстов"
+                        ),
                     ));
                 }
             });
@@ -55,12 +59,12 @@ impl Arguments {
     }
 
     /// One without which there is no cycle.
-    pub(super) fn needed(&self, words: &Words<'_, '_>, place: usize, what: &str) -> Result<f64, Fault> {
+    pub(super) fn needed(&self, words: &Words<'_, '_>, place: usize, what: &Text) -> Result<f64, Fault> {
         self.at(place).ok_or_else(|| {
             self.fault(
                 words,
-                &format!("{} without {what}", self.name),
-                &format!("argument {} was expected", place + 1),
+                both!("{} without {what}", "{} без {what:#}", self.name),
+                both!("argument {} was expected", "ожидался аргумент {}", place + 1),
             )
         })
     }
@@ -71,14 +75,26 @@ impl Arguments {
             None => Ok(()),
             Some(place) => Err(self.fault(
                 words,
-                &format!("{} with {} as argument {}", self.name, self.or_zero(place), place + 1),
-                "chooses how the control reads the others",
+                both!(
+                    "{} with {} as argument {}",
+                    "{} с {} в аргументе {}",
+                    self.name,
+                    self.or_zero(place),
+                    place + 1
+                ),
+                both!("chooses how the control reads the others", "решает, как стойка прочтёт остальные"),
             )),
         }
     }
 
-    pub(super) fn fault(&self, words: &Words<'_, '_>, message: &str, label: &str) -> Fault {
-        words.fault(codes::CALLED_CYCLE, self.span, message, label, "write the holes as G0 and G1")
+    pub(super) fn fault(&self, words: &Words<'_, '_>, message: Text, label: Text) -> Fault {
+        words.fault(
+            codes::CALLED_CYCLE,
+            self.span,
+            message,
+            label,
+            both!("write the holes as G0 and G1", "напишите отверстия кадрами G0 и G1"),
+        )
     }
 }
 

@@ -3,6 +3,7 @@
 //! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82) and 2.1.4
 //! (CYCLE83). Lengths in units of the program, along the axis that stands upright on the plane.
 
+use diagnostic::both;
 use nc_syntax::dialect::Called;
 
 use super::Fault;
@@ -52,7 +53,7 @@ struct Planes {
 impl Planes {
     /// RTP, RFP, SDIS, DP, DPR.
     fn read(words: &Words<'_, '_>, call: &Arguments) -> Result<Self, Fault> {
-        let out = call.needed(words, 0, "the retraction plane")?;
+        let out = call.needed(words, 0, &both!("the retraction plane", "плоскости отвода"))?;
         let reference = call.or_zero(1);
         let safety = call.or_zero(2).abs();
         let bottom = match (call.at(3), call.or_zero(4).abs()) {
@@ -60,8 +61,8 @@ impl Planes {
             (None, 0.0) => {
                 return Err(call.fault(
                     words,
-                    &format!("{} without a depth", call.name),
-                    "argument 4 or 5 was expected",
+                    both!("{} without a depth", "{} без глубины", call.name),
+                    both!("argument 4 or 5 was expected", "ожидался аргумент 4 или 5"),
                 ));
             }
             (bottom, deep) => {
@@ -70,8 +71,11 @@ impl Planes {
                 if bottom.is_some_and(|bottom| bottom != 0.0 && (bottom - relative).abs() > NOTHING) {
                     return Err(call.fault(
                         words,
-                        &format!("{} with two depths", call.name),
-                        "arguments 4 and 5 contradict each other",
+                        both!("{} with two depths", "{} с двумя глубинами", call.name),
+                        both!(
+                            "arguments 4 and 5 contradict each other",
+                            "аргументы 4 и 5 противоречат друг другу"
+                        ),
                     ));
                 }
                 relative
@@ -82,8 +86,8 @@ impl Planes {
         if bottom == reference || (out - near) * inwards > NOTHING {
             return Err(call.fault(
                 words,
-                &format!("{} whose planes are out of order", call.name),
-                "retraction plane, reference plane with its safety distance and depth were expected in this order",
+                both!("{} whose planes are out of order", "{}: плоскости стоят не по порядку", call.name),
+                both!("retraction plane, reference plane with its safety distance and depth were expected in this order", "ожидались по порядку плоскость отвода, базовая плоскость с безопасным расстоянием и глубина"),
             ));
         }
         Ok(Self { out, reference, near, bottom, inwards })
@@ -146,24 +150,30 @@ fn pecks(
     if first <= 0.0 || less < 0.0 {
         return Err(call.fault(
             words,
-            "CYCLE83 with pecks that shrink by a factor, or a first peck that leads out",
-            "arguments 6, 7 and 8: a first depth inside the hole, and what each next peck is shorter by",
+            both!("CYCLE83 with pecks that shrink by a factor, or a first peck that leads out", "CYCLE83, где проходы убывают в несколько раз или первый проход выводит наружу"),
+            both!("arguments 6, 7 and 8: a first depth inside the hole, and what each next peck is shorter by", "аргументы 6, 7 и 8: первая глубина внутри отверстия и на сколько короче каждый следующий проход"),
         ));
     }
     let factor = call.at(10).unwrap_or(1.0);
     if factor != 0.0 && factor != 1.0 {
         return Err(call.fault(
             words,
-            "CYCLE83 with a feed factor",
-            "argument 11: the feed of the first peck alone",
+            both!("CYCLE83 with a feed factor", "CYCLE83 с коэффициентом подачи"),
+            both!(
+                "argument 11: the feed of the first peck alone",
+                "аргумент 11: подача только первого прохода"
+            ),
         ));
     }
     let along = call.or_zero(12);
     if along != 0.0 && along != (axis + 1) as f64 {
         return Err(call.fault(
             words,
-            "CYCLE83 along another axis",
-            "argument 13: the axis upright on the plane was expected",
+            both!("CYCLE83 along another axis", "CYCLE83 вдоль другой оси"),
+            both!(
+                "argument 13: the axis upright on the plane was expected",
+                "аргумент 13: ожидалась ось, перпендикулярная плоскости"
+            ),
         ));
     }
     let chips_out = match call.or_zero(11) {
@@ -172,8 +182,11 @@ fn pecks(
         _ => {
             return Err(call.fault(
                 words,
-                "CYCLE83 of an unknown kind",
-                "argument 12: 0 breaks chips, 1 removes them",
+                both!("CYCLE83 of an unknown kind", "CYCLE83 неизвестного вида"),
+                both!(
+                    "argument 12: 0 breaks chips, 1 removes them",
+                    "аргумент 12: 0 ломает стружку, 1 удаляет её"
+                ),
             ));
         }
     };
@@ -195,7 +208,11 @@ fn pecks(
         own => own.abs(),
     };
     let strokes = strokes(whole, first.min(whole), less).ok_or_else(|| {
-        call.fault(words, &format!("CYCLE83 of more than {MOST_PECKS} pecks"), "arguments 6 to 8")
+        call.fault(
+            words,
+            both!("CYCLE83 of more than {MOST_PECKS} pecks", "CYCLE83 больше чем в {MOST_PECKS} проходов"),
+            both!("arguments 6 to 8", "аргументы 6–8"),
+        )
     })?;
     let mut reached = reference;
     for (index, stroke) in strokes.iter().enumerate() {

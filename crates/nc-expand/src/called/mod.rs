@@ -14,7 +14,7 @@
 mod arguments;
 mod hole;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
 use units::math;
@@ -96,9 +96,12 @@ impl Writer<'_> {
             return Err(words.fault(
                 codes::BLOCK_DELETE,
                 words.whole(),
-                "a cycle or an increment behind block delete",
-                "two programs in one",
-                "remove the `/`, or the block",
+                both!(
+                    "a cycle or an increment behind block delete",
+                    "цикл или приращение в кадре с пропуском"
+                ),
+                both!("two programs in one", "две программы в одной"),
+                both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
         let calls: Vec<(Called, Span)> = block
@@ -124,9 +127,18 @@ impl Writer<'_> {
                     return Err(words.fault(
                         codes::CALLED_CYCLE,
                         *span,
-                        "a call that stays of something unknown",
-                        "CYCLE81, CYCLE82 or CYCLE83 was expected behind MCALL",
-                        "let the CAM write the holes as G0 and G1",
+                        both!(
+                            "a call that stays of something unknown",
+                            "модальный вызов чего-то неизвестного"
+                        ),
+                        both!(
+                            "CYCLE81, CYCLE82 or CYCLE83 was expected behind MCALL",
+                            "после MCALL ожидался CYCLE81, CYCLE82 или CYCLE83"
+                        ),
+                        both!(
+                            "let the CAM write the holes as G0 and G1",
+                            "выводите из CAM отверстия кадрами G0 и G1"
+                        ),
                     ));
                 }
                 self.modal = None;
@@ -141,8 +153,11 @@ impl Writer<'_> {
                 let Some(hole) = self.modal.clone() else {
                     return Err(call.fault(
                         &words,
-                        &format!("{} without a cycle", call.name),
-                        "MCALL and a cycle were expected before it",
+                        both!("{} without a cycle", "{} без цикла", call.name),
+                        both!(
+                            "MCALL and a cycle were expected before it",
+                            "перед ней ожидались MCALL и цикл"
+                        ),
                     ));
                 };
                 let places = if calls[0].0 == Called::HolesRow {
@@ -172,9 +187,9 @@ impl Writer<'_> {
                 return Err(words.fault(
                     codes::CALLED_CYCLE,
                     *span,
-                    "two calls in one block",
-                    "in which order?",
-                    "write them in two blocks",
+                    both!("two calls in one block", "два вызова в одном кадре"),
+                    both!("in which order?", "в каком порядке?"),
+                    both!("write them in two blocks", "напишите их двумя кадрами"),
                 ));
             }
             [] => {}
@@ -204,9 +219,9 @@ impl Writer<'_> {
             Some(item) => Err(words.fault(
                 codes::CALLED_CYCLE,
                 item.span,
-                "something beside the call of a cycle",
-                "before or behind the cycle?",
-                "write it in a block of its own",
+                both!("something beside the call of a cycle", "что-то рядом с вызовом цикла"),
+                both!("before or behind the cycle?", "до цикла или после?"),
+                both!("write it in a block of its own", "напишите отдельным кадром"),
             )),
         }
     }
@@ -217,9 +232,9 @@ impl Writer<'_> {
             return Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
-                "a cycle under G91",
-                "its moves are places",
-                "write G90 before it",
+                both!("a cycle under G91", "цикл при G91"),
+                both!("its moves are places", "его ходы заданы местами"),
+                both!("write G90 before it", "напишите перед ним G90"),
             ));
         }
         let axis = self.state.plane[2];
@@ -259,9 +274,12 @@ impl Writer<'_> {
             Motion::Arc | Motion::Cycle => Err(words.fault(
                 codes::CALLED_CYCLE,
                 words.whole(),
-                "a cycle while an arc is in force",
-                "the words behind it would be an arc's again",
-                "write G0 before the cycle",
+                both!("a cycle while an arc is in force", "цикл, пока действует дуга"),
+                both!(
+                    "the words behind it would be an arc's again",
+                    "слова после него снова относились бы к дуге"
+                ),
+                both!("write G0 before the cycle", "напишите G0 до цикла"),
             )),
         }
     }
@@ -280,18 +298,24 @@ impl Writer<'_> {
             return Err(at.fault(
                 codes::BLOCK_DELETE,
                 at.whole(),
-                "a hole behind block delete",
-                "two programs in one",
-                "remove the `/`, or the block",
+                both!("a hole behind block delete", "отверстие в кадре с пропуском"),
+                both!("two programs in one", "две программы в одной"),
+                both!("remove the `/`, or the block", "уберите `/` или кадр"),
             ));
         }
         if !moves || !self.plane_known() {
             return Err(at.fault(
                 codes::CALLED_CYCLE,
                 at.whole(),
-                "what MCALL drills here is not known",
-                "the frame, the tool or machine coordinates in a block under MCALL",
-                "end the call with MCALL alone before it",
+                both!("what MCALL drills here is not known", "неизвестно, что здесь сверлит MCALL"),
+                both!(
+                    "the frame, the tool or machine coordinates in a block under MCALL",
+                    "в кадре при MCALL меняются система координат, инструмент или стоят координаты станка"
+                ),
+                both!(
+                    "end the call with MCALL alone before it",
+                    "закончите вызов до него: MCALL отдельным кадром"
+                ),
             ));
         }
         self.drill(at, &hole)?;
@@ -308,13 +332,16 @@ impl Writer<'_> {
         let start = self.state.at;
         let mut here = self.state.clone();
         let owned = here.codes(words);
-        let refuse = |span: Span, label: &str| {
+        let refuse = |span: Span, label: Text| {
             words.fault(
                 codes::CALLED_CYCLE,
                 span,
-                "a dimension that cannot be written out",
+                both!("a dimension that cannot be written out", "размер, который нельзя расписать"),
                 label,
-                "write the word without AC or IC, in G90 or G91",
+                both!(
+                    "write the word without AC or IC, in G90 or G91",
+                    "напишите слово без AC и IC, при G90 или G91"
+                ),
             )
         };
         let mut text: Vec<u8> = Vec::new();
@@ -325,13 +352,28 @@ impl Writer<'_> {
                 ItemKind::Word { letter, value: Value::Expression } => {
                     let Some((inside, by)) = dimension(letter, block.text(item.span)) else { continue };
                     let Some(value) = arguments::number(inside) else {
-                        return Err(refuse(item.span, "a plain number was expected in the brackets"));
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a plain number was expected in the brackets",
+                                "в скобках ожидалось простое число"
+                            ),
+                        ));
                     };
                     if !owned {
-                        return Err(refuse(item.span, "beside a code that owns the words of its block"));
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "beside a code that owns the words of its block",
+                                "рядом с функцией, которой принадлежат слова кадра"
+                            ),
+                        ));
                     }
                     let Some(place) = place(&here, letter, value, by) else {
-                        let label = "where the axis stands is not known: name it before, in G90";
+                        let label = both!(
+                            "where the axis stands is not known: name it before, in G90",
+                            "где стоит ось, неизвестно: назовите её раньше, при G90"
+                        );
                         return Err(refuse(item.span, label));
                     };
                     (letter, place)
@@ -341,7 +383,13 @@ impl Writer<'_> {
                     let count =
                         written.split_once('=').and_then(|(_, count)| count.trim().parse::<u32>().ok());
                     let Some(count) = count.filter(|count| *count <= 999) else {
-                        return Err(refuse(item.span, "a whole number of turns up to 999 was expected"));
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a whole number of turns up to 999 was expected",
+                                "ожидалось целое число оборотов до 999"
+                            ),
+                        ));
                     };
                     turns = Some((count, item.span));
                     text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
@@ -379,20 +427,20 @@ impl Writer<'_> {
         count: u32,
         span: Span,
     ) -> Result<(), Fault> {
-        let refuse = |label: &str| {
+        let refuse = |label: Text| {
             words.fault(
                 codes::CALLED_CYCLE,
                 span,
-                "turns that cannot be written out",
+                both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
                 label,
-                "let the CAM write each turn",
+                both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
             )
         };
         if self.state.motion != Motion::Arc {
-            return Err(refuse("G2 or G3 was expected"));
+            return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
         }
         if !self.state.absolute {
-            return Err(refuse("under G91; write G90"));
+            return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
         }
         if plain.number(b'M').is_some()
             || plain.number(b'R').is_some()
@@ -402,12 +450,18 @@ impl Writer<'_> {
                 .iter()
                 .all(|item| matches!(item.kind, ItemKind::Word { .. } | ItemKind::Comment))
         {
-            return Err(refuse("beside M codes, a radius or commands"));
+            return Err(refuse(both!(
+                "beside M codes, a radius or commands",
+                "рядом с функциями M, радиусом или командами"
+            )));
         }
         let [u, v, n] = self.state.plane;
         let centre_letters = [b"IJK"[u], b"IJK"[v]];
         let (Some(a), Some(b), Some(h)) = (start[u], start[v], start[n]) else {
-            return Err(refuse("where the helix starts is not known: name X, Y and Z before it, in G90"));
+            return Err(refuse(both!(
+                "where the helix starts is not known: name X, Y and Z before it, in G90",
+                "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
+            )));
         };
         let end = [u, v, n].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
         let centre = centre_letters
@@ -415,7 +469,10 @@ impl Writer<'_> {
         let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);
         let counter = words.actions().any(|(action, _)| *action == Action::ArcCounterClockwise);
         if clockwise == counter {
-            return Err(refuse("G2 or G3 was expected in the same block"));
+            return Err(refuse(both!(
+                "G2 or G3 was expected in the same block",
+                "в том же кадре ожидалось G2 или G3"
+            )));
         }
         let angle = |p: [f64; 2]| math::atan2(p[1] - (b + centre[1]), p[0] - (a + centre[0]));
         let (from_angle, to_angle) = (angle([a, b]), angle([end[0], end[1]]));
@@ -423,7 +480,10 @@ impl Writer<'_> {
         let turned = if clockwise { from_angle - to_angle } else { to_angle - from_angle };
         let rest = turned.rem_euclid(full);
         if rest < 1e-6 || full - rest < 1e-6 {
-            return Err(refuse("the arc that is left ends where it starts: a turn more, or none?"));
+            return Err(refuse(both!(
+                "the arc that is left ends where it starts: a turn more, or none?",
+                "оставшаяся дуга кончается там, где начинается: ещё оборот или ни одного?"
+            )));
         }
         let all = f64::from(count) * full + rest;
         let code: &[u8] = if clockwise { b"G2 " } else { b"G3 " };
@@ -478,8 +538,11 @@ impl Writer<'_> {
         let (Some(a), Some(b)) = (self.state.at[u], self.state.at[v]) else {
             return Err(call.fault(
                 words,
-                "HOLES1 from a place that is not known",
-                "it begins at the nearer end: name both axes of the plane before it",
+                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного места"),
+                both!(
+                    "it begins at the nearer end: name both axes of the plane before it",
+                    "он начинается с ближнего конца: назовите до него обе оси плоскости"
+                ),
             ));
         };
         let far = |p: &[f64; 2]| math::hypot(p[0] - a, p[1] - b);
@@ -488,8 +551,8 @@ impl Writer<'_> {
             if (to_first - to_last).abs() < SAME {
                 return Err(call.fault(
                     words,
-                    "HOLES1 whose ends are equally near",
-                    "it begins at the nearer one",
+                    both!("HOLES1 whose ends are equally near", "HOLES1, концы которого одинаково близки"),
+                    both!("it begins at the nearer one", "он начинается с ближнего"),
                 ));
             }
             if to_last < to_first {
@@ -517,12 +580,12 @@ fn circle(words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Faul
 }
 
 fn count(words: &Words<'_, '_>, call: &Arguments, place: usize) -> Result<usize, Fault> {
-    let count = call.needed(words, place, "a number of holes")?;
+    let count = call.needed(words, place, &both!("a number of holes", "числа отверстий"))?;
     if !(1.0..=MOST_HOLES).contains(&count) || count.fract() != 0.0 {
         return Err(call.fault(
             words,
-            &format!("{} of {count} holes", call.name),
-            "a whole number from 1 was expected",
+            both!("{} of {count} holes", "{}: отверстий {count}", call.name),
+            both!("a whole number from 1 was expected", "ожидалось целое число от 1"),
         ));
     }
     Ok(count as usize)

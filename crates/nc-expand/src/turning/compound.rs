@@ -8,6 +8,7 @@
 //! pass the tool stands off the drive line by what is still to be cut. The tool ends on the drive line at Z. Tapers at the
 //! ends (L, E) are refused: their parts have other leads, and each would have to be a thread of its own.
 
+use diagnostic::{Text, both};
 use nc_syntax::Span;
 use units::math;
 
@@ -22,7 +23,7 @@ impl Writer<'_, '_> {
     pub(super) fn compound_thread(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let refuse =
-            |message: &str, label: &str, help: &str| Err(words.cycle_fault(span, message, label, help));
+            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
         let start = self.standing(&words, span)?;
         for letter in *b"LE" {
             if let Some((number, span)) = words.number(letter)
@@ -30,9 +31,12 @@ impl Writer<'_, '_> {
             {
                 return Err(words.cycle_fault(
                     span,
-                    "a thread with tapered ends",
-                    "each end is a thread of another lead",
-                    "leave L and E out, or let the CAM write the passes",
+                    both!("a thread with tapered ends", "резьба с коническими концами"),
+                    both!("each end is a thread of another lead", "каждый конец — резьба с другим ходом"),
+                    both!(
+                        "leave L and E out, or let the CAM write the passes",
+                        "уберите L и E или выводите проходы из CAM"
+                    ),
                 ));
             }
         }
@@ -42,9 +46,15 @@ impl Writer<'_, '_> {
             (words.number(b'P'), self.state.length(&words, b'Z'), length(b'I'), length(b'J'), length(b'K'))
         else {
             return refuse(
-                "a thread without P, Z, I, J or K",
-                "lead, end, crest, first infeed and height were expected",
-                "write all of them, as in `G76 P1.5 Z-20 I-2 J0.6 K1.84`",
+                both!("a thread without P, Z, I, J or K", "резьба без P, Z, I, J или K"),
+                both!(
+                    "lead, end, crest, first infeed and height were expected",
+                    "ожидались ход, конец, вершина профиля, первое врезание и высота"
+                ),
+                both!(
+                    "write all of them, as in `G76 P1.5 Z-20 I-2 J0.6 K1.84`",
+                    "напишите их все, например `G76 P1.5 Z-20 I-2 J0.6 K1.84`"
+                ),
             );
         };
         let degression = plain(b'R').unwrap_or(1.0);
@@ -52,17 +62,26 @@ impl Writer<'_, '_> {
         let springs = words.number(b'H').map_or(Some(0), |(number, _)| number.integer());
         let Some(springs) = springs.filter(|springs| (0..=i64::from(MOST_PASSES)).contains(springs)) else {
             return refuse(
-                "a number of spring passes that is none",
-                "H counts passes",
-                "write a whole number",
+                both!("a number of spring passes that is none", "неверное число зачистных проходов"),
+                both!("H counts passes", "H считает проходы"),
+                both!("write a whole number", "напишите целое число"),
             );
         };
         let fits = first > 0.0 && height >= first && crest != 0.0 && degression >= 1.0;
         if !fits || !self.state.absolute || end >= start[1] || !(0.0..=80.0).contains(&angle) {
             return refuse(
-                "a thread of several passes that is not certain",
-                "expected G90, Z below the start, J above 0 and no more than K, I other than 0, R from 1, Q from 0 to 80",
-                "correct these words, or let the CAM write the passes",
+                both!(
+                    "a thread of several passes that is not certain",
+                    "многопроходная резьба, о которой не всё известно"
+                ),
+                both!(
+                    "expected G90, Z below the start, J above 0 and no more than K, I other than 0, R from 1, Q from 0 to 80",
+                    "ожидались G90, Z ниже начала, J больше 0 и не больше K, I не 0, R от 1, Q от 0 до 80"
+                ),
+                both!(
+                    "correct these words, or let the CAM write the passes",
+                    "исправьте эти слова или выводите проходы из CAM"
+                ),
             );
         }
         let outside = if crest < 0.0 { 1.0 } else { -1.0 };
@@ -78,7 +97,11 @@ impl Writer<'_, '_> {
             depths.push(depth);
         }
         if depths.len() == MOST_PASSES as usize {
-            return refuse("more than 1000 passes", "the first infeed is too small", "correct J and R");
+            return refuse(
+                both!("more than 1000 passes", "больше 1000 проходов"),
+                both!("the first infeed is too small", "первое врезание слишком мало"),
+                both!("correct J and R", "исправьте J и R"),
+            );
         }
         depths.extend((0..=springs).map(|_| whole));
         let mut further = b"K".to_vec();

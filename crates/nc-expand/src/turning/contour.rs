@@ -1,5 +1,6 @@
 //! The blocks between P and Q as a way in the plane of radius and Z.
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::Action;
 use nc_syntax::{ItemKind, Span, Value};
 use units::math;
@@ -169,8 +170,8 @@ impl Writer<'_, '_> {
             let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
             return Err(words.contour_fault(
                 span,
-                "the block of Q stands before the block of P",
-                "Q ends the contour",
+                both!("the block of Q stands before the block of P", "кадр Q стоит раньше кадра P"),
+                both!("Q ends the contour", "Q кончает контур"),
             ));
         }
         let mut state = self.state.clone();
@@ -190,8 +191,11 @@ impl Writer<'_, '_> {
                 if index == first {
                     return Err(block.contour_fault(
                         block.whole(),
-                        "the contour does not begin with a move",
-                        "G0 or G1 with X or Z was expected in the block of P",
+                        both!("the contour does not begin with a move", "контур не начинается с движения"),
+                        both!(
+                            "G0 or G1 with X or Z was expected in the block of P",
+                            "в кадре P ожидалось G0 или G1 с X или Z"
+                        ),
                     ));
                 }
                 continue;
@@ -202,8 +206,11 @@ impl Writer<'_, '_> {
                     let rapid = self.words(retract[0].block);
                     return Err(rapid.contour_fault(
                         rapid.whole(),
-                        "a rapid within the contour",
-                        "feeds were expected, rapids behind the last of them only",
+                        both!("a rapid within the contour", "быстрый ход внутри контура"),
+                        both!(
+                            "feeds were expected, rapids behind the last of them only",
+                            "ожидались рабочие ходы, быстрые — только после последнего из них"
+                        ),
                     ));
                 }
                 Motion::Line => Code::Line,
@@ -212,16 +219,16 @@ impl Writer<'_, '_> {
                 _ => {
                     return Err(block.contour_fault(
                         block.whole(),
-                        "the contour does not begin with G0 or G1",
-                        "the block of P must say which",
+                        both!("the contour does not begin with G0 or G1", "контур не начинается с G0 или G1"),
+                        both!("the block of P must say which", "кадр P должен сказать, с какой"),
                     ));
                 }
             };
             let [Some(x), Some(z)] = state.at else {
                 return Err(block.contour_fault(
                     block.whole(),
-                    "where the contour leads here is not known",
-                    "another frame, or above 400 km",
+                    both!("where the contour leads here is not known", "неизвестно, куда здесь ведёт контур"),
+                    both!("another frame, or above 400 km", "другая система координат или больше 400 км"),
                 ));
             };
             if index == first {
@@ -252,8 +259,8 @@ impl Writer<'_, '_> {
             let span = words.number(b'Q').map_or_else(|| words.whole(), |(_, span)| span);
             return Err(words.contour_fault(
                 span,
-                "the contour ends where it begins",
-                "one move only leads to it",
+                both!("the contour ends where it begins", "контур кончается там, где начинается"),
+                both!("one move only leads to it", "к нему ведёт одно движение"),
             ));
         }
         Ok(Contour { first, last, start, entry, pieces, retract, names_both, says_feed, compensated })
@@ -263,11 +270,11 @@ impl Writer<'_, '_> {
     pub(super) fn numbered(&self, words: &Words<'_, '_>, letter: u8) -> Result<usize, Fault> {
         let name = letter as char;
         let Some((number, span)) = words.number(letter) else {
-            let message = format!("a cycle without {name}");
+            let message = both!("a cycle without {name}", "цикл без {name}");
             return Err(words.contour_fault(
                 words.whole(),
-                &message,
-                "P and Q name the blocks of its contour",
+                message,
+                both!("P and Q name the blocks of its contour", "P и Q называют кадры его контура"),
             ));
         };
         let is_it = |index: &usize| {
@@ -278,12 +285,24 @@ impl Writer<'_, '_> {
         match (found.next(), found.next()) {
             (Some(only), None) => Ok(only),
             (None, _) => {
-                let message = format!("no block N{} for {name} of the cycle", number.to_f64());
-                Err(words.contour_fault(span, &message, "this program has none"))
+                let message = both!(
+                    "no block N{} for {name} of the cycle",
+                    "нет кадра N{} для {name} цикла",
+                    number.to_f64()
+                );
+                Err(words.contour_fault(
+                    span,
+                    message,
+                    both!("this program has none", "в этой программе его нет"),
+                ))
             }
             (Some(_), Some(_)) => {
-                let message = format!("two blocks N{} for {name} of the cycle", number.to_f64());
-                Err(words.contour_fault(span, &message, "which of the two?"))
+                let message = both!(
+                    "two blocks N{} for {name} of the cycle",
+                    "два кадра N{} для {name} цикла",
+                    number.to_f64()
+                );
+                Err(words.contour_fault(span, message, both!("which of the two?", "какой из двух?")))
             }
         }
     }
@@ -291,9 +310,9 @@ impl Writer<'_, '_> {
     /// Refuses what no control takes, or takes differently, between P and Q.
     fn check_contour_block(&self, words: &Words<'_, '_>) -> Result<(), Fault> {
         let in_finishing = self.turning.cycles.nose_in_finishing;
-        let refuse = |span: Span, label: &str| {
+        let refuse = |span: Span, label: Text| {
             let text = String::from_utf8_lossy(words.block.text(span)).into_owned();
-            Err(words.contour_fault(span, &format!("{text} within a contour"), label))
+            Err(words.contour_fault(span, both!("{text} within a contour", "{text} внутри контура"), label))
         };
         for item in &words.block.items {
             match item.kind {
@@ -323,14 +342,17 @@ impl Writer<'_, '_> {
                         return Err(words.fault(
                             codes::CONTOUR,
                             item.span,
-                            &format!("{} within a contour", String::from_utf8_lossy(words.block.text(item.span))),
-                            "whether roughing heeds it controls differ",
-                            "write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
-                             alone: roughing then leaves its allowance at the tip as programmed",
+                            both!("{} within a contour", "{} внутри контура", String::from_utf8_lossy(words.block.text(item.span))),
+                            both!("whether roughing heeds it controls differ", "учитывает ли её черновая обработка, у стоек по-разному"),
+                            both!("write `contour_compensation = \"finishing\"` under `[program]` in the profile where it may hold in G70 \
+                             alone: roughing then leaves its allowance at the tip as programmed", "впишите `contour_compensation = \"finishing\"` в раздел `[program]` профиля, если она действует только в G70: тогда черновая обработка оставляет припуск от запрограммированной вершины"),
                         ));
                     }
                     if !fits {
-                        return refuse(item.span, "lines and arcs were expected");
+                        return refuse(
+                            item.span,
+                            both!("lines and arcs were expected", "ожидались прямые и дуги"),
+                        );
                     }
                 }
                 ItemKind::Word {
@@ -338,8 +360,24 @@ impl Writer<'_, '_> {
                     value: Value::Number(_),
                 }
                 | ItemKind::Word { letter: b'N' | b'F' | b'S' | b'E', value: Value::Number(_) } => {}
-                ItemKind::Skip => return refuse(item.span, "behind block delete there are two contours"),
-                _ => return refuse(item.span, "controls differ in whether roughing heeds it"),
+                ItemKind::Skip => {
+                    return refuse(
+                        item.span,
+                        both!(
+                            "behind block delete there are two contours",
+                            "в кадре с пропуском контуров два"
+                        ),
+                    );
+                }
+                _ => {
+                    return refuse(
+                        item.span,
+                        both!(
+                            "controls differ in whether roughing heeds it",
+                            "учитывает ли её черновая обработка, у стоек по-разному"
+                        ),
+                    );
+                }
             }
         }
         Ok(())
@@ -347,7 +385,9 @@ impl Writer<'_, '_> {
 
     /// Centre and sweep of an arc by I and K, or by R.
     fn arc(&self, words: &Words<'_, '_>, from: Point, to: Point, clockwise: bool) -> Result<Arc, Fault> {
-        let refuse = |label: &str| Err(words.contour_fault(words.whole(), "an arc that cannot be", label));
+        let refuse = |label: Text| {
+            Err(words.contour_fault(words.whole(), both!("an arc that cannot be", "невозможная дуга"), label))
+        };
         let value = |letter: u8| {
             let (number, _) = words.number(letter)?;
             Some(words.dialect.numbers.length(number, self.state.inch).to_f64())
@@ -358,7 +398,10 @@ impl Writer<'_, '_> {
                 let length = math::hypot(chord[0], chord[1]);
                 let square = radius * radius - 0.25 * length * length;
                 if length == 0.0 || square < -TURNS_BACK * radius.abs() {
-                    return refuse("its radius is smaller than half of its chord");
+                    return refuse(both!(
+                        "its radius is smaller than half of its chord",
+                        "её радиус меньше половины хорды"
+                    ));
                 }
                 // Left of the way lies the centre of G3 with a positive radius.
                 let left = if clockwise == (radius < 0.0) { 1.0 } else { -1.0 };
@@ -368,8 +411,8 @@ impl Writer<'_, '_> {
             (None, i, k) if i.is_some() || k.is_some() => {
                 [from[0] + i.unwrap_or_default(), from[1] + k.unwrap_or_default()]
             }
-            (Some(_), ..) => return refuse("R beside I or K"),
-            _ => return refuse("R, or I and K, were expected"),
+            (Some(_), ..) => return refuse(both!("R beside I or K", "R рядом с I или K")),
+            _ => return refuse(both!("R, or I and K, were expected", "ожидалось R или I и K")),
         };
         let angle = |p: Point| math::atan2(p[0] - centre[0], p[1] - centre[1]);
         let turn = std::f64::consts::TAU;
@@ -402,8 +445,11 @@ impl Writer<'_, '_> {
                     let cycle = String::from_utf8_lossy(words.block.bytes.trim_ascii()).into_owned();
                     return Err(block.contour_fault(
                         block.whole(),
-                        &format!("the contour turns back along {name} (cycle `{cycle}`)"),
-                        &format!("by {:.4} in this block", furthest - here),
+                        both!(
+                            "the contour turns back along {name} (cycle `{cycle}`)",
+                            "контур возвращается назад по {name} (цикл `{cycle}`)"
+                        ),
+                        both!("by {:.4} in this block", "на {:.4} в этом кадре", furthest - here),
                     ));
                 }
                 furthest = furthest.max(here);

@@ -5,6 +5,7 @@
 //! to R or by the return 5114 (d); down again a rapid ends d above what is drilled. Q is a depth, without a point in least
 //! increments. Systems B and C are refused by their tables: whether R is a place or a way there is a parameter (5102.6).
 
+use diagnostic::{Text, both};
 use nc_syntax::dialect::DrillPecks;
 use nc_syntax::{Item, ItemKind, Span, Value};
 
@@ -20,30 +21,49 @@ impl Writer<'_, '_> {
     pub(super) fn drill(&mut self, at: usize, span: Span) -> Result<(), Fault> {
         let words = self.words(at);
         let start = self.standing(&words, span)?;
-        let refuse = |what: &str, label: &str, help: &str| Err(words.cycle_fault(span, what, label, help));
+        let refuse = |what: Text, label: Text, help: Text| Err(words.cycle_fault(span, what, label, help));
         if let Some((number, span)) = words.number(b'K').filter(|(number, _)| number.integer() != Some(1)) {
             return Err(words.cycle_fault(
                 span,
-                &format!("a hole drilled {} times", number.to_f64()),
-                "K counts the holes, and on the axis there is one",
-                "leave K out",
+                both!("a hole drilled {} times", "отверстие сверлится раз: {}", number.to_f64()),
+                both!(
+                    "K counts the holes, and on the axis there is one",
+                    "K считает отверстия, а на оси оно одно"
+                ),
+                both!("leave K out", "уберите K"),
             ));
         }
         let [Some(x), Some(bottom)] = self.state.target(&words) else {
-            return refuse("where the cycle leads is not known", "above 400 km", "correct X and Z");
+            return refuse(
+                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
+                both!("above 400 km", "больше 400 км"),
+                both!("correct X and Z", "исправьте X и Z"),
+            );
         };
         if x != 0 {
             return refuse(
-                "a hole off the axis",
-                "beside the axis of a workpiece that turns nothing is drilled",
-                "write X0; correct the turning apart from what is drilled with a driven tool",
+                both!("a hole off the axis", "отверстие не на оси"),
+                both!(
+                    "beside the axis of a workpiece that turns nothing is drilled",
+                    "вне оси вращающейся детали не сверлят"
+                ),
+                both!(
+                    "write X0; correct the turning apart from what is drilled with a driven tool",
+                    "напишите X0; исправляйте точение отдельно от сверления приводным инструментом"
+                ),
             );
         }
         if bottom == start[1] || words.number(b'R').is_none() {
             return refuse(
-                "a hole without a depth, or without R",
-                "R is the way from the start to where drilling begins",
-                "write Z and R, as in `G83 Z-30. R-3. F0.1`",
+                both!("a hole without a depth, or without R", "отверстие без глубины или без R"),
+                both!(
+                    "R is the way from the start to where drilling begins",
+                    "R — путь от начала до места, где начинается сверление"
+                ),
+                both!(
+                    "write Z and R, as in `G83 Z-30. R-3. F0.1`",
+                    "напишите Z и R, например `G83 Z-30. R-3. F0.1`"
+                ),
             );
         }
         let sign = (bottom - start[1]).signum();
@@ -51,9 +71,9 @@ impl Writer<'_, '_> {
         let deep = (bottom - start[1] - approach) * sign;
         if approach * sign < 0 || deep <= 0 {
             return refuse(
-                "R does not lie between the start and the bottom",
-                "it counts from the start, with its sign",
-                "R-3. goes 3 mm along -Z",
+                both!("R does not lie between the start and the bottom", "R не лежит между началом и дном"),
+                both!("it counts from the start, with its sign", "отсчитывается от начала, со знаком"),
+                both!("R-3. goes 3 mm along -Z", "R-3. — это 3 мм вдоль -Z"),
             );
         }
         let peck = self.state.depth(&words, b'Q').map_or(deep, i64::abs);
@@ -62,9 +82,9 @@ impl Writer<'_, '_> {
         let peck = if peck == 0 { deep } else { peck };
         if deep / peck > MOST {
             return refuse(
-                "a hole of more than 2000 pecks",
-                "Q counts least increments where it has no point",
-                "correct Z and Q",
+                both!("a hole of more than 2000 pecks", "отверстие больше чем в 2000 проходов"),
+                both!("Q counts least increments where it has no point", "Q без точки считает дискреты"),
+                both!("correct Z and Q", "исправьте Z и Q"),
             );
         }
         let mut moves = self.begin(&words, start, b"XZUWRQPK")?;
@@ -101,12 +121,20 @@ impl Writer<'_, '_> {
     fn peck_rules(&self, words: &Words<'_, '_>, span: Span) -> Result<(DrillPecks, i64), Fault> {
         let cycles = &self.turning.cycles;
         let Some(style) = cycles.drill_pecks else {
-            return Err(words.parameter_fault(span, "how far a peck goes back", "drill_pecks", "\"full\""));
+            return Err(words.parameter_fault(
+                span,
+                &both!("how far a peck goes back", "на сколько отводится сверло между проходами"),
+                "drill_pecks",
+                "\"full\"",
+            ));
         };
         let Some(back) = cycles.drill_return_mm else {
             return Err(words.parameter_fault(
                 span,
-                "by how much pecks go back, or stay off what is drilled",
+                &both!(
+                    "by how much pecks go back, or stay off what is drilled",
+                    "на сколько отводится сверло и сколько не доходит до просверленного"
+                ),
                 "drill_return_mm",
                 "0.5",
             ));

@@ -1,5 +1,6 @@
 //! Blocks out: what a cycle's block sets, then its moves.
 
+use diagnostic::both;
 use nc_syntax::dialect::Action;
 use nc_syntax::{Block, Item, ItemKind, Span, Value};
 
@@ -54,9 +55,9 @@ impl<'b> Writer<'b, '_> {
                     if millionths(number.decimal).is_none() {
                         return Err(words.cycle_fault(
                             item.span,
-                            "a number that is none of a cycle's",
-                            "above 400 km",
-                            "correct it",
+                            both!("a number that is none of a cycle's", "число, какого в цикле не бывает"),
+                            both!("above 400 km", "больше 400 км"),
+                            both!("correct it", "исправьте его"),
                         ));
                     }
                 }
@@ -172,9 +173,9 @@ fn setting(words: &Words<'_, '_>, span: Span) -> Result<bool, Fault> {
         ) => Ok(true),
         _ => Err(words.cycle_fault(
             span,
-            "another code beside a cycle",
-            "whose are the words of this block?",
-            "write it in a block of its own",
+            both!("another code beside a cycle", "другая функция рядом с циклом"),
+            both!("whose are the words of this block?", "чьи слова этого кадра?"),
+            both!("write it in a block of its own", "напишите отдельным кадром"),
         )),
     }
 }
@@ -183,8 +184,11 @@ fn stray(words: &Words<'_, '_>, item: &Item) -> Fault {
     let text = String::from_utf8_lossy(words.block.text(item.span)).into_owned();
     words.cycle_fault(
         item.span,
-        &format!("{text} beside a cycle"),
-        "it is no word of this cycle",
-        "write it in a block of its own before the cycle, or remove it",
+        both!("{text} beside a cycle", "{text} рядом с циклом"),
+        both!("it is no word of this cycle", "это не слово этого цикла"),
+        both!(
+            "write it in a block of its own before the cycle, or remove it",
+            "напишите отдельным кадром до цикла или уберите"
+        ),
     )
 }

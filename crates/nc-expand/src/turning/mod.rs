@@ -24,7 +24,7 @@ mod rough;
 mod state;
 mod threads;
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
 use nc_syntax::{Block, Dialect, Reader, Span};
 
@@ -113,17 +113,29 @@ impl<'b, 'a> Writer<'b, 'a> {
         if words.skipped() {
             return Err(words.cycle_fault(
                 span,
-                "a cycle behind block delete",
-                "two programs in one: what follows starts from two places",
-                "write it without `/`, or let the CAM write the moves",
+                both!("a cycle behind block delete", "цикл в кадре с пропуском"),
+                both!(
+                    "two programs in one: what follows starts from two places",
+                    "две программы в одной: дальнейшее начинается из двух мест"
+                ),
+                both!(
+                    "write it without `/`, or let the CAM write the moves",
+                    "напишите без `/` или выводите движения из CAM"
+                ),
             ));
         }
         if self.state.compensated {
             return Err(words.cycle_fault(
                 span,
-                "a cycle under compensation of the nose",
-                "which of its moves are compensated, controls differ",
-                "write G40 before it; finish the contour as blocks of its own under G41 or G42",
+                both!("a cycle under compensation of the nose", "цикл при коррекции на радиус при вершине"),
+                both!(
+                    "which of its moves are compensated, controls differ",
+                    "на каких его ходах она действует, у стоек по-разному"
+                ),
+                both!(
+                    "write G40 before it; finish the contour as blocks of its own under G41 or G42",
+                    "напишите перед ним G40; чистовой контур напишите отдельными кадрами при G41 или G42"
+                ),
             ));
         }
         match cycle {
@@ -167,9 +179,15 @@ impl<'b, 'a> Writer<'b, 'a> {
         if self.state.motion == Motion::Unknown && self.state.moves(words) && !self.state.owns_motion(words) {
             return Err(words.cycle_fault(
                 words.whole(),
-                "axis words without a motion code behind a cycle",
-                "which code is in force behind it the manual leaves open",
-                "write G0 or G1 in this block",
+                both!(
+                    "axis words without a motion code behind a cycle",
+                    "слова осей без функции движения после цикла"
+                ),
+                both!(
+                    "which code is in force behind it the manual leaves open",
+                    "какая функция действует после него, руководство не говорит"
+                ),
+                both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
             ));
         }
         self.unsure_feed &= words.number(b'F').is_none();
@@ -188,9 +206,15 @@ impl<'b, 'a> Writer<'b, 'a> {
         }
         Err(words.cycle_fault(
             span,
-            "where the cycle starts is not known",
-            "it starts, and ends, where the tool stands",
-            "before it name X and Z in a rapid, as in `G0 X60. Z2.`",
+            both!("where the cycle starts is not known", "неизвестно, откуда начинается цикл"),
+            both!(
+                "it starts, and ends, where the tool stands",
+                "он начинается и кончается там, где стоит инструмент"
+            ),
+            both!(
+                "before it name X and Z in a rapid, as in `G0 X60. Z2.`",
+                "назовите перед ним X и Z в быстром ходе, например `G0 X60. Z2.`"
+            ),
         ))
     }
 
@@ -218,35 +242,47 @@ impl<'b, 'a> Writer<'b, 'a> {
         }
         Err(words.cycle_fault(
             span,
-            "whether X is a diameter or a radius is not said",
-            "depths and tapers are radii",
-            "write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile",
+            both!("whether X is a diameter or a radius is not said", "не сказано, диаметр X или радиус"),
+            both!("depths and tapers are radii", "глубины и конусы задаются по радиусу"),
+            both!(
+                "write `x = \"diameter\"` (or \"radius\") under `[program]` in the profile",
+                "впишите `x = \"diameter\"` (или \"radius\") в раздел `[program]` профиля"
+            ),
         ))
     }
 }
 
 impl Words<'_, '_> {
-    fn cycle_fault(&self, span: Span, message: &str, label: &str, help: &str) -> Fault {
+    fn cycle_fault(&self, span: Span, message: Text, label: Text, help: Text) -> Fault {
         self.fault(codes::TURNING_CYCLE, span, message, label, help)
     }
 
-    fn contour_fault(&self, span: Span, message: &str, label: &str) -> Fault {
+    fn contour_fault(&self, span: Span, message: Text, label: Text) -> Fault {
         self.fault(
             codes::CONTOUR,
             span,
             message,
             label,
-            "write the contour between N of P and N of Q, or let the CAM write the moves",
+            both!(
+                "write the contour between N of P and N of Q, or let the CAM write the moves",
+                "напишите контур между кадрами N из P и N из Q или выводите движения из CAM"
+            ),
         )
     }
 
-    fn parameter_fault(&self, span: Span, what: &str, key: &str, value: &str) -> Fault {
+    fn parameter_fault(&self, span: Span, what: &Text, key: &str, value: &str) -> Fault {
         self.fault(
             codes::CYCLE_PARAMETER,
             span,
-            &format!("{what} is a parameter of the control, and nobody says it"),
-            "it decides how the cycle moves",
-            &format!("write `{key} = {value}` with the control's value under `[program]` in the profile"),
+            both!(
+                "{what} is a parameter of the control, and nobody says it",
+                "{what:#} — параметр стойки, и его никто не назвал"
+            ),
+            both!("it decides how the cycle moves", "от него зависят движения цикла"),
+            both!(
+                "write `{key} = {value}` with the control's value under `[program]` in the profile",
+                "впишите `{key} = {value}` со значением стойки в раздел `[program]` профиля"
+            ),
         )
     }
 }

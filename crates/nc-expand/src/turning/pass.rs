@@ -9,6 +9,7 @@
 //! thread that goes on outwards, in step with the spindle. What a control makes of a stop (feed hold) during a cycle is
 //! not what it makes of one during moves.
 
+use diagnostic::both;
 use nc_syntax::Span;
 use nc_syntax::dialect::{Action, TurningCycle};
 use units::math;
@@ -40,9 +41,9 @@ impl Writer<'_, '_> {
         if !self.state.moves(&words) {
             return Err(words.cycle_fault(
                 span,
-                "a cycle without a place",
-                "in G-code system A this code is a single pass, with X and Z",
-                "write X and Z; where the control has system B or C, write it as `g_code_system` under `[program]` in the profile",
+                both!("a cycle without a place", "цикл без конечной точки"),
+                both!("in G-code system A this code is a single pass, with X and Z", "в системе A эта функция — один проход, с X и Z"),
+                both!("write X and Z; where the control has system B or C, write it as `g_code_system` under `[program]` in the profile", "напишите X и Z; если у стойки система B или C, назовите её ключом `g_code_system` раздела `[program]` профиля"),
             ));
         }
         self.require_diameters(&words, span)?;
@@ -52,9 +53,12 @@ impl Writer<'_, '_> {
         if tapered && taper_word(&words, cycle).is_none() {
             return Err(words.cycle_fault(
                 span,
-                "a taper that may still be in force",
-                "R of the pass before holds until another is written",
-                "write R in this block, R0 for none",
+                both!("a taper that may still be in force", "конус, который может ещё действовать"),
+                both!(
+                    "R of the pass before holds until another is written",
+                    "R прошлого прохода действует, пока не написано другое"
+                ),
+                both!("write R in this block, R0 for none", "напишите R в этом кадре, R0 — без конуса"),
             ));
         }
         self.state.motion = Motion::Pass(cycle);
@@ -95,9 +99,18 @@ impl Writer<'_, '_> {
         if words.skipped() || (!self.state.moves(&words) && taper.is_none()) {
             return Err(words.cycle_fault(
                 span,
-                "a block without a place while a single pass is in force",
-                "whether the control repeats the pass here is not certain",
-                "end the passes with G0 or G1 before it",
+                both!(
+                    "a block without a place while a single pass is in force",
+                    "кадр без конечной точки, пока действует однопроходный цикл"
+                ),
+                both!(
+                    "whether the control repeats the pass here is not certain",
+                    "повторит ли стойка здесь проход, неясно"
+                ),
+                both!(
+                    "end the passes with G0 or G1 before it",
+                    "закончите проходы функцией G0 или G1 перед ним"
+                ),
             ));
         }
         // G90 and G91 of systems B and C hold for the words of their own block.
@@ -122,9 +135,12 @@ impl Writer<'_, '_> {
         let [Some(x), Some(z)] = pass.to else {
             return Err(words.cycle_fault(
                 span,
-                "a single pass with one place only",
-                "X and Z were expected, until each has been named once",
-                "write X and Z of the end of the cut",
+                both!("a single pass with one place only", "однопроходный цикл только с одной координатой"),
+                both!(
+                    "X and Z were expected, until each has been named once",
+                    "ожидались X и Z, пока каждая не названа хотя бы раз"
+                ),
+                both!("write X and Z of the end of the cut", "напишите X и Z конца резания"),
             ));
         };
         self.pass = Some(pass);
@@ -200,7 +216,7 @@ impl Writer<'_, '_> {
         let Some(leads) = self.turning.cycles.thread_chamfer_leads else {
             return Err(words.parameter_fault(
                 words.whole(),
-                "the chamfer at the end of a thread",
+                &both!("the chamfer at the end of a thread", "фаска в конце резьбы"),
                 "thread_chamfer_leads",
                 "0.0",
             ));
@@ -229,9 +245,9 @@ impl Writer<'_, '_> {
             (true, ..) => {
                 return Err(words.cycle_fault(
                     words.whole(),
-                    "a thread whose lead is not certain",
-                    "its chamfer is so many leads long",
-                    "write F with a point in this block",
+                    both!("a thread whose lead is not certain", "резьба, ход которой неясен"),
+                    both!("its chamfer is so many leads long", "её фаска длиной в столько-то ходов"),
+                    both!("write F with a point in this block", "напишите в этом кадре F с точкой"),
                 ));
             }
         };
@@ -249,9 +265,9 @@ impl Writer<'_, '_> {
         if share < 0.0 || outwards > (clear_mm - begins[0]).abs() {
             return Err(words.cycle_fault(
                 words.whole(),
-                "a thread shorter than its chamfer",
-                &format!("its chamfer is {length} long and leads {outwards:.4} outwards"),
-                "correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out",
+                both!("a thread shorter than its chamfer", "резьба короче своей фаски"),
+                both!("its chamfer is {length} long and leads {outwards:.4} outwards", "длина фаски {length}, и она уводит наружу на {outwards:.4}"),
+                both!("correct `thread_chamfer_leads` or `thread_chamfer_deg` in the profile, or start further out", "исправьте `thread_chamfer_leads` или `thread_chamfer_deg` в профиле или начните дальше от детали"),
             ));
         }
         let ends = [begins[0] + outwards * (clear_mm - begins[0]).signum(), z1];

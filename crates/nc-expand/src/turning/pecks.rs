@@ -6,6 +6,7 @@
 //! to the start. P and Q are radius or Z, without a point least increments. R of the second block, the relief at the
 //! bottom, is refused: at the first groove there is no room for it, and what a control does there the manual leaves open.
 
+use diagnostic::both;
 use nc_syntax::Span;
 use nc_syntax::dialect::TurningCycle;
 
@@ -27,9 +28,12 @@ impl Writer<'_, '_> {
             let Some(back) = self.state.length(&words, b'R') else {
                 return Err(words.cycle_fault(
                     span,
-                    "a cycle without a place",
-                    "neither X and Z nor a return",
-                    "write X and Z, or R alone in its first block",
+                    both!("a cycle without a place", "цикл без конечной точки"),
+                    both!("neither X and Z nor a return", "ни X и Z, ни отвода"),
+                    both!(
+                        "write X and Z, or R alone in its first block",
+                        "напишите X и Z или одно R в его первом кадре"
+                    ),
                 ));
             };
             let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);
@@ -43,18 +47,21 @@ impl Writer<'_, '_> {
         if let Some((number, span)) = words.number(b'R').filter(|(number, _)| number.to_f64() != 0.0) {
             return Err(words.cycle_fault(
                 span,
-                &format!("a relief of {} at the bottom", number.to_f64()),
-                "what the control does at the first groove, where there is no room, is not certain",
-                "leave R out of this block",
+                both!("a relief of {} at the bottom", "отвод {} на дне", number.to_f64()),
+                both!(
+                    "what the control does at the first groove, where there is no room, is not certain",
+                    "что сделает стойка на первой канавке, где места нет, неясно"
+                ),
+                both!("leave R out of this block", "уберите R из этого кадра"),
             ));
         }
         let target = self.state.target(&words);
         let [Some(x), Some(z)] = target else {
             return Err(words.cycle_fault(
                 span,
-                "where the cycle leads is not known",
-                "above 400 km",
-                "correct X and Z",
+                both!("where the cycle leads is not known", "неизвестно, куда ведёт цикл"),
+                both!("above 400 km", "больше 400 км"),
+                both!("correct X and Z", "исправьте X и Z"),
             ));
         };
         let to = [x, z];
@@ -69,18 +76,28 @@ impl Writer<'_, '_> {
         if whole[along] != 0 && words.number(letters[along]).is_none() {
             return Err(words.cycle_fault(
                 span,
-                "a groove wider than the tool without its step",
-                "how far from one place to the next?",
-                if along == 0 { "write P, the step along X (radius)" } else { "write Q, the step along Z" },
+                both!("a groove wider than the tool without its step", "канавка шире резца без шага"),
+                both!("how far from one place to the next?", "на сколько смещаться?"),
+                if along == 0 {
+                    both!("write P, the step along X (radius)", "напишите P — шаг вдоль X (по радиусу)")
+                } else {
+                    both!("write Q, the step along Z", "напишите Q — шаг вдоль Z")
+                },
             ));
         }
         let (pecks, places) = (1 + whole[down].abs() / peck.max(1), 1 + whole[along].abs() / across.max(1));
         if whole[down] == 0 || pecks.saturating_mul(places) > MOST {
             return Err(words.cycle_fault(
                 span,
-                "a cycle without a depth, or of more than 10000 pecks",
-                "P and Q count least increments where they have no point",
-                "correct X, Z, P and Q",
+                both!(
+                    "a cycle without a depth, or of more than 10000 pecks",
+                    "цикл без глубины или больше чем в 10000 проходов"
+                ),
+                both!(
+                    "P and Q count least increments where they have no point",
+                    "P и Q без точки считают дискреты"
+                ),
+                both!("correct X, Z, P and Q", "исправьте X, Z, P и Q"),
             ));
         }
         let needs_return = whole[down].abs() > peck;
@@ -92,7 +109,7 @@ impl Writer<'_, '_> {
             None => {
                 return Err(words.parameter_fault(
                     span,
-                    "by how much pecks go back",
+                    &both!("by how much pecks go back", "на сколько отводится инструмент между проходами"),
                     "groove_return_mm",
                     "0.5",
                 ));

@@ -11,6 +11,7 @@
 //! Roughing heeds F and S of its own block, not those of the contour. G70 makes the contour's blocks as they stand, with F
 //! and S of their own, and goes back in a rapid to where it began.
 
+use diagnostic::both;
 use nc_syntax::dialect::TurningCycle;
 use nc_syntax::{ItemKind, Span};
 
@@ -57,16 +58,25 @@ impl Writer<'_, '_> {
         if contour.first < at || between.into_iter().any(|index| self.words(index).block.acts()) {
             return Err(words.contour_fault(
                 span,
-                "the contour does not stand behind its cycle",
-                "where the program goes on behind the cycle is certain only there",
+                both!("the contour does not stand behind its cycle", "контур стоит не после своего цикла"),
+                both!(
+                    "where the program goes on behind the cycle is certain only there",
+                    "только там ясно, откуда программа продолжится после цикла"
+                ),
             ));
         }
         if let Some(block) = contour.compensated.filter(|_| !self.is_finished(&contour)) {
             let block = self.words(block);
             return Err(block.contour_fault(
                 block.whole(),
-                "compensation of the nose in a contour that no G70 finishes",
-                "it would hold nowhere: roughing leaves it out here",
+                both!(
+                    "compensation of the nose in a contour that no G70 finishes",
+                    "коррекция на радиус при вершине в контуре, который не обрабатывает ни одна G70"
+                ),
+                both!(
+                    "it would hold nowhere: roughing leaves it out here",
+                    "она нигде бы не действовала: черновая обработка здесь её не учитывает"
+                ),
             ));
         }
         let own: &[u8] = if cycle == TurningCycle::RoughPattern { b"PQUWDIK" } else { b"PQUWD" };
@@ -115,9 +125,9 @@ impl Writer<'_, '_> {
                     if set.cuts.is_none() {
                         return Err(words.cycle_fault(
                             span,
-                            "a number of cuts that is none",
-                            "R counts the cuts here",
-                            "write a whole number, like R3",
+                            both!("a number of cuts that is none", "неверное число проходов"),
+                            both!("R counts the cuts here", "R здесь считает проходы"),
+                            both!("write a whole number, like R3", "напишите целое число, например R3"),
                         ));
                     }
                 }
@@ -133,9 +143,12 @@ impl Writer<'_, '_> {
         if !said {
             return Err(words.cycle_fault(
                 span,
-                "a cycle without P and Q",
-                "neither a contour nor a setting",
-                "write P and Q of its contour, or U, W and R of its first block",
+                both!("a cycle without P and Q", "цикл без P и Q"),
+                both!("neither a contour nor a setting", "ни контура, ни установки"),
+                both!(
+                    "write P and Q of its contour, or U, W and R of its first block",
+                    "напишите P и Q его контура или U, W и R его первого кадра"
+                ),
             ));
         }
         let at = self.state.at.map(Option::unwrap_or_default);
@@ -171,9 +184,9 @@ impl Writer<'_, '_> {
         let (Some(relief), Some(cuts)) = (relief, cuts.filter(|cuts| (2..=MOST_CUTS).contains(cuts))) else {
             return Err(words.cycle_fault(
                 span,
-                "the relief or the number of cuts is not said, or there are less than two",
-                "parameters of the control would say them",
-                "write U, W and R in a block of this cycle before it: relief along X (radius) and Z, and number of cuts",
+                both!("the relief or the number of cuts is not said, or there are less than two", "не сказан припуск или число проходов, или их меньше двух"),
+                both!("parameters of the control would say them", "их задали бы параметры стойки"),
+                both!("write U, W and R in a block of this cycle before it: relief along X (radius) and Z, and number of cuts", "напишите перед ним U, W и R в кадре этого цикла: припуск вдоль X (по радиусу) и Z и число проходов"),
             ));
         };
         // The relief along X is a radius, X words may be diameters.
@@ -210,9 +223,9 @@ impl Writer<'_, '_> {
             let block = self.words(contour.first);
             return Err(block.cycle_fault(
                 block.whole(),
-                "a contour with pockets (type II)",
-                "its first block names both axes; how controls cut pockets differs",
-                "name only the axis of the infeed in the block of P (type I), or let the CAM write the moves",
+                both!("a contour with pockets (type II)", "контур с карманами (тип II)"),
+                both!("its first block names both axes; how controls cut pockets differs", "в его первом кадре названы обе оси; как стойки режут карманы, у каждой по-своему"),
+                both!("name only the axis of the infeed in the block of P (type I), or let the CAM write the moves", "назовите в кадре P только ось врезания (тип I) или выводите движения из CAM"),
             ));
         }
         let sign = (a1[down] - a[down]).signum();
@@ -222,8 +235,8 @@ impl Writer<'_, '_> {
             let name = ["X", "Z"][down];
             return Err(block.contour_fault(
                 block.whole(),
-                "the contour does not begin with the infeed",
-                &format!("a move along {name} was expected in the block of P, and a way along the other axis behind it"),
+                both!("the contour does not begin with the infeed", "контур не начинается с врезания"),
+                both!("a move along {name} was expected in the block of P, and a way along the other axis behind it", "в кадре P ожидался ход вдоль {name}, а дальше — путь вдоль другой оси"),
             ));
         }
         self.require_monotone(words, contour, along, forwards)?;
@@ -241,9 +254,12 @@ impl Writer<'_, '_> {
         if count > MOST_PASSES {
             return Err(words.cycle_fault(
                 span,
-                "more than 10000 passes",
-                "the depth of cut is too small",
-                "correct the depth of cut: a length without a point may count least increments",
+                both!("more than 10000 passes", "больше 10000 проходов"),
+                both!("the depth of cut is too small", "глубина прохода слишком мала"),
+                both!(
+                    "correct the depth of cut: a length without a point may count least increments",
+                    "исправьте глубину прохода: размер без точки может считать дискреты"
+                ),
             ));
         }
         self.go(moves, Code::Rapid, corner);
@@ -281,9 +297,12 @@ impl Writer<'_, '_> {
             let letter = ["U", "W"][down];
             return Err(words.cycle_fault(
                 span,
-                "a depth of cut that nobody says",
-                "a parameter of the control would",
-                &format!("write {letter} and R in a block of this cycle before it, or D in this one"),
+                both!("a depth of cut that nobody says", "глубина прохода, которой никто не назвал"),
+                both!("a parameter of the control would", "её задал бы параметр стойки"),
+                both!(
+                    "write {letter} and R in a block of this cycle before it, or D in this one",
+                    "напишите перед ним {letter} и R в кадре этого цикла или D в этом"
+                ),
             ));
         };
         // The series 10 and 11, with D, leave the escape to the parameter.
@@ -292,7 +311,10 @@ impl Writer<'_, '_> {
         let Some(escape) = said.or(parameter) else {
             return Err(words.parameter_fault(
                 span,
-                "by how much roughing leaves the contour",
+                &both!(
+                    "by how much roughing leaves the contour",
+                    "на сколько отводится резец при черновой обработке"
+                ),
                 "roughing_escape_mm",
                 "0.5",
             ));
@@ -319,16 +341,25 @@ impl Writer<'_, '_> {
         if (contour.first..=contour.last).contains(&at) || next == Some(contour.first) {
             return Err(words.contour_fault(
                 span,
-                "the contour stands behind its finishing",
-                "whether the control makes it once more is not certain",
+                both!(
+                    "the contour stands behind its finishing",
+                    "контур стоит после своей чистовой обработки"
+                ),
+                both!(
+                    "whether the control makes it once more is not certain",
+                    "пройдёт ли стойка его ещё раз, неясно"
+                ),
             ));
         }
         if !contour.says_feed && words.number(b'F').is_none() && self.unsure_feed {
             return Err(words.cycle_fault(
                 span,
-                "a finishing without F",
-                "the last F stood in a roughing block, which does not hold here",
-                "write F in this block, or in the contour",
+                both!("a finishing without F", "чистовая обработка без F"),
+                both!(
+                    "the last F stood in a roughing block, which does not hold here",
+                    "последнее F стояло в черновом кадре и здесь не действует"
+                ),
+                both!("write F in this block, or in the contour", "напишите F в этом кадре или в контуре"),
             ));
         }
         let moves = self.begin(&words, start, b"PQUW")?;
@@ -343,8 +374,11 @@ impl Writer<'_, '_> {
         if self.state.compensated {
             return Err(self.words(contour.last).contour_fault(
                 self.words(contour.last).whole(),
-                "compensation is in force behind the contour",
-                "the way back to the start of the cycle would be compensated",
+                both!("compensation is in force behind the contour", "после контура действует коррекция"),
+                both!(
+                    "the way back to the start of the cycle would be compensated",
+                    "она действовала бы на возврате к началу цикла"
+                ),
             ));
         }
         let end = self.state.at.map(Option::unwrap_or_default);

@@ -13,6 +13,7 @@
 //! its depth times the tangent of half the angle. From where that counts the manual shows in a figure and says in no
 //! sentence; the profile has to say it ([`FlankFrom`]).
 
+use diagnostic::{Text, both};
 use nc_syntax::Span;
 use nc_syntax::dialect::FlankFrom;
 use units::math;
@@ -44,7 +45,7 @@ impl Writer<'_, '_> {
         }
         let start = self.standing(&words, span)?;
         let refuse =
-            |message: &str, label: &str, help: &str| Err(words.cycle_fault(span, message, label, help));
+            |message: Text, label: Text, help: Text| Err(words.cycle_fault(span, message, label, help));
         let in_one_block = words.number(b'K').is_some();
         let settings = if in_one_block {
             self.settings_of_control(&words, span)?
@@ -52,13 +53,26 @@ impl Writer<'_, '_> {
             settings
         } else {
             return refuse(
-                "a thread of several passes without its first block",
-                "finishing passes, chamfer, angle and infeeds are parameters of the control then",
-                "write the first block, as in `G76 P020000 Q100 R0.05`",
+                both!(
+                    "a thread of several passes without its first block",
+                    "многопроходная резьба без первого кадра"
+                ),
+                both!(
+                    "finishing passes, chamfer, angle and infeeds are parameters of the control then",
+                    "чистовые проходы, фаска, угол и врезания — тогда параметры стойки"
+                ),
+                both!(
+                    "write the first block, as in `G76 P020000 Q100 R0.05`",
+                    "напишите первый кадр, например `G76 P020000 Q100 R0.05`"
+                ),
             );
         };
         let [Some(x), Some(z)] = self.state.target(&words) else {
-            return refuse("where the thread ends is not known", "X and Z were expected", "write X and Z");
+            return refuse(
+                both!("where the thread ends is not known", "неизвестно, где кончается резьба"),
+                both!("X and Z were expected", "ожидались X и Z"),
+                both!("write X and Z", "напишите X и Z"),
+            );
         };
         let (height, first) = if in_one_block {
             (self.state.length(&words, b'K'), self.state.depth(&words, b'D'))
@@ -67,17 +81,27 @@ impl Writer<'_, '_> {
         };
         let (Some(height), Some(first)) = (height.filter(|h| *h > 0), first.filter(|q| *q > 0)) else {
             return refuse(
-                "a thread without its height or its first infeed",
+                both!(
+                    "a thread without its height or its first infeed",
+                    "резьба без высоты или без первого врезания"
+                ),
                 if in_one_block {
-                    "K and D above zero were expected"
+                    both!("K and D above zero were expected", "ожидались K и D больше нуля")
                 } else {
-                    "P and Q above zero were expected"
+                    both!("P and Q above zero were expected", "ожидались P и Q больше нуля")
                 },
-                "write the height of the thread and the first infeed, both of the radius",
+                both!(
+                    "write the height of the thread and the first infeed, both of the radius",
+                    "напишите высоту резьбы и первое врезание, оба по радиусу"
+                ),
             );
         };
         let Some((feed, _)) = words.number(b'F') else {
-            return refuse("a thread without its lead", "F was expected", "write F, the lead, in this block");
+            return refuse(
+                both!("a thread without its lead", "резьба без хода"),
+                both!("F was expected", "ожидалось F"),
+                both!("write F, the lead, in this block", "напишите F — ход резьбы — в этом кадре"),
+            );
         };
         let taper = self.state.length(&words, if in_one_block { b'I' } else { b'R' }).unwrap_or_default();
         let twice = if self.state.diameters == Some(true) { 2 } else { 1 };
@@ -85,14 +109,27 @@ impl Writer<'_, '_> {
         let outwards = (start[0] - (x + twice * taper)).signum();
         if outwards == 0 || (start[0] - x) * outwards < twice * height || start[1] == z {
             return refuse(
-                "a thread that starts within its own height",
-                "between start and root there is less than the height",
-                "start it further out, or correct X, Z, R and P",
+                both!(
+                    "a thread that starts within its own height",
+                    "резьба начинается внутри собственной высоты"
+                ),
+                both!(
+                    "between start and root there is less than the height",
+                    "между началом и впадиной меньше, чем высота"
+                ),
+                both!(
+                    "start it further out, or correct X, Z, R and P",
+                    "начните дальше от детали или исправьте X, Z, R и P"
+                ),
             );
         }
         let depths = depths(height, first, &settings);
         let Some(depths) = depths else {
-            return refuse("more than 1000 passes", "the infeeds are too small", "correct Q of both blocks");
+            return refuse(
+                both!("more than 1000 passes", "больше 1000 проходов"),
+                both!("the infeeds are too small", "врезания слишком малы"),
+                both!("correct Q of both blocks", "исправьте Q обоих кадров"),
+            );
         };
         let flank = self.flank(&words, span, &settings, &depths)?;
         let own: &[u8] = if in_one_block { b"XZUWIKDA" } else { b"XZUWPQR" };
@@ -130,7 +167,10 @@ impl Writer<'_, '_> {
                 None => {
                     return Err(words.parameter_fault(
                         span,
-                        "from where the start of each pass moves along the flank",
+                        &both!(
+                            "from where the start of each pass moves along the flank",
+                            "как начало каждого прохода смещается вдоль боковой стороны"
+                        ),
                         "thread_flank_from",
                         "\"first-pass\"",
                     ));
@@ -144,27 +184,40 @@ impl Writer<'_, '_> {
     /// What parameters of the control say of a thread in one block.
     fn settings_of_control(&self, words: &Words<'_, '_>, span: Span) -> Result<Settings, Fault> {
         let cycles = &self.turning.cycles;
-        let said = |value: Option<f64>, what: &str, key: &str, like: &str| {
-            value.ok_or_else(|| words.parameter_fault(span, what, key, like))
+        let said = |value: Option<f64>, what: Text, key: &str, like: &str| {
+            value.ok_or_else(|| words.parameter_fault(span, &what, key, like))
         };
         let passes = said(
             cycles.thread_finishing_passes,
-            "how many finishing passes",
+            both!("how many finishing passes", "число чистовых проходов"),
             "thread_finishing_passes",
             "1",
         )?;
-        let least = said(cycles.thread_least_mm, "the least infeed", "thread_least_mm", "0.05")?;
-        let allowance =
-            said(cycles.thread_allowance_mm, "the finishing allowance", "thread_allowance_mm", "0")?;
-        let chamfer =
-            said(cycles.thread_chamfer_leads, "the chamfer at the end", "thread_chamfer_leads", "1")?;
+        let least = said(
+            cycles.thread_least_mm,
+            both!("the least infeed", "наименьшее врезание"),
+            "thread_least_mm",
+            "0.05",
+        )?;
+        let allowance = said(
+            cycles.thread_allowance_mm,
+            both!("the finishing allowance", "чистовой припуск"),
+            "thread_allowance_mm",
+            "0",
+        )?;
+        let chamfer = said(
+            cycles.thread_chamfer_leads,
+            both!("the chamfer at the end", "фаска в конце"),
+            "thread_chamfer_leads",
+            "1",
+        )?;
         let tip_deg = words.number(b'A').map_or(0.0, |(number, _)| number.to_f64());
         if !(0.0..=120.0).contains(&tip_deg) {
             return Err(words.cycle_fault(
                 span,
-                &format!("a tip of {tip_deg} degrees"),
-                "0 to 120 were expected",
-                "correct A",
+                both!("a tip of {tip_deg} degrees", "угол вершины {tip_deg} градусов"),
+                both!("0 to 120 were expected", "ожидалось от 0 до 120"),
+                both!("correct A", "исправьте A"),
             ));
         }
         Ok(Settings {
@@ -187,9 +240,15 @@ impl Writer<'_, '_> {
         else {
             return Err(words.cycle_fault(
                 span,
-                "the first block of a thread without P, Q or R",
-                "what it leaves out parameters of the control say",
-                "write all of them, as in `G76 P020000 Q100 R0.05`",
+                both!("the first block of a thread without P, Q or R", "первый кадр резьбы без P, Q или R"),
+                both!(
+                    "what it leaves out parameters of the control say",
+                    "опущенное задают параметры стойки"
+                ),
+                both!(
+                    "write all of them, as in `G76 P020000 Q100 R0.05`",
+                    "напишите их все, например `G76 P020000 Q100 R0.05`"
+                ),
             ));
         };
         let (standing, known) = (self.state.at.map(Option::unwrap_or_default), self.state.at);

@@ -56,7 +56,8 @@ pub(crate) fn refused(dialect: &str, text: &str) -> String {
             let diagnostic = &refusal.diagnostics[0];
             let span = diagnostic.span.clone().expect("every message has a place");
             let found = &text[span.start as usize..span.end as usize];
-            let help = diagnostic.help.as_deref().expect("every message has a way out");
+            let help =
+                diagnostic.help.as_ref().map(|help| help.english()).expect("every message has a way out");
             format!("{diagnostic}\nat `{found}`: {}\nhelp: {help}", diagnostic.label)
         }
     }

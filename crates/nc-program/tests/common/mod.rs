@@ -83,7 +83,11 @@ pub(crate) fn message_with(dialect: &Dialect, setup: &Setup, text: &str) -> Stri
         .map(|d| {
             let span = d.span.clone().expect("each refusal has a place");
             let at = &text[span.start as usize..span.end as usize];
-            format!("{d}\n  {line}: `{at}` {}\n  help: {}\n", d.label, d.help.as_deref().unwrap_or("-"))
+            format!(
+                "{d}\n  {line}: `{at}` {}\n  help: {}\n",
+                d.label,
+                d.help.as_ref().map(|help| help.english()).unwrap_or("-")
+            )
         })
         .collect()
 }

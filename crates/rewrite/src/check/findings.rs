@@ -1,44 +1,67 @@
 //! Differences in words.
 
+use diagnostic::{Text, both};
 use path_comparison::{Comparison, Mismatch, What};
 
 use super::reading::Numbers;
 
 /// What the comparison found, a sentence each.
-pub(super) fn of(comparison: &Comparison, numbers: &Numbers) -> Vec<String> {
+pub(super) fn of(comparison: &Comparison, numbers: &Numbers) -> Vec<Text> {
     let (mut findings, mut said) = (Vec::new(), Vec::new());
     for mismatch in &comparison.mismatches {
         findings.extend(sentences(mismatch, numbers, &mut said));
     }
     if comparison.more_mismatches > 0 {
-        findings.push(format!("and {} more of the path", comparison.more_mismatches));
+        findings.push(both!(
+            "and {} more of the path",
+            "и ещё отклонения пути: {}",
+            comparison.more_mismatches
+        ));
     }
     findings
 }
 
 /// * `said` – settings that differ and were named: they differ until one of both programs sets them
-fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[String; 2]>) -> Vec<String> {
+fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[Text; 2]>) -> Vec<Text> {
     let Mismatch { what, wanted_line: wanted, commanded_line: made } = mismatch;
     let one = match what {
         What::TooFar(mm) => {
-            format!(
+            both!(
                 "line {made} of the corrected program is {:.3} um off the path of line {wanted}",
+                "строка {made} исправленной программы отходит от пути строки {wanted} на {:.3} мкм",
                 mm * 1e3
             )
         }
-        What::Missing => format!("the motion of line {wanted} is missing from the corrected program"),
+        What::Missing => both!(
+            "the motion of line {wanted} is missing from the corrected program",
+            "в исправленной программе нет движения строки {wanted}"
+        ),
         What::Short(mm) => {
-            format!("the corrected program ends {:.3} um short of the end of line {wanted}", mm * 1e3)
+            both!(
+                "the corrected program ends {:.3} um short of the end of line {wanted}",
+                "исправленная программа не доходит до конца строки {wanted} на {:.3} мкм",
+                mm * 1e3
+            )
         }
-        What::Extra => format!("line {made} of the corrected program belongs to no programmed motion"),
-        What::Turned => format!(
-            "the rotary axes stand elsewhere in line {made} of the corrected program than in line {wanted}"
+        What::Extra => both!(
+            "line {made} of the corrected program belongs to no programmed motion",
+            "строка {made} исправленной программы не относится ни к одному движению исходной"
+        ),
+        What::Turned => both!(
+            "the rotary axes stand elsewhere in line {made} of the corrected program than in line {wanted}",
+            "в строке {made} исправленной программы поворотные оси стоят не там, где в строке {wanted}"
         ),
         What::NotPositioned => {
-            format!("the positioning of line {wanted} is missing from the corrected program")
+            both!(
+                "the positioning of line {wanted} is missing from the corrected program",
+                "в исправленной программе нет позиционирования строки {wanted}"
+            )
         }
         What::PositionedElsewhere => {
-            format!("line {made} of the corrected program positions the tool where the program does not")
+            both!(
+                "line {made} of the corrected program positions the tool where the program does not",
+                "строка {made} исправленной программы ставит инструмент туда, куда исходная не ставит"
+            )
         }
         What::Process([here, there]) => {
             let (Some(here), Some(there)) = (numbers.process(*here), numbers.process(*there)) else {
@@ -50,28 +73,37 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[String; 2]>
             return differences.iter().map(|[here, there]| in_force(*wanted, *made, here, there)).collect();
         }
         What::Feed(feeds) => {
-            let [here, there] = feeds.map(|f| f.map_or_else(|| "no F".to_owned(), |f| format!("F{f}")));
+            let [here, there] =
+                feeds.map(|f| f.map_or_else(|| both!("no F", "без F"), |f| Text::same(format!("F{f}"))));
             in_force(*wanted, *made, &here, &there)
         }
-        What::Compensated => format!(
-            "under cutter compensation line {made} of the corrected program is not the block of line {wanted}: one was put in or left out, and the control offsets block by block"
+        What::Compensated => both!(
+            "under cutter compensation line {made} of the corrected program is not the block of line {wanted}: one was put in or left out, and the control offsets block by block",
+            "при коррекции на радиус строка {made} исправленной программы — не кадр строки {wanted}: кадр вставлен или пропущен, а стойка смещает кадр за кадром"
         ),
-        What::Time(times) => format!(
-            "line {made} of the corrected program takes {times:.2} times as long as line {wanted} says by F"
+        What::Time(times) => both!(
+            "line {made} of the corrected program takes {times:.2} times as long as line {wanted} says by F",
+            "строка {made} исправленной программы длится в {times:.2} раза дольше, чем говорит F строки {wanted}"
         ),
         What::NotDone(deed) => {
-            format!("{} of line {wanted} is missing from the corrected program", numbers.deed(*deed))
+            both!(
+                "{} of line {wanted} is missing from the corrected program",
+                "в исправленной программе нет {} из строки {wanted}",
+                numbers.deed(*deed)
+            )
         }
-        What::DoneToo(deed) => format!(
+        What::DoneToo(deed) => both!(
             "{} on line {made} of the corrected program is not programmed, or not there",
+            "{} в строке {made} исправленной программы не запрограммировано или стоит не там",
             numbers.deed(*deed)
         ),
     };
     vec![one]
 }
 
-fn in_force(wanted: u64, made: u64, here: &str, there: &str) -> String {
-    format!(
-        "on line {made} of the corrected program {there} is in force, on line {wanted} of the program {here}"
+fn in_force(wanted: u64, made: u64, here: &Text, there: &Text) -> Text {
+    both!(
+        "on line {made} of the corrected program {there} is in force, on line {wanted} of the program {here}",
+        "в строке {made} исправленной программы действует {there:#}, а в строке {wanted} исходной — {here:#}"
     )
 }

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use diagnostic::both;
 use rayon::prelude::*;
 
 use super::arguments::{EngineForm, Merge, Plan, Run};
@@ -36,7 +37,12 @@ pub(crate) fn plan(arguments: &Plan, shared: &Shared, messages: &Messages) -> Re
     let text = manifest::text(&found.items, root, &job, shared)?;
     manifest::write(&arguments.manifest, &text)?;
     let megabytes = found.items.iter().map(|item| item.bytes).sum::<u64>() as f64 / 1e6;
-    file::print(format!("{} programs, {megabytes:.3} MB, to correct\n", found.items.len()).as_bytes())
+    let said = both!(
+        "{} programs, {megabytes:.3} MB, to correct\n",
+        "программ к исправлению: {}, {megabytes:.3} МБ\n",
+        found.items.len()
+    );
+    file::print(said.in_language(messages.language()).as_bytes())
 }
 
 /// `vpost batch run`
@@ -65,7 +71,7 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
     let name = format!("{}.{}-of-{}", manifest.name, shard.number, shard.of);
     let earlier = journal::read(&folder.journal(), Some(&[journal::WHOLE, &name]))?;
     let mut journal = Journal::begin(&folder, &name)?;
-    let progress = Progress::new(&items, shared.messages.quiet);
+    let progress = Progress::new(&items, messages);
     let batch = work::Batch {
         job: &job,
         folder: &folder,
@@ -75,16 +81,16 @@ fn share(arguments: &Run, shared: &Shared, messages: &Messages) -> Result<(), Fa
         interrupt: &interrupt,
     };
     Roles::default()
-        .reads("the manifest", &arguments.manifest)
-        .reads_all("a program", manifest.items.iter().map(|item| &item.input))
-        .reads_all("read by the profile", &job.settings.files)
+        .reads(both!("the manifest", "задание"), &arguments.manifest)
+        .reads_all(&both!("a program", "программа"), manifest.items.iter().map(|item| &item.input))
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
         .writes("--results", arguments.work.results.as_deref())
         .are_apart()?;
     let results = batch.run(&items, &mut journal, &progress, messages);
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&Records::new(), &results.records);
-    finish(&results, arguments.work.results.as_deref())?;
+    finish(&results, arguments.work.results.as_deref(), messages.language())?;
     kept?;
     match results.records.iter().map(|record| record.status).max() {
         Some(Status::Failed) => Err(Failure::Said(TRY_AGAIN)),
@@ -101,7 +107,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
     let open = match OutputFolder::open(root, Company::Alone) {
         Ok(folder) => Some(folder),
         Err(Failure::Later(_)) => {
-            messages.note("shards are still at work");
+            messages.note(&both!("shards are still at work", "части ещё работают"));
             None
         }
         Err(failure) => return Err(failure),
@@ -127,7 +133,7 @@ pub(crate) fn merge(arguments: &Merge, messages: &Messages) -> Result<(), Failur
             }
         }
         (_, of) => {
-            finish(&results, arguments.results.as_deref())?;
+            finish(&results, arguments.results.as_deref(), messages.language())?;
             say_missing(&missing, &manifest, of, messages);
         }
     }
@@ -168,14 +174,22 @@ fn shards_of(missing: &[usize], of: u32) -> Vec<u32> {
 fn say_missing(missing: &[usize], manifest: &Manifest, of: Option<u32>, messages: &Messages) {
     let Some(first) = missing.first() else { return };
     let first = &manifest.items[*first].output;
-    let mut text =
-        format!("{} of {} outputs are missing, {first} the first\n", missing.len(), manifest.items.len());
+    let mut text = both!(
+        "{} of {} outputs are missing, {first} the first\n",
+        "не хватает выходных файлов: {} из {}, первый — {first}\n",
+        missing.len(),
+        manifest.items.len()
+    );
     match of {
-        None => text.push_str("which shards to run again: add `--shards N`"),
+        None => text.push(&both!(
+            "which shards to run again: add `--shards N`",
+            "какие части запустить снова, скажет `--shards N`"
+        )),
         Some(of) => {
             let shards = shards_of(missing, of);
-            text.push_str(&format!(
+            text.push(&both!(
                 "run again: HyperQueue `--array {}`, Slurm `--array={}`, GNU parallel `::: {}`",
+                "запустите снова: HyperQueue `--array {}`, Slurm `--array={}`, GNU parallel `::: {}`",
                 shard::array(&shards, EngineForm::Hq),
                 shard::array(&shards, EngineForm::Slurm),
                 shard::array(&shards, EngineForm::Parallel).trim_end().replace('\n', " "),

@@ -17,11 +17,11 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::{Hash, Hasher};
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 
 use crate::file::{self, Place};
 use crate::growing::{GrowingFile, Nursery};
-use crate::message::{Failure, Report};
+use crate::message::{Deed, Failure, Report};
 use crate::to_disk;
 
 /// Someone else works in the output folder.
@@ -66,9 +66,9 @@ impl OutputFolder {
         let own = root.join(OWN);
         // Made whole here, it is not made whole for each file.
         let temporaries = std::path::absolute(own.join("tmp"))
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         std::fs::create_dir_all(root)
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         for (path, kind) in [
             (&own, Kind::Folder),
             (&own.join("tmp"), Kind::Folder),
@@ -83,7 +83,7 @@ impl OutputFolder {
         let lock = std::fs::create_dir_all(&temporaries)
             .and_then(|()| std::fs::create_dir_all(own.join("journal")))
             .and_then(|()| File::options().create(true).append(true).open(own.join("lock")))
-            .map_err(|error| Failure::file(&file::name(root), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(root), Deed::WriteTo, &error))?;
         let temporaries = Nursery::new(temporaries);
         let alone = match lock.try_lock() {
             Ok(()) => true,
@@ -95,7 +95,7 @@ impl OutputFolder {
         };
         if alone {
             let folder = temporaries.path();
-            sweep(folder).map_err(|error| Failure::file(&file::name(folder), "empty", &error))?;
+            sweep(folder).map_err(|error| Failure::file(&file::name(folder), Deed::Empty, &error))?;
         }
         let held = match company {
             Company::Alone => alone,
@@ -228,11 +228,16 @@ impl Kind {
         if ours {
             return Ok(());
         }
-        let what = if found.is_symlink() { "a link" } else { "not what vpost makes there" };
-        let message = format!("{} is {what}", file::name(path));
-        Err(Failure::usage(
-            Diagnostic::error(NOT_OURS, message).help("remove it, or give another output folder with `-O`"),
-        ))
+        let what = if found.is_symlink() {
+            both!("a link", "ссылка")
+        } else {
+            both!("not what vpost makes there", "не то, что создаёт там vpost")
+        };
+        let message = both!("{} is {what}", "{} — {what:#}", file::name(path));
+        Err(Failure::usage(Diagnostic::error(NOT_OURS, message).help(both!(
+            "remove it, or give another output folder with `-O`",
+            "уберите или дайте другую выходную папку ключом `-O`"
+        ))))
     }
 }
 
@@ -269,8 +274,14 @@ fn share(lock: &File) -> bool {
 
 /// Someone else works there.
 fn busy(root: &Path) -> Failure {
-    let diagnostic = Diagnostic::error(BUSY, format!("another vpost batch is at work in {}", root.display()))
-        .help("let it end, or give a folder of its own with `-O`");
+    let diagnostic = Diagnostic::error(
+        BUSY,
+        both!("another vpost batch is at work in {}", "в {} работает другой vpost batch", root.display()),
+    )
+    .help(both!(
+        "let it end, or give a folder of its own with `-O`",
+        "дождитесь конца или дайте отдельную папку ключом `-O`"
+    ));
     Failure::Later(Report { source: None, diagnostics: vec![diagnostic] })
 }
 

@@ -5,13 +5,13 @@ use std::ffi::OsStr;
 use std::fs::DirEntry;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use glob::{MatchOptions, Pattern};
 
 use super::arguments::Programs;
 use super::folder;
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 
 /// No program was found.
 const NONE_FOUND: Code = Code(1001);
@@ -70,7 +70,7 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
         let data = input.metadata().map_err(|error| Failure::unread(&file::name(input), &error))?;
         if data.is_dir() {
             let entries =
-                entries_of(input).map_err(|error| Failure::file(&file::name(input), "read", &error))?;
+                entries_of(input).map_err(|error| Failure::file(&file::name(input), Deed::Read, &error))?;
             search.folder(entries, Path::new(""), &mut found)?;
         } else {
             let name = input.file_name().map(Path::new).unwrap_or(input);
@@ -80,12 +80,18 @@ pub(crate) fn find(programs: &Programs, output: &Path) -> Result<Found, Failure>
     if found.items.is_empty() {
         let others = found.others.len();
         return Err(Failure::usage(
-            Diagnostic::error(NONE_FOUND, format!("no program was found; {others} other files were")).help(
-                format!(
-                    "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
-                    ENDINGS.join(" .")
+            Diagnostic::error(
+                NONE_FOUND,
+                both!(
+                    "no program was found; {others} other files were",
+                    "программ не найдено, а прочих файлов: {others}"
                 ),
-            ),
+            )
+            .help(both!(
+                "programs are files that end in .{}; others: `--pattern \"*.txt\"`, or name the files",
+                "программы — файлы с расширением .{}; другие: `--pattern \"*.txt\"` или назовите файлы",
+                ENDINGS.join(" .")
+            )),
         ));
     }
     found.items.sort_by(|a, b| a.output.cmp(&b.output).then_with(|| a.input.cmp(&b.input)));
@@ -114,7 +120,7 @@ impl Search {
                 continue;
             }
             let kind =
-                entry.file_type().map_err(|error| Failure::file(&file::name(&path), "read", &error))?;
+                entry.file_type().map_err(|error| Failure::file(&file::name(&path), Deed::Read, &error))?;
             if kind.is_dir() {
                 if self.output.is_some() && path.canonicalize().ok() == self.output {
                     continue;
@@ -179,9 +185,8 @@ fn patterns(option: &str, given: &[String]) -> Result<Vec<Pattern>, Failure> {
     let parse = |text: &String| {
         Pattern::new(text).map_err(|error| {
             Failure::option(
-                format!("`{option} {text}` is no pattern: {}", error.msg),
-                format!(
-                    "write as for the shell, in quotes: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`"
+                both!("`{option} {text}` is no pattern: {}", "`{option} {text}` — не шаблон: {}", error.msg),
+                both!("write as for the shell, in quotes: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`", "пишите как для оболочки, в кавычках: `{option} \"*.nc\"`, `{option} \"fixtures/**/*.nc\"`"
                 ),
             )
         })
@@ -208,8 +213,8 @@ impl Item {
         // Shown as it is, one such name looks like another.
         let read = measurement_files::utf8_or_1251(self.input.as_os_str().as_encoded_bytes());
         Err(Failure::usage(
-            Diagnostic::error(NAME, format!("a name is not UTF-8; as Windows-1251 it reads {read}")).help(
-                "results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`",
+            Diagnostic::error(NAME, both!("a name is not UTF-8; as Windows-1251 it reads {read}", "имя не в UTF-8; в Windows-1251 оно читается как {read}")).help(
+                both!("results are listed by name: rename it, for example with `convmv -f cp1251 -t utf8 --notest`", "результаты перечисляются по именам: переименуйте, например командой `convmv -f cp1251 -t utf8 --notest`"),
             ),
         ))
     }
@@ -243,13 +248,17 @@ fn check_places(items: &[Item], output: &Path) -> Result<(), Failure> {
             return Err(Failure::usage(
                 Diagnostic::error(
                     ONTO_INPUT,
-                    format!(
+                    both!(
                         "the correction of {} would be written over {}",
+                        "исправление {} легло бы поверх {}",
                         item.input.display(),
                         input.input.display()
                     ),
                 )
-                .help("give a folder of its own: `-O corrected`"),
+                .help(both!(
+                    "give a folder of its own: `-O corrected`",
+                    "дайте отдельную папку: `-O corrected`"
+                )),
             ));
         }
     }
@@ -260,13 +269,17 @@ fn collision(a: &Item, b: &Item, output: &Path) -> Failure {
     Failure::usage(
         Diagnostic::error(
             COLLISION,
-            format!(
+            both!(
                 "{} and {} would both be written to {}",
+                "{} и {} попали бы в одно место: {}",
                 a.input.display(),
                 b.input.display(),
                 output.join(&a.output).display()
             ),
         )
-        .help("name the folder above both instead of the files, or run vpost once for each `-O`"),
+        .help(both!(
+            "name the folder above both instead of the files, or run vpost once for each `-O`",
+            "вместо файлов назовите папку над обоими или запустите vpost для каждого со своим `-O`"
+        )),
     )
 }

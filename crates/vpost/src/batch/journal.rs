@@ -13,7 +13,7 @@ use super::folder::OutputFolder;
 use super::record::{self, Record};
 use crate::file;
 use crate::growing::for_everybody;
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 
 /// The journal of whatever was done in the folder and needs no shard's name.
 pub(crate) const WHOLE: &str = "batch";
@@ -43,7 +43,7 @@ impl<'f> Journal<'f> {
         let (file, live) = for_everybody(&mut builder)
             .tempfile_in(&own)
             .and_then(|file| file.keep().map_err(|error| error.error))
-            .map_err(|error| Failure::file(&file::name(&own), "write to", &error))?;
+            .map_err(|error| Failure::file(&file::name(&own), Deed::WriteTo, &error))?;
         Ok(Self { folder, name: name.to_owned(), live, file, torn: false })
     }
 
@@ -67,7 +67,7 @@ impl<'f> Journal<'f> {
         all.extend(records.iter().map(|record| (record.output.as_str(), std::slice::from_ref(record))));
         self.folder
             .put_journal(&name, &record::lines(all.into_values().flatten()))
-            .map_err(|error| Failure::file(&file::name(&place), "write", &error))?;
+            .map_err(|error| Failure::file(&file::name(&place), Deed::Write, &error))?;
         for path in stale.iter().chain([&self.live]).filter(|path| **path != place) {
             // What cannot be removed is read again and says nothing new.
             let _ = std::fs::remove_file(path);
@@ -94,7 +94,7 @@ pub(crate) fn read(folder: &Path, names: Option<&[&str]>) -> Result<Records, Fai
             Ok(bytes) => bytes,
             // Another shard has just put its files together.
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            Err(error) => return Err(Failure::file(&file::name(&path), "read", &error)),
+            Err(error) => return Err(Failure::file(&file::name(&path), Deed::Read, &error)),
         };
         for line in bytes.split(|byte| *byte == b'\n') {
             // Killed in the middle of a line: that program is corrected again.
@@ -110,7 +110,7 @@ pub(crate) fn read(folder: &Path, names: Option<&[&str]>) -> Result<Records, Fai
 
 /// The journals' files, in order.
 fn files(folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
-    let fail = |error: io::Error| Failure::file(&file::name(folder), "read", &error);
+    let fail = |error: io::Error| Failure::file(&file::name(folder), Deed::Read, &error);
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(fail)? {
         let entry = entry.map_err(fail)?;

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use super::inputs::Item;
 use super::job::Job;
 use crate::arguments::{JobOptions, Shared};
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::{Deed, Failure, Messages};
 
 /// The manifest cannot be used.
 const MANIFEST: Code = Code(1010);
@@ -68,7 +68,7 @@ pub(crate) fn text(items: &[Item], output: &Path, job: &Job, shared: &Shared) ->
         .par_iter()
         .map(|item| {
             let (bytes, hash) = folder::hash(&item.input)
-                .map_err(|error| Failure::file(&file::name(&item.input), "read", &error))?;
+                .map_err(|error| Failure::file(&file::name(&item.input), Deed::Read, &error))?;
             let blake3 = hash.to_hex().to_string();
             Ok(Program { output: item.output.clone(), input: item.input.clone(), bytes, blake3 })
         })
@@ -105,8 +105,8 @@ fn line(text: &mut Vec<u8>, value: &impl Serialize) -> Result<(), Failure> {
     // Only the name of a file or folder can be what JSON does not hold.
     serde_json::to_writer(&mut *text, value).map_err(|error| {
         unusable(
-            format!("the plan cannot be written: {error}"),
-            "give files and folders names that are UTF-8",
+            both!("the plan cannot be written: {error}", "план не записать: {error}"),
+            both!("give files and folders names that are UTF-8", "дайте файлам и папкам имена в UTF-8"),
         )
     })?;
     text.push(b'\n');
@@ -120,7 +120,7 @@ fn include_hash(folders: &[PathBuf]) -> Result<Option<String>, Failure> {
     }
     let mut hasher = blake3::Hasher::new();
     for folder in folders {
-        let fail = |error: std::io::Error| Failure::file(&file::name(folder), "read", &error);
+        let fail = |error: std::io::Error| Failure::file(&file::name(folder), Deed::Read, &error);
         let mut paths = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(fail)? {
             paths.push(entry.map_err(fail)?.path());
@@ -141,11 +141,18 @@ pub(crate) fn write(path: &Path, text: &[u8]) -> Result<(), Failure> {
     match std::fs::read(path) {
         Ok(present) if present == text => Ok(()),
         Ok(_) => Err(unusable(
-            format!("{} is there already, and a manifest does not change", path.display()),
-            "give another name, or delete it if no shard of it will run again",
+            both!(
+                "{} is there already, and a manifest does not change",
+                "{} уже есть, а задание не меняется",
+                path.display()
+            ),
+            both!(
+                "give another name, or delete it if no shard of it will run again",
+                "дайте другое имя или удалите его, если его части больше не пойдут"
+            ),
         )),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => file::write(path, text),
-        Err(error) => Err(Failure::file(&file::name(path), "read", &error)),
+        Err(error) => Err(Failure::file(&file::name(path), Deed::Read, &error)),
     }
 }
 
@@ -154,57 +161,92 @@ impl Manifest {
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let text = std::fs::read(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => Failure::unread(&file::name(path), &error),
-            _ => Failure::file(&file::name(path), "read", &error),
+            _ => Failure::file(&file::name(path), Deed::Read, &error),
         })?;
-        let damaged = |what: String| {
+        let damaged = |what: Text| {
             unusable(
-                format!("{} is no manifest as `vpost batch plan` wrote it: {what}", path.display()),
-                "copy it again, or make a new one with `vpost batch plan`",
+                both!(
+                    "{} is no manifest as `vpost batch plan` wrote it: {what}",
+                    "{} — не задание в том виде, как его записал `vpost batch plan`: {what:#}",
+                    path.display()
+                ),
+                both!(
+                    "copy it again, or make a new one with `vpost batch plan`",
+                    "скопируйте его снова или составьте заново: `vpost batch plan`"
+                ),
             )
         };
         let at = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |at| at + 1);
         let (first, lines) = text.split_at(at);
         // Before the fields, which may be others in another version.
-        let schema: serde_json::Value =
-            serde_json::from_slice(first).map_err(|error| damaged(format!("line 1: {error}")))?;
+        let schema: serde_json::Value = serde_json::from_slice(first)
+            .map_err(|error| damaged(both!("line 1: {error}", "строка 1: {error}")))?;
         if schema["schema"] != SCHEMA {
-            return Err(damaged(format!("its first line does not say {SCHEMA}")));
+            return Err(damaged(both!(
+                "its first line does not say {SCHEMA}",
+                "в его первой строке нет {SCHEMA}"
+            )));
         }
         if schema["version"] != env!("CARGO_PKG_VERSION") {
             return Err(unusable(
-                format!(
+                both!(
                     "{} was written by vpost {}, this is {}",
+                    "{} записан vpost {:#}, а этот — {}",
                     path.display(),
-                    schema["version"].as_str().unwrap_or("of another version"),
+                    schema["version"]
+                        .as_str()
+                        .map_or(Text::pair("of another version", "другой версии"), Text::same),
                     env!("CARGO_PKG_VERSION")
                 ),
-                "run one version on all machines; another version may write other bytes",
+                both!(
+                    "run one version on all machines; another version may write other bytes",
+                    "запускайте на всех машинах одну версию: другая может записать другие байты"
+                ),
             ));
         }
-        let header: Header =
-            serde_json::from_slice(first).map_err(|error| damaged(format!("line 1: {error}")))?;
+        let header: Header = serde_json::from_slice(first)
+            .map_err(|error| damaged(both!("line 1: {error}", "строка 1: {error}")))?;
         if blake3::hash(lines).to_hex().as_str() != header.programs_blake3 {
-            return Err(damaged("the lines below the first were changed or cut".to_owned()));
+            return Err(damaged(both!(
+                "the lines below the first were changed or cut",
+                "строки после первой изменены или обрезаны"
+            )));
         }
         let mut items = Vec::new();
         let mut outputs = std::collections::BTreeSet::new();
         for (at, line) in lines.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).enumerate() {
-            let Program { output, input, bytes, blake3 } =
-                serde_json::from_slice(line).map_err(|error| damaged(format!("line {}: {error}", at + 2)))?;
+            let Program { output, input, bytes, blake3 } = serde_json::from_slice(line)
+                .map_err(|error| damaged(both!("line {}: {error}", "строка {}: {error}", at + 2)))?;
             if !stays_inside(&output) {
-                return Err(damaged(format!("line {}: its output leaves the output folder", at + 2)));
+                return Err(damaged(both!(
+                    "line {}: its output leaves the output folder",
+                    "строка {}: её выходной файл вне выходной папки",
+                    at + 2
+                )));
             }
             // As for `plan`: letters' case counts for nothing on the shares that most controls read.
             if !outputs.insert(output.to_lowercase()) {
-                return Err(damaged(format!("line {}: its output is another program's, too", at + 2)));
+                return Err(damaged(both!(
+                    "line {}: its output is another program's, too",
+                    "строка {}: её выходной файл — ещё и другой программы",
+                    at + 2
+                )));
             }
             items.push(Item { input, output, bytes, blake3: Some(blake3) });
         }
         if items.iter().try_fold(0_u64, |sum, item: &Item| sum.checked_add(item.bytes)).is_none() {
-            return Err(damaged("its programs are larger than any disk".to_owned()));
+            return Err(damaged(both!(
+                "its programs are larger than any disk",
+                "его программы больше любого диска"
+            )));
         }
         if items.len() != header.programs {
-            return Err(damaged(format!("it says {} programs and has {}", header.programs, items.len())));
+            return Err(damaged(both!(
+                "it says {} programs and has {}",
+                "в нём сказано программ {}, а есть {}",
+                header.programs,
+                items.len()
+            )));
         }
         let name = blake3::hash(&text).to_hex()[..16].to_owned();
         Ok(Self { header, items, name })
@@ -224,17 +266,32 @@ impl Manifest {
     pub(crate) fn job(&self, own: &Shared, messages: &Messages) -> Result<Job, Failure> {
         let shared = Shared { job: self.header.options.clone(), messages: own.messages.clone() };
         let job = Job::load(&shared, messages)?;
-        let changed = |what: &str| {
+        let changed = |what: Text| {
             Failure::usage(
-                Diagnostic::error(JOB_CHANGED, format!("{what} changed since the plan was made"))
-                    .help("bring it back, or make a new plan with `vpost batch plan`"),
+                Diagnostic::error(
+                    JOB_CHANGED,
+                    both!(
+                        "{what} changed since the plan was made",
+                        "{what:#}: изменилось после составления плана"
+                    ),
+                )
+                .help(both!(
+                    "bring it back, or make a new plan with `vpost batch plan`",
+                    "верните прежнее или составьте план заново: `vpost batch plan`"
+                )),
             )
         };
         if job.hash.to_hex().as_str() != self.header.job_blake3 {
-            return Err(changed("the profile, one of its tables, or the dialect"));
+            return Err(changed(both!(
+                "the profile, one of its tables, or the dialect",
+                "профиль, одна из его таблиц или диалект"
+            )));
         }
         if include_hash(&shared.job.include)? != self.header.include_blake3 {
-            return Err(changed("a file in a folder of subprograms (`--include`)"));
+            return Err(changed(both!(
+                "a file in a folder of subprograms (`--include`)",
+                "файл в папке подпрограмм (`--include`)"
+            )));
         }
         Ok(job)
     }
@@ -248,6 +305,6 @@ fn stays_inside(output: &str) -> bool {
     parts.iter().all(plain) && parts.first() != Some(&OWN) && !Path::new(output).has_root()
 }
 
-fn unusable(message: String, help: &str) -> Failure {
+fn unusable(message: Text, help: Text) -> Failure {
     Failure::usage(Diagnostic::error(MANIFEST, message).help(help))
 }

@@ -24,6 +24,8 @@ use std::path::Path;
 pub use arguments::Batch;
 use arguments::BatchCommand;
 
+use diagnostic::both;
+
 use crate::arguments::Shared;
 use crate::exit_status::REFUSED;
 
@@ -53,8 +55,8 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     has_place(arguments.work.results.as_deref())?;
     let found = inputs::find(&arguments.programs, root)?;
     Roles::default()
-        .reads_all("a program", found.items.iter().map(|item| &item.input))
-        .reads_all("read by the profile", &job.settings.files)
+        .reads_all(&both!("a program", "программа"), found.items.iter().map(|item| &item.input))
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &job.settings.files)
         .writes("--results", arguments.work.results.as_deref().filter(|path| path.as_os_str() != "-"))
         .are_apart()?;
     passed_over(&found, messages);
@@ -62,11 +64,11 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     let folder = OutputFolder::open(root, Company::Alone)?;
     if !folder.is_locked() && shared.messages.verbose > 0 {
         messages
-            .note("the output folder's file system knows no locks: nothing that a killed run left is swept");
+            .note(&both!("the output folder's file system knows no locks: nothing that a killed run left is swept", "файловая система выходной папки не знает блокировок: то, что осталось от прерванного запуска, не убирается"));
     }
     let earlier = journal::read(&folder.journal(), None)?;
     let mut journal = Journal::begin(&folder, journal::WHOLE)?;
-    let progress = Progress::new(&found.items, shared.messages.quiet);
+    let progress = Progress::new(&found.items, messages);
     let batch = work::Batch {
         job: &job,
         folder: &folder,
@@ -79,7 +81,7 @@ fn here(arguments: &Batch, shared: &Shared, messages: &Messages) -> Result<(), F
     progress.end();
     let results = results.map_err(|failure| interrupted(failure, messages))?;
     let kept = journal.end(&earlier, &results.records);
-    finish(&results, arguments.work.results.as_deref())?;
+    finish(&results, arguments.work.results.as_deref(), messages.language())?;
     kept?;
     if results.records.iter().all(|record| record.status.is_done()) {
         Ok(())

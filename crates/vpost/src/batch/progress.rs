@@ -1,8 +1,15 @@
 //! How far the work is, on a terminal only.
 
+use diagnostic::Text;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::inputs::Item;
+use crate::message::Messages;
+
+static TEMPLATE: Text = Text::pair(
+    "{bar:30} {msg} programs  {decimal_bytes_per_sec}  {elapsed} gone, {eta} left",
+    "{bar:30} программ {msg}  {decimal_bytes_per_sec}  прошло {elapsed}, осталось {eta}",
+);
 
 /// A bar on standard error: programs, MB/s and the time that is left. Off a terminal, nothing.
 #[derive(Debug)]
@@ -14,14 +21,13 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// A bar as long as all programs together.
-    pub(crate) fn new(items: &[Item], quiet: bool) -> Self {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    pub(crate) fn new(items: &[Item], messages: &Messages) -> Self {
+        let language = messages.language();
+        let target =
+            if messages.are_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(items.iter().map(|item| item.bytes).sum()), target);
         bar.set_style(
-            ProgressStyle::with_template(
-                "{bar:30} {msg} programs  {decimal_bytes_per_sec}  {elapsed} gone, {eta} left",
-            )
-            .expect("a template that was tried"),
+            ProgressStyle::with_template(TEMPLATE.in_language(language)).expect("a template that was tried"),
         );
         let progress = Self { bar, programs: items.len(), done: std::cell::Cell::new(0) };
         progress.say();

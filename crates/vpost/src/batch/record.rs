@@ -112,11 +112,11 @@ impl Fault {
         let line = diagnostic.span.as_ref().zip(source).map(|(span, source)| source.line(span.start));
         Self {
             code: diagnostic.code.to_string(),
-            message: diagnostic.message.clone(),
+            message: diagnostic.message.english().to_owned(),
             file: source.map(|source| source.name.clone()),
             line,
-            note: diagnostic.label.clone(),
-            help: diagnostic.help.clone(),
+            note: diagnostic.label.english().to_owned(),
+            help: diagnostic.help.as_ref().map(|help| help.english().to_owned()),
         }
     }
 }

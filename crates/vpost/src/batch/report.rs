@@ -6,20 +6,45 @@ use super::work::Results;
 use super::{inputs, record, table};
 use crate::file;
 use crate::message::{Failure, Messages};
+use diagnostic::{Language, Text, both};
 
 /// What a folder held besides programs: a program of an unusual name must not be missed.
 pub(super) fn passed_over(found: &inputs::Found, messages: &Messages) {
     for (paths, what, way) in [
-        (&found.others, "file(s) are no programs by name or kind and were passed over", "see `--pattern`"),
-        (&found.links, "link(s) to folders were not followed", "name such a folder itself"),
+        (
+            &found.others,
+            Text::pair(
+                "file(s) are no programs by name or kind and were passed over",
+                "файлы, которые по имени или виду не программы, пропущены",
+            ),
+            Text::pair("see `--pattern`", "см. `--pattern`"),
+        ),
+        (
+            &found.links,
+            Text::pair("link(s) to folders were not followed", "ссылки на папки не просмотрены"),
+            Text::pair("name such a folder itself", "назовите саму папку"),
+        ),
         (
             &found.outputs,
-            "folder(s) of another `vpost batch`'s outputs were passed over",
-            "correct programs as posted",
+            Text::pair(
+                "folder(s) of another `vpost batch`'s outputs were passed over",
+                "папки с выходными файлами другого `vpost batch` пропущены",
+            ),
+            Text::pair(
+                "correct programs as posted",
+                "исправляйте программы в том виде, как их выдал постпроцессор",
+            ),
         ),
     ] {
         if let Some(first) = paths.first() {
-            messages.note(&format!("{} {what}, {} the first ({way})", paths.len(), first.display()));
+            messages.note(&both!(
+                "{} {}, {} the first ({})",
+                "{1:#}: {0}, первый — {2} ({3:#})",
+                paths.len(),
+                what,
+                first.display(),
+                way
+            ));
         }
     }
 }
@@ -27,7 +52,10 @@ pub(super) fn passed_over(found: &inputs::Found, messages: &Messages) {
 /// What is done stays, and the next run begins there.
 pub(super) fn interrupted(failure: Failure, messages: &Messages) -> Failure {
     let Failure::Interrupted(signal) = failure else { return failure };
-    messages.note("interrupted: what is done is done; the same command goes on from there");
+    messages.note(&both!(
+        "interrupted: what is done is done; the same command goes on from there",
+        "прервано: сделанное сделано; та же команда продолжит с этого места"
+    ));
     Failure::Said(128 + signal)
 }
 
@@ -36,20 +64,23 @@ pub(super) fn has_place(lines: Option<&Path>) -> Result<(), Failure> {
     let folder = lines.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
     match folder {
         Some(folder) if !folder.is_dir() => Err(Failure::option(
-            format!("`--results`: there is no folder {}", folder.display()),
-            "make it first, or name a file in a folder that is there",
+            both!("`--results`: there is no folder {}", "`--results`: папки {} нет", folder.display()),
+            both!(
+                "make it first, or name a file in a folder that is there",
+                "создайте её или назовите файл в существующей папке"
+            ),
         )),
         _ => Ok(()),
     }
 }
 
 /// Results to disk and to the user, who gets the table whatever cannot be written.
-pub(super) fn finish(results: &Results, lines: Option<&Path>) -> Result<(), Failure> {
+pub(super) fn finish(results: &Results, lines: Option<&Path>, language: Language) -> Result<(), Failure> {
     let (written, printed) = match lines {
         Some(path) if path.as_os_str() == "-" => (Ok(()), file::print(&record::lines(&results.records))),
         path => (
             path.map_or(Ok(()), |path| file::write(path, &record::lines(&results.records))),
-            file::print(table::table(results).as_bytes()),
+            file::print(table::table(results, language).as_bytes()),
         ),
     };
     written.and(printed)

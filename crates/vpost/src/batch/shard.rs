@@ -1,6 +1,6 @@
 //! Shares of a manifest's programs.
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use super::arguments::EngineForm;
 use crate::message::Failure;
@@ -38,10 +38,14 @@ impl Shard {
             let Some((name, first, value)) = found else {
                 let names = TASK_NUMBERS.map(|(name, _)| name).join(", ");
                 return Err(wrong(
-                    format!(
-                        "`--shard {given}` takes its number from the environment, and none of {names} is set"
+                    both!(
+                        "`--shard {given}` takes its number from the environment, and none of {names} is set",
+                        "`--shard {given}` берёт номер из окружения, а ни одна из переменных {names} не задана"
                     ),
-                    format!("outside of a task array say it yourself: `--shard 1/{of}`"),
+                    both!(
+                        "outside of a task array say it yourself: `--shard 1/{of}`",
+                        "вне массива заданий назовите его сами: `--shard 1/{of}`"
+                    ),
                 ));
             };
             // Below the first number: shard 0, which is told below.
@@ -54,8 +58,11 @@ impl Shard {
             Ok(Self { number, of })
         } else {
             Err(wrong(
-                format!("`{said}`: there is no shard {number} of {of}"),
-                format!("shards are numbered from 1: submit the array as 1-{of}"),
+                both!("`{said}`: there is no shard {number} of {of}", "`{said}`: части {number} из {of} нет"),
+                both!(
+                    "shards are numbered from 1: submit the array as 1-{of}",
+                    "части нумеруются с 1: отправляйте массив как 1-{of}"
+                ),
             ))
         }
     }
@@ -73,12 +80,15 @@ impl Shard {
 
 fn unreadable(given: &str) -> Failure {
     wrong(
-        format!("`{given}` is no shard"),
-        "write `--shard 3/10` or, in a task array, `--shard auto/10`".to_owned(),
+        both!("`{given}` is no shard", "`{given}` — не часть"),
+        both!(
+            "write `--shard 3/10` or, in a task array, `--shard auto/10`",
+            "напишите `--shard 3/10` или, в массиве заданий, `--shard auto/10`"
+        ),
     )
 }
 
-fn wrong(message: String, help: String) -> Failure {
+fn wrong(message: Text, help: Text) -> Failure {
     Failure::usage(Diagnostic::error(SHARD, message).help(help))
 }
 

@@ -12,7 +12,7 @@ use super::journal::Journal;
 use super::outcome::Outcome;
 use super::record::Record;
 use crate::file;
-use crate::message::Failure;
+use crate::message::{Deed, Failure};
 
 /// Where finished outputs wait for the disk.
 pub(crate) struct Shelf<'a, 'f> {
@@ -36,7 +36,7 @@ impl<'a, 'f> Shelf<'a, 'f> {
                 let put = synced.as_ref().map_err(again).and_then(|()| self.place(grown, outcome));
                 if let Err(error) = put {
                     let place = self.folder.place(&outcome.record.output);
-                    outcome.fail(Failure::file(&file::name(&place), "write", &error));
+                    outcome.fail(Failure::file(&file::name(&place), Deed::Write, &error));
                 }
             }
             if !outcome.resumed {

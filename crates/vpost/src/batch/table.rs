@@ -2,18 +2,29 @@
 
 use std::collections::BTreeMap;
 
+use diagnostic::{Language, Text, both, russian_plural};
+
 use super::record::{Fault, Record, Status};
 use super::work::Results;
+use crate::explain;
+
+static HEADER: Text = Text::pair(
+    "            programs      MB in     MB out\n",
+    "              программ   МБ вход   МБ выход\n",
+);
+static REFUSED: Text = Text::pair("refused or failed", "не приняты или не удались");
+static WARNINGS: Text = Text::pair("warnings", "предупреждения");
 
 /// The results in a few lines: how many, how far off, and what was refused for which reason.
-pub(crate) fn table(results: &Results) -> String {
+pub(crate) fn table(results: &Results, language: Language) -> String {
     let records = &results.records;
-    let mut text = String::from("            programs      MB in     MB out\n");
+    let mut text = HEADER.in_language(language).to_owned();
+    let mut say = |said: &Text| text.push_str(said.in_language(language));
     for (status, name) in [
-        (Status::Corrected, "corrected"),
-        (Status::Unchanged, "unchanged"),
-        (Status::Refused, "refused"),
-        (Status::Failed, "failed"),
+        (Status::Corrected, Text::pair("corrected", "исправлено")),
+        (Status::Unchanged, Text::pair("unchanged", "без изменений")),
+        (Status::Refused, Text::pair("refused", "не принято")),
+        (Status::Failed, Text::pair("failed", "не удалось")),
     ] {
         let of = |record: &&Record| record.status == status;
         let count = records.iter().filter(of).count();
@@ -26,44 +37,61 @@ pub(crate) fn table(results: &Results) -> String {
             String::new()
         };
         if count > 0 || status == Status::Corrected {
-            text.push_str(&format!("{name:<12}{count:8}{into:11.3}{out}\n"));
+            let [english, russian] = Language::ALL.map(|language| name.in_language(language).to_owned());
+            say(&Text::new(
+                format!("{english:<12}{count:8}{into:11.3}{out}\n"),
+                format!("{russian:<14}{count:8}{into:11.3}{out}\n"),
+            ));
         }
     }
     if results.resumed > 0 {
-        text.push_str(&format!("{} of them were done by an earlier run\n", results.resumed));
+        say(&both!(
+            "{} of them were done by an earlier run\n",
+            "из них сделано прежним запуском: {}\n",
+            results.resumed
+        ));
     }
     let largest = records
         .iter()
         .filter_map(|record| Some((record.figures.as_ref()?, &record.output)))
         .reduce(|a, b| if b.0.largest_correction_um > a.0.largest_correction_um { b } else { a });
     if let Some((figures, output)) = largest {
-        text.push_str(&format!(
+        say(&both!(
             "largest correction: {:.1} um ({output}, line {})\n",
-            figures.largest_correction_um, figures.largest_correction_line
+            "наибольшая поправка: {:.1} мкм ({output}, строка {})\n",
+            figures.largest_correction_um,
+            figures.largest_correction_line
         ));
     }
     let after = records.iter().filter_map(|record| Some(record.figures.as_ref()?.deviation_after_um));
     let before = records.iter().filter_map(|record| Some(record.figures.as_ref()?.deviation_before_um));
     if let (Some(before), Some(after)) = (before.reduce(f64::max), after.reduce(f64::max)) {
-        text.push_str(&format!("paths off by at most {before:.1} um before, {after:.2} um after\n"));
+        say(&both!(
+            "paths off by at most {before:.1} um before, {after:.2} um after\n",
+            "отклонение пути не больше {before:.1} мкм до, {after:.2} мкм после\n"
+        ));
     }
-    text.push_str(&reasons("refused or failed", records, |record| &record.errors));
-    text.push_str(&reasons("warnings", records, |record| &record.warnings));
+    say(&reasons(&REFUSED, records, |record| &record.errors));
+    say(&reasons(&WARNINGS, records, |record| &record.warnings));
     let older: Vec<&str> =
         records.iter().filter(|record| record.older_output).map(|record| record.output.as_str()).collect();
     if let Some(first) = older.first() {
-        text.push_str(&format!(
-            "{} of these still {} an output of an earlier run, which is out of date: {first}{}\n",
-            older.len(),
-            if older.len() == 1 { "has" } else { "have" },
-            if older.len() == 1 { "" } else { ", …" },
+        let (count, more) = (older.len(), if older.len() == 1 { "" } else { ", …" });
+        let have = if count == 1 { "has" } else { "have" };
+        let outputs =
+            russian_plural(count as u64, ["устаревший файл", "устаревших файла", "устаревших файлов"]);
+        say(&Text::new(
+            format!(
+                "{count} of these still {have} an output of an earlier run, which is out of date: {first}{more}\n"
+            ),
+            format!("на месте выходных остались от прежнего запуска {count} {outputs}: {first}{more}\n"),
         ));
     }
     text
 }
 
 /// Message numbers with how many programs have them and the first of those.
-fn reasons<'r>(title: &str, records: &'r [Record], faults: impl Fn(&'r Record) -> &'r Vec<Fault>) -> String {
+fn reasons<'r>(title: &Text, records: &'r [Record], faults: impl Fn(&'r Record) -> &'r Vec<Fault>) -> Text {
     let mut by_code: BTreeMap<(&str, &str), (usize, &str, &str)> = BTreeMap::new();
     for record in records {
         let mut codes: Vec<&Fault> = faults(record).iter().collect();
@@ -79,12 +107,17 @@ fn reasons<'r>(title: &str, records: &'r [Record], faults: impl Fn(&'r Record) -
         }
     }
     if by_code.is_empty() {
-        return String::new();
+        return Text::EMPTY;
     }
-    let mut text = format!("{title}:\n");
+    let mut text = both!("{title}:\n", "{title:#}:\n");
     for ((code, _), (count, message, first)) in by_code {
         let more = if count > 1 { ", …" } else { "" };
-        text.push_str(&format!("{count:8}  {code}  {message}: {first}{more}\n"));
+        // Records are English; what a number means stands in the page that explains it.
+        let russian = explain::title(code, Language::Russian).unwrap_or(message);
+        text.push(&both!(
+            "{count:8}  {code}  {message}: {first}{more}\n",
+            "{count:8}  {code}  {russian}: {first}{more}\n"
+        ));
     }
     text
 }

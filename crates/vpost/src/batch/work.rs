@@ -9,7 +9,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use blake3::Hash;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use super::folder::{Grown, OutputFolder, hash};
 use super::inputs::Item;
@@ -21,7 +21,7 @@ use super::record::{Record, Status};
 use super::shelf::Shelf;
 use crate::file;
 use crate::interrupt::Interrupt;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 
 /// An output would be written over a file that vpost did not write.
 const FOREIGN: Code = Code(1006);
@@ -81,7 +81,13 @@ impl<'a> Batch<'a> {
         let threads = self.threads;
         let workers = threads.min(items.len()).max(1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(workers).build().map_err(|error| {
-            Failure::option(format!("{threads} threads cannot be had: {error}"), "fewer: `--jobs 2`")
+            Failure::option(
+                both!(
+                    "{threads} threads cannot be had: {error}",
+                    "потоков {threads} получить нельзя: {error}"
+                ),
+                both!("fewer: `--jobs 2`", "меньше: `--jobs 2`"),
+            )
         })?;
         let next = AtomicUsize::new(0);
         // Each worker has so many outputs in hand, as many again on the way, and those of a group wait for the disk.
@@ -136,7 +142,9 @@ impl<'a> Batch<'a> {
                     told.take(index, outcome, progress, messages);
                 }
             }
-            shelf.end().map_err(|error| Failure::file("the output folder", "write to", &error))?;
+            shelf.end().map_err(|error| {
+                Failure::place(&Text::pair("the output folder", "выходную папку"), Deed::WriteTo, &error)
+            })?;
             self.interrupt.check()?;
             Ok(told.results)
         })
@@ -146,9 +154,14 @@ impl<'a> Batch<'a> {
     fn guarded(&self, item: &Item, threads: usize) -> Result<Outcome, Failure> {
         catch_unwind(AssertUnwindSafe(|| self.one(item, threads))).unwrap_or_else(|_| {
             let mut outcome = Outcome::of(self.record(item));
-            let diagnostic =
-                Diagnostic::error(DEFECT, format!("vpost broke down on {}", item.input.display()))
-                    .help("this is a defect of vpost; please report it with the program and the lines above");
+            let diagnostic = Diagnostic::error(
+                DEFECT,
+                both!("vpost broke down on {}", "vpost сломался на {}", item.input.display()),
+            )
+            .help(both!(
+                "this is a defect of vpost; please report it with the program and the lines above",
+                "это ошибка vpost; сообщите о ней, приложив программу и строки выше"
+            ));
             outcome.fail(refused(diagnostic));
             Ok(outcome)
         })
@@ -204,7 +217,7 @@ impl<'a> Batch<'a> {
             record.bytes_in = bytes;
             planned(item, hash)?;
             if item.blake3.is_some() && bytes != item.bytes {
-                return Err(changed(&item.input, "is of another length"));
+                return Err(changed(&item.input, &both!("is of another length", "другой длины")));
             }
             record.input_blake3 = Some(hash.to_hex().to_string());
         }
@@ -214,7 +227,7 @@ impl<'a> Batch<'a> {
             return Ok(());
         }
         let place = || self.folder.place(&item.output);
-        let fail = |error: std::io::Error| Failure::file(&file::name(&place()), "write", &error);
+        let fail = |error: std::io::Error| Failure::file(&file::name(&place()), Deed::Write, &error);
         let mut temporary = self.folder.temporary().map_err(fail)?;
         let done = self.job.correct(item, threads, &mut temporary, self.interrupt)?;
         if let Some(hash) = done.input.hash {
@@ -244,7 +257,7 @@ impl<'a> Batch<'a> {
         });
         let Some(known) = same else { return Ok(None) };
         let present = self.folder.present(&record.output).map_err(|error| {
-            Failure::file(&file::name(&self.folder.place(&record.output)), "read", &error)
+            Failure::file(&file::name(&self.folder.place(&record.output)), Deed::Read, &error)
         })?;
         let intact = present.is_some_and(|hash| is(known.output_blake3.as_deref(), hash));
         Ok(intact.then(|| known.clone()))
@@ -263,7 +276,9 @@ impl<'a> Batch<'a> {
 /// The program is what the manifest says, if one says anything.
 fn planned(item: &Item, hash: Hash) -> Result<(), Failure> {
     match &item.blake3 {
-        Some(planned) if !is(Some(planned), hash) => Err(changed(&item.input, "holds other bytes")),
+        Some(planned) if !is(Some(planned), hash) => {
+            Err(changed(&item.input, &both!("holds other bytes", "содержит другие байты")))
+        }
         _ => Ok(()),
     }
 }
@@ -271,9 +286,9 @@ fn planned(item: &Item, hash: Hash) -> Result<(), Failure> {
 /// A program cannot be read: if it was there when the plan was made, that is a change.
 fn gone(item: &Item, error: &std::io::Error) -> Failure {
     if item.blake3.is_some() && error.kind() == std::io::ErrorKind::NotFound {
-        changed(&item.input, "is not there any more")
+        changed(&item.input, &both!("is not there any more", "исчез"))
     } else {
-        Failure::file(&file::name(&item.input), "read", error)
+        Failure::file(&file::name(&item.input), Deed::Read, error)
     }
 }
 
@@ -285,10 +300,20 @@ fn refused(diagnostic: Diagnostic) -> Failure {
     Failure::Refused(vec![Report { source: None, diagnostics: vec![diagnostic] }])
 }
 
-fn changed(input: &Path, how: &str) -> Failure {
+fn changed(input: &Path, how: &Text) -> Failure {
     refused(
-        Diagnostic::error(CHANGED, format!("{} {how}: it changed since the plan was made", input.display()))
-            .help("make a new plan with `vpost batch plan`; what is the same will not be corrected again"),
+        Diagnostic::error(
+            CHANGED,
+            both!(
+                "{} {how}: it changed since the plan was made",
+                "{} {how:#}: изменился после составления плана",
+                input.display()
+            ),
+        )
+        .help(both!(
+            "make a new plan with `vpost batch plan`; what is the same will not be corrected again",
+            "составьте план заново: `vpost batch plan`; то, что не изменилось, второй раз не исправляется"
+        )),
     )
 }
 
@@ -296,9 +321,16 @@ fn foreign(place: &Path) -> Failure {
     refused(
         Diagnostic::error(
             FOREIGN,
-            format!("{} is there already and was not written by vpost", place.display()),
+            both!(
+                "{} is there already and was not written by vpost",
+                "{} уже лежит там, и писал его не vpost",
+                place.display()
+            ),
         )
-        .help("give another folder with `-O`, move that file away, or write over it with `--force`"),
+        .help(both!(
+            "give another folder with `-O`, move that file away, or write over it with `--force`",
+            "дайте другую папку ключом `-O`, уберите этот файл или запишите поверх: `--force`"
+        )),
     )
 }
 
@@ -354,7 +386,7 @@ impl Told {
         if !outcome.record.status.is_done() && self.printed < MOST_PRINTED {
             let Self { said, printed, .. } = self;
             let new = |report: &&Report| match (&report.source, report.diagnostics.as_slice()) {
-                (None, [only]) => said.insert(only.message.clone()),
+                (None, [only]) => said.insert(only.message.english().to_owned()),
                 _ => true,
             };
             let told: Vec<&Report> = outcome.told.iter().filter(new).collect();

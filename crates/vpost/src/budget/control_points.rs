@@ -1,6 +1,6 @@
 //! Where the criteria are taken: a grid over the volume, or the points of a file.
 
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use error_budget::Machine;
 use error_map::Nodes;
 use machine_model::{Command, Engine, PathModel, Vector};
@@ -99,8 +99,14 @@ fn from_file(
     let points = points::read(name, bytes, tool_mm.into(), profile)?;
     let refuse = |diagnostic: Diagnostic| Failure::refused(name, bytes, vec![diagnostic]);
     if points.rows.is_empty() {
-        let help = "give a row for each point at which the machine is to be judged";
-        return Err(refuse(Diagnostic::error(POINTS, "the point file has no rows").help(help)));
+        let help = both!(
+            "give a row for each point at which the machine is to be judged",
+            "дайте по строке на каждую точку, в которой оценивать станок"
+        );
+        return Err(refuse(
+            Diagnostic::error(POINTS, both!("the point file has no rows", "в файле точек нет строк"))
+                .help(help),
+        ));
     }
     if points.rows.len() > MOST {
         return Err(too_many(name, points.rows.len(), 1));
@@ -109,30 +115,45 @@ fn from_file(
     let mut outside = 0;
     for (row, (_, command)) in points.rows.iter().enumerate() {
         if let Err(error) = machine.model().base().rotary_inside(command) {
-            let message = format!("point {}: {error}", row + 1);
-            return Err(refuse(Diagnostic::error(POINT_OUTSIDE, message).help("leave the point out")));
+            let error = error.text();
+            let message = both!("point {}: {error}", "точка {}: {error:#}", row + 1);
+            return Err(refuse(
+                Diagnostic::error(POINT_OUTSIDE, message)
+                    .help(both!("leave the point out", "исключите точку")),
+            ));
         }
         if volume.contains(&command.linear_mm) {
             continue;
         }
         if shared.job.outside != Some(Outside::Clamp) {
-            let known = volume.0.map(|range| format!("{} to {}", range.low, range.high));
-            let message = format!(
+            let known = volume.0.map(|range| both!("{} to {}", "{}…{}", range.low, range.high));
+            let message = both!(
                 "point {} at {} lies outside the calibrated volume, X {}, Y {}, Z {} mm",
+                "точка {} в {} лежит вне калиброванного объёма, X {:#}, Y {:#}, Z {:#} мм",
                 row + 1,
                 triple(&command.linear_mm, 3),
                 known[0],
                 known[1],
                 known[2]
             );
-            let help = "leave it out, or take the nearest point's error with `--outside clamp`";
+            let help = both!(
+                "leave it out, or take the nearest point's error with `--outside clamp`",
+                "исключите её или возьмите погрешность ближайшей точки: `--outside clamp`"
+            );
             return Err(refuse(Diagnostic::error(POINT_OUTSIDE, message).help(help)));
         }
         outside += 1;
     }
     if outside > 0 {
-        let message = format!("{outside} of {} points lie outside the calibrated volume", points.rows.len());
-        let help = "each has the error of the volume's nearest point";
+        let message = both!(
+            "{outside} of {} points lie outside the calibrated volume",
+            "вне калиброванного объёма лежат точки: {outside} из {}",
+            points.rows.len()
+        );
+        let help = both!(
+            "each has the error of the volume's nearest point",
+            "каждой приписана погрешность ближайшей точки объёма"
+        );
         let diagnostic = Diagnostic::warning(POINT_OUTSIDE, message).help(help);
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
@@ -146,7 +167,19 @@ fn from_file(
 }
 
 fn too_many(what: &str, count: usize, directions: usize) -> Failure {
-    let each = if directions > 1 { " (each node from 8 sides, for lost motion)" } else { "" };
-    let message = format!("{what}: {count} control points{each} are more than the {MOST} of a budget");
-    Failure::usage(Diagnostic::error(OPTION, message).help("errors are smooth: take a coarser grid"))
+    let each = if directions > 1 {
+        both!(" (each node from 8 sides, for lost motion)", " (каждый узел с 8 сторон, из-за потери хода)")
+    } else {
+        Text::EMPTY
+    };
+    let message = both!(
+        "{what}: {count} control points{each} are more than the {MOST} of a budget",
+        "{what}: контрольных точек{each:#} {count}, а в бюджете их не больше {MOST}"
+    );
+    Failure::usage(
+        Diagnostic::error(OPTION, message).help(both!(
+            "errors are smooth: take a coarser grid",
+            "погрешности плавны: возьмите сетку крупнее"
+        )),
+    )
 }

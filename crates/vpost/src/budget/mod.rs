@@ -8,7 +8,7 @@ mod text;
 
 pub use arguments::Budget;
 
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, both};
 use error_budget::Machine;
 use machine_model::EngineId;
 
@@ -29,40 +29,63 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     let path = machine(&shared.job)?;
     let profile::Loaded { profile, files, .. } = profile::load_mill(path)?;
     Roles::default()
-        .reads_all("the control points", &arguments.points)
-        .reads_all("read by the profile", &files)
+        .reads_all(&both!("the control points", "контрольные точки"), &arguments.points)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &files)
         .writes("--json", arguments.json.as_deref())
         .are_apart()?;
     if let Some(id) = shared.job.engine().filter(|id| *id != EngineId::RigidBody) {
         return Err(Failure::option(
-            format!("engine `{id}` has no deviations to be scaled one by one"),
-            "leave `--engine` out: a budget is of the rigid-body model",
+            both!(
+                "engine `{id}` has no deviations to be scaled one by one",
+                "у метода `{id}` нет отклонений, которые можно менять по одному"
+            ),
+            both!(
+                "leave `--engine` out: a budget is of the rigid-body model",
+                "уберите `--engine`: бюджет считается по модели твёрдых тел"
+            ),
         ));
     }
     let target_mm = arguments.target.map(target_mm).transpose()?;
     let model = profile.machine(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
     let machine = Machine::new(model);
     if machine.deviations().is_empty() {
-        let message =
-            format!("{}: the rigid-body model of {} has no deviations", file::name(path), profile.name);
+        let message = both!(
+            "{}: the rigid-body model of {} has no deviations",
+            "{}: в модели твёрдых тел станка {} нет отклонений",
+            file::name(path),
+            profile.name
+        );
         let traverses = profile.traverses.is_some();
         return Err(Failure::usage(Diagnostic::error(NO_DEVIATIONS, message).help(if traverses {
-            "[tracker] is for the tracker engine only: give `errors` of the axes and [squareness], as `vpost calibrate` does"
+            both!("[tracker] is for the tracker engine only: give `errors` of the axes and [squareness], as `vpost calibrate` does", "[tracker] — только для метода tracker: дайте `errors` осей и [squareness], как это делает `vpost calibrate`")
         } else {
-            "give the profile what was measured: `errors` of the axes, [squareness], [rotary.*] or [[effect]] entries"
+            both!("give the profile what was measured: `errors` of the axes, [squareness], [rotary.*] or [[effect]] entries", "внесите в профиль измеренное: `errors` осей, [squareness], [rotary.*] или разделы [[effect]]")
         })));
     }
     let keep = keep(arguments, &machine)?;
     let points = control_points::read(arguments, shared, &profile, &machine, messages)?;
     let study = study::Study::new(profile.name, machine, points, target_mm.map(|mm| (mm, keep)));
     if study.moves_nothing() {
-        let message = "no deviation moves any of the control points";
-        let help = "take points away from the machine's zero, or with a tool: angles need an arm";
+        let message = both!(
+            "no deviation moves any of the control points",
+            "ни одно отклонение не сдвигает контрольных точек"
+        );
+        let help = both!(
+            "take points away from the machine's zero, or with a tool: angles need an arm",
+            "возьмите точки вдали от нуля станка или с инструментом: углам нужно плечо"
+        );
         return Err(Failure::usage(Diagnostic::error(NO_DEVIATIONS, message).help(help)));
     }
     if let Some(why) = study.target.as_ref().and_then(study::Target::out_of_reach) {
-        let message = format!("{} um cannot be reached: {why}", arguments.target.unwrap_or(0.0));
-        let help = "keep fewer deviations as they are (`--keep`), or raise `--target`";
+        let message = both!(
+            "{} um cannot be reached: {why}",
+            "{} мкм недостижимы: {why:#}",
+            arguments.target.unwrap_or(0.0)
+        );
+        let help = both!(
+            "keep fewer deviations as they are (`--keep`), or raise `--target`",
+            "сохраняйте меньше отклонений (`--keep`) или увеличьте `--target`"
+        );
         let diagnostic = Diagnostic::warning(OUT_OF_REACH, message).help(help);
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
@@ -79,12 +102,19 @@ fn target_mm(target_um: f64) -> Result<f64, Failure> {
         return Ok(target_um * 1e-3);
     }
     if target_um > FARTHEST_UM {
-        let message = format!("`--target {target_um}` is more than a metre");
-        return Err(Failure::option(message, "give micrometres: `--target 50`"));
+        let message =
+            both!("`--target {target_um}` is more than a metre", "`--target {target_um}` — больше метра");
+        return Err(Failure::option(
+            message,
+            both!("give micrometres: `--target 50`", "дайте микрометры: `--target 50`"),
+        ));
     }
     Err(Failure::option(
-        format!("`--target {target_um}`: no machine is that good"),
-        "give micrometres above zero: `--target 50`",
+        both!(
+            "`--target {target_um}`: no machine is that good",
+            "`--target {target_um}`: таких точных станков нет"
+        ),
+        both!("give micrometres above zero: `--target 50`", "дайте микрометры больше нуля: `--target 50`"),
     ))
 }
 
@@ -101,8 +131,11 @@ fn keep(arguments: &Budget, machine: &Machine) -> Result<Vec<bool>, Failure> {
         if !known {
             let names: Vec<&str> = machine.deviations().iter().map(|d| d.name.as_str()).collect();
             return Err(Failure::option(
-                format!("`--keep {given}`: this machine has no such deviation"),
-                format!("one of: {}", names.join(", ")),
+                both!(
+                    "`--keep {given}`: this machine has no such deviation",
+                    "`--keep {given}`: такого отклонения у станка нет"
+                ),
+                both!("one of: {}", "одно из: {}", names.join(", ")),
             ));
         }
     }

@@ -1,5 +1,6 @@
 //! The budget and what follows from it.
 
+use diagnostic::{Text, both};
 use error_budget::mending::{self, Mending};
 use error_budget::tolerances::{Figure, Tolerances, equal_influence};
 use error_budget::{
@@ -47,23 +48,34 @@ pub(super) struct Target {
 
 impl Target {
     /// Why something of what was asked for cannot be had; `None` where all can.
-    pub(super) fn out_of_reach(&self) -> Option<String> {
+    pub(super) fn out_of_reach(&self) -> Option<Text> {
         let parts = [
-            (self.mending.steps.is_none(), MENDING_OUT_OF_REACH),
-            (self.worst_case.is_none(), "the worst case of what is kept leaves nothing for the others"),
+            (self.mending.steps.is_none(), MENDING_OUT_OF_REACH.clone()),
+            (
+                self.worst_case.is_none(),
+                both!(
+                    "the worst case of what is kept leaves nothing for the others",
+                    "наихудший случай сохраняемого не оставляет остальным ничего"
+                ),
+            ),
             (
                 self.statistical.is_none(),
-                "the root sum of squares of what is kept leaves nothing for the others",
+                both!(
+                    "the root sum of squares of what is kept leaves nothing for the others",
+                    "корень из суммы квадратов сохраняемого не оставляет остальным ничего"
+                ),
             ),
         ];
-        let said: Vec<&str> = parts.into_iter().filter_map(|(is, words)| is.then_some(words)).collect();
-        (!said.is_empty()).then(|| said.join("; "))
+        let said: Vec<Text> = parts.into_iter().filter_map(|(is, words)| is.then_some(words)).collect();
+        (!said.is_empty()).then(|| Text::join(&said, "; "))
     }
 }
 
 /// Said on the page and in the warning.
-pub(super) const MENDING_OUT_OF_REACH: &str =
-    "M as measured stays above it, whichever of the others are mended";
+pub(super) static MENDING_OUT_OF_REACH: Text = Text::pair(
+    "M as measured stays above it, whichever of the others are mended",
+    "M, как измерено, остаётся больше, что бы из остального ни исправить",
+);
 
 impl Study {
     pub(super) fn new(

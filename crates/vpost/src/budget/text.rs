@@ -116,7 +116,8 @@ fn mending(study: &Study, target: &Target, out: &mut String) {
         }
         Mending { steps: None, proven } => {
             let tried = if *proven { "" } else { "; not all lists were tried" };
-            let _ = writeln!(out, "  out of reach on this machine: {MENDING_OUT_OF_REACH}{tried}");
+            let _ =
+                writeln!(out, "  out of reach on this machine: {}{tried}", MENDING_OUT_OF_REACH.english());
         }
         Mending { steps: Some(steps), proven } => {
             let why =

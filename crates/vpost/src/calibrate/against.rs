@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use calibration::change::{by_function, compare};
+use diagnostic::both;
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
 
@@ -30,8 +31,11 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
     )
     .ok_or_else(|| {
         question(
-            format!("{name} and the new measurements have no volume in common"),
-            "compare profiles of one machine",
+            both!(
+                "{name} and the new measurements have no volume in common",
+                "у {name} и новых измерений нет общего объёма"
+            ),
+            both!("compare profiles of one machine", "сравнивайте профили одного станка"),
         )
     })?;
     let at: Vec<String> = change.at_mm.iter().map(|v| short(*v, 3)).collect();

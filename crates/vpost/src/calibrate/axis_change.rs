@@ -5,7 +5,7 @@ use calibration::measured_line::{
     AxisOnNodes, Gauge, MeasuredLine, Zero, angles_between, apply_gauge, field_u95_mm, settle_directions,
     squareness_for,
 };
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, both};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
@@ -144,8 +144,15 @@ impl Session {
     }
 
     fn machine(&self, description: Description, temperature_c: Option<f64>) -> Result<WithEffects, Failure> {
-        let body = RigidBody::new(description)
-            .map_err(|error| Failure::option(error.to_string(), "run `vpost profile check` on the base"))?;
+        let body = RigidBody::new(description).map_err(|error| {
+            Failure::option(
+                error.text(),
+                both!(
+                    "run `vpost profile check` on the base",
+                    "запустите `vpost profile check` для исходного профиля"
+                ),
+            )
+        })?;
         let mut conditions = self.conditions;
         if let Some(temperature) = temperature_c {
             conditions.temp_c = [Some(temperature); 3];
@@ -237,8 +244,11 @@ impl Session {
         }
         if nodes.len() < 2 {
             return Err(question(
-                format!("the functions of {axis} were measured over ranges without a common part"),
-                "leave one of them out",
+                both!(
+                    "the functions of {axis} were measured over ranges without a common part",
+                    "функции {axis} измерены на участках без общей части"
+                ),
+                both!("leave one of them out", "уберите одну из них"),
             ));
         }
         let two = change.iter().flatten().any(|f| f.directions.is_some());
@@ -374,25 +384,41 @@ fn inside_travel(
     }
     let Range { low, high } = data.travel_mm;
     let beyond = |q: f64| q < low - SLACK_MM || q > high + SLACK_MM;
-    let travel = format!("the travel of {axis} in the base is {} to {} mm", short(low, 3), short(high, 3));
+    let travel = both!(
+        "the travel of {axis} in the base is {} to {} mm",
+        "ход {axis} в исходном профиле — от {} до {} мм",
+        short(low, 3),
+        short(high, 3)
+    );
     if let Some(at) = &arguments.through {
         let place = at.0[k];
         if beyond(place) {
             return Err(Failure::option(
-                format!("`--through {at}`: {axis} does not go to {} mm: {travel}", short(place, 3)),
-                "give the machine position of the measured lines, in mm, and the base of this machine",
+                both!(
+                    "`--through {at}`: {axis} does not go to {} mm: {travel}",
+                    "`--through {at}`: {axis} не доходит до {} мм: {travel:#}",
+                    short(place, 3)
+                ),
+                both!(
+                    "give the machine position of the measured lines, in mm, and the base of this machine",
+                    "дайте положение измеренных линий на станке, в мм, и исходный профиль этого станка"
+                ),
             ));
         }
     }
     for series in all.iter().filter(|series| series.axis == axis) {
         if let Some(reading) = series.readings.iter().find(|r| beyond(r.position_mm)) {
-            let message = format!(
+            let message = both!(
                 "{}: {} has a target at {} mm, but {travel}",
+                "{}: у {} цель в {} мм, но {travel:#}",
                 series.source,
                 series.name(),
                 short(reading.position_mm, 3)
             );
-            let help = "are these the targets of this axis, in mm and machine coordinates, and is the base that of this machine?";
+            let help = both!(
+                "are these the targets of this axis, in mm and machine coordinates, and is the base that of this machine?",
+                "это цели этой оси, в мм и координатах станка, и исходный профиль — этого станка?"
+            );
             return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
         }
     }

@@ -6,7 +6,7 @@ use calibration::CalibrationError;
 use calibration::linear_ballbar::{self, CircleCalibration};
 use calibration::rotary_ballbar::{self, RotaryCalibration, Test};
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::effects::{Conditions, EffectTerm};
 use machine_model::{
     Axis, Chain, Command, Description, Engine, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector,
@@ -65,14 +65,21 @@ impl Base {
             let any = if readings.turn_something() { None } else { Some("[w X Y b Z t]") };
             let Some(chain) = arguments.target.chain.as_deref().or(any) else {
                 return Err(question(
-                    "which axis of the table carries which?",
-                    "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
+                    both!("which axis of the table carries which?", "какая ось стола несёт какую?"),
+                    both!(
+                        "add `-m PROFILE.toml` of the machine, or `--chain \"[w C A X Y b Z t]\"`: axes from the workpiece on",
+                        "добавьте `-m PROFILE.toml` станка или `--chain \"[w C A X Y b Z t]\"`: оси, начиная от детали"
+                    ),
                 ));
             };
             let chain = Chain::parse(chain).map_err(|error| {
+                let error = error.text();
                 Failure::option(
-                    format!("`--chain {chain}`: {error}"),
-                    "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
+                    both!("`--chain {chain}`: {error}", "`--chain {chain}`: {error:#}"),
+                    both!(
+                        "write the axes as in `--chain \"[w C A X Y b Z t]\"`",
+                        "напишите оси так: `--chain \"[w C A X Y b Z t]\"`"
+                    ),
                 )
             })?;
             let [low, high] = readings.span_mm();
@@ -107,10 +114,9 @@ impl Base {
             return Err(Failure::usage(
                 Diagnostic::error(
                     AXES,
-                    format!("{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head"),
+                    both!("{axis} turns the tool on {chain}: a ball bar calibrates axes that turn the table, not those of a head", "{axis} поворачивает на {chain} инструмент: телескопическим измерителем калибруют оси стола, а не головы"),
                 )
-                .help(format!(
-                    "leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile"
+                .help(both!("leave the runs of {axis} out; location errors known from elsewhere go into [rotary.{axis}] of the profile", "исключите проходы {axis}; известные из других измерений погрешности положения оси впишите в [rotary.{axis}] профиля"
                 )),
             ));
         }
@@ -124,11 +130,15 @@ impl Base {
                     beside[axis.direction()] = 0.0;
                     if beside.norm() > SAME_MM {
                         let [x, y, z] = own.centre_mm.into();
-                        let message = format!(
+                        let message = both!(
                             "`--crossing {text}` lies {:.3} mm beside the axis of {axis}, which goes through centre_mm = [{x}, {y}, {z}]",
+                            "`--crossing {text}` лежит в {:.3} мм от оси {axis}, которая проходит через centre_mm = [{x}, {y}, {z}]",
                             beside.norm()
                         );
-                        let help = "leave `--crossing` out, or correct centre_mm in the profile";
+                        let help = both!(
+                            "leave `--crossing` out, or correct centre_mm in the profile",
+                            "уберите `--crossing` или исправьте centre_mm в профиле"
+                        );
                         return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
                     }
                 }
@@ -138,8 +148,14 @@ impl Base {
                 }
                 None if !said && readings.turn(axis) => {
                     return Err(question(
-                        format!("where is the axis of {axis}? its location errors count from there"),
-                        "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
+                        both!(
+                            "where is the axis of {axis}? its location errors count from there",
+                            "где ось {axis}? её погрешности положения отсчитываются оттуда"
+                        ),
+                        both!(
+                            "add `--crossing X,Y,Z`, or `-m PROFILE` with centre_mm of the axes of the table",
+                            "добавьте `--crossing X,Y,Z` или `-m PROFILE` с centre_mm осей стола"
+                        ),
                     ));
                 }
                 None => {}
@@ -149,8 +165,15 @@ impl Base {
     }
 
     fn machine_without_effects(&self) -> Result<RigidBody, Failure> {
-        RigidBody::new(self.description.clone())
-            .map_err(|error| question(error.to_string(), "run `vpost profile check` on the base"))
+        RigidBody::new(self.description.clone()).map_err(|error| {
+            question(
+                error.text(),
+                both!(
+                    "run `vpost profile check` on the base",
+                    "запустите `vpost profile check` для исходного профиля"
+                ),
+            )
+        })
     }
 
     /// The machine under these conditions.
@@ -190,11 +213,16 @@ impl Base {
         for (i, axis) in Axis::ALL[..3].iter().enumerate() {
             let (at, range) = (command.linear_mm[i], volume.0[i]);
             if at < range.low - SAME_MM || at > range.high + SAME_MM {
-                let message = format!(
+                let message = both!(
                     "run `{name}`: {axis} at {at:.3} mm lies outside what the base profile knows, {:.3} to {:.3} mm",
-                    range.low, range.high
+                    "проход `{name}`: {axis} в {at:.3} мм лежит вне того, что знает исходный профиль, от {:.3} до {:.3} мм",
+                    range.low,
+                    range.high
                 );
-                let help = "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates";
+                let help = both!(
+                    "is `-m` the profile of this machine? x_mm y_mm z_mm are machine coordinates",
+                    "в `-m` профиль этого станка? x_mm y_mm z_mm — координаты станка"
+                );
                 return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
             }
         }
@@ -225,11 +253,15 @@ impl Table {
         let read = tests.iter().flat_map(|test| &test.readings);
         for (reading, (expected_mm, (angle, length_mm))) in expected.iter().flatten().zip(read).enumerate() {
             if (length_mm - expected_mm).abs() > FAR * expected_mm {
-                let message = format!(
+                let message = both!(
                     "at {:.1} degrees the balls would be {expected_mm:.3} mm apart on this table, not {length_mm} mm",
+                    "при {:.1} градуса шары на этом столе были бы в {expected_mm:.3} мм друг от друга, а не в {length_mm} мм",
                     angle.to_degrees()
                 );
-                let help = "which axis turned? check the columns of the angles, centre_mm and the places of both balls";
+                let help = both!(
+                    "which axis turned? check the columns of the angles, centre_mm and the places of both balls",
+                    "какая ось вращалась? проверьте столбцы углов, centre_mm и места обоих шаров"
+                );
                 return Err(readings.refuse(CONTRADICTED, self.tests.place(reading), message, help));
             }
         }
@@ -336,18 +368,30 @@ fn located(
     place: impl Fn(usize) -> (usize, usize),
 ) -> Failure {
     let CalibrationError::Outlier { point, message } = error else { return refusal(error) };
-    let help = "measure it again, or leave it out; readings moved by a row look like this as well";
-    readings.refuse(OUTLIER, place(*point), message.clone(), help)
+    let help = both!(
+        "measure it again, or leave it out; readings moved by a row look like this as well",
+        "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
+    );
+    readings.refuse(OUTLIER, place(*point), Text::english_only(message.as_str()), help)
 }
 
 fn refusal(error: &CalibrationError) -> Failure {
     let help = match error {
-        CalibrationError::Axes(_) => "is `-m` (or `--chain`) the machine that was measured?",
+        CalibrationError::Axes(_) => both!(
+            "is `-m` (or `--chain`) the machine that was measured?",
+            "в `-m` (или `--chain`) тот станок, который измеряли?"
+        ),
         CalibrationError::Unobservable(_) => {
-            "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt"
+            both!(
+                "add the test that tells them apart: the spindle's turn for eX and eY, the ball 100 mm beside or above for a tilt",
+                "добавьте опыт, который их различит: поворот шпинделя для eX и eY, шар на 100 мм в стороне или выше для наклона"
+            )
         }
         CalibrationError::Contradicted(_) => {
-            "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar"
+            both!(
+                "check the files: columns exchanged, directions the wrong way round, a circle of another day or another bar",
+                "проверьте файлы: переставленные столбцы, направления наоборот, круг другого дня или другого измерителя"
+            )
         }
         _ => return failure("", &[], error),
     };
@@ -358,7 +402,7 @@ fn refusal(error: &CalibrationError) -> Failure {
     };
     Failure::Refused(vec![crate::message::Report {
         source: None,
-        diagnostics: vec![Diagnostic::error(code, error.to_string()).help(help)],
+        diagnostics: vec![Diagnostic::error(code, Text::english_only(error.to_string())).help(help)],
     }])
 }
 
@@ -402,14 +446,17 @@ fn write_circles(output: &mut Output, found: &CircleCalibration, messages: &Mess
     }
     for (name, term) in super::bar_report::SCALES.into_iter().zip(found.mismatch) {
         if let Some(term) = term.filter(|t| t.value.abs() > t.half_width_95.max(SEEN_RATIO)) {
-            let message = format!(
+            let message = both!(
                 "scale {name} of {:.1} um/m is not written: a bar does not say which of the two axes it is",
+                "масштаб {name} {:.1} мкм/м не записан: измеритель не говорит, какой из двух осей он",
                 term.value * 1e6
             );
             warn(
                 messages,
-                Diagnostic::warning(UNSAID, message)
-                    .help("measure the positioning of both axes with an interferometer"),
+                Diagnostic::warning(UNSAID, message).help(both!(
+                    "measure the positioning of both axes with an interferometer",
+                    "измерьте позиционирование обеих осей интерферометром"
+                )),
             );
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use calibration::linear_ballbar::CircleReading;
 use calibration::rotary_ballbar::{Test, Turning};
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 use machine_model::{Axis, Command, Vector};
 use measurement_files::{Row, Sheet};
 
@@ -70,8 +70,11 @@ impl Readings {
         let mut sheets = Vec::new();
         let mut runs: Vec<(Run, Moves)> = Vec::new();
         for (file, path) in files.iter().enumerate() {
-            let expected = "a reading of a ball bar is a length between two balls";
-            let sheet = sources::sheet(path, COLUMNS, expected, ignore)?;
+            let expected = both!(
+                "a reading of a ball bar is a length between two balls",
+                "показание телескопического измерителя — длина между двумя шарами"
+            );
+            let sheet = sources::sheet(path, COLUMNS, expected.clone(), ignore)?;
             sheet.need(&["run"], expected)?;
             sheet.need_bars()?;
             let mut own: Vec<Run> = Vec::new();
@@ -161,7 +164,7 @@ impl Readings {
     }
 
     /// A refusal that points at the length of one reading.
-    pub(super) fn refuse(&self, code: Code, place: (usize, usize), message: String, help: &str) -> Failure {
+    pub(super) fn refuse(&self, code: Code, place: (usize, usize), message: Text, help: Text) -> Failure {
         let (file, number) = place;
         match self.sheets[file].row(number) {
             Some(row) => row.refuse(code, row.bar_key(), message, help).into(),
@@ -190,8 +193,14 @@ fn line(row: &Row<'_>, place: (usize, usize)) -> Result<Line, Failure> {
     let (length_mm, apart_mm) = (bar.length_mm, (bar.centre_mm - bar.ball_mm).norm());
     // Lengths must be near what the balls' places say.
     if (length_mm - apart_mm).abs() > FAR * apart_mm {
-        let message = format!("a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart");
-        let help = "give the whole length in mm, not its change; and both balls' places at angle 0";
+        let message = both!(
+            "a length of {length_mm} mm, where the balls are {apart_mm:.3} mm apart",
+            "длина {length_mm} мм, а между шарами {apart_mm:.3} мм"
+        );
+        let help = both!(
+            "give the whole length in mm, not its change; and both balls' places at angle 0",
+            "дайте всю длину в мм, а не её изменение; и места обоих шаров при угле 0"
+        );
         return Err(row.refuse(UNITS, row.bar_key(), message, help).into());
     }
     let balls = [bar.ball_mm, bar.centre_mm];
@@ -226,8 +235,8 @@ impl Run {
         let moves = |of: &dyn Fn(&Line) -> f64| self.lines.iter().any(|l| (of(l) - of(first)).abs() > 1e-9);
         let turning: Vec<usize> = (0..4).filter(|&k| moves(&|l| l.angles_deg[k])).collect();
         let linear = (0..3).any(|i| moves(&|l| l.balls[0][i]));
-        let refuse = |code, message: String, help: &str| {
-            let message = format!("{file}, run `{}`: {message}", self.name);
+        let refuse = |code, message: Text, help: Text| {
+            let message = both!("{file}, run `{}`: {message}", "{file}, проход `{}`: {message:#}", self.name);
             Err(Failure::usage(Diagnostic::error(code, message).help(help)))
         };
         match (turning.as_slice(), linear) {
@@ -239,16 +248,30 @@ impl Run {
                 // A turn or half a turn in radians is no round number of degrees.
                 let turns = [std::f64::consts::TAU, std::f64::consts::PI];
                 if turns.iter().any(|turn| (span - turn).abs() < 1e-3) {
-                    let message = format!("{} goes over {span:.4}: a turn in radians", ANGLES[*one]);
-                    return refuse(UNITS, message, "give degrees");
+                    let message = both!(
+                        "{} goes over {span:.4}: a turn in radians",
+                        "{} охватывает {span:.4}: оборот в радианах",
+                        ANGLES[*one]
+                    );
+                    return refuse(UNITS, message, both!("give degrees", "дайте градусы"));
                 }
                 Ok(Moves::Turning(*one))
             }
-            ([], false) => refuse(AXES, "nothing moves".to_owned(), "a run turns one axis or moves two"),
+            ([], false) => refuse(
+                AXES,
+                both!("nothing moves", "ничего не движется"),
+                both!("a run turns one axis or moves two", "в проходе вращается одна ось или движутся две"),
+            ),
             _ => refuse(
                 AXES,
-                "linear and rotary axes move, or two rotary ones".to_owned(),
-                "turn one axis a run; the others stand",
+                both!(
+                    "linear and rotary axes move, or two rotary ones",
+                    "движутся и линейные, и поворотные оси или две поворотные"
+                ),
+                both!(
+                    "turn one axis a run; the others stand",
+                    "вращайте в проходе одну ось, остальные стоят"
+                ),
             ),
         }
     }

@@ -1,7 +1,7 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Diagnostic};
+use diagnostic::{Code, Diagnostic, Text, both};
 
 use crate::message::Failure;
 
@@ -27,22 +27,45 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
     let (code, help) = match error {
         CalibrationError::Axes(_) => (
             AXES,
-            "compare axes, signs and order of the columns with what the message says; frames are right-handed",
+            both!(
+                "compare axes, signs and order of the columns with what the message says; frames are right-handed",
+                "сравните оси, знаки и порядок столбцов с тем, что сказано в сообщении; системы координат правые"
+            ),
         ),
-        CalibrationError::Units(_) => {
-            (UNITS, "the column's name says its unit: convert the numbers or rename the column")
+        CalibrationError::Units(_) => (
+            UNITS,
+            both!(
+                "the column's name says its unit: convert the numbers or rename the column",
+                "единица названа в имени столбца: пересчитайте числа или переименуйте столбец"
+            ),
+        ),
+        CalibrationError::Runs(_) => (
+            RUNS,
+            both!(
+                "every run must pass every target; leave an incomplete run out",
+                "каждый проход проходит все цели; неполный исключите"
+            ),
+        ),
+        CalibrationError::TooFew(_) => (OPEN, both!("measure more points", "измерьте больше точек")),
+        CalibrationError::Outlier { .. } => {
+            (OUTLIER, both!("measure it again, or take the row out", "измерьте снова или уберите строку"))
         }
-        CalibrationError::Runs(_) => (RUNS, "every run must pass every target; leave an incomplete run out"),
-        CalibrationError::TooFew(_) => (OPEN, "measure more points"),
-        CalibrationError::Outlier { .. } => (OUTLIER, "measure it again, or take the row out"),
-        CalibrationError::Contradicted(_) => {
-            (CONTRADICTED, "measure again what the message names, or leave it out")
-        }
-        CalibrationError::Unobservable(_) => {
-            (OPEN, "measure where they differ: another tool length, other positions of the other axes")
-        }
+        CalibrationError::Contradicted(_) => (
+            CONTRADICTED,
+            both!(
+                "measure again what the message names, or leave it out",
+                "измерьте названное в сообщении снова или исключите"
+            ),
+        ),
+        CalibrationError::Unobservable(_) => (
+            OPEN,
+            both!(
+                "measure where they differ: another tool length, other positions of the other axes",
+                "измеряйте там, где они различаются: с другим вылетом инструмента, с другими положениями остальных осей"
+            ),
+        ),
     };
-    let diagnostic = Diagnostic::error(code, error.to_string()).help(help);
+    let diagnostic = Diagnostic::error(code, Text::english_only(error.to_string())).help(help);
     if file.is_empty() {
         return Failure::Refused(vec![crate::message::Report {
             source: None,
@@ -53,6 +76,6 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
 }
 
 /// A question that stays open.
-pub(super) fn question(message: impl Into<String>, help: impl Into<String>) -> Failure {
+pub(super) fn question(message: Text, help: Text) -> Failure {
     Failure::usage(Diagnostic::error(QUESTION, message).help(help))
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, both};
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
 use measurement_files::series::{Origin, Series};
@@ -30,8 +30,11 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     let writes = arguments.target.output.is_some() || arguments.target.against.is_some();
     if arguments.refine.is_some() && !writes {
         return Err(Failure::option(
-            "`--refine` is for tables, and none are written",
-            "add `-o PROFILE.toml`",
+            both!(
+                "`--refine` is for tables, and none are written",
+                "`--refine` относится к таблицам, а они не записываются"
+            ),
+            both!("add `-o PROFILE.toml`", "добавьте `-o PROFILE.toml`"),
         ));
     }
     let mut out = String::new();
@@ -186,9 +189,9 @@ fn change(
             messages,
             Diagnostic::warning(
                 UNSAID,
-                "readings of single axes say nothing of the angles between them: the measured lines are taken as square",
+                both!("readings of single axes say nothing of the angles between them: the measured lines are taken as square", "показания отдельных осей ничего не говорят об углах между ними: измеренные линии приняты перпендикулярными"),
             )
-            .help("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m"),
+            .help(both!("add `--squareness XY=…,ZX=…,YZ=… --squareness-convention …`, or measure it later with -m", "добавьте `--squareness XY=…,ZX=…,YZ=… --squareness-convention …` или измерьте позже с -m")),
         );
     }
     Ok(session.field_u95_mm(&changes, arguments.u_um_per_m * 1e-6).map(|own| {
@@ -246,11 +249,15 @@ fn to_the_line(
     let letters: Vec<String> = concerned.iter().map(ToString::to_string).collect();
     let Some(reference) = arguments.reference else {
         return Err(question(
-            format!(
+            both!(
                 "{} carry the workpiece and have angles: were their tables defined along the measured line or at the carriage?",
+                "{} несут деталь и имеют углы: их таблицы заданы вдоль измеренной линии или у каретки?",
                 letters.join(", ")
             ),
-            "add `--reference line` or `--reference carriage`",
+            both!(
+                "add `--reference line` or `--reference carriage`",
+                "добавьте `--reference line` или `--reference carriage`"
+            ),
         ));
     };
     if reference == Reference::Line {
@@ -296,8 +303,11 @@ fn write_axis(
     /// More than any control's table, and small enough for every text.
     const MOST_NODES: f64 = 1e5;
     if arguments.refine.is_some_and(|step| (nodes[nodes.len() - 1] - nodes[0]) / step > MOST_NODES) {
-        let message = format!("`--refine` makes more than {MOST_NODES} rows for {axis}");
-        return Err(Failure::option(message, "use a larger step"));
+        let message = both!(
+            "`--refine` makes more than {MOST_NODES} rows for {axis}",
+            "`--refine` даёт для {axis} больше {MOST_NODES} строк"
+        );
+        return Err(Failure::option(message, both!("use a larger step", "возьмите шаг больше")));
     }
     let put = |output: &mut Output, key: &str, rows: &[Six]| {
         let column = |k: usize| changed.given[k].then(|| rows.iter().map(|six| six[k]).collect::<Vec<f64>>());
@@ -344,8 +354,8 @@ fn write_line(
     } else if change[3..].iter().any(Option::is_some) {
         warn(
             messages,
-            Diagnostic::warning(UNSAID, format!("the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point"))
-                .help("its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`"),
+            Diagnostic::warning(UNSAID, both!("the line along which {axis} was measured is not known: taken through 0 of the other axes, at the gauge point", "линия, вдоль которой измерена {axis}, неизвестна: принята через 0 остальных осей, в базовой точке"))
+                .help(both!("its angles act from that line on: add `--through X,Y,Z` and `--optics X,Y,Z`", "её углы действуют от этой линии: добавьте `--through X,Y,Z` и `--optics X,Y,Z`")),
         );
     }
 }

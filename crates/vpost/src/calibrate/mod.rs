@@ -24,6 +24,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use diagnostic::both;
+
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
 use crate::roles::Roles;
@@ -69,8 +71,9 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::Ballbar(a) => a.shown.clone(),
         _ => Shown::default(),
     };
-    let roles =
-        Roles::default().reads_all("a measurement", &files).writes("--output", target.output.as_deref());
+    let roles = Roles::default()
+        .reads_all(&both!("a measurement", "измерения"), &files)
+        .writes("--output", target.output.as_deref());
     shown.roles(roles).are_apart()?;
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use calibration::{Base, ChangedAxis, SetUp};
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, both};
 use machine_model::effects::{Conditions, EffectKind};
 use machine_model::{Axis, Chain, Command, Description, Vector};
 use machine_profile::{Calibrated, Profile, ProfileText};
 
 use crate::arguments::Shared;
-use crate::message::{Failure, Messages, Report};
+use crate::message::{Deed, Failure, Messages, Report};
 use crate::number::short;
 use crate::{file, profile};
 
@@ -83,7 +83,10 @@ impl Output {
             let base = load(path)?.profile;
             let text = String::from_utf8_lossy(&file::read(path)?).into_owned();
             let Some(mut text) = ProfileText::parse(&text) else {
-                return Err(question("the base profile cannot be edited", "run `vpost profile check` on it"));
+                return Err(question(
+                    both!("the base profile cannot be edited", "исходный профиль нельзя изменить"),
+                    both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
+                ));
             };
             let from = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
             let mut tables = Vec::new();
@@ -108,8 +111,14 @@ impl Output {
         }
         let Some(chain) = &target.chain else {
             return Err(question(
-                "which machine? its chain of axes is not known",
-                "add `-m PROFILE.toml` of the same machine, or `--chain \"[w X Y b Z t]\"`: axes from workpiece (w) by the bed (b) to the tool (t)",
+                both!(
+                    "which machine? its chain of axes is not known",
+                    "какой станок? цепь его осей неизвестна"
+                ),
+                both!(
+                    "add `-m PROFILE.toml` of the same machine, or `--chain \"[w X Y b Z t]\"`: axes from workpiece (w) by the bed (b) to the tool (t)",
+                    "добавьте `-m PROFILE.toml` того же станка или `--chain \"[w X Y b Z t]\"`: оси от детали (w) через станину (b) к инструменту (t)"
+                ),
             ));
         };
         let name = target.name.as_deref().unwrap_or("calibrated machine");
@@ -124,9 +133,13 @@ impl Output {
         }
         let text = target.chain.as_deref().unwrap_or_default();
         Chain::parse(text).map_err(|error| {
+            let error = error.text();
             Failure::option(
-                format!("`--chain {text}`: {error}"),
-                "write the axes as in `--chain \"[w X Y b Z t]\"`",
+                both!("`--chain {text}`: {error}", "`--chain {text}`: {error:#}"),
+                both!(
+                    "write the axes as in `--chain \"[w X Y b Z t]\"`",
+                    "напишите оси так: `--chain \"[w X Y b Z t]\"`"
+                ),
             )
         })
     }
@@ -209,9 +222,9 @@ impl Output {
                 messages,
                 Diagnostic::warning(
                     UNSAID,
-                    "the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um",
+                    both!("the base does not say how well it is known: what was not measured now counts as exact in uncertainty_um", "исходный профиль не говорит, насколько точно он известен: не измеренное сейчас считается в uncertainty_um точным"),
                 )
-                .help("write `uncertainty_um` into `calibrated` of the base, if it is known"),
+                .help(both!("write `uncertainty_um` into `calibrated` of the base, if it is known", "впишите `uncertainty_um` в `calibrated` исходного профиля, если она известна")),
             );
         }
         units::math::hypot(found_mm, stated.unwrap_or(0.0) * 1e-3)
@@ -260,14 +273,17 @@ impl Output {
             }
         }
         if !stood.is_empty() {
-            let message = format!(
+            let message = both!(
                 "how far {} can go is not known: the profile holds where it stood, and corrects nothing elsewhere",
+                "ход {} неизвестен: профиль верен там, где она стояла, а в других местах ничего не исправляет",
                 stood.join(" and ")
             );
             warn(
                 messages,
-                Diagnostic::warning(UNSAID, message)
-                    .help("measure it with -m this profile, or write its travel_mm into the profile"),
+                Diagnostic::warning(UNSAID, message).help(both!(
+                    "measure it with -m this profile, or write its travel_mm into the profile",
+                    "измерьте её с -m этого профиля или впишите в профиль её travel_mm"
+                )),
             );
         }
     }
@@ -299,9 +315,12 @@ impl Output {
                 messages,
                 Diagnostic::warning(
                     UNSAID,
-                    "the profile does not say when, how warm or with what the machine was measured",
+                    both!(
+                        "the profile does not say when, how warm or with what the machine was measured",
+                        "профиль не говорит, когда, при какой температуре или каким прибором измерен станок"
+                    ),
                 )
-                .help(format!("add {}", missing.join(", "))),
+                .help(both!("add {}", "добавьте {}", missing.join(", "))),
             );
         }
         self.text.set_calibrated(&calibrated);
@@ -341,12 +360,17 @@ impl Output {
         let Some(path) = &target.output else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);
         std::fs::create_dir_all(&folder)
-            .map_err(|error| Failure::file(&file::name(&folder), "make", &error))?;
+            .map_err(|error| Failure::file(&file::name(&folder), Deed::Make, &error))?;
         for (name, bytes) in &self.tables {
             file::write(&folder.join(name), bytes)?;
         }
         file::write(path, self.text.to_string().as_bytes())?;
-        messages.note(&format!("{}: written, tables in {}", file::name(path), file::name(&folder)));
+        messages.note(&both!(
+            "{}: written, tables in {}",
+            "{}: записан, таблицы в {}",
+            file::name(path),
+            file::name(&folder)
+        ));
         Ok(())
     }
 }

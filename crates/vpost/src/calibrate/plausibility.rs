@@ -2,7 +2,7 @@
 
 use calibration::functions::Function;
 use calibration::iso230_2::{self, Runs};
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 
 use crate::message::{Failure, Messages};
 
@@ -24,28 +24,37 @@ pub(super) fn units(series: &Series, messages: &Messages) -> Result<(), Failure>
     // 0.05 µm and 0.05 µrad; 0.5 mm and 5 mrad.
     let (low, high) = if series.function < 3 { (5e-5, 0.5) } else { (5e-8, 5e-3) };
     if large > 0.0 && large < low && sizes.len() > 3 {
-        let message = format!(
+        let message = both!(
             "{}: nine readings of ten of {name} are below {}: are they in a larger unit than said?",
+            "{}: девять показаний {name} из десяти меньше {:#}: их единица крупнее названной?",
             series.source,
-            if series.function < 3 { "0.05 um" } else { "0.05 urad" }
+            if series.function < 3 {
+                both!("0.05 um", "0.05 мкм")
+            } else {
+                both!("0.05 urad", "0.05 мкрад")
+            }
         );
         let diagnostic = |d: Diagnostic| {
-            d.help("no machine is that good: check µm against mm, µrad against arc seconds; leave out a column that holds nothing (--ignore-column)")
+            d.help(both!("no machine is that good: check µm against mm, µrad against arc seconds; leave out a column that holds nothing (--ignore-column)", "таких точных станков нет: проверьте, не мм ли вместо мкм, не угловые ли секунды вместо мкрад; столбец, где ничего нет, пропустите (--ignore-column)"))
         };
         if series.origin == Origin::Instrument {
             return Err(Failure::usage(diagnostic(Diagnostic::error(UNITS, message))));
         }
         warn(messages, diagnostic(Diagnostic::warning(UNITS, message)));
     } else if large > high {
-        let message = format!(
+        let message = both!(
             "{}: readings of {name} reach {:.0} {}: are they in a smaller unit than said?",
+            "{}: показания {name} доходят до {:.0} {}: их единица мельче названной?",
             series.source,
             large * if series.function < 3 { 1e3 } else { 1e6 },
             if series.function < 3 { "um" } else { "urad" }
         );
         warn(
             messages,
-            Diagnostic::warning(UNITS, message).help("check µm against mm and nm, µrad against arc seconds"),
+            Diagnostic::warning(UNITS, message).help(both!(
+                "check µm against mm and nm, µrad against arc seconds",
+                "проверьте, мкм ли это, а не мм или нм, мкрад ли, а не угловые секунды"
+            )),
         );
     }
     Ok(())
@@ -70,7 +79,12 @@ pub(super) fn copies(
     if !(repeated && same(&runs.positive) && same(&runs.negative)) {
         return Ok(());
     }
-    let message = format!("{}: all runs of {} are the same to the last digit", series.source, series.name());
+    let message = both!(
+        "{}: all runs of {} are the same to the last digit",
+        "{}: все проходы {} одинаковы до последней цифры",
+        series.source,
+        series.name()
+    );
     let apart = function.directions.as_ref().map_or(0.0, |[up, down]| {
         let differences = || up.iter().zip(down).map(|(u, d)| u - d);
         differences().fold(f64::MIN, f64::max) - differences().fold(f64::MAX, f64::min)
@@ -78,19 +92,22 @@ pub(super) fn copies(
     let (finest, scale, unit) =
         if series.function < 3 { (FINEST, 1e3, "um") } else { (FINEST_RAD, 1e6, "urad") };
     if apart > finest {
-        let message = format!(
+        let message = both!(
             "{message}, while the difference of the directions wanders by {} {unit} from target to target: was one run written several times?",
+            "{message:#}, а разность направлений гуляет от цели к цели на {} {unit}: один проход записан несколько раз?",
             short(apart * scale, 3)
         );
-        return Err(Failure::usage(
-            Diagnostic::error(RUNS, message).help("give runs that were each measured, or one run alone"),
-        ));
+        return Err(Failure::usage(Diagnostic::error(RUNS, message).help(both!(
+            "give runs that were each measured, or one run alone",
+            "дайте проходы, каждый из которых измерен, или один проход"
+        ))));
     }
     warn(
         messages,
-        Diagnostic::warning(MISSING, message).help(
+        Diagnostic::warning(MISSING, message).help(both!(
             "then they say nothing of the repeatability; the uncertainty counts the instrument's alone",
-        ),
+            "о повторяемости они тогда ничего не говорят; в неопределённости учтена только приборная"
+        )),
     );
     Ok(())
 }
@@ -112,14 +129,15 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
     if values.iter().any(|b| *b <= 0.0) || mean <= f64::max(3.0 * uncertainty, LEAST_MM) {
         return Ok(());
     }
-    let message = format!(
+    let message = both!(
         "{}: at every target {} stands further when it comes from below than from above, by {} um on average: lost motion is the other way round",
+        "{}: в каждой цели {} при подходе снизу стоит дальше, чем сверху, в среднем на {} мкм: потеря хода обратного знака",
         series.source,
         series.axis,
         short(mean * 1e3, 3)
     );
     Err(Failure::usage(Diagnostic::error(AXES, message).help(
-        "were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement",
+        both!("were up and down exchanged (column dir, order of the runs), or are the deviations target minus actual? a backlash compensation of the control that is set too high does it too: switch it off for the measurement", "не переставлены ли направления (столбец dir, порядок проходов), не цель ли минус измеренное в отклонениях? так же действует завышенная компенсация люфта в стойке: на время измерения отключите её"),
     )))
 }
 
@@ -127,16 +145,24 @@ pub(super) fn reversal(series: &Series, function: &Function) -> Result<(), Failu
 const LEAST_MM: f64 = 1e-4;
 
 /// What ISO 230-2 asks of a test and these runs are not.
-pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<String> {
+pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<Text> {
     let length = found.targets[found.targets.len() - 1].position - found.targets[0].position;
     let mut missing = Vec::new();
     if found.runs.iter().any(|n| *n < 5) {
-        missing
-            .push(format!("{} and {} runs instead of five in each direction", found.runs[0], found.runs[1]));
+        missing.push(both!(
+            "{} and {} runs instead of five in each direction",
+            "проходов {} и {} вместо пяти в каждом направлении",
+            found.runs[0],
+            found.runs[1]
+        ));
     }
     let least = if length < 1000.0 { 5.0 } else { 5.0 * length / 1000.0 };
     if (found.targets.len() as f64) < least {
-        missing.push(format!("{} targets over {length} mm instead of {least:.0}", found.targets.len()));
+        missing.push(both!(
+            "{} targets over {length} mm instead of {least:.0}",
+            "целей {} на {length} мм вместо {least:.0}",
+            found.targets.len()
+        ));
     }
     missing
 }
@@ -145,11 +171,17 @@ pub(super) fn missing_of_the_standard(found: &iso230_2::Evaluation) -> Vec<Strin
 pub(super) fn conditions_of_the_standard(name: &str, found: &iso230_2::Evaluation, messages: &Messages) {
     let missing = missing_of_the_standard(found);
     if !missing.is_empty() {
-        let message =
-            format!("{name} is evaluated after ISO 230-2 but was not measured so: {}", missing.join("; "));
+        let message = both!(
+            "{name} is evaluated after ISO 230-2 but was not measured so: {}",
+            "{name} оценена по ИСО 230-2, а измерена не так: {:#}",
+            Text::join(&missing, "; ")
+        );
         warn(
             messages,
-            Diagnostic::warning(MISSING, message).help("do not quote the figures as those of the standard"),
+            Diagnostic::warning(MISSING, message).help(both!(
+                "do not quote the figures as those of the standard",
+                "не приводите эти числа как полученные по стандарту"
+            )),
         );
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use calibration::functions::FunctionReading;
+use diagnostic::{Text, both};
 use measurement_files::series::{Content, Series, Told, Values, symbol};
 use measurement_files::{Codes, Kind, Sheet};
 
@@ -10,7 +11,7 @@ use crate::file;
 use crate::message::Failure;
 
 /// Reads a table of one of the instruments.
-pub(super) fn sheet(path: &Path, columns: &str, expected: &str, ignore: &[String]) -> Result<Sheet, Failure> {
+pub(super) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
     let kind = Kind {
         columns,
         expected,
@@ -33,8 +34,14 @@ pub(super) fn series(spec: &str, values: Option<Values>, ignore: &[String]) -> R
         let (name, unit) = rest.split_once(':').map_or((rest, None), |(name, unit)| (name, Some(unit)));
         let known = symbol(name).ok_or_else(|| {
             Failure::option(
-                format!("`{name}` is no error function of a linear axis"),
-                "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
+                both!(
+                    "`{name}` is no error function of a linear axis",
+                    "`{name}` — не функция погрешности линейной оси"
+                ),
+                both!(
+                    "write a symbol of ISO 230-1 as in `x.rtl=EXX:um`",
+                    "напишите обозначение по ИСО 230-1, например `x.rtl=EXX:um`"
+                ),
             )
         })?;
         (told.symbol, told.unit) = (Some(known), unit);

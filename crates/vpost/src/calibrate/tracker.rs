@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use calibration::tracker::{Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine};
 use calibration::{CalibrationError, MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Command, Vector};
 use machine_profile::Calibrated;
 use measurement_files::{Row, Sheet};
@@ -58,7 +58,10 @@ pub enum FrameName {
 const COLUMNS: &str = "run repeat commanded_x_mm commanded_y_mm commanded_z_mm measured_x_mm measured_y_mm measured_z_mm \
                        x_mm y_mm z_mm xm_mm ym_mm zm_mm dir_x dir_y dir_z temp_c";
 
-const EXPECTED: &str = "a traverse has the commanded and the measured position of all three axes";
+const EXPECTED: Text = Text::pair(
+    "a traverse has the commanded and the measured position of all three axes",
+    "в проходе нужны заданное и измеренное положения всех трёх осей",
+);
 
 /// Readings of one file, the temperature beside each.
 fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, Failure> {
@@ -88,8 +91,8 @@ fn readings(sheet: &Sheet, axis: usize) -> Result<Vec<(Reading, Option<f64>)>, F
 pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     if let Some(u) = arguments.u_um.filter(|u| !(*u > 0.0 && u.is_finite())) {
         return Err(Failure::option(
-            format!("`--u-um {u}` is no uncertainty"),
-            "give micrometres above zero",
+            both!("`--u-um {u}` is no uncertainty", "`--u-um {u}` — не неопределённость"),
+            both!("give micrometres above zero", "дайте микрометры больше нуля"),
         ));
     }
     let mut output = if arguments.target.output.is_some()
@@ -145,7 +148,10 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
         sheets.push(sheet);
     }
     let Ok(traverses) = <[MeanTraverse; 3]>::try_from(traverses) else {
-        return Err(Failure::option("three traverses are needed", "give X.csv Y.csv Z.csv"));
+        return Err(Failure::option(
+            both!("three traverses are needed", "нужны три прохода"),
+            both!("give X.csv Y.csv Z.csv", "дайте X.csv Y.csv Z.csv"),
+        ));
     };
     let frame = match arguments.frame {
         FrameName::AsMeasured => Frame::AsMeasured,
@@ -189,34 +195,49 @@ fn refused(sheets: &[Sheet], error: &CalibrationError) -> Failure {
         _ => None,
     };
     match row {
-        Some(row) => {
-            row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out").into()
-        }
+        Some(row) => row
+            .refuse(
+                OUTLIER,
+                "x_mm",
+                Text::english_only(error.to_string()),
+                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
+            )
+            .into(),
         None => failure("", &[], error),
     }
 }
 
 fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
     let source = || Some(crate::message::Source::whole(name, []));
-    let say = |message: String, help: &str| {
+    let say = |message: Text, help: Text| {
         let diagnostics = vec![Diagnostic::warning(MISSING, message).help(help)];
         messages.report(&Report { source: source(), diagnostics });
     };
     if let Some((at, found, usual)) = mean.short_of_runs.first() {
-        let message = format!(
+        let message = both!(
             "{} of {} nodes lack readings: {at} mm has {found}, others {usual}",
+            "не хватает показаний в узлах: {} из {}; в {at} мм их {found}, в остальных {usual}",
             mean.short_of_runs.len(),
             mean.nodes.len()
         );
         say(
             message,
-            "their means count as less certain; measure them again, or leave the incomplete run out",
+            both!(
+                "their means count as less certain; measure them again, or leave the incomplete run out",
+                "их средние считаются менее точными; измерьте снова или исключите неполный проход"
+            ),
         );
     }
     if let Some((from, to, usual)) = mean.gaps.first() {
         say(
-            format!("no node between {from} and {to} mm, where the step is {usual} mm elsewhere"),
-            "errors between them are taken as a straight line; measure the missing targets if they matter",
+            both!(
+                "no node between {from} and {to} mm, where the step is {usual} mm elsewhere",
+                "между {from} и {to} мм нет узла, а в других местах шаг {usual} мм"
+            ),
+            both!(
+                "errors between them are taken as a straight line; measure the missing targets if they matter",
+                "погрешности между ними приняты по прямой; если это важно, измерьте пропущенные цели"
+            ),
         );
     }
 }
@@ -224,15 +245,19 @@ fn warn_of_gaps(name: &str, mean: &MeanTraverse, messages: &Messages) {
 /// Refuses a field that is known worse than it deviates.
 fn judge(changed: &TrackerMachine, has_base: bool, messages: &Messages) -> Result<(), Failure> {
     let um = |mm: f64| short(mm * 1e3, 1);
-    let field = format!(
+    let field = both!(
         "the field is known to ±{} um (95 % of the volume's points), the deviations found are {} um",
+        "поле известно с точностью ±{} мкм (в 95 % точек объёма), а найденные отклонения — {} мкм",
         um(changed.field_u95_mm),
         um(changed.field_p95_mm)
     );
-    let help = "measure each node more often";
+    let help = both!("measure each node more often", "измеряйте каждый узел больше раз");
     // A base corrects whatever it did before; without one a correction has to be better than none.
     if !has_base && changed.field_u95_mm > changed.field_p95_mm {
-        let message = format!("these traverses cannot carry a correction: {field}");
+        let message = both!(
+            "these traverses cannot carry a correction: {field}",
+            "эти проходы не дают поправки: {field:#}"
+        );
         return Err(Failure::Refused(vec![Report {
             source: None,
             diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
@@ -254,22 +279,27 @@ fn judge_chords(found: &TrackerCalibration, shared: &Shared, messages: &Messages
     }
     let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
     let needed = (far.sufficient_chord_mm() / far.chord_mm).ceil() * far.chord_mm;
-    let message = format!(
+    let message = both!(
         "a chord of {} mm knows its direction to ±{:.0} urad (95 %), which is ±{} um at the far corner ({corner}); the deviation found there is {} um",
+        "направление хорды {} мм известно с точностью ±{:.0} мкрад (95 %), то есть ±{} мкм в дальнем углу ({corner}); найденное там отклонение — {} мкм",
         short(far.chord_mm, 3),
         far.direction_u95_rad * 1e6,
         um(far.chord_u95_mm),
         um(far.deviation_mm)
     );
-    let help = format!(
+    let help = both!(
         "measure each node more often, or use longer chords: with these readings `--chord-mm {}` halves it",
+        "измеряйте каждый узел больше раз или берите хорды длиннее: при этих показаниях `--chord-mm {}` уменьшит её вдвое",
         short(needed, 3)
     );
     if far.verdict() == Verdict::Doubtful {
         warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
         return Ok(());
     }
-    let message = format!("these traverses cannot carry a correction by chords: {message}");
+    let message = both!(
+        "these traverses cannot carry a correction by chords: {message}",
+        "эти проходы не дают поправки по хордам: {message:#}"
+    );
     Err(Failure::Refused(vec![Report {
         source: None,
         diagnostics: vec![Diagnostic::error(UNFIT, message).help(help)],
@@ -332,8 +362,11 @@ fn write_report(
     let k = arguments.interval;
     let (Some(g), Some(r01)) = (found.directions(k), found.offset_mm(k)) else {
         return Err(question(
-            format!("the traverses have no interval {k}"),
-            "intervals are counted from 0; give one that all three have",
+            both!("the traverses have no interval {k}", "интервала {k} в проходах нет"),
+            both!(
+                "intervals are counted from 0; give one that all three have",
+                "интервалы считаются от 0; дайте такой, какой есть во всех трёх"
+            ),
         ));
     };
     let show = |v: f64| if arguments.as_published { v.abs() } else { v };

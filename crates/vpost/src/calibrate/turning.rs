@@ -9,7 +9,7 @@ use calibration::turning::{
     calibrate,
 };
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, PathModel, Vector};
 use machine_profile::{Calibrated, Profile};
 use measurement_files::{Row, Sheet, numbered};
@@ -39,7 +39,8 @@ pub struct Turning {
 }
 
 const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_c note";
-const EXPECTED: &str = "expected: part,z_mm,diameter_mm,d_um";
+const EXPECTED: Text =
+    Text::pair("expected: part,z_mm,diameter_mm,d_um", "ожидалось: part,z_mm,diameter_mm,d_um");
 /// No lathe turns so wrong, µm.
 const MOST_UM: f64 = 2000.0;
 
@@ -55,7 +56,7 @@ struct Parts {
 
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
 /// else what the user can do. Any name where the profile has no tools.
-fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, &'static str> {
+fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
     if profile.tools.is_empty() {
         return Ok(Vector::from(profile.default_tool_mm));
     }
@@ -66,12 +67,19 @@ fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, &'static str> {
         (Some("T" | "t"), 4) => digits[2..].parse().ok(),
         _ => None,
     };
-    let number: u32 =
-        number.ok_or("name it by its length, H1, or by its call, T0101; an edge behind it: T0101-2")?;
+    let number: u32 = number.ok_or_else(|| {
+        both!(
+            "name it by its length, H1, or by its call, T0101; an edge behind it: T0101-2",
+            "назовите его по длине, H1, или по вызову, T0101; кромка после него: T0101-2"
+        )
+    })?;
     let known = profile.tools.iter().find(|(known, _)| *known == number);
-    known
-        .map(|(_, length_mm)| -Vector::from(*length_mm))
-        .ok_or("add its length to the profile: `lengths_mm` under `[tool]`")
+    known.map(|(_, length_mm)| -Vector::from(*length_mm)).ok_or_else(|| {
+        both!(
+            "add its length to the profile: `lengths_mm` under `[tool]`",
+            "добавьте его длину в профиль: `lengths_mm` в разделе `[tool]`"
+        )
+    })
 }
 
 impl Parts {
@@ -93,45 +101,87 @@ impl Parts {
             "" | "diameter" | "диаметр" => Feature::Diameter,
             "face" | "торец" => Feature::Face,
             other => {
-                let message = format!("`{other}` is no feature of a test piece");
-                return Err(row.refuse(CELL, "feature", message, "write diameter or face").into());
+                let message =
+                    both!("`{other}` is no feature of a test piece", "`{other}` — не элемент образца");
+                return Err(row
+                    .refuse(
+                        CELL,
+                        "feature",
+                        message,
+                        both!("write diameter or face", "напишите diameter или face"),
+                    )
+                    .into());
             }
         };
         let name = row.text("part");
         if name.is_empty() {
-            let help = "name the clamping and finishing cut, like P1";
-            return Err(row.refuse(CELL, "part", "a reading of no part".to_owned(), help).into());
+            let help = both!(
+                "name the clamping and finishing cut, like P1",
+                "назовите установку и чистовой проход, например P1"
+            );
+            return Err(row
+                .refuse(CELL, "part", both!("a reading of no part", "показание без образца"), help)
+                .into());
         }
         let (part, tool) = (numbered(&mut self.parts, &name), row.text("tool"));
         let tool_mm = vector_mm(profile, &tool).map_err(|help| {
-            let message = format!("which tool of the profile is `{tool}`? It says where the carriage stood");
+            let message = both!(
+                "which tool of the profile is `{tool}`? It says where the carriage stood",
+                "какой это инструмент профиля — `{tool}`? По нему видно, где стояла каретка"
+            );
             row.refuse(CELL, "tool", message, help)
         })?;
         let tool = (!tool.is_empty()).then(|| numbered(&mut self.tools, &tool));
         let (z_mm, diameter_mm) = (row.needed("z_mm")?, row.needed("diameter_mm")?);
         let d_um = row.needed("d_um")?;
         if d_um.abs() > MOST_UM {
-            let message = format!("a deviation of {d_um} um is no error of a lathe");
-            let help = "d_um is measured minus commanded, in um: look for another column or unit";
+            let message = both!(
+                "a deviation of {d_um} um is no error of a lathe",
+                "отклонение {d_um} мкм — не погрешность токарного станка"
+            );
+            let help = both!(
+                "d_um is measured minus commanded, in um: look for another column or unit",
+                "d_um — измеренное минус заданное, в мкм: ищите другой столбец или единицу"
+            );
             return Err(row.refuse(UNITS, "d_um", message, help).into());
         }
         if diameter_mm <= 0.0 && feature == Feature::Diameter {
-            let message = "a diameter is above 0".to_owned();
-            return Err(row.refuse(CELL, "diameter_mm", message, "give the commanded diameter").into());
+            let message = both!("a diameter is above 0", "диаметр больше 0");
+            return Err(row
+                .refuse(
+                    CELL,
+                    "diameter_mm",
+                    message,
+                    both!("give the commanded diameter", "дайте заданный диаметр"),
+                )
+                .into());
         }
         let centre_mm = profile.lathe.as_ref().map_or(0.0, |lathe| lathe.spindle.centre_mm.x);
         let tip_mm = Vector::new(centre_mm + 0.5 * diameter_mm, tool_mm.y, z_mm);
         let linear_mm = tip_mm - tool_mm;
         let volume = profile.volume();
         if (volume.nearest(&linear_mm) - linear_mm).amax() > 1e-9 {
-            let message = "the tool stands outside the travel or the tables of the profile there".to_owned();
-            let help = "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis";
+            let message = both!(
+                "the tool stands outside the travel or the tables of the profile there",
+                "инструмент стоит там вне хода или таблиц профиля"
+            );
+            let help = both!(
+                "z_mm is the machine's Z, diameter_mm twice the machine's X from the spindle's axis",
+                "z_mm — Z станка, diameter_mm — удвоенный X станка от оси шпинделя"
+            );
             return Err(row.refuse(AXES, "z_mm", message, help).into());
         }
         let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
         if uncertainty_mm.is_some_and(|u| u <= 0.0) {
-            let message = "an uncertainty is above zero".to_owned();
-            return Err(row.refuse(CELL, "u_um", message, "give the standard uncertainty in um").into());
+            let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
+            return Err(row
+                .refuse(
+                    CELL,
+                    "u_um",
+                    message,
+                    both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"),
+                )
+                .into());
         }
         Ok(TurnedReading {
             part,
@@ -149,8 +199,9 @@ impl Parts {
         if let CalibrationError::Outlier { point, .. } = error {
             let (sheet, line) = self.places[*point];
             if let Some(row) = self.sheets[sheet].row(line) {
-                let help = "measure it again, or take the row out";
-                return row.refuse(OUTLIER, "d_um", error.to_string(), help).into();
+                let help =
+                    both!("measure it again, or take the row out", "измерьте снова или уберите строку");
+                return row.refuse(OUTLIER, "d_um", Text::english_only(error.to_string()), help).into();
             }
         }
         failure("", &[], error)
@@ -176,16 +227,29 @@ fn named(term: Term, base: &TurningBase) -> (&'static str, f64, f64) {
 /// `vpost calibrate turning`
 pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     if shared.job.machine.is_none() {
-        return Err(question("which lathe? its profile is not known", "add `-m LATHE.toml`"));
+        return Err(question(
+            both!("which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен"),
+            both!("add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"),
+        ));
     }
     let mut output = Output::start_any(&arguments.target, shared)?;
     let Some(profile) = output.base.clone() else {
-        return Err(question("which lathe? its profile is not known", "add `-m LATHE.toml`"));
+        return Err(question(
+            both!("which lathe? its profile is not known", "какой токарный станок? его профиль неизвестен"),
+            both!("add `-m LATHE.toml`", "добавьте `-m LATHE.toml`"),
+        ));
     };
     let Some(lathe) = profile.lathe.clone() else {
         return Err(Failure::option(
-            format!("test pieces are turned on a lathe, and {} has no spindle in its chain", profile.chain()),
-            "give the profile of the lathe, with a chain like \"[w S b Z X t]\"",
+            both!(
+                "test pieces are turned on a lathe, and {} has no spindle in its chain",
+                "образцы точат на токарном станке, а в цепи {} нет шпинделя",
+                profile.chain()
+            ),
+            both!(
+                "give the profile of the lathe, with a chain like \"[w S b Z X t]\"",
+                "дайте профиль токарного станка с цепью вроде \"[w S b Z X t]\""
+            ),
         ));
     };
     let base = TurningBase {
@@ -209,8 +273,15 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let stated = rows.iter().filter(|row| row.uncertainty_mm.is_some()).count();
     if stated > 0 && stated < rows.len() {
         return Err(question(
-            format!("{stated} of {} readings state their uncertainty, the others do not", rows.len()),
-            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+            both!(
+                "{stated} of {} readings state their uncertainty, the others do not",
+                "неопределённость указана у {stated} показаний из {}, у остальных нет",
+                rows.len()
+            ),
+            both!(
+                "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+                "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
+            ),
         ));
     }
     let found = calibrate(rows, &base, &parts.parts).map_err(|error| parts.refused(&error))?;
@@ -225,13 +296,17 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         file::write(path, text.as_bytes())?;
     }
     if let Some(judged) = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9) {
-        let message = format!(
+        let message = both!(
             "{} held-out diameters get worse: {:.2} um RMS before, {:.2} um after",
+            "контрольных диаметров {}, и они становятся хуже: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
             judged.rows,
             judged.rms_before_mm * 1e3,
             judged.rms_after_mm * 1e3
         );
-        let help = "look for a sign, or for parts of another machine or clamping; nothing was written";
+        let help = both!(
+            "look for a sign, or for parts of another machine or clamping; nothing was written",
+            "ищите ошибку в знаке или образцы другого станка или установки; ничего не записано"
+        );
         let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
         return Err(Failure::Refused(vec![Report { source: None, diagnostics }]));
     }
@@ -261,9 +336,13 @@ fn by_effects(
     let whole =
         profile.lathe(&conditions(&shared.job)?).map_err(|error| crate::conditions::failure(&error))?;
     let stretch = calibration::turning::Stretch { low_mm: 0.0, high_mm: 1.0 };
-    let bare = base
-        .predicted_mm(&calibration::turning::Change::default(), stretch, rows)
-        .map_err(|error| question(error.to_string(), "run `vpost profile check` on it"))?;
+    let bare =
+        base.predicted_mm(&calibration::turning::Change::default(), stretch, rows).map_err(|error| {
+            question(
+                error.text(),
+                both!("run `vpost profile check` on it", "запустите для него `vpost profile check`"),
+            )
+        })?;
     let Some(whole) = whole else { return Ok(()) };
     for (row, bare) in rows.iter_mut().zip(bare) {
         let error_mm = whole.error_mm(&row.command);

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
 use calibration::{CalibrationError, Point, PointReading, SetUp};
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Vector};
 use machine_profile::Calibrated;
 use measurement_files::{Row, Sheet};
@@ -40,7 +40,10 @@ pub struct Volumetric {
 const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um xm_mm ym_mm zm_mm length_mm bx_mm by_mm bz_mm \
                        tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z u_um repeat temp_c time_s load_kg feed_mm_min note";
 
-const EXPECTED: &str = "expected: run,x_mm,y_mm,z_mm and dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm,bx_mm,by_mm,bz_mm";
+const EXPECTED: Text = Text::pair(
+    "expected: run,x_mm,y_mm,z_mm and dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm,bx_mm,by_mm,bz_mm",
+    "ожидалось: run,x_mm,y_mm,z_mm и dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm,bx_mm,by_mm,bz_mm",
+);
 
 /// The points of all files and where each of them stands.
 struct Read {
@@ -65,17 +68,29 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
     let mut known = BTreeMap::new();
     for path in &arguments.files {
         let sheet = sources::sheet(path, COLUMNS, EXPECTED, &arguments.target.ignore_column)?;
-        sheet.need(&["x_mm", "y_mm", "z_mm"], "the commanded position of all three axes is needed")?;
+        sheet.need(
+            &["x_mm", "y_mm", "z_mm"],
+            both!(
+                "the commanded position of all three axes is needed",
+                "нужно заданное положение всех трёх осей"
+            ),
+        )?;
         if !["dx_um", "dy_um", "dz_um", "xm_mm", "length_mm"].iter().any(|c| sheet.has(c)) {
             return Err(question(
-                format!("{} has no reading", sheet.name()),
-                "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
+                both!("{} has no reading", "в {} нет показаний", sheet.name()),
+                both!(
+                    "give dx_um,dy_um,dz_um, or xm_mm,ym_mm,zm_mm, or length_mm with bx_mm,by_mm,bz_mm",
+                    "дайте dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или length_mm с bx_mm,by_mm,bz_mm"
+                ),
             ));
         }
         if sheet.has("length_mm") {
             sheet.need(
                 &["bx_mm", "by_mm", "bz_mm"],
-                "a distance needs the place of its station, to a few millimetres",
+                both!(
+                    "a distance needs the place of its station, to a few millimetres",
+                    "расстоянию нужно место стоянки, с точностью до миллиметров"
+                ),
             )?;
         }
         for (line, row) in sheet.rows().enumerate() {
@@ -104,8 +119,15 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
     let stated = all.points.iter().filter(|p| p.uncertainty_mm.is_some()).count();
     if stated > 0 && stated < all.points.len() {
         return Err(question(
-            format!("{stated} of {} readings state their uncertainty, the others do not", all.points.len()),
-            "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+            both!(
+                "{stated} of {} readings state their uncertainty, the others do not",
+                "неопределённость указана у {stated} показаний из {}, у остальных нет",
+                all.points.len()
+            ),
+            both!(
+                "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+                "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
+            ),
         ));
     }
     Ok(all)
@@ -127,8 +149,15 @@ fn point(row: &Row<'_>, run: usize, output: &Output) -> Result<Point, Failure> {
     };
     let uncertainty_mm = row.number("u_um")?.map(|u| u * 1e-3);
     if uncertainty_mm.is_some_and(|u| u <= 0.0) {
-        let message = "an uncertainty is above zero".to_owned();
-        return Err(row.refuse(CELL, "u_um", message, "give the standard uncertainty in um").into());
+        let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
+        return Err(row
+            .refuse(
+                CELL,
+                "u_um",
+                message,
+                both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм"),
+            )
+            .into());
     }
     Ok(Point { run, command, by_effects_mm: Vector::zeros(), reading, uncertainty_mm })
 }
@@ -168,16 +197,21 @@ fn refused(read: &Read, error: &CalibrationError) -> Failure {
         _ => None,
     };
     match row {
-        Some(row) => {
-            row.refuse(OUTLIER, "x_mm", error.to_string(), "measure it again, or take the row out").into()
-        }
+        Some(row) => row
+            .refuse(
+                OUTLIER,
+                "x_mm",
+                Text::english_only(error.to_string()),
+                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
+            )
+            .into(),
         None => failure("", &[], error),
     }
 }
 
 /// Refuses what held-out readings refute; warns where the readings scatter more than they state.
 fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failure> {
-    let refuse = |message: String, help: &str| {
+    let refuse = |message: Text, help: Text| {
         let diagnostics = vec![Diagnostic::error(UNFIT, message).help(help)];
         Err(Failure::Refused(vec![Report { source: None, diagnostics }]))
     };
@@ -186,29 +220,43 @@ fn judge(found: &VolumetricCalibration, messages: &Messages) -> Result<(), Failu
     if let Some(([before, after], count)) = found.holdout
         && found.refuted
     {
-        let message = format!(
+        let message = both!(
             "{count} points that the fit did not see get no better by it: {:.2} um RMS before, {:.2} um after",
+            "точки, оставленные для проверки ({count}), лучше не становятся: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
             before * 1e3,
             after * 1e3
         );
-        return refuse(message, "measure more points, or fit less: `--nodes 3`");
+        return refuse(
+            message,
+            both!(
+                "measure more points, or fit less: `--nodes 3`",
+                "измерьте больше точек или определяйте меньше: `--nodes 3`"
+            ),
+        );
     }
     if stated && misfit > CONTRADICTION {
         return refuse(
-            format!(
-                "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states"
+            both!(
+                "the readings contradict every machine of this chain: the best one leaves {misfit:.1} times what `u_um` states",
+                "показания противоречат любому станку с такой цепью: лучший оставляет в {misfit:.1} раза больше, чем говорит `u_um`"
             ),
-            "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
+            both!(
+                "look for exchanged or shifted columns; if the machine is that rough, give more `--nodes` or a larger u_um",
+                "ищите переставленные или сдвинутые столбцы; если станок так неровен, дайте больше `--nodes` или больший u_um"
+            ),
         );
     }
     if stated && misfit > ROUGH {
-        let message = format!(
-            "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much"
+        let message = both!(
+            "the best machine leaves {misfit:.1} times what `u_um` states: uncertainties are widened by as much",
+            "лучший станок оставляет в {misfit:.1} раза больше, чем говорит `u_um`: неопределённости увеличены во столько же раз"
         );
         warn(
             messages,
-            Diagnostic::warning(DOUBTFUL, message)
-                .help("give more `--nodes`, or state what the readings really scatter"),
+            Diagnostic::warning(DOUBTFUL, message).help(both!(
+                "give more `--nodes`, or state what the readings really scatter",
+                "дайте больше `--nodes` или укажите действительный разброс показаний"
+            )),
         );
     }
     Ok(())

@@ -10,7 +10,7 @@ use rewrite::{Large, LargeEnd, Manner, Part};
 
 use crate::file;
 use crate::growing::Growing;
-use crate::message::{Failure, Report, Source};
+use crate::message::{Deed, Failure, Report, Source};
 use crate::settings::Settings;
 use crate::source::{Reading, Still};
 
@@ -70,7 +70,7 @@ fn whatever_is_doubtful(
     match input {
         Input::File(path) => {
             let name = file::name(&path);
-            let still = Still::open(&path).map_err(|error| Failure::file(&name, "read", &error))?;
+            let still = Still::open(&path).map_err(|error| Failure::file(&name, Deed::Read, &error))?;
             let text = Text { name: &name, kept: Some(&still), rest: Box::new(still.reading()) };
             let done = text.corrected(still.bytes(), settings, manner, out, progress);
             // What is wrong with half a program is not the user's fault to mend.
@@ -104,7 +104,7 @@ impl Text<'_> {
         progress: &(dyn Fn(f64) -> Result<(), Failure> + Sync),
     ) -> Result<Program, Failure> {
         let name = self.name;
-        let unread = |error: &io::Error| Failure::file(name, "read", error);
+        let unread = |error: &io::Error| Failure::file(name, Deed::Read, error);
         // A small file is read at once, and room is left to see that it ends there.
         let mut head = Vec::with_capacity(bytes.min(SMALL_BYTES) as usize + 1);
         self.rest.by_ref().take(SMALL_BYTES).read_to_end(&mut head).map_err(|error| unread(&error))?;
@@ -150,7 +150,7 @@ impl Text<'_> {
 }
 
 fn unwritten(error: &io::Error) -> Failure {
-    Failure::file("the output", "write", error)
+    Failure::place(&diagnostic::Text::pair("the output", "выходной файл"), Deed::Write, error)
 }
 
 fn in_memory(

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use diagnostic::{Text, both};
 use jobs::diagnose::{Books, Diagnosed, File, Measured, Model, of_one_machine};
 use machine_model::EngineId;
 
@@ -60,9 +61,9 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);
     };
     Roles::default()
-        .reads("the measurements", measurements)
-        .reads_all("the hold-out", &arguments.holdout)
-        .reads_all("read by the profile", &model.files)
+        .reads(both!("the measurements", "измерения"), measurements)
+        .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &model.files)
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())
@@ -99,11 +100,14 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     if let Some(path) = &arguments.write_profile {
         written::write(path, machine(&shared.job)?, &diagnosis)?;
         let holds = if diagnosis.corrects() {
-            "the profile with the causes as effects"
+            Text::pair("the profile with the causes as effects", "профиль, в котором причины — эффекты")
         } else {
-            "the profile as it was: there is nothing to correct by"
+            Text::pair(
+                "the profile as it was: there is nothing to correct by",
+                "прежний профиль: исправлять нечем",
+            )
         };
-        messages.note(&format!("{} holds {holds}", file::name(path)));
+        messages.note(&both!("{} holds {holds}", "в {} записан {holds:#}", file::name(path)));
     }
     match arguments.next {
         Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),

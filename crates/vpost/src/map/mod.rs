@@ -13,6 +13,7 @@ mod text;
 
 pub use arguments::Map;
 
+use diagnostic::both;
 use jobs::map::model;
 use machine_model::{EngineId, Range, Volume};
 
@@ -27,7 +28,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     let loaded = profile::load_mill(machine(&shared.job)?)?;
     let profile = loaded.profile;
     Roles::default()
-        .reads_all("read by the profile", &loaded.files)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &loaded.files)
         .writes("--csv", arguments.csv.as_deref())
         .writes("--vtk", arguments.vtk.as_deref())
         .writes("--json", arguments.json.as_deref())

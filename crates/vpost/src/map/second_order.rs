@@ -1,5 +1,6 @@
 //! Finite rotations on this machine: what the first order leaves out.
 
+use diagnostic::both;
 use error_map::ErrorMap;
 use machine_model::finite_rotations::{
     OrderInterval, Threshold, Translation, Truncation, order_interval, second_order, threshold,
@@ -39,8 +40,11 @@ pub(super) struct SecondOrder {
 pub(super) fn of(profile: &Profile, map: &ErrorMap, asked: &Asked) -> Result<SecondOrder, Failure> {
     if asked.rotary_rad != Vector::zeros() {
         return Err(Failure::option(
-            "`--second-order` compares rotations of the linear axes only",
-            "leave `--rotary` out",
+            both!(
+                "`--second-order` compares rotations of the linear axes only",
+                "`--second-order` сравнивает повороты только линейных осей"
+            ),
+            both!("leave `--rotary` out", "уберите `--rotary`"),
         ));
     }
     let volume = profile.volume();

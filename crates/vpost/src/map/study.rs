@@ -1,5 +1,6 @@
 //! The map and everything that is found in it.
 
+use diagnostic::{Speaks, both};
 use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
@@ -107,9 +108,13 @@ impl Study {
                 places.push((
                     freedom,
                     found.map_err(|too_large| {
+                        let too_large = too_large.text();
                         Failure::option(
-                            format!("`--clamp`: {too_large}"),
-                            "give the size of a box that fits, X,Y,Z in mm",
+                            both!("`--clamp`: {too_large}", "`--clamp`: {too_large:#}"),
+                            both!(
+                                "give the size of a box that fits, X,Y,Z in mm",
+                                "дайте габарит, который помещается: X,Y,Z в мм"
+                            ),
                         )
                     })?,
                 ));
@@ -144,8 +149,14 @@ fn parts(
         let block = grid.region(ranges);
         if block.is_empty() {
             return Err(Failure::option(
-                format!("`--region {name}`: no node of the grid lies in it"),
-                "make it larger, or the grid finer with `--grid`",
+                both!(
+                    "`--region {name}`: no node of the grid lies in it",
+                    "`--region {name}`: в ней нет ни одного узла сетки"
+                ),
+                both!(
+                    "make it larger, or the grid finer with `--grid`",
+                    "увеличьте её или сделайте сетку мельче ключом `--grid`"
+                ),
             ));
         }
         blocks.push((name.clone(), block));

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use diagnostic::Code;
+use diagnostic::{Code, both};
 use measurement_files::codes::{CELL, COLUMN};
 use measurement_files::{Refusal, Row, Sheet};
 
@@ -18,9 +18,18 @@ pub(super) const READINGS: [&str; 9] =
 
 /// Which columns stand together.
 pub(super) fn agree(sheet: &Sheet) -> Result<(), Box<Refusal>> {
-    sheet.need(&["run"], "give every measurement line an id: rows of one line share one set-up offset")?;
+    sheet.need(
+        &["run"],
+        both!(
+            "give every measurement line an id: rows of one line share one set-up offset",
+            "дайте каждой измерительной линии имя: у строк одной линии общее смещение установки"
+        ),
+    )?;
     if !sheet.is_polar() {
-        let help = "the commanded position of all three axes is needed, machine coordinates";
+        let help = both!(
+            "the commanded position of all three axes is needed, machine coordinates",
+            "нужно заданное положение всех трёх осей, координаты станка"
+        );
         sheet.need(&["x_mm", "y_mm", "z_mm"], help)?;
     }
     let any = |columns: &[&str]| columns.iter().any(|c| sheet.has(c));
@@ -35,13 +44,13 @@ pub(super) fn agree(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     match given.as_slice() {
         [] => sheet.need(
             &["dx_um"],
-            "one kind of reading is needed: dx_um,dy_um,dz_um or xm_mm,ym_mm,zm_mm or d_um or length_mm or angle_deg with deviation_um",
+            both!("one kind of reading is needed: dx_um,dy_um,dz_um or xm_mm,ym_mm,zm_mm or d_um or length_mm or angle_deg with deviation_um", "нужны показания одного вида: dx_um,dy_um,dz_um, или xm_mm,ym_mm,zm_mm, или d_um, или length_mm, или angle_deg с deviation_um"),
         ),
         ["length_mm" | "angle_deg, deviation_um"] => sheet.need_bars(),
         [_] => Ok(()),
         _ => {
-            let message = format!("two kinds of reading: {}", given.join(" and "));
-            Err(sheet.refuse_header(COLUMN, message, "keep one of them in the file"))
+            let message = both!("two kinds of reading: {}", "показания двух видов: {}", given.join(" and "));
+            Err(sheet.refuse_header(COLUMN, message, both!("keep one of them in the file", "оставьте в файле один")))
         }
     }
 }
@@ -65,9 +74,14 @@ pub(super) fn everywhere(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     if let (Some(column), Some(missing)) =
         (uncertainties.into_iter().find(|c| sheet.has(c)), uncertainties.into_iter().find(|c| !sheet.has(c)))
     {
-        let message =
-            format!("`{column}` stands without `{missing}`: the covariance of a reading is incomplete");
-        let help = "give u_x_um, u_y_um and u_z_um, or u_um for all three";
+        let message = both!(
+            "`{column}` stands without `{missing}`: the covariance of a reading is incomplete",
+            "`{column}` стоит без `{missing}`: ковариация показания неполна"
+        );
+        let help = both!(
+            "give u_x_um, u_y_um and u_z_um, or u_um for all three",
+            "дайте u_x_um, u_y_um и u_z_um или u_um для всех трёх"
+        );
         return Err(sheet.refuse_column(COLUMN, column, message, help));
     }
     for column in conditions.into_iter().filter(|column| sheet.has(column)) {
@@ -75,11 +89,15 @@ pub(super) fn everywhere(sheet: &Sheet) -> Result<(), Box<Refusal>> {
         let Some(first) = empty.next() else { continue };
         let (further, all) = (empty.count(), sheet.rows().len());
         if further + 1 < all {
-            let message = format!(
+            let message = both!(
                 "`{column}` is empty here and in {further} further rows, and filled in in {}",
+                "`{column}` пусто здесь и ещё в строках: {further}, а заполнено в {}",
                 all - further - 1
             );
-            let help = "give the condition in every row, or pass the column over with --ignore-column";
+            let help = both!(
+                "give the condition in every row, or pass the column over with --ignore-column",
+                "дайте условие в каждой строке или пропустите столбец: --ignore-column"
+            );
             return Err(first.refuse(CELL, column, message, help));
         }
     }
@@ -96,13 +114,16 @@ pub(super) fn placed(sheet: &Sheet, stations: &[String]) -> Result<(), Box<Refus
     let Some((row, name)) = sheet.rows().find_map(|row| missing(&row).map(|name| (row, name))) else {
         return Ok(());
     };
-    let message = format!(
+    let message = both!(
         "{} stations ({}), and no place of this one: `{name}` is missing",
+        "стоянок {} ({}), а места этой нет: не хватает `{name}`",
         stations.len(),
         stations.join(", ")
     );
-    let help =
-        "give bx_mm, by_mm and bz_mm, where the tracker stood in machine coordinates, to a few centimetres";
+    let help = both!(
+        "give bx_mm, by_mm and bz_mm, where the tracker stood in machine coordinates, to a few centimetres",
+        "дайте bx_mm, by_mm и bz_mm — где стоял трекер в координатах станка, с точностью до сантиметров"
+    );
     Err(row.refuse(COLUMN, "station", message, help))
 }
 
@@ -111,14 +132,24 @@ pub(super) fn alive(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     for column in READINGS.into_iter().filter(|column| sheet.has(column)) {
         let mut cells = sheet.rows().map(|row| row.text(column));
         if cells.clone().all(|cell| cell.is_empty()) {
-            let message = format!("column `{column}` is empty in every row");
-            let help = "remove the column if the component was not measured";
+            let message =
+                both!("column `{column}` is empty in every row", "столбец `{column}` пуст во всех строках");
+            let help = both!(
+                "remove the column if the component was not measured",
+                "уберите столбец, если эту составляющую не измеряли"
+            );
             return Err(sheet.refuse_column(EMPTY, column, message, help));
         }
         let first = cells.next().unwrap_or_default();
         if sheet.rows().len() > 6 && cells.all(|cell| cell == first) {
-            let message = format!("column `{column}` holds {first} in every row");
-            let help = "an instrument that reads always the same was not measuring; remove the column";
+            let message = both!(
+                "column `{column}` holds {first} in every row",
+                "в столбце `{column}` во всех строках {first}"
+            );
+            let help = both!(
+                "an instrument that reads always the same was not measuring; remove the column",
+                "прибор, который всегда показывает одно и то же, не измерял; уберите столбец"
+            );
             return Err(sheet.refuse_column(EMPTY, column, message, help));
         }
     }
@@ -141,8 +172,9 @@ pub(super) fn no_copies(sheet: &Sheet) -> Result<(), Box<Refusal>> {
         return Ok(());
     }
     let (first, copy) = copies[0];
-    let message = format!(
+    let message = both!(
         "{} rows repeat an earlier row in every field; line {} repeats line {}",
+        "строк, которые в точности повторяют более раннюю: {}; строка {} повторяет строку {}",
         copies.len(),
         copy.line(),
         first.line()
@@ -150,7 +182,10 @@ pub(super) fn no_copies(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     Err(copy.refuse_row(
         DUPLICATES,
         message,
-        "a copy",
-        "real repeats differ in the reading; remove the copies",
+        both!("a copy", "копия"),
+        both!(
+            "real repeats differ in the reading; remove the copies",
+            "настоящие повторы различаются показаниями; уберите копии"
+        ),
     ))
 }

@@ -5,7 +5,7 @@ mod plausible;
 
 use std::collections::BTreeMap;
 
-use diagnostic::Code;
+use diagnostic::{Code, Text, both};
 use gap_diagnosis::{Measurements, Reading};
 use machine_model::effects::{Conditions, EffectGeometry};
 use machine_model::{Command, Vector};
@@ -24,7 +24,10 @@ const KIND: Kind<'_> = Kind {
               dir_x dir_y dir_z feed_mm_min tool_x_mm tool_y_mm tool_z_mm load_kg time_s temp_c temp_x_c temp_y_c \
               temp_z_c repeat u_um u_x_um u_y_um u_z_um instrument artefact station note \
               plane radius_mm angle_deg deviation_um dir",
-    expected: "expected: run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,… and one row per measured point",
+    expected: Text::pair(
+        "expected: run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,… and one row per measured point",
+        "ожидалось: run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,… и по строке на измеренную точку",
+    ),
     passes_over: None,
     may_be_empty: false,
     codes: Codes::MEASUREMENTS,
@@ -51,8 +54,11 @@ pub(super) fn read(
     for row in sheet.rows() {
         let run = row.text("run").into_owned();
         if run.is_empty() {
-            let help = "give every row the id of its measurement line";
-            return Err(row.refuse(CELL, "run", "`run` is empty".to_owned(), help));
+            let help = both!(
+                "give every row the id of its measurement line",
+                "дайте каждой строке имя её измерительной линии"
+            );
+            return Err(row.refuse(CELL, "run", both!("`run` is empty", "`run` пусто"), help));
         }
         let index = *places.entry(run).or_insert_with_key(|run| {
             data.runs.push(run.clone());
@@ -77,11 +83,17 @@ pub(super) fn read(
 
 /// The refusal of a file whose columns do not hold what their names say.
 pub(super) fn slipped(sheet: &Sheet, slip: &Slip) -> Failure {
-    let message = format!(
+    let message = both!(
         "it seems that {}: the gap would be {:.1} um RMS in the place of {:.1} um, with no other cause",
-        slip.words, slip.after_um, slip.before_um
+        "похоже, {:#}: расхождение было бы {:.1} мкм вместо {:.1} мкм (среднеквадратичное), без других причин",
+        slip.words,
+        slip.after_um,
+        slip.before_um
     );
-    let help = "correct the column and diagnose again; with --as-written it is taken as it stands";
+    let help = both!(
+        "correct the column and diagnose again; with --as-written it is taken as it stands",
+        "исправьте столбец и повторите диагностику; с --as-written он берётся как есть"
+    );
     sheet.refuse_column(SLIP, slip.column, message, help).into()
 }
 
@@ -104,8 +116,16 @@ fn measured(
     };
     for key in ["dir_x", "dir_y", "dir_z"] {
         if let Some(v) = row.number(key)?.filter(|v| ![-1.0, 0.0, 1.0].contains(v)) {
-            let message = format!("a direction of {v} is not possible");
-            return Err(row.refuse(CELL, key, message, "write 1, -1, or 0 for an axis that did not move"));
+            let message = both!("a direction of {v} is not possible", "направления {v} не бывает");
+            return Err(row.refuse(
+                CELL,
+                key,
+                message,
+                both!(
+                    "write 1, -1, or 0 for an axis that did not move",
+                    "напишите 1, -1 или 0 для неподвижной оси"
+                ),
+            ));
         }
     }
     let common = row.number("temp_c")?;
@@ -157,8 +177,11 @@ fn uncertainty(row: Row<'_>) -> Result<[Option<f64>; 3], Box<Refusal>> {
     let found = row.any_of(["u_x_um", "u_y_um", "u_z_um"])?.map(|own| own.or(common));
     for column in ["u_um", "u_x_um", "u_y_um", "u_z_um"] {
         let Some(u) = row.number(column)?.filter(|u| *u <= 0.0) else { continue };
-        let message = format!("an uncertainty of {u} um is not possible");
-        let help = "give the standard uncertainty, above zero, or leave it empty";
+        let message = both!("an uncertainty of {u} um is not possible", "неопределённости {u} мкм не бывает");
+        let help = both!(
+            "give the standard uncertainty, above zero, or leave it empty",
+            "дайте стандартную неопределённость больше нуля или оставьте пустой"
+        );
         return Err(row.refuse(CELL, column, message, help));
     }
     Ok(found)

@@ -3,7 +3,7 @@
 //! Each limit lies far from anything a machine tool or an instrument does, so that what is refused is a slip of
 //! the file and never a bad machine.
 
-use diagnostic::Code;
+use diagnostic::{Code, Text, both};
 use gap_diagnosis::{Measurements, Reading};
 use machine_profile::Profile;
 use measurement_files::Sheet;
@@ -33,7 +33,7 @@ fn reading_column(sheet: &Sheet) -> &'static str {
     READINGS.into_iter().find(|c| sheet.has(c)).unwrap_or("run")
 }
 
-fn refuse(sheet: &Sheet, code: Code, row: usize, column: &str, message: String, help: &str) -> Failure {
+fn refuse(sheet: &Sheet, code: Code, row: usize, column: &str, message: Text, help: Text) -> Failure {
     match sheet.row(row) {
         Some(row) => row.refuse(code, column, message, help).into(),
         None => sheet.refuse_column(code, column, message, help).into(),
@@ -48,8 +48,18 @@ pub(in crate::diagnose) fn commands_and_frames(
 ) -> Result<(), Failure> {
     let widest = (0..3).map(|a| data.range_mm(a).1 - data.range_mm(a).0).fold(0.0, f64::max);
     if widest > 0.0 && widest < SMALLEST_SPAN_MM && data.rows.len() > 3 {
-        let message = format!("the commands span {widest} mm in all: are x_mm, y_mm, z_mm metres?");
-        return Err(refuse(sheet, UNIT, 0, "x_mm", message, "give the commanded positions in millimetres"));
+        let message = both!(
+            "the commands span {widest} mm in all: are x_mm, y_mm, z_mm metres?",
+            "команды занимают всего {widest} мм: x_mm, y_mm, z_mm — в метрах?"
+        );
+        return Err(refuse(
+            sheet,
+            UNIT,
+            0,
+            "x_mm",
+            message,
+            both!("give the commanded positions in millimetres", "дайте заданные положения в миллиметрах"),
+        ));
     }
     travel(sheet, data, profile)?;
     sizes(sheet, data, widest)?;
@@ -66,11 +76,17 @@ fn travel(sheet: &Sheet, data: &Measurements, profile: &Profile) -> Result<(), F
         });
         if let Some(row) = outside {
             let letter = ['X', 'Y', 'Z'][axis];
-            let message = format!(
+            let message = both!(
                 "{letter} {} mm lies outside the profile's travel of {} to {} mm",
-                data.rows[row].command.linear_mm[axis], travel.low, travel.high
+                "{letter} {} мм лежит вне хода по профилю, от {} до {} мм",
+                data.rows[row].command.linear_mm[axis],
+                travel.low,
+                travel.high
             );
-            let help = "give machine coordinates in millimetres, or the profile of this machine";
+            let help = both!(
+                "give machine coordinates in millimetres, or the profile of this machine",
+                "дайте координаты станка в миллиметрах или профиль этого станка"
+            );
             return Err(refuse(sheet, UNIT, row, ["x_mm", "y_mm", "z_mm"][axis], message, help));
         }
     }
@@ -79,18 +95,25 @@ fn travel(sheet: &Sheet, data: &Measurements, profile: &Profile) -> Result<(), F
 
 /// Readings that are far too large.
 fn sizes(sheet: &Sheet, data: &Measurements, widest_mm: f64) -> Result<(), Failure> {
-    let help =
-        "deviations are micrometres, positions are machine coordinates in millimetres: check units and frame";
+    let help = both!(
+        "deviations are micrometres, positions are machine coordinates in millimetres: check units and frame",
+        "отклонения — в микрометрах, положения — координаты станка в миллиметрах: проверьте единицы и систему координат"
+    );
     let sizes = sorted(readings(data).map(|(_, um)| um.abs()));
     let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
     if median > 3.0 * FAR_UM + TURNED_UM_PER_MM * widest_mm {
-        let message = format!("half of the deviations exceed {:.1} mm", median * 1e-3);
+        let message = both!(
+            "half of the deviations exceed {:.1} mm",
+            "половина отклонений больше {:.1} мм",
+            median * 1e-3
+        );
         return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     let scatter = scatter_um(data);
     if scatter > LARGEST_SCATTER_UM {
-        let message = format!(
+        let message = both!(
             "neighbouring deviations differ by {:.2} mm and more: are they nanometres?",
+            "соседние отклонения различаются на {:.2} мм и больше: это нанометры?",
             scatter * 1e-3
         );
         return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
@@ -103,19 +126,26 @@ pub(in crate::diagnose) fn readings_against_model(sheet: &Sheet, data: &Measurem
     if data.rows.len() <= 3 {
         return Ok(());
     }
-    let help = "no machine is that good: are the deviations in millimetres? The columns are micrometres";
+    let help = both!(
+        "no machine is that good: are the deviations in millimetres? The columns are micrometres",
+        "таких точных станков нет: отклонения в миллиметрах? В столбцах микрометры"
+    );
     let sizes = sorted(readings(data).map(|(_, um)| um.abs()));
     let large = sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0);
     if large < PERFECT_UM {
-        let message = format!("nine deviations of ten are below {large:.4} um");
+        let message = both!(
+            "nine deviations of ten are below {large:.4} um",
+            "девять отклонений из десяти меньше {large:.4} мкм"
+        );
         return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
     let predicted = rms(data.rows.iter().map(|r| 1e3 * r.predicted_mm.norm()));
     let measured = rms(readings(data).map(|(_, um)| um));
     let lengths = data.has_lengths();
     if !lengths && predicted > 5.0 && measured < TOO_SMALL * predicted {
-        let message = format!(
-            "the deviations are {measured:.3} um RMS where the profile predicts {predicted:.1} um: are they millimetres?"
+        let message = both!(
+            "the deviations are {measured:.3} um RMS where the profile predicts {predicted:.1} um: are they millimetres?",
+            "среднеквадратичное отклонение {measured:.3} мкм, а профиль предсказывает {predicted:.1} мкм: это миллиметры?"
         );
         return Err(refuse(sheet, UNIT, 0, reading_column(sheet), message, help));
     }
@@ -124,7 +154,10 @@ pub(in crate::diagnose) fn readings_against_model(sheet: &Sheet, data: &Measurem
 
 /// Rows and runs that were measured in another frame than the rest.
 fn frames(sheet: &Sheet, data: &Measurements, far_um: f64) -> Result<(), Failure> {
-    let help = "all rows must be in one frame, machine commands and readings alike; convert these rows or leave them out";
+    let help = both!(
+        "all rows must be in one frame, machine commands and readings alike; convert these rows or leave them out",
+        "все строки должны быть в одной системе координат, и команды, и показания; пересчитайте эти строки или исключите их"
+    );
     let column = |class: usize| {
         let names = [["dx_um", "xm_mm"], ["dy_um", "ym_mm"], ["dz_um", "zm_mm"]];
         names[class].into_iter().find(|c| sheet.has(c)).unwrap_or("run")
@@ -147,8 +180,9 @@ fn frames(sheet: &Sheet, data: &Measurements, far_um: f64) -> Result<(), Failure
             .map(|(_, um)| (um - middle).abs())
             .sum::<f64>()
             / far.len() as f64;
-        let message = format!(
+        let message = both!(
             "run `{}`, line {}: {} and {} further rows lie {:.1} mm from the rest",
+            "проход `{}`, строка {}: {} и ещё строки, всего {}, лежат в {:.1} мм от остальных",
             data.runs[data.rows[row].run],
             data.rows[row].line,
             ["dx", "dy", "dz"][class],

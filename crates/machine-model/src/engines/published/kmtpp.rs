@@ -103,6 +103,7 @@ impl KmtppPublished {
                 if row < 0.0 || row >= table.positions_mm().len() as f64 {
                     return Err(SolveError::Undefined(
                         "the published trace leaves the interferometer tables on its way to the target",
+                        "опубликованный путь на пути к цели выходит из таблиц интерферометра",
                     ));
                 }
                 trace.node_mm[i] = row * self.step_mm[i];
@@ -141,11 +142,10 @@ impl Engine for KmtppPublished {
         inside(target, &self.volume())?;
         let trace = self.trace(target)?;
         let wanted = target - trace.reached_mm;
-        let within = trace
-            .directions
-            .lu()
-            .solve(&wanted)
-            .ok_or(SolveError::Undefined("the axis directions do not span space"))?;
+        let within = trace.directions.lu().solve(&wanted).ok_or(SolveError::Undefined(
+            "the axis directions do not span space",
+            "направления осей лежат в одной плоскости",
+        ))?;
         Ok(Solution {
             linear_mm: trace.node_mm + within,
             iterations: trace.steps,

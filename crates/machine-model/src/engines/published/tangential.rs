@@ -87,10 +87,10 @@ impl Engine for TangentialPublished {
         };
         let directions = self.directions(intervals);
         let wanted = target - origin - offset;
-        let within = directions
-            .lu()
-            .solve(&wanted)
-            .ok_or(SolveError::Undefined("the direction cosines of this cell do not span space"))?;
+        let within = directions.lu().solve(&wanted).ok_or(SolveError::Undefined(
+            "the direction cosines of this cell do not span space",
+            "направляющие косинусы этой ячейки лежат в одной плоскости",
+        ))?;
         let residual_mm = (directions * within - wanted).norm();
         Ok(Solution { linear_mm: origin + base + within, iterations: 1, residual_mm })
     }

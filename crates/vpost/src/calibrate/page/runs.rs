@@ -60,7 +60,10 @@ impl Read {
             missing: evaluation
                 .as_ref()
                 .map(super::super::plausibility::missing_of_the_standard)
-                .unwrap_or_default(),
+                .unwrap_or_default()
+                .iter()
+                .map(|missing| missing.english().to_owned())
+                .collect(),
             held_out: calibration::iso230_2::held_out(&runs),
             evaluation,
             runs,

@@ -1,5 +1,6 @@
 //! The lines of a plan.
 
+use diagnostic::both;
 use machine_model::effects::Conditions;
 use machine_model::{Vector, Volume};
 
@@ -63,8 +64,14 @@ pub(in crate::diagnose) fn lines(volume: Volume, tool_mm: Vector) -> Result<Vec<
     let span = Vector::from_fn(|a, _| volume.0[a].high - volume.0[a].low);
     if (0..3).any(|a| span[a] < 10.0) {
         return Err(Failure::option(
-            "the profile's volume is thinner than 10 mm along an axis",
-            "a plan needs three axes to move; give the axis its `travel_mm`, or a longer table",
+            both!(
+                "the profile's volume is thinner than 10 mm along an axis",
+                "объём профиля по одной из осей тоньше 10 мм"
+            ),
+            both!(
+                "a plan needs three axes to move; give the axis its `travel_mm`, or a longer table",
+                "для плана нужны движения трёх осей; дайте оси `travel_mm` или более длинную таблицу"
+            ),
         ));
     }
     let share = |x: f64, y: f64, z: f64| {

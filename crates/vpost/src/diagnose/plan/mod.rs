@@ -7,6 +7,7 @@ mod proposed;
 use std::fmt::Write;
 
 use clap::ValueEnum;
+use diagnostic::{Text, both};
 use gap_diagnosis::{Confounding, Diagnosis, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
 use machine_model::{Command, Vector};
@@ -33,7 +34,7 @@ pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messa
     let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
     print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
     let found = confounding(&design(&plan, &model.geometry));
-    messages.note(&summary(&plan, &found, &model.geometry));
+    messages.note(&Text::english_only(summary(&plan, &found, &model.geometry)));
     Ok(())
 }
 
@@ -47,12 +48,19 @@ pub(super) fn print_next(
 ) -> Result<(), Failure> {
     let Some(next) = &diagnosis.next_measurement else {
         return Err(Failure::option(
-            format!("there is no next measurement: the verdict is {}", diagnosis.verdict.name()),
-            "leave out `--next`; `--plan` prints a measurement of the whole machine",
+            both!(
+                "there is no next measurement: the verdict is {}",
+                "следующего измерения нет: заключение — {}",
+                diagnosis.verdict.name()
+            ),
+            both!(
+                "leave out `--next`; `--plan` prints a measurement of the whole machine",
+                "уберите `--next`; измерение всего станка печатает `--plan`"
+            ),
         ));
     };
     print_lines(form, &proposed(next, model.profile.volume())?, &next.text, shared, messages)?;
-    messages.note(&next.text);
+    messages.note(&Text::english_only(next.text.as_str()));
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use diagnostic::both;
 use machine_model::Vector;
 use nc_syntax::dialect::{Paren, Semicolon};
 
@@ -25,8 +26,14 @@ struct Blocks<'a> {
 pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<String, Failure> {
     let Some((offset, zero_mm)) = settings.setup.work_offsets.first().cloned() else {
         return Err(Failure::option(
-            "the program needs a work offset, and the profile has none",
-            "add `--work-offset G54=0,0,0` with the machine coordinates of its zero",
+            both!(
+                "the program needs a work offset, and the profile has none",
+                "программе нужно смещение нуля, а в профиле его нет"
+            ),
+            both!(
+                "add `--work-offset G54=0,0,0` with the machine coordinates of its zero",
+                "добавьте `--work-offset G54=0,0,0` с координатами станка его нуля"
+            ),
         ));
     };
     let high_z_mm = plan.iter().flat_map(|l| [l.before_mm.z, l.turn_mm.z]).fold(f64::MIN, f64::max);

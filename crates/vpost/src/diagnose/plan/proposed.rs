@@ -1,5 +1,6 @@
 //! The lines of the measurement that a diagnosis proposes.
 
+use diagnostic::both;
 use gap_diagnosis::{NextMeasurement, Row};
 use machine_model::{Vector, Volume};
 
@@ -18,8 +19,14 @@ fn line(rows: &[Row], run: String, volume: Volume) -> Result<Line, Failure> {
     let command = &rows[0].command;
     if command.rotary_rad != Vector::zeros() {
         return Err(Failure::option(
-            "the next measurement is a line with a rotary axis turned, and these lines keep rotary axes at zero",
-            "take its rows from `next_measurement` of `--json`",
+            both!(
+                "the next measurement is a line with a rotary axis turned, and these lines keep rotary axes at zero",
+                "следующее измерение — линия с повёрнутой осью, а эти линии держат поворотные оси в нуле"
+            ),
+            both!(
+                "take its rows from `next_measurement` of `--json`",
+                "возьмите его строки из `next_measurement` в `--json`"
+            ),
         ));
     }
     let (from, to) = (command.linear_mm, rows[rows.len() / 2 - 1].command.linear_mm);
