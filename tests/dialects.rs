@@ -20,7 +20,7 @@ const DOCUMENT: &str = "docs/dialects.md";
 /// What stands above the list.
 const MARK: &str = "<!-- tables -->\n";
 /// In these every row has its proof.
-const PROVEN: [&str; 5] = ["centroid", "fanuc", "linuxcnc", "perspektiva", "sinumerik"];
+const PROVEN: [&str; 6] = ["centroid", "fanuc", "haas", "linuxcnc", "perspektiva", "sinumerik"];
 const PROFILE: &str = "tests/profiles/corpus.toml";
 /// The work offset that this profile lacks.
 const GIVEN: &str = "G57";
@@ -261,6 +261,18 @@ fn setup() -> Setup {
     }
 }
 
+/// The rows of a dialect that are not those of the one that it extends.
+fn own_rows(dialect: &Dialect) -> Rows {
+    let mut own = rows(dialect);
+    let Some(beneath) = dialect.extends.as_deref().and_then(nc_dialect::builtin).map(rows) else {
+        return own;
+    };
+    own.g_codes.retain(|row| !beneath.g_codes.contains(row));
+    own.m_codes.retain(|row| !beneath.m_codes.contains(row));
+    own.commands.retain(|row| !beneath.commands.contains(row));
+    own
+}
+
 /// Writes the list of a dialect; rows without proof are added to `missing`.
 fn describe(dialect: &Dialect, setup: &Setup, missing: &mut Vec<String>) -> String {
     let programs = programs(dialect, setup);
@@ -277,11 +289,14 @@ fn describe(dialect: &Dialect, setup: &Setup, missing: &mut Vec<String>) -> Stri
         };
         shown(format!("{} {}", row.code, row.treatment.name()), named(row).map(str::to_owned).or_else(file))
     };
-    let Rows { g_codes, m_codes, commands } = rows(dialect);
+    let Rows { g_codes, m_codes, commands } = own_rows(dialect);
     let mut out = format!("### `{}`: {}\n\nAssumed:\n\n", dialect.name, dialect.title);
     let mut line = |text: std::fmt::Arguments<'_>| writeln!(out, "{text}").expect("a string takes all");
     for assumption in &dialect.assumptions {
         line(format_args!("- {assumption}"));
+    }
+    if let Some(beneath) = &dialect.extends {
+        line(format_args!("\nAll other codes are those of `{beneath}`."));
     }
     line(format_args!(
         "\n| code | group | what becomes of it | why, or how | proof |\n|---|---|---|---|---|"
@@ -436,5 +451,5 @@ fn an_offset_given_on_the_command_line_is_followed() {
         };
         assert_ne!(corrected("100,80,40"), corrected("300,250,90"), "{}", dialect.name);
     }
-    assert_eq!(tried, 5, "all but balt-system, which chooses origins by commands");
+    assert_eq!(tried, 6, "all but balt-system, which chooses origins by commands");
 }

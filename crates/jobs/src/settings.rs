@@ -503,7 +503,7 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
     if let Some(start) = &options.start_at {
         if setup.tip_at_start && start.linear_mm.iter().any(Option::is_some) {
             return Err(Failure::option(
-both!(
+                both!(
                     "`--start-at` gives axis commands, and the profile says that programs begin under tool centre point control",
                     "`--start-at` задаёт команды осей, а по профилю программы начинаются при управлении по вершине инструмента"
                 ),

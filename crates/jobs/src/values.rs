@@ -193,7 +193,9 @@ impl Value for Start {
         for part in text.split(',') {
             let (name, value) = assignment(part).ok_or(None)?;
             let axis = ["X", "Y", "Z", "A", "B", "C"].iter().position(|axis| name.eq_ignore_ascii_case(axis));
-            let Some(axis) = axis else { return Err(Some(both!("there is no axis `{name}`", "оси `{name}` нет"))) };
+            let Some(axis) = axis else {
+                return Err(Some(both!("there is no axis `{name}`", "оси `{name}` нет")));
+            };
             let value = if axis < 3 { millimetres(value) } else { finite(value) };
             if places[axis].replace(value.ok_or(None)?).is_some() {
                 return Err(Some(both!("{name} is said twice", "{name} задана дважды")));

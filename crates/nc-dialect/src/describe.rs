@@ -103,7 +103,7 @@ pub fn rows(dialect: &Dialect) -> Rows {
         Row { code: entry.code.to_string(), group: entry.group, treatment, note }
     });
     let m_codes = dialect.m_codes.iter().map(|entry| {
-        let (treatment, note) = if matches!(entry.number, 98 | 99) && dialect.flow.macros != Macros::None {
+        let (treatment, note) = if dialect.flow.calls(i64::from(entry.number)) {
             (Treatment::Executed, executed())
         } else {
             of_m_code(entry)

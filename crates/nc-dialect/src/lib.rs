@@ -8,6 +8,7 @@
 mod action;
 mod checks;
 mod describe;
+mod inherited;
 mod load;
 mod russian;
 mod shipped;

@@ -14,6 +14,7 @@ use toml::Spanned;
 
 use crate::action::{ACTION_NAMES, action_named, nearest};
 use crate::checks::{self, wide};
+use crate::inherited;
 use crate::russian;
 use crate::table::{
     CodeRow, ColonRule, CommandRow, Grammar, L20, LatheRow, LeadName, Levels, MRow, MacroLanguage,
@@ -31,7 +32,7 @@ use crate::table::{
 /// that neither says what the code does nor why it is refused, VP0806 a number out of range, VP0807 start codes
 /// that the table lacks or that exclude each other, VP0808 letters that cannot be words.
 pub fn load(name: &str, text: &str) -> Result<Dialect, Vec<Diagnostic>> {
-    let grammar: Grammar = toml::from_str(text).map_err(|error| vec![refused_by_toml(&error)])?;
+    let grammar = inherited::read(text).map_err(|wrong| vec![wrong])?;
     let mut wrong = Vec::new();
     let mut m_codes = Vec::new();
     let mut commands = Vec::new();
@@ -141,7 +142,18 @@ struct Rows {
 /// The table as a value, once nothing in it is wrong.
 fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dialect {
     let Grammar {
-        title, assumptions, text, numbers, cycles, tool_length, output, flow, frames, start, ..
+        title,
+        extends,
+        assumptions,
+        text,
+        numbers,
+        cycles,
+        tool_length,
+        output,
+        flow,
+        frames,
+        start,
+        ..
     } = grammar;
     let Rows { codes, m_codes, commands, lathe, turning } = rows;
     let mut letters = text.letters.into_inner().into_bytes();
@@ -154,6 +166,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
     Dialect {
         name: name.to_owned(),
         title,
+        extends,
         assumptions,
         paren: match text.round_brackets {
             RoundBrackets::None => Paren::None,
@@ -201,6 +214,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             packed_repeats: flow.packed_repeats,
             full_circle_atan: flow.full_circle_atan,
             corner_words: flow.corner_words,
+            local_calls: flow.local_calls,
             polar_words,
             called,
         },
@@ -251,21 +265,6 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             peck_clearance_mm: cycles.peck_clearance_mm.into_inner(),
             chip_retreat_mm: cycles.chip_retreat_mm.into_inner(),
         },
-    }
-}
-
-fn refused_by_toml(error: &toml::de::Error) -> Diagnostic {
-    let diagnostic = Diagnostic::error(
-        Code(801),
-        both!("the grammar cannot be read: {}", "таблица диалекта не читается: {}", error.message().trim()),
-    )
-    .help(both!(
-        "docs/dialects.md lists every field of a grammar",
-        "все поля таблицы диалекта описаны в docs/dialects.md"
-    ));
-    match error.span() {
-        Some(span) => diagnostic.at(wide(span), both!("here", "здесь")),
-        None => diagnostic,
     }
 }
 
@@ -320,7 +319,11 @@ fn action(code: GCode, key: &Spanned<String>, row: &CodeRow) -> Result<Action, D
             row.group
         )));
     };
-    action_named(does.get_ref(), code).ok_or_else(|| {
+    let offset = |action| match (action, &row.offset) {
+        (Action::WorkOffset(_), Some(name)) => Action::WorkOffset(name.clone()),
+        (action, _) => action,
+    };
+    action_named(does.get_ref(), code).map(offset).ok_or_else(|| {
         let nearest = nearest(does.get_ref())
             .map_or(Text::EMPTY, |name| both!("did you mean \"{name}\"? ", "имелось в виду \"{name}\"? "));
         Diagnostic::error(

@@ -10,6 +10,8 @@ use toml::Spanned;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Grammar {
     pub(crate) title: String,
+    /// The shipped table that has all that is not said here.
+    pub(crate) extends: Option<String>,
     #[serde(default)]
     pub(crate) assumptions: Vec<String>,
     pub(crate) text: Text,
@@ -178,6 +180,9 @@ pub(crate) struct FlowRules {
     pub(crate) full_circle_atan: bool,
     #[serde(default)]
     pub(crate) corner_words: bool,
+    /// M97 P1000 calls the blocks from N1000 on, M99 returns.
+    #[serde(default)]
+    pub(crate) local_calls: bool,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -330,6 +335,8 @@ pub(crate) enum RotaryFeedName {
 pub(crate) struct CodeRow {
     pub(crate) group: u8,
     pub(crate) does: Option<Spanned<String>>,
+    /// Of a work offset: its name in the profile, where that is not the code's.
+    pub(crate) offset: Option<String>,
     pub(crate) refuse: Option<String>,
     pub(crate) help: Option<String>,
 }

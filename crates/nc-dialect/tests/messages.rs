@@ -153,3 +153,49 @@ fn no_toml() {
       help: docs/dialects.md lists every field of a grammar
     "#);
 }
+
+/// A table of a few lines on top of Fanuc's.
+fn extended(text: &str) -> Result<nc_syntax::Dialect, String> {
+    load("own", text).map_err(|wrong| {
+        let shown = wrong.iter().map(|diagnostic| {
+            let span = diagnostic.span.clone().expect("every message about a grammar has a place");
+            format!("{diagnostic} at `{}`", &text[span.start as usize..span.end as usize])
+        });
+        shown.collect::<Vec<_>>().join("\n")
+    })
+}
+
+#[test]
+fn a_table_says_what_differs() {
+    let text = r#"
+        title = "Our mill"
+        extends = "fanuc"
+        [cycles]
+        repeats = "L"
+        [codes]
+        G100 = { group = 0, does = "pass" }
+        G12 = { group = 0, does = "pass-with-words" }
+    "#;
+    let (own, fanuc) = (extended(text).unwrap(), nc_dialect::builtin("fanuc").unwrap());
+    assert_eq!((own.title.as_str(), own.extends.as_deref()), ("Our mill", Some("fanuc")));
+    assert_eq!(own.cycle_repeats, b"L");
+    assert_eq!(own.output, fanuc.output);
+    let others = fanuc.codes.iter().filter(|entry| entry.code.to_string() != "G12");
+    for entry in others {
+        assert_eq!(own.code(entry.code), Some(entry));
+    }
+    assert_eq!(own.codes.iter().count(), fanuc.codes.iter().count() + 1);
+}
+
+#[test]
+fn what_is_wrong_on_top_of_a_table_has_a_place_in_its_own_text() {
+    let of = |lines: &str| extended(&format!("title = \"x\"\nextends = \"fanuc\"\n{lines}")).unwrap_err();
+    // G15 holds at Fanuc's start: the row that refuses it breaks the table beneath.
+    let wrong = of("[codes]\nG15 = { group = 17, refuse = \"x\", help = \"y\" }");
+    assert!(wrong.contains("VP0807") && wrong.ends_with("at `\"fanuc\"`"), "{wrong}");
+    assert!(of("[codes]\nG7 = { group = 0, does = \"fly\" }").contains("at `\"fly\"`"));
+    assert!(of("[codes]\nG021 = { group = 6, does = \"inch\" }").contains("VP0803"));
+    assert!(of("[cylces]\nrepeats = \"K\"").contains("VP0801"));
+    let none = extended("title = \"x\"\nextends = \"fanoc\"").unwrap_err();
+    assert!(none.contains("VP0801") && none.contains("`fanoc`"), "{none}");
+}

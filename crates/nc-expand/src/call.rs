@@ -1,4 +1,4 @@
-//! Calls: M98, G65, O-words.
+//! Calls: M97, M98, G65, O-words.
 
 use std::borrow::Cow;
 use std::io::ErrorKind;
@@ -17,7 +17,7 @@ use crate::statement::{Call, Control, Kind, Statement};
 use crate::value::{NameId, Value};
 
 impl<'a> Run<'a, '_> {
-    /// M98 and G65.
+    /// M97, M98 and G65.
     pub(crate) fn call(
         &mut self,
         source: &Source<'a>,
@@ -25,14 +25,26 @@ impl<'a> Run<'a, '_> {
         call: &Call,
         place: Place,
     ) -> Result<(), Stop> {
-        let mut program =
-            whole(&Text::pair("the number of a program", "номер программы"), self.known(&call.program)?)?;
+        let what = if call.local {
+            Text::pair("a block number", "номер кадра")
+        } else {
+            Text::pair("the number of a program", "номер программы")
+        };
+        let mut program = whole(&what, self.known(&call.number)?)?;
         let mut passes = match &call.repeats {
             Some(repeats) => {
                 whole(&Text::pair("the count of a call", "число повторений вызова"), self.known(repeats)?)?
             }
             None => 1,
         };
+        if call.local {
+            if passes == 0 {
+                return Ok(());
+            }
+            let start = Place { statement: self.block(source, statement.section, program)?, ..place };
+            let kind = CallKind::Block(program);
+            return self.enter(start, kind, passes, None, statement.section, place);
+        }
         let packed = call.repeats.is_none() && call.arguments.is_none() && program > 9999;
         if packed && self.dialect.flow.packed_repeats {
             if u32::try_from(program).is_ok_and(|number| source.programs.contains_key(&number)) {

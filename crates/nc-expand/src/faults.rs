@@ -212,6 +212,7 @@ pub(crate) fn no_call(what: &Text) -> Stop {
 pub(crate) fn no_return(names: &Names, kind: CallKind) -> Stop {
     let (name, way) = match kind {
         CallKind::Number(number) => (format!("O{number:04}"), "M99"),
+        CallKind::Block(number) => (format!("N{number}"), "M99"),
         CallKind::Name(id) => (format!("o<{}>", names.name(id)), "`endsub`"),
     };
     say(

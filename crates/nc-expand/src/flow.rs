@@ -2,7 +2,7 @@
 
 use diagnostic::{Text, both};
 use nc_syntax::Block;
-use nc_syntax::dialect::Macros;
+use nc_syntax::dialect::{Flow, Macros};
 
 use crate::expression::{Expression, Parser};
 use crate::statement::Control;
@@ -83,6 +83,8 @@ fn loop_number(parser: &mut Parser<'_, '_>) -> Result<u32, Text> {
 pub(crate) enum Taken {
     /// M98: itself, P, L.
     Sub,
+    /// M97: itself, P, L.
+    Local,
     /// M99: itself, P.
     Return,
     /// G65: everything.
@@ -102,16 +104,18 @@ impl Taken {
             (Self::Macro, _) => true,
             (_, b'P' | b'L') => true,
             (Self::Sub, b'M') => code(b"98"),
+            (Self::Local, b'M') => code(b"97"),
             (Self::Return, b'M') => code(b"99"),
             _ => false,
         }
     }
 }
 
-pub(crate) fn call_of(block: &Block<'_>) -> Option<Taken> {
+pub(crate) fn call_of(block: &Block<'_>, flow: Flow) -> Option<Taken> {
     block.words().find_map(|word| {
         let number = word.number()?;
         match (word.letter, number.tenths()?) {
+            (b'M', 970) if flow.local_calls => Some(Taken::Local),
             (b'M', 980) => Some(Taken::Sub),
             (b'M', 990) => Some(Taken::Return),
             (b'G', 650) => Some(Taken::Macro),

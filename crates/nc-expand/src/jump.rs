@@ -33,6 +33,8 @@ pub(crate) struct Frame {
 pub(crate) enum CallKind {
     /// M98, G65: M99 returns.
     Number(u32),
+    /// M97: the same, to a block of the caller's program.
+    Block(u64),
     /// `o<name> call`: `endsub` and `return` return.
     Name(NameId),
 }
@@ -41,13 +43,16 @@ impl<'a> Run<'a, '_> {
     pub(crate) fn goto(&mut self, source: &Source<'a>, section: u32, label: &Expression) -> Result<(), Stop> {
         let value = self.known(label)?;
         let number = faults::whole(&Text::pair("a block number", "номер кадра"), value)?;
+        self.at.statement = self.block(source, section, number)?;
+        Ok(())
+    }
+
+    /// The statement with a block number of a program.
+    pub(crate) fn block(&self, source: &Source<'a>, section: u32, number: u64) -> Result<u32, Stop> {
         let refuse =
             |why: Text| faults::label(&format!("N{number}"), &both!("block number", "номер кадра"), &why);
         match source.label(section, number) {
-            Found::Statement(statement) => {
-                self.at.statement = statement;
-                Ok(())
-            }
+            Found::Statement(statement) => Ok(statement),
             Found::Missing => Err(refuse(both!(
                 "there is no such block in this program",
                 "такого кадра в этой программе нет"
@@ -160,7 +165,7 @@ impl<'a> Run<'a, '_> {
         let count = self.calls.entry((start.file, start.statement)).or_insert(0);
         *count += 1;
         let (number, of) = match kind {
-            CallKind::Number(_) => (1, Some(passes)),
+            CallKind::Number(_) | CallKind::Block(_) => (1, Some(passes)),
             CallKind::Name(_) => (*count, None),
         };
         self.announce(kind, number, of, caller);
@@ -173,6 +178,7 @@ impl<'a> Run<'a, '_> {
     fn announce(&mut self, kind: CallKind, number: u64, of: Option<u64>, caller: Place) {
         let name = match kind {
             CallKind::Number(program) => format!("O{program:04}"),
+            CallKind::Block(number) => format!("N{number}"),
             CallKind::Name(id) => format!("O<{}>", self.names.name(id)),
         };
         let text = match of {

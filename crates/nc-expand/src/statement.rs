@@ -144,10 +144,13 @@ pub(crate) enum Direction {
     Either,
 }
 
-/// M98 and G65.
+/// M97, M98 and G65.
 #[derive(Clone, Debug)]
 pub(crate) struct Call {
-    pub(crate) program: Expression,
+    /// Number of a program, or of a block.
+    pub(crate) number: Expression,
+    /// M97: the number is that of a block of this program.
+    pub(crate) local: bool,
     pub(crate) repeats: Option<Expression>,
     /// G65: letters in the order written, and whether the number has a point.
     pub(crate) arguments: Option<Vec<(u8, Expression, bool)>>,
@@ -376,7 +379,8 @@ impl Compiler<'_, '_> {
         block: &Block<'_>,
         complex: &mut Complex,
     ) -> Result<Option<Taken>, Fault> {
-        let Some(kind) = call_of(rest).filter(|_| self.dialect.flow.macros != Macros::Siemens) else {
+        let calls = self.dialect.flow.macros != Macros::Siemens;
+        let Some(kind) = call_of(rest, self.dialect.flow).filter(|_| calls) else {
             return Ok(None);
         };
         let conflict = |message: Text, help: Text| {
@@ -500,13 +504,18 @@ impl Compiler<'_, '_> {
                             both!("a P word was expected", "ожидалось слово P"),
                         )
                         .help(both!(
-                            "write the number of the program, as in `M98 P1000`",
-                            "напишите номер программы, например `M98 P1000`"
+                            "write the number of the program (of the block behind M97), as in `M98 P1000`",
+                            "напишите номер программы (после M97 — номер кадра), например `M98 P1000`"
                         )),
                     ));
                 };
                 let arguments = (kind == Taken::Macro).then_some(arguments);
-                Control::Call(Box::new(Call { program, repeats, arguments }))
+                Control::Call(Box::new(Call {
+                    number: program,
+                    local: kind == Taken::Local,
+                    repeats,
+                    arguments,
+                }))
             }
         });
         Ok(Some(kind))
@@ -598,7 +607,7 @@ pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
         ItemKind::Word { value: WordValue::Expression, .. }
         | ItemKind::CommaWord { value: WordValue::Expression, .. } => true,
         ItemKind::Word { letter: b'M', value: WordValue::Number(number) } => {
-            matches!(number.tenths(), Some(980 | 990))
+            number.integer().is_some_and(|code| dialect.flow.calls(code))
         }
         ItemKind::Word { letter: b'G', value: WordValue::Number(number) } => {
             !linuxcnc && number.tenths() == Some(650)

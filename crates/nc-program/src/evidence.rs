@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, GCode, LatheSign, Macros, PointFree};
+use nc_syntax::dialect::{Action, GCode, LatheSign, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
 
@@ -230,7 +230,7 @@ impl Evidence {
         let row = code.and_then(|code| questions.dialect.m_code(code));
         self.ends |= row.is_some_and(|row| row.ends_program) || code == Some(SUBPROGRAM_ENDS);
         self.changes_tool |= row.is_some_and(|row| row.changes_tool);
-        let call = questions.dialect.flow.macros != Macros::None && matches!(code, Some(98 | 99));
+        let call = code.is_some_and(|code| questions.dialect.flow.calls(i64::from(code)));
         if row.is_none() && !call {
             self.unknown += 1;
             self.unknown_codes.insert(String::from_utf8_lossy(block.text(word.span)).to_ascii_uppercase());

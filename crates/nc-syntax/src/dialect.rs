@@ -809,10 +809,25 @@ pub struct Flow {
     pub full_circle_atan: bool,
     /// `,R5.` and `,C2.` at the end of a line round or cut its corner with the next one.
     pub corner_words: bool,
+    /// M97 P1000 calls the blocks from N1000 on, in the same program; M99 returns.
+    pub local_calls: bool,
     /// Some code is [`Action::PolarOn`].
     pub polar_words: bool,
     /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
     pub called: bool,
+}
+
+impl Flow {
+    /// True for an M code that calls or returns, and is executed before anything is corrected: M98 and M99, M97 where it
+    /// calls.
+    #[must_use]
+    pub fn calls(self, m_code: i64) -> bool {
+        match m_code {
+            98 | 99 => self.macros != Macros::None,
+            97 => self.local_calls && self.macros != Macros::None,
+            _ => false,
+        }
+    }
 }
 
 /// What a lathe's programs have and a mill's have not.
@@ -930,6 +945,8 @@ pub struct Dialect {
     pub name: String,
     /// What it is, for people.
     pub title: String,
+    /// The shipped dialect that has all that this one's table does not say.
+    pub extends: Option<String>,
     /// Assumptions made where no manual is public, shown by `grammar list`.
     pub assumptions: Vec<String>,
     /// What `( )` means.

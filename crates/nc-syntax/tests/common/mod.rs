@@ -10,6 +10,7 @@ pub(crate) fn dialect() -> Dialect {
     Dialect {
         name: "test".to_owned(),
         title: String::new(),
+        extends: None,
         assumptions: Vec::new(),
         paren: Paren::Comment { nested: false },
         semicolon: Semicolon::Comment,

@@ -1,9 +1,9 @@
 %
 O0001
-(expect VP0214: G54 P2 and the profile has none)
+(expect VP0214: G54 P30 and the profile has none)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
-G54 P2
+G54 P30
 G1 X20. F200.
 G0 Z60.
 M30
