@@ -159,7 +159,7 @@ def examine(case, folder, vpost):
             key = group[0]
             was = case.base.spec["rotary"][key[3]].get("location", {}).get(key, 0.0)
             at = written.spec["rotary"][key[3]]["location"][key]
-            if abs(at - was) > 1e-6:
+            if abs(at - was) > 0.01:
                 wrong.append(("invented", f"{key} cannot be told and is written as {at}, before {was}"))
     if case.kind == "one-ball" and not any(k[2:] in case.names and k[1] in "ABC" for k in found.open_names):
         wrong.append(("unnamed", "one ball, and no function of an angle is said to be open"))

@@ -64,11 +64,12 @@ def calibrate(slip, arguments):
             best = (score, solve, left @ left, dof)
     _, solve, left, dof = best
     gained, terms = rest @ rest - left, (n - count) - dof
-    tables = slip != "silent" and gained / terms > left / dof * (1 + 3.5 * np.sqrt(2 / terms))
+    tables = slip != "silent" and gained / terms > left / dof * (1 + 7 * np.sqrt(2 / terms))
     size = fit.x.shape[1]
     if tables:
         # locations take what they can: along the null space the tables become small
-        hidden = reference.null(fit.x)
+        each = {m: fit.bases[m](np.zeros(1)).shape[1] for m in case.names}
+        hidden = reference.null(fit.x, reference.sizes(case.names, each))
         at = [np.linspace(*case.range[m], 49) for m in case.names]
         blocks = []
         for k, name in enumerate(case.names):
@@ -92,7 +93,7 @@ def calibrate(slip, arguments):
     groups = reference.open_terms(rows, case.names)
     hidden_names = {k for g in groups for k in g}
     # what the locations cannot tell keeps its start
-    hidden = reference.null(located, small=1e-3)
+    hidden = reference.null(located, reference.sizes(case.names, None), 1e-3)
     x[:count] -= hidden @ np.linalg.lstsq(hidden, x[:count], rcond=None)[0]
     if slip == "invents":
         x[[i for i, k in enumerate(keys) if k in hidden_names]] += 7.0

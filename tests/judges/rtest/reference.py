@@ -125,8 +125,8 @@ class Fit:
             self.rough[at : at + r.shape[0], col : col + r.shape[1]] = r
             at, col = at + r.shape[0], col + r.shape[1]
         self.gram, self.right = self.x.T @ self.x, self.x.T @ self.y
-        # what nothing decides stays small: a length of 3 mm a priori
-        self.weak = 1e-7 * np.eye(size)
+        # what nothing decides stays small: a length of 0.3 mm a priori
+        self.weak = 1e-5 * np.eye(size)
 
     def solve(self, penalty):
         return np.linalg.solve(self.gram + penalty * self.rough.T @ self.rough + self.weak, self.right)
@@ -162,10 +162,16 @@ def saturated(case, rows):
     return np.concatenate([rows.located(), rows.functions(bases)], axis=1), angles
 
 
-def null(matrix, small=3e-4):
-    """Columns span what the matrix does not show."""
-    size = np.linalg.norm(matrix, axis=0)
-    size = np.where(size > 1e-9 * size.max(), size, 1.0)
+def sizes(names, each):
+    """Natural size of each column, um: locations, then `each` {axis: numbers a function has}; an angle counts at an arm of 150 mm."""
+    out = [1.0 if place(k) < 3 else 0.15 for k in keys(names)]
+    for name in names if each else ():
+        out += [1.0] * 3 * each[name] + [0.15] * 3 * each[name]
+    return np.array(out)
+
+
+def null(matrix, size, small=2e-4):
+    """Columns span what the matrix does not show, or as little as products of errors do."""
     _, s, v = np.linalg.svd(matrix / size, full_matrices=True)
     rank = int((s > small * s[0]).sum())
     return v[rank:].T / size[:, None]
@@ -173,7 +179,7 @@ def null(matrix, small=3e-4):
 
 def open_terms(rows, names, small=1e-3):
     """Groups of location errors that the rows do not tell: [name] alone, or several that go together."""
-    n = null(rows.located(), small=small)
+    n = null(rows.located(), sizes(names, None), small)
     if n.shape[1] == 0:
         return []
     # reduced to rows that name as few as possible
@@ -204,7 +210,7 @@ def as_divided(case, rows, truth, answer):
     tables are nearest to the answer's at the angles read. Returns {name: value} in um and urad.
     """
     matrix, angles = saturated(case, rows)
-    n = null(matrix)
+    n = null(matrix, sizes(case.names, {name: len(a) for name, a in angles.items()}))
 
     def vector(machine):
         parts = [machine.spec["rotary"][name].get("location", {}).get(k, 0.0) for name in case.names for k in LOCATIONS[name]]
@@ -214,6 +220,6 @@ def as_divided(case, rows, truth, answer):
 
     t, a = vector(truth), vector(answer)
     count = 4 * len(case.names)
-    weight = np.concatenate([np.tile(np.repeat([1.0, 0.15], [3 * len(angles[name]), 3 * len(angles[name])]), 1) for name in case.names])
+    weight = sizes(case.names, {name: len(a) for name, a in angles.items()})[count:]
     g, *_ = np.linalg.lstsq(n[count:] * weight[:, None], (a - t)[count:] * weight, rcond=1e-9)
     return dict(zip(keys(case.names), (t + n @ g)[:count]))
