@@ -9,6 +9,9 @@ import math
 import numpy as np
 
 
+APPROACH_MM = 0.5
+
+
 class Structure(Exception):
     pass
 
@@ -34,13 +37,13 @@ def sample(m, step):
     return m.at(np.linspace(0, 1, n + 1))
 
 
-def refine(m, p, s, width):
+def refine(m, p, s, width, stop):
     """Nearest place of a motion to p about s: (distance, share), by closed form for lines, by thirds for arcs."""
     if m.arc is None:
         d = m.end - m.start
         s = float(np.clip((p - m.start) @ d / max(d @ d, 1e-18), 0, 1))
         return float(np.linalg.norm(m.start + s * d - p)), s
-    low, high = max(0.0, s - width), min(1.0, s + width)
+    low, high = max(0.0, s - width), min(stop, s + width)
     for _ in range(4):
         grid = np.linspace(low, high, 33)
         d = ((m.at(grid) - p) ** 2).sum(1)
@@ -49,41 +52,43 @@ def refine(m, p, s, width):
     return float(math.sqrt(d[k])), float(grid[k])
 
 
-def one(wanted, real, lines, limit_mm):
-    """(largest distance, line) of a real path (n, 3) to programmed motions, and of their ends to it."""
-    worst, where = 0.0, 0
-    index, share = 0, 0.0
+def distance(m, p, start):
+    """(distance, share) of the nearest place of a motion to p, not before `start`."""
+    if m.length() < 1e-9:
+        return float(np.linalg.norm(m.end - p)), 1.0
+    n = 2 if m.arc is None else max(9, int(abs(m.arc[5]) / 0.1))
+    # of a nearly full circle the far half is not yet meant
+    stop = min(1.0, start + 0.5) if m.arc is not None and abs(m.arc[5]) > 3 else 1.0
+    grid = np.linspace(start, stop, n)
+    d, s = refine(m, p, grid[int(((m.at(grid) - p) ** 2).sum(1).argmin())], 1.5 * (stop - start) / (n - 1) + 1e-12, stop)
+    if s < start:
+        s = start
+        d = float(np.linalg.norm(m.at(np.array([s]))[0] - p))
+    return d, s
+
+
+def one(wanted, real, limit_mm):
+    """(largest distance, line): of a real path (n, 3) to programmed motions, each begun when the end of the one before was reached."""
+    worst, where, index, share = 0.0, wanted[0].line, 0, 0.0
     reached = np.full(len(wanted), np.inf)
-    for p, line in zip(real, lines):
-        best = None
-        # from where the last place was, until it gets far again
-        for k in range(index, min(index + 12, len(wanted))):
-            m = wanted[k]
-            if m.length() < 1e-9:
-                continue
-            n = 2 if m.arc is None else max(9, int(abs(m.arc[5]) / 0.1))
-            start = share if k == index else 0.0
-            grid = np.linspace(start, 1, n)
-            s = grid[int(((m.at(grid) - p) ** 2).sum(1).argmin())]
-            d, s = refine(m, p, s, 1.5 / n)
-            if s < start:
-                # forwards only, but for what rounding makes of the end
-                s = start
-                d = float(np.linalg.norm(m.at(np.array([s]))[0] - p))
-            if best is None or d < best[0] - 1e-7:
-                best = (d, k, s)
-            if best[0] < limit_mm and k > best[1]:
+    for p in real:
+        d, s = distance(wanted[index], p, share)
+        if s > 0.5 or wanted[index].arc is None:
+            reached[index] = min(reached[index], float(np.linalg.norm(wanted[index].end - p)))
+        while reached[index] <= limit_mm and index + 1 < len(wanted):
+            e, t = distance(wanted[index + 1], p, 0.0)
+            if e > d + 1e-9 and d <= limit_mm:
                 break
-        if best is None:
-            raise Structure("nothing is programmed there")
-        d, index, share = best
+            index, d, s = index + 1, e, t
+            if s > 0.5 or wanted[index].arc is None:
+                reached[index] = float(np.linalg.norm(wanted[index].end - p))
+        share = s
         if d > worst:
-            worst, where = d, line
-        for k in range(max(0, index - 1), index + 1):
-            reached[k] = min(reached[k], float(np.linalg.norm(wanted[k].end - p)))
-    for k, m in enumerate(wanted):
-        if m.length() > 1e-9 and reached[k] > worst:
-            worst, where = float(reached[k]), m.line
+            worst, where = d, wanted[index].line
+    for m, d in zip(wanted, reached):
+        if d > worst:
+            worst, where = float(min(d, 1e6)), m.line
+            break
     return worst, where
 
 
@@ -96,18 +101,24 @@ def compare(wanted, taken, tips, limit_mm, step):
     samples = [[sample(m, step) for m in ms] for ms in second]
     places = np.concatenate([x for xs in samples for x in xs] + [m.end[None] for m in landings if not np.isnan(m.end).any()])
     real = tips(places)
-    at, worst, where = 0, 0.0, 0
+    at, worst, where, approaches = 0, 0.0, 0, 0
     for ms, xs in zip(first, samples):
         n = sum(len(x) for x in xs)
-        lines = np.concatenate([[k] * len(x) for k, x in enumerate(xs)])
-        d, k = one(ms, real[at : at + n], lines, limit_mm)
+        path = real[at : at + n]
         at += n
+        # a rapid moves its own axes only: a short feed may lead to the corrected start
+        lead = len(xs[0])
+        near = lambda p: np.linalg.norm(p - ms[0].start)  # noqa: E731
+        if len(xs) > 1 and near(path[0]) > limit_mm >= near(path[lead - 1]) and np.linalg.norm(xs[0][-1] - xs[0][0]) < APPROACH_MM:
+            path = path[lead:]
+            approaches += 1
+        d, line = one(ms, path, limit_mm)
         if d > worst:
-            worst, where = d, ms[0].line
+            worst, where = d, line
     rapid = 0.0
     for a, b in zip(jumps, landings):
         if not np.isnan(b.end).any():
-            if not np.isnan(a.end).any():
+            if not np.isnan(a.end).any() and (np.isnan(a.start) | (a.start != a.end)).all():
                 rapid = max(rapid, float(np.linalg.norm(real[at] - a.end)))
             at += 1
     return {"um": 1e3 * worst, "line": where, "rapid_um": 1e3 * rapid, "places": len(places)}

@@ -55,7 +55,7 @@ def calibrate(slip, arguments):
     few = np.linalg.pinv(located, rcond=1e-5)
     rest = y - located @ (few @ y)
     fit, best = reference.Fit(case, rows), None
-    for penalty in 10.0 ** np.arange(-4, 4.1, 1):
+    for penalty in 10.0 ** np.arange(-4, 4.1, 0.5):
         solve = np.linalg.solve(fit.gram + penalty * fit.rough.T @ fit.rough + fit.weak, fit.x.T)
         dof = n - np.trace(solve @ fit.x)
         left = y - fit.x @ (solve @ y)
@@ -63,8 +63,11 @@ def calibrate(slip, arguments):
         if best is None or score < best[0]:
             best = (score, solve, left @ left, dof)
     _, solve, left, dof = best
-    gained, terms = rest @ rest - left, (n - count) - dof
-    tables = slip != "silent" and gained / terms > left / dof * (1 + 7 * np.sqrt(2 / terms))
+    # functions only where a fit of few terms, fixed beforehand, shows some
+    short = reference.Fit(case, rows, small=True).x
+    terms = np.linalg.matrix_rank(short, tol=1e-3 * np.linalg.norm(short, 2)) - count
+    less = y - short @ np.linalg.lstsq(short, y, rcond=1e-6)[0]
+    tables = slip != "silent" and (rest @ rest - less @ less) / terms > less @ less / (n - count - terms) * (1 + 4 * np.sqrt(2 / terms))
     size = fit.x.shape[1]
     if tables:
         # locations take what they can: along the null space the tables become small

@@ -125,8 +125,8 @@ class Fit:
             self.rough[at : at + r.shape[0], col : col + r.shape[1]] = r
             at, col = at + r.shape[0], col + r.shape[1]
         self.gram, self.right = self.x.T @ self.x, self.x.T @ self.y
-        # what nothing decides stays small: a length of 0.3 mm a priori
-        self.weak = 1e-5 * np.eye(size)
+        # what nothing decides stays small: some 30 um a priori
+        self.weak = 1e-3 * np.eye(size)
 
     def solve(self, penalty):
         return np.linalg.solve(self.gram + penalty * self.rough.T @ self.rough + self.weak, self.right)

@@ -18,17 +18,18 @@ import machine
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-# slip -> (chains, kinds, cases, what has to be found)
-SLIPS = {
-    "right": (None, None, 36, ()),
-    "boast": (["ac", "bc"], ["tables", "locations"], 12, ("interval",)),
-    "silent": (["ac", "head-table"], ["tables"], 4, ("silent", "unseen", "unnamed")),
-    "swap": (["ac", "one"], ["locations", "sphere"], 4, ("far", "unseen")),
-    "sign": (["bc", "head-head"], ["based", "tables"], 4, ("far", "unseen", "worse")),
-    "no-tables": (["ac"], ["tables"], 2, ("unseen",)),
-    "shift": (["bc"], ["tables"], 2, ("unseen",)),
-    "invents": (["head-head"], ["locations"], 2, ("invented", "unnamed")),
-}
+# (slip, chains, kinds, cases, what has to be found)
+SLIPS = [
+    ("right", ["ac", "bc", "one", "nutating"], None, 24, ()),
+    ("right", ["head-table", "head-head"], ["locations", "tables", "perfect"], 6, ()),
+    ("boast", ["ac", "bc"], ["tables", "locations"], 12, ("interval",)),
+    ("silent", ["ac", "head-table"], ["tables"], 4, ("silent", "unseen", "unnamed")),
+    ("swap", ["ac", "one"], ["locations", "sphere"], 4, ("far", "unseen")),
+    ("sign", ["bc", "head-head"], ["based", "tables"], 4, ("far", "unseen", "worse")),
+    ("no-tables", ["ac"], ["tables"], 2, ("unseen",)),
+    ("shift", ["bc"], ["tables"], 2, ("unseen",)),
+    ("invents", ["head-head"], ["locations"], 2, ("invented", "unnamed")),
+]
 
 
 def formula():
@@ -53,7 +54,7 @@ def main():
     if np.abs(case.truth.tip(there, *case.unseen[1:3]) - case.base.tip(*case.unseen[:3], ideal=True)).max() > 1e-9:
         print("WRONG the command does not bring the tip there")
         bad += 1
-    for slip, (chains, kinds, count, wanted) in SLIPS.items():
+    for slip, chains, kinds, count, wanted in SLIPS:
         with tempfile.TemporaryDirectory() as keep:
             said = io.StringIO()
             with contextlib.redirect_stdout(said):
