@@ -17,8 +17,8 @@ def exp(v):
 
 
 def wave(rng, low, high, size):
-    """A smooth function of one axis: three waves, the shortest a third of the travel and more."""
-    parts = [(rng.uniform(-1, 1) / n, rng.uniform(0.4, 0.8) * n * 2 * np.pi / (high - low), rng.uniform(0, 7)) for n in (1, 2, 3)]
+    """A smooth function of one axis: two waves, the shorter some two thirds of the travel and more."""
+    parts = [(rng.uniform(-1, 1) / n, rng.uniform(0.4, 0.8) * n * 2 * np.pi / (high - low), rng.uniform(0, 7)) for n in (1, 2)]
     slope = rng.uniform(-0.7, 0.7)
     return lambda q: size * (slope * (2 * (q - low) / (high - low) - 1) + sum(a * np.sin(w * q + f) for a, w, f in parts))
 
