@@ -153,6 +153,39 @@ def rigid_family(q, y, box, degree):
     return lambda x: (columns(x) @ c).reshape(-1, 3)
 
 
+def spline(nodes, at):
+    """(n, m): weights of the natural cubic spline through m nodes at places."""
+    h, m = np.diff(nodes), len(nodes)
+    a, b = np.eye(m), np.zeros((m, m))
+    for i in range(1, m - 1):
+        a[i, i - 1 : i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
+        b[i, i - 1 : i + 2] = 6 / h[i - 1], -6 / h[i - 1] - 6 / h[i], 6 / h[i]
+    second = np.linalg.solve(a, b)
+    k = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, m - 2)
+    u, v, w, row = nodes[k + 1] - at, at - nodes[k], h[k], np.arange(len(at))
+    out = np.zeros((len(at), m))
+    out[row, k], out[row, k + 1] = u / w, v / w
+    return out + ((u**3 / w - u * w) / 6)[:, None] * second[k] + ((v**3 / w - v * w) / 6)[:, None] * second[k + 1]
+
+
+def straight(nodes, at):
+    """The same of the polygon."""
+    k = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, len(nodes) - 2)
+    v, row = (at - nodes[k]) / np.diff(nodes)[k], np.arange(len(at))
+    out = np.zeros((len(at), len(nodes)))
+    out[row, k], out[row, k + 1] = 1 - v, v
+    return out
+
+
+def lattice(q, y, places, weights):
+    """Tensor product of one-dimensional interpolations at the places."""
+    axes = [np.unique(q[:, i]) for i in range(3)]
+    grid = np.zeros((*(len(a) for a in axes), 3))
+    grid[tuple(np.searchsorted(a, q[:, i]) for i, a in enumerate(axes))] = y
+    a, b, c = (weights(axis, places[:, i]) for i, axis in enumerate(axes))
+    return np.einsum("ni,nj,nk,ijkc->nc", a, b, c, grid)
+
+
 def rms(x):
     return float(np.sqrt(np.mean((x * x).sum(1))))
 
