@@ -51,7 +51,7 @@ def read(path, report):
                 out.terms[located[1]] = (value, half)
                 if "written" in thing:
                     out.written[located[1]] = bool(thing["written"])
-        if at and re.search(r"not_told|open|unidentif|not_identif|cannot|hidden|null|unknown", at[-1]):
+        if at and re.search(r"not_told|not_seen|counted_as|open|unidentif|not_identif|cannot|hidden|null|unknown", at[-1]):
             out.open_names |= names(thing)
         if at and at[-1] == "holdout" and isinstance(thing, dict):
             out.holdout = number(thing, "rms_after_um", "after_um")
