@@ -109,7 +109,8 @@ def compare(wanted, taken, tips, limit_mm, step):
         # a rapid moves its own axes only: a short feed may lead to the corrected start
         lead = len(xs[0])
         near = lambda p: np.linalg.norm(p - ms[0].start)  # noqa: E731
-        if len(xs) > 1 and near(path[0]) > limit_mm >= near(path[lead - 1]) and np.linalg.norm(xs[0][-1] - xs[0][0]) < APPROACH_MM:
+        short = np.linalg.norm(xs[0][-1] - xs[0][0])
+        if len(xs) > 1 and near(path[lead - 1]) <= limit_mm and short < APPROACH_MM and (near(path[0]) > limit_mm or short < 0.1 * ms[0].length()):
             path = path[lead:]
             approaches += 1
         d, line = one(ms, path, limit_mm)
