@@ -125,5 +125,6 @@ pub fn inputs(
         traverses: Some(traverses.clone()),
         traverse_interpolation: Interpolation::Monotone,
         tables: Some(tables.clone()),
+        field: None,
     }
 }
