@@ -1,13 +1,14 @@
 //! Inverse: what to command so that the tool reaches points.
 
 use diagnostic::Diagnostic;
-use machine_model::{Command, Engine, EngineId, Solution};
+use machine_model::{Command, Engine, EngineId, Solution, SolveError};
 use machine_profile::Profile;
 use rewrite::OUTSIDE;
 
 use crate::conditions;
-use crate::message::Failure;
+use crate::message::{Failure, Report};
 use crate::options::JobOptions;
+use crate::predict::other_tool;
 
 /// A machine of which commands are asked.
 pub struct Solver {
@@ -27,14 +28,25 @@ impl Solver {
         Ok(Self { engine, turns: id == EngineId::RigidBody && profile.chain().has_rotary() })
     }
 
+    /// What the error vectors of the profile leave in doubt.
+    #[must_use]
+    pub fn doubts(&self, profile: &Profile) -> Option<Report> {
+        conditions::doubts(profile, self.engine.id())
+    }
+
     /// What to command so that the tool comes to `row` of a list of points, from 0.
     ///
     /// # Errors
     /// No command brings it there.
     pub fn solve(&self, row: usize, target: &Command) -> Result<Solution, Diagnostic> {
         self.engine.solve(target).map_err(|error| {
-            Diagnostic::error(OUTSIDE, format!("point {} cannot be reached: {error}", row + 1))
-                .help("leave the point out, or choose another engine with `--engine`")
+            let message = format!("point {} cannot be reached: {error}", row + 1);
+            match error {
+                SolveError::OtherTool { .. } => other_tool(&message)
+                    .help("give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool"),
+                _ => Diagnostic::error(OUTSIDE, message)
+                    .help("leave the point out, or choose another engine with `--engine`"),
+            }
         })
     }
 }
