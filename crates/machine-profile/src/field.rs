@@ -97,7 +97,8 @@ impl Loader<'_> {
         }
         let bytes = self.file(&section.file)?;
         let name = section.file.get_ref();
-        let made = measured(name, &bytes, &around).map_err(|refusal| ProfileError::table(name, refusal.diagnostic));
+        let made =
+            measured(name, &bytes, &around).map_err(|refusal| ProfileError::table(name, refusal.diagnostic));
         self.keep(made)
     }
 }
@@ -107,7 +108,8 @@ fn measured(name: &str, bytes: &[u8], around: &Around) -> Result<MeasuredField, 
     of_vectors(&sheet)?;
     let Read { vectors, runs, tool_mm } = read(&sheet, around)?;
     let field = Field::new(&vectors, tool_mm).map_err(|error| refusal(&sheet, &runs, &vectors, &error))?;
-    let um = || vectors.iter().flat_map(|vector| vector.uncertainty_mm.iter().map(|u| Length::from_mm(*u).um()));
+    let um =
+        || vectors.iter().flat_map(|vector| vector.uncertainty_mm.iter().map(|u| Length::from_mm(*u).um()));
     Ok(MeasuredField {
         file: name.to_owned(),
         vectors: vectors.len(),
@@ -123,7 +125,10 @@ fn of_vectors(sheet: &Sheet) -> Result<(), Box<Refusal>> {
     let has = any(&DEVIATION) || any(&POSITION);
     for (column, what) in [("d_um", "a magnitude"), ("length_mm", "a length")] {
         if sheet.has(column) && !has {
-            let message = format!("`{}` is {what} and has no direction: a field is made of vectors", sheet.header(column));
+            let message = format!(
+                "`{}` is {what} and has no direction: a field is made of vectors",
+                sheet.header(column)
+            );
             return Err(sheet.refuse_column(COLUMN, column, message, "give dx_um, dy_um and dz_um"));
         }
         if sheet.has(column) {
@@ -150,7 +155,9 @@ fn read(sheet: &Sheet, around: &Around) -> Result<Read, Box<Refusal>> {
             if at < travel.low - ROUNDING_MM || at > travel.high + ROUNDING_MM {
                 let message = format!(
                     "{} at {at} mm lies outside its travel, {} to {} mm",
-                    ['X', 'Y', 'Z'][axis], travel.low, travel.high
+                    ['X', 'Y', 'Z'][axis],
+                    travel.low,
+                    travel.high
                 );
                 let help = "give machine coordinates in millimetres, or correct travel_mm";
                 return Err(row.refuse(ROWS, PLACE[axis], message, help));
@@ -159,7 +166,8 @@ fn read(sheet: &Sheet, around: &Around) -> Result<Read, Box<Refusal>> {
         for (axis, key) in ["a_deg", "b_deg", "c_deg"].into_iter().enumerate() {
             if command.rotary_rad[axis] != 0.0 {
                 let message = format!("a vector with axis {} turned", ['A', 'B', 'C'][axis]);
-                let help = "a field is of three linear axes; leave out what was measured with a rotary axis turned";
+                let help =
+                    "a field is of three linear axes; leave out what was measured with a rotary axis turned";
                 return Err(row.refuse(ROWS, key, message, help));
             }
         }
@@ -186,7 +194,12 @@ fn read(sheet: &Sheet, around: &Around) -> Result<Read, Box<Refusal>> {
         .fold(0.0, f64::max);
     if span > 0.0 && span < SMALLEST_SPAN_MM && vectors.len() > 3 {
         let message = format!("the commands span {span} mm in all: are x_mm, y_mm, z_mm metres?");
-        return Err(sheet.refuse_column(ROWS, PLACE[0], message, "give the commanded positions in millimetres"));
+        return Err(sheet.refuse_column(
+            ROWS,
+            PLACE[0],
+            message,
+            "give the commanded positions in millimetres",
+        ));
     }
     Ok(Read { vectors, runs, tool_mm: tool.unwrap_or_default() })
 }
@@ -202,9 +215,13 @@ fn error(sheet: &Sheet, row: Row<'_>, place_mm: &Vector) -> Result<Vector, Box<R
     if error_mm.norm() <= LARGEST_MM {
         return Ok(error_mm);
     }
-    let message = format!("an error of {:.3} mm is larger than geometric errors get: wrong unit?", error_mm.norm());
+    let message =
+        format!("an error of {:.3} mm is larger than geometric errors get: wrong unit?", error_mm.norm());
     let (key, help) = if measured {
-        (POSITION[0], "give the measured position of the axes, or measured minus commanded as dx_um, dy_um, dz_um")
+        (
+            POSITION[0],
+            "give the measured position of the axes, or measured minus commanded as dx_um, dy_um, dz_um",
+        )
     } else {
         (DEVIATION[0], "name each column by its unit; up to 20 mm are read")
     };
@@ -215,7 +232,9 @@ fn error(sheet: &Sheet, row: Row<'_>, place_mm: &Vector) -> Result<Vector, Box<R
 fn uncertainty(row: Row<'_>, noise_um: Option<f64>) -> Result<Vector, Box<Refusal>> {
     let common = row.number("u_um")?;
     let own = row.any_of(UNCERTAINTY)?;
-    for (key, value) in ["u_um", "u_x_um", "u_y_um", "u_z_um"].into_iter().zip([common].into_iter().chain(own)) {
+    for (key, value) in
+        ["u_um", "u_x_um", "u_y_um", "u_z_um"].into_iter().zip([common].into_iter().chain(own))
+    {
         if let Some(u) = value.filter(|u| *u <= 0.0) {
             let message = format!("an uncertainty of {u} um is not possible");
             let help = "give the standard uncertainty, above zero, or leave it empty; noise_um = 0 in the profile meets the vectors of a lattice exactly";
@@ -226,7 +245,8 @@ fn uncertainty(row: Row<'_>, noise_um: Option<f64>) -> Result<Vector, Box<Refusa
     for (component, own) in own.into_iter().enumerate() {
         let Some(um) = own.or(common).or(noise_um) else {
             let message = "nothing says how certain this vector is".to_owned();
-            let help = "write noise_um under [field], the standard uncertainty of one component, or a column u_um";
+            let help =
+                "write noise_um under [field], the standard uncertainty of one component, or a column u_um";
             return Err(row.refuse_row(FIELD, message, "without an uncertainty", help));
         };
         uncertainty_mm[component] = Length::from_um(um).mm();
@@ -243,16 +263,27 @@ fn refusal(sheet: &Sheet, runs: &[String], vectors: &[ErrorVector], error: &Fiel
     let help = match error {
         FieldError::Repeated { first, second, .. } => {
             let line = sheet.row(*first).map_or(0, |row| row.line());
-            let directions = [*first, *second].map(|vector| sheet.row(vector).and_then(|row| row.directions().ok()));
+            let directions =
+                [*first, *second].map(|vector| sheet.row(vector).and_then(|row| row.directions().ok()));
             let help = if directions[0] == directions[1] {
                 "leave the wrong one out, or state the noise that repeated readings show"
             } else {
                 "the two were come to from different sides: a field knows no direction, give the mean of both or one side"
             };
-            return of_row(*second, format!("{error}; the other stands on line {line}"), "the same place", help);
+            return of_row(
+                *second,
+                format!("{error}; the other stands on line {line}"),
+                "the same place",
+                help,
+            );
         }
         FieldError::Exact { vector } => {
-            return of_row(*vector, error.to_string(), "this one", "state an uncertainty of every vector, or of none");
+            return of_row(
+                *vector,
+                error.to_string(),
+                "this one",
+                "state an uncertainty of every vector, or of none",
+            );
         }
         FieldError::Offset { vector, offset_mm } => {
             let um = offset_mm.map(|mm| Length::from_mm(mm).um());
@@ -314,7 +345,8 @@ impl MeasuredField {
         };
         writeln!(out, "field        {}: {} vectors, {how}", self.file, self.vectors)?;
         let volume = machine_model::Engine::volume(&self.field);
-        let ranges = volume.0.iter().zip(["X", "Y", "Z"]).map(|(r, name)| format!("{name} {} … {} mm", r.low, r.high));
+        let ranges =
+            volume.0.iter().zip(["X", "Y", "Z"]).map(|(r, name)| format!("{name} {} … {} mm", r.low, r.high));
         let cut = if self.field.is_cut() { ", without corners that no vector is near" } else { "" };
         writeln!(out, "  volume     {}{cut}", ranges.collect::<Vec<_>>().join(", "))?;
         let tool = self.field.tool_mm();
@@ -332,7 +364,9 @@ impl Profile {
     /// What its error vectors leave in doubt, where this engine uses them: warnings.
     #[must_use]
     pub fn doubts(&self, engine: EngineId) -> Vec<Diagnostic> {
-        let Some(measured) = self.field.as_ref().filter(|_| engine == EngineId::Field) else { return Vec::new() };
+        let Some(measured) = self.field.as_ref().filter(|_| engine == EngineId::Field) else {
+            return Vec::new();
+        };
         let mut doubts = Vec::new();
         if let Some(doubt) = measured.field.doubt() {
             let [stated, scatter] = [doubt.stated_mm, doubt.scatter_mm].map(|mm| Length::from_mm(mm).um());
@@ -349,7 +383,8 @@ impl Profile {
         }
         if let Made::Smooth { missing: missing @ 1.., .. } = measured.field.made() {
             let message = format!("{}: the lattice of its places lacks {missing} node(s)", measured.file);
-            let help = "the vectors are smoothed as scattered ones; measure the missing nodes where that matters";
+            let help =
+                "the vectors are smoothed as scattered ones; measure the missing nodes where that matters";
             doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
         }
         doubts

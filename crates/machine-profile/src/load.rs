@@ -12,8 +12,8 @@ use toml::Spanned;
 use toolpath::{TiltRule, WholeTurns};
 use units::{Angle, Length};
 
-use crate::field::Around;
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
+use crate::field::Around;
 use crate::format::{
     self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, FlankName, InterpolationName,
     OutsideName, PecksName, ToolChange, XName,
