@@ -95,11 +95,13 @@ impl<'p> Predictor<'p> {
     /// Which tool it knows.
     pub fn require_tool(&self, row: usize, command: &Command) -> Result<(), Diagnostic> {
         match self.other().map(|other| other.knows(command)) {
-            Some(Err(error @ SolveError::OtherTool { .. })) => {
-                Err(other_tool(&format!("point {}: {error}", row + 1)).help(
-                    "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
-                ))
-            }
+            Some(Err(error @ SolveError::OtherTool { .. })) => Err(other_tool(&format!(
+                "point {}: {error}",
+                row + 1
+            ))
+            .help(
+                "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
+            )),
             _ => Ok(()),
         }
     }

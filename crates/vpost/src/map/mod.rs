@@ -2,6 +2,7 @@
 
 mod arguments;
 mod curves;
+mod deformation;
 mod drawn;
 mod export;
 mod json;
