@@ -49,7 +49,7 @@ pub struct MeasuredField {
     /// Smallest and largest standard uncertainty of a component, µm.
     pub uncertainty_um: [f64; 2],
     /// The mean vector, mm, and the rotation of all of them about their middle, rad: of the machine, or of how the
-    /// instrument was set up. Equation (85).
+    /// instrument was set up. Equation (95).
     pub frame: [Vector; 2],
     /// The model.
     pub field: Field,
@@ -316,7 +316,7 @@ fn refusal(sheet: &Sheet, runs: &[String], vectors: &[ErrorVector], error: &Fiel
     sheet.refuse_header(FIELD, error.to_string(), help)
 }
 
-/// Mean and rotation of all vectors: least squares of `e = m + ω × (q - q̄)`, equation (85).
+/// Mean and rotation of all vectors: least squares of `e = m + ω × (q - q̄)`, equation (95).
 fn frame(vectors: &[ErrorVector]) -> [Vector; 2] {
     let n = vectors.len() as f64;
     let centre = vectors.iter().map(|vector| vector.place_mm).sum::<Vector>() / n;

@@ -233,7 +233,7 @@ fn unknown_engine() {
     assert_snapshot!(told(&format!("{}\n[correction]\nengine = \"rigidbody\"\n", base())), @r####"
     error[VP0303]: `rigidbody` is no engine that corrects programs
       line 13: `"rigidbody"` this engine
-    help: did you mean "rigid-body"? Engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp
+    help: did you mean "rigid-body"? Engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, field
     "####);
 }
 
@@ -242,7 +242,7 @@ fn published_engines_correct_no_programs() {
     assert_snapshot!(told(&format!("{}\n[correction]\nengine = \"kmtpp-published\"\n", base())), @r####"
     error[VP0303]: `kmtpp-published` is no engine that corrects programs
       line 13: `"kmtpp-published"` this engine
-    help: engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp
+    help: engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, field
     "####);
 }
 

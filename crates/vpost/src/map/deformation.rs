@@ -1,4 +1,4 @@
-//! What a field does to small boxes of commands, cell by cell of the map's grid: equation (86) of `docs/equations.md`.
+//! What a field does to small boxes of commands, cell by cell of the map's grid: equation (96) of `docs/equations.md`.
 
 use error_map::ErrorMap;
 use machine_model::{Matrix, PathModel, Range, Vector};

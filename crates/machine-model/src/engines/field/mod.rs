@@ -1,4 +1,4 @@
-//! `field`: error vectors measured anywhere in the volume, whatever makes them; equations (80) to (84) of `docs/equations.md`.
+//! `field`: error vectors measured anywhere in the volume, whatever makes them; equations (90) to (94) of `docs/equations.md`.
 //!
 //! A field knows where the tip of *one* tool goes, and nothing of bodies and axes. Its Jacobian is that of the map from
 //! commands to tips: stretch, shear and rotation of a small box of *commands*. What turns with the tool is not in it: of
@@ -307,7 +307,7 @@ impl PathModel for Field {
     }
 
     /// Inside, that of the splines; where the stretch may leave the volume the error is that of the nearest place, which
-    /// moves no faster than the command: `gradient·|q'|/2`, equation (81).
+    /// moves no faster than the command: `gradient·|q'|/2`, equation (91).
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
         if self.support.holds(&stretch.range_mm, ROUNDING_MM) {
             return self.spline.chord_bound_mm(stretch);
@@ -431,7 +431,7 @@ impl Places {
         Some((all - found, self.place_mm(first)))
     }
 
-    /// Linear in each coordinate between the nodes of a complete lattice, equation (80).
+    /// Linear in each coordinate between the nodes of a complete lattice, equation (90).
     fn lattice(&self, vectors: &[ErrorVector]) -> Result<TensorSpline, FieldError> {
         let counts = self.counts();
         if let Some((missing, place_mm)) = self.missing() {

@@ -1,4 +1,4 @@
-//! Functions of one axis, ordered by how rough they are: equation (82) of `docs/equations.md`.
+//! Functions of one axis, ordered by how rough they are: equation (92) of `docs/equations.md`.
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,4 @@
-//! A smooth field through scattered vectors with a stated noise: equations (82) to (84) of `docs/equations.md`.
+//! A smooth field through scattered vectors with a stated noise: equations (92) to (94) of `docs/equations.md`.
 //!
 //! An analysis of variance by splines (Wahba 1990; Wood, Scheipl and Faraway 2013): the field is a sum of products of modes
 //! of the three axes, [`super::modes`]. What is straight in all axes is fixed; every other class of products, by the axes

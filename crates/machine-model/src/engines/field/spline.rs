@@ -1,4 +1,4 @@
-//! Tensor products of B-splines in three variables, with bounds of their derivatives: equations (80) and (81) of
+//! Tensor products of B-splines in three variables, with bounds of their derivatives: equations (90) and (91) of
 //! `docs/equations.md`.
 
 use nalgebra::Matrix3;
@@ -249,7 +249,7 @@ impl TensorSpline {
 
     /// Upper bound, mm, of how far the field leaves its chord on a stretch whose box lies in the ranges.
     ///
-    /// Equation (81): B-splines are positive and sum to 1, so no derivative exceeds the largest of its coefficients.
+    /// Equation (91): B-splines are positive and sum to 1, so no derivative exceeds the largest of its coefficients.
     pub(super) fn chord_bound_mm(&self, stretch: &Move) -> f64 {
         let whole = self.ranges();
         let ranges = [0, 1, 2].map(|a| Range {

@@ -1,4 +1,4 @@
-//! How rough a field is, found with the stated noise: restricted maximum likelihood, equation (84) of `docs/equations.md`.
+//! How rough a field is, found with the stated noise: restricted maximum likelihood, equation (94) of `docs/equations.md`.
 
 use super::dense::{Square, dot};
 
