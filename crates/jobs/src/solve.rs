@@ -1,8 +1,10 @@
 //! Inverse: what to command so that the tool reaches points.
 
 use diagnostic::Diagnostic;
+use machine_model::engines::EngineInputs;
+use machine_model::engines::published::KmtppPublished;
 use machine_model::{Command, Engine, EngineId, Solution, SolveError};
-use machine_profile::Profile;
+use machine_profile::{EngineError, Profile};
 use rewrite::OUTSIDE;
 
 use crate::conditions;
@@ -26,6 +28,41 @@ impl Solver {
         let id = options.engine().unwrap_or(profile.correction.engine);
         let engine = conditions::engine(profile, id, options)?;
         Ok(Self { engine, turns: id == EngineId::RigidBody && profile.chain().has_rotary() })
+    }
+
+    /// The same, where the options name the engine that follows an astatic law, with its K and l.
+    ///
+    /// * `gain`, `step` – K and l; those of the publication where they are not given
+    ///
+    /// # Errors
+    /// As [`Self::new`]; another engine, which has neither.
+    pub fn with_law(
+        profile: &Profile,
+        options: &JobOptions,
+        gain: Option<f64>,
+        step: Option<f64>,
+    ) -> Result<Self, Failure> {
+        if gain.is_none() && step.is_none() {
+            return Self::new(profile, options);
+        }
+        if options.engine() != Some(EngineId::KmtppPublished) {
+            let option = if gain.is_some() { "--gain" } else { "--step" };
+            return Err(Failure::option(
+                format!("`{option}` is of the astatic law that `kmtpp-published` follows"),
+                "add `--engine kmtpp-published`; the answers of the other engines depend on no such number",
+            ));
+        }
+        // Says what the profile lacks.
+        Self::new(profile, options)?;
+        let EngineInputs { tables: Some(tables), traverses: Some(traverses), .. } =
+            profile.engine_inputs_without_effects()
+        else {
+            return Self::new(profile, options);
+        };
+        let (gain, step) = (gain.unwrap_or(KmtppPublished::GAIN), step.unwrap_or(KmtppPublished::TIME_STEP));
+        let engine = KmtppPublished::new(tables, &traverses, gain, step)
+            .map_err(|error| conditions::failure(&EngineError::Build(error)))?;
+        Ok(Self { engine: Box::new(engine), turns: false })
     }
 
     /// What the error vectors of the profile leave in doubt.

@@ -109,13 +109,19 @@ pub(super) fn smooth(vectors: &[ErrorVector], ranges: [Range; 3]) -> Result<Smoo
     offsets(vectors, &chosen, &found)?;
     let (doubt, residuals) = doubt(&found)?;
     let mut of_modes = Coefficients::zeros(&modes);
+    let survey = (chosen.len() < vectors.len()).then(|| Survey::new(vectors, &all, &classes));
+    // The same for all components, where they are as uncertain.
+    let alike = vectors.iter().all(|v| v.uncertainty_mm == Vector::repeat(v.uncertainty_mm.x));
+    let shared = survey.as_ref().filter(|_| alike).map(|survey| survey.normal(0));
     for (c, (found, _)) in found.iter().enumerate() {
         let variances: Vec<f64> =
             found.variances.iter().zip(&scales).map(|(theta, scale)| theta / scale).collect();
-        if chosen.len() == vectors.len() {
-            of_modes.add_dual(c, &modes, &classes, &variances, found, &at);
-        } else {
-            of_modes.add_primal(c, &modes, &classes, &variances, vectors, &all)?;
+        match &survey {
+            None => of_modes.add_dual(c, &modes, &classes, &variances, found, &at),
+            Some(survey) => {
+                let normal = shared.clone().unwrap_or_else(|| survey.normal(c));
+                of_modes.add_primal(c, survey, normal, &priors(&modes, &classes, &variances))?;
+            }
         }
     }
     Ok(Smooth { spline: of_modes.into_spline(&modes), doubt, residuals })
@@ -214,6 +220,61 @@ fn doubt(found: &[(Found, Vec<f64>)]) -> Result<(Option<Doubt>, f64), FieldError
     Ok((((squares - expected).abs() > DOUBTFUL * variance.sqrt()).then_some(doubt), ratio))
 }
 
+/// All vectors, and the products of modes whose coefficients they are to tell.
+struct Survey<'s> {
+    vectors: &'s [ErrorVector],
+    at: &'s [AtPlace],
+    unknowns: Vec<[usize; 3]>,
+}
+
+impl<'s> Survey<'s> {
+    fn new(vectors: &'s [ErrorVector], at: &'s [AtPlace], classes: &[Class]) -> Self {
+        let unknowns = FIXED.into_iter().chain(classes.iter().flat_map(Class::products)).collect();
+        Self { vectors, at, unknowns }
+    }
+
+    /// Products at a place.
+    fn row<'r>(&'r self, at: &'r AtPlace) -> impl Iterator<Item = f64> + 'r {
+        self.unknowns.iter().map(|indices| product(at, *indices))
+    }
+
+    /// Lower triangle of the normal equations of one component, its uncertainties the weights.
+    fn normal(&self, component: usize) -> Square {
+        let mut normal = Square::zeros(self.unknowns.len());
+        for (vector, at) in self.vectors.iter().zip(self.at) {
+            let weight = 1.0 / vector.uncertainty_mm[component].powi(2);
+            let row: Vec<f64> = self.row(at).collect();
+            for (i, value) in row.iter().enumerate() {
+                let by = weight * value;
+                for (sum, other) in normal.row_mut(i)[..=i].iter_mut().zip(&row) {
+                    *sum += by * other;
+                }
+            }
+        }
+        normal
+    }
+
+    /// Their right side.
+    fn right(&self, component: usize) -> Vec<f64> {
+        let mut right = vec![0.0; self.unknowns.len()];
+        for (vector, at) in self.vectors.iter().zip(self.at) {
+            let by = vector.error_mm[component] / vector.uncertainty_mm[component].powi(2);
+            right.iter_mut().zip(self.row(at)).for_each(|(sum, value)| *sum += by * value);
+        }
+        right
+    }
+}
+
+/// Prior variances of the unknowns of a [`Survey`].
+fn priors(modes: &[Modes; 3], classes: &[Class], variances: &[f64]) -> Vec<Option<f64>> {
+    // What is nothing beside the others stays finite.
+    let least = 1e-12 * variances.iter().copied().fold(1e-24, f64::max);
+    let of_classes = classes.iter().zip(variances).flat_map(|(class, theta)| {
+        class.products().map(move |indices| Some((theta * prior(modes, indices)).max(least)))
+    });
+    [None; FIXED.len()].into_iter().chain(of_classes).collect()
+}
+
 /// Coefficients of all products of modes, X fastest.
 struct Coefficients {
     counts: [usize; 3],
@@ -251,46 +312,22 @@ impl Coefficients {
         }
     }
 
-    /// The same from the normal equations of all coefficients, for more vectors than variances are found from.
+    /// The same from the normal equations of all unknowns, for more vectors than variances are found from.
+    ///
+    /// * `variances` – prior variance of each unknown, mm²; `None`: nothing is known
     fn add_primal(
         &mut self,
         component: usize,
-        modes: &[Modes; 3],
-        classes: &[Class],
-        variances: &[f64],
-        vectors: &[ErrorVector],
-        at: &[AtPlace],
+        survey: &Survey<'_>,
+        mut normal: Square,
+        variances: &[Option<f64>],
     ) -> Result<(), FieldError> {
-        let mut unknowns: Vec<([usize; 3], f64)> = FIXED.map(|modes| (modes, 0.0)).into();
-        let largest = variances.iter().copied().fold(0.0, f64::max);
-        for (class, theta) in classes.iter().zip(variances) {
-            // Without what is nothing beside the others: the reciprocal of its variance would swamp the equations.
-            let known = class.products().map(|indices| (indices, theta * prior(modes, indices)));
-            unknowns.extend(
-                known
-                    .filter(|(_, variance)| *variance > 1e-12 * largest)
-                    .map(|(i, variance)| (i, 1.0 / variance)),
-            );
-        }
-        let n = unknowns.len();
-        let (mut normal, mut right) = (Square::zeros(n), vec![0.0; n]);
-        for (vector, at) in vectors.iter().zip(at) {
-            let weight = 1.0 / vector.uncertainty_mm[component].powi(2);
-            let row: Vec<f64> = unknowns.iter().map(|(indices, _)| product(at, *indices)).collect();
-            for (i, value) in row.iter().enumerate() {
-                let by = weight * value;
-                right[i] += by * vector.error_mm[component];
-                for (sum, other) in normal.row_mut(i)[..=i].iter_mut().zip(&row) {
-                    *sum += by * other;
-                }
-            }
-        }
-        for (i, (_, penalty)) in unknowns.iter().enumerate() {
-            normal.row_mut(i)[i] += penalty;
+        for (i, variance) in variances.iter().enumerate() {
+            normal.row_mut(i)[i] += variance.map_or(0.0, |variance| 1.0 / variance);
         }
         let factor = normal.into_cholesky().ok_or(FieldError::NotDetermined)?;
-        for ((indices, _), value) in unknowns.into_iter().zip(factor.solve(&right)) {
-            self.of(indices)[component] = value;
+        for (indices, value) in survey.unknowns.iter().zip(factor.solve(&survey.right(component))) {
+            self.of(*indices)[component] = value;
         }
         Ok(())
     }
