@@ -101,7 +101,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, field, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
     "####);
 }
 

@@ -200,7 +200,8 @@ pub(super) fn kmtpp() -> String {
          5. Tables 4.3 and 4.4 print \"positions of the drives measured by the tracker\" after the solutions were entered. Nine of the ten are the \
          solutions of the listing themselves, to the last digit (the tenth, K = 1, l = 0.015, is of another run: m is 175, not 152): \
          they are commands, no measurement. So nothing measured supports these two tables.\n\
-         6. The linear errors δ of the same tables are never used.\n\n\
+         6. Table 4.8: the position said to be reached at l = 0.5 is the listing's command less 0.200 0.200 0.100 mm, to the last digit.\n\
+         7. The linear errors δ of the same tables are never used.\n\n\
          The consistent engine `kmtpp` needs neither K nor l and gives {} for (50, 50, 50) and {} for (130, 140, 106); it adds EXX, EYY, EZZ. \
          `docs/engines.md` says where its premise and the rigid body part.\n\n",
         vector(&command(&product, fifty), 3),
