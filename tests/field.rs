@@ -184,7 +184,16 @@ fn programs_corrected_for_noisy_vectors_hold_as_far_as_the_noise_lets_them() {
     let ran = run(&[&posted, "-m", &field]);
     assert_eq!(ran.status.code(), Some(1));
     assert!(messages(&ran).starts_with("error[VP0501]"), "{}", messages(&ran));
-    // So is another tool, by whoever is asked.
+    let ran = run(&[&posted, "-m", &field, "--outside", "clamp", "-q"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    // The field as a lattice for a control is a field again.
+    let ran = run(&["profile", "export", &field, "--format", "lattice", "-O", &folder, "--step", "100"]);
+    assert!(ran.status.success(), "{}", messages(&ran));
+    let lattice = std::fs::read_to_string(PathBuf::from(&folder).join("lattice.csv")).expect("there");
+    assert_eq!(Shop::new(&lattice, "noise_um = 0").refusal(), "");
+    let ran = run(&["profile", "export", &field, "--format", "isg", "-O", &folder]);
+    assert!(messages(&ran).contains("which are no functions of axes"), "{}", messages(&ran));
+    // Another tool is refused by whoever is asked.
     shop.write("posted.nc", &PROGRAM.replace("G43 H2", "G43 H1"));
     shop.write("points.csv", "x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm\n-300,-200,-200,0,0,-120\n");
     let points = shop.path("points.csv");
@@ -251,6 +260,15 @@ fn vectors_that_make_no_field_are_refused_by_name() {
         )
     };
     let cube = small([2, 2, 2]);
+    // The cube with a further column: a value, and another in the last row.
+    let with = |column: &str, value: &str, last: &str| {
+        let rows = cube.lines().enumerate().map(|(k, line)| match k {
+            0 => format!("{line},{column}\n"),
+            8 => format!("{line},{last}\n"),
+            _ => format!("{line},{value}\n"),
+        });
+        rows.collect::<String>()
+    };
     let noisy = noisy();
     let two_runs = |offset: f64| {
         let mut text = format!("run,{HEADER}");
@@ -361,40 +379,9 @@ fn vectors_that_make_no_field_are_refused_by_name() {
             noise,
             "are x_mm, y_mm, z_mm metres?",
         ),
-        (
-            "a turned axis",
-            format!("a_deg,{}", cube.replacen("x_mm", "x_mm", 1))
-                .lines()
-                .enumerate()
-                .map(|(k, l)| if k == 0 { format!("{l}\n") } else { format!("30,{l}\n") })
-                .collect(),
-            exact,
-            "a vector with axis A turned",
-        ),
-        (
-            "two tools",
-            cube.lines()
-                .enumerate()
-                .map(|(k, l)| {
-                    if k == 0 {
-                        format!("{l},tool_z_mm\n")
-                    } else {
-                        format!("{l},{}\n", -150 - i32::from(k == 8))
-                    }
-                })
-                .collect(),
-            exact,
-            "vectors of two tools are two fields",
-        ),
-        (
-            "no uncertainty",
-            cube.lines()
-                .enumerate()
-                .map(|(k, l)| if k == 0 { format!("{l},u_um\n") } else { format!("{l},0\n") })
-                .collect(),
-            exact,
-            "an uncertainty of 0 um is not possible",
-        ),
+        ("a turned axis", with("a_deg", "30", "30"), exact, "a vector with axis A turned"),
+        ("two tools", with("tool_z_mm", "-150", "-151"), exact, "vectors of two tools are two fields"),
+        ("no uncertainty", with("u_um", "0", "0"), exact, "an uncertainty of 0 um is not possible"),
         ("a negative noise", noisy.clone(), "noise_um = -1", "noise_um is -1"),
     ] {
         let refusal = Shop::new(&vectors, field).refusal();

@@ -195,16 +195,14 @@ impl TensorSpline {
     fn derivative(&self, q: &Vector, orders: [usize; 3]) -> Vector {
         let [(i, x), (j, y), (k, z)] = [0, 1, 2].map(|a| self.axes[a].values(q[a], orders[a]));
         let strides = self.net.strides();
-        let active = |a: usize| self.axes[a].degree + 1;
+        let active = self.axes.each_ref().map(|basis| basis.degree + 1);
         let mut sum = Vector::zeros();
-        for c in 0..active(2) {
-            for b in 0..active(1) {
+        for (c, z) in z[..active[2]].iter().enumerate() {
+            for (b, y) in y[..active[1]].iter().enumerate() {
                 let row = i + strides[1] * (j + b) + strides[2] * (k + c);
-                let mut along = Vector::zeros();
-                for a in 0..active(0) {
-                    along += self.net.values[row + a] * x[a];
-                }
-                sum += along * (y[b] * z[c]);
+                let values = &self.net.values[row..row + active[0]];
+                let along: Vector = values.iter().zip(&x).map(|(value, x)| value * *x).sum();
+                sum += along * (y * z);
             }
         }
         sum

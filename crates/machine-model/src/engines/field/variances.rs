@@ -121,9 +121,9 @@ impl Model<'_> {
         for i in 0..count {
             let trace = dot(&at.projection.values, &self.kernels[i].values);
             slope[i] = 0.5 * at.variances[i] * (dot(&images[i], &at.weighted) - trace);
-            for j in 0..count {
+            for (j, projected) in projected.iter().enumerate() {
                 let by = 0.5 * at.variances[i] * at.variances[j];
-                information.row_mut(i)[j] = by * dot(&images[i], &projected[j]);
+                information.row_mut(i)[j] = by * dot(&images[i], projected);
             }
             // Of the second derivative by the logarithm; keeps what the readings do not tell from running away.
             information.row_mut(i)[i] += slope[i].abs() + 1e-3;
