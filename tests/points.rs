@@ -52,6 +52,36 @@ fn tangential_methods_reproduce_the_publication() {
     }
 }
 
+/// Tables 4.3 and 4.4 of the publication, by its own K and l.
+#[test]
+fn the_astatic_law_takes_its_numbers() {
+    let target = "x_mm,y_mm,z_mm\n130,140,106\n";
+    for (gain, step, m, printed) in [
+        ("1.5", "0.1", "17", [128.133, 138.759, 106.614]),
+        ("1", "0.05", "52", [128.956, 139.645, 107.285]),
+        ("1.5", "1", "4", [128.054, 138.668, 106.555]),
+    ] {
+        let options = ["solve", "-", "--engine", "kmtpp-published", "--gain", gain, "--step", step];
+        let rows = table(&options, target);
+        assert_eq!(rows[1][6], m, "K {gain}, l {step}");
+        for (axis, printed) in printed.into_iter().enumerate() {
+            let found: f64 = rows[1][3 + axis].parse().expect("a number");
+            assert!((found - printed).abs() <= 0.000_501, "K {gain}, l {step}: {rows:?}");
+        }
+    }
+    for (arguments, expected) in [
+        (vec!["--gain", "1"], "is of the astatic law that `kmtpp-published` follows"),
+        (vec!["--engine", "kmtpp", "--step", "1"], "add `--engine kmtpp-published`"),
+        (vec!["--engine", "kmtpp-published", "--gain", "0"], "--gain"),
+    ] {
+        let mut command = vpost();
+        command.args(["solve", "samples/points/tangential_targets.csv"]).args(STAN).args(&arguments);
+        let ran = command.output().expect("starts");
+        assert_eq!(ran.status.code(), Some(2), "{arguments:?}");
+        assert!(messages(&ran).contains(expected), "{arguments:?}: {}", messages(&ran));
+    }
+}
+
 #[test]
 fn solving_what_was_predicted_gives_the_command_back() {
     let commands = "x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm\n100,50,150,0,0,-120\n399,279,10,1,2,3\n20.5,30.25,199,0,0,0\n";

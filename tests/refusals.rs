@@ -201,7 +201,7 @@ fn options_that_cannot_be() {
     let good = trial.file("good.nc", GOOD.as_bytes());
     insta::assert_snapshot!(trial.refused_path(&good, &["--engine", "magic"]), @"
     exit status 2
-    error[VP0002]: `--engine magic`: there is no such engine; there are rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, tangential-static-published, tangential-interval-published, tangential-quasi-differential-published, kmtpp-published
+    error[VP0002]: `--engine magic`: there is no such engine; there are rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, field, tangential-static-published, tangential-interval-published, tangential-quasi-differential-published, kmtpp-published
     help: write its name as in `--engine rigid-body`
     ");
     insta::assert_snapshot!(trial.refused_path(&good, &["--dialect", "fanux"]), @"

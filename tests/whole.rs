@@ -31,6 +31,7 @@ mod dialects;
 mod docs;
 mod effects;
 mod export;
+mod field;
 mod files;
 mod five_axis;
 mod flow;

@@ -193,7 +193,8 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
-        start_mm: None,
+        start_mm: [None; 3],
+        start_deg: [None; 3],
         ..Default::default()
     };
     let job = rewrite::Job {

@@ -85,7 +85,8 @@ pub(crate) fn picture() -> anyhow::Result<String> {
         default_tool_mm: profile.default_tool_mm,
         has_rotary: profile.has_rotary(),
         rotary_matters: profile.rotary_matters(),
-        start_mm: None,
+        start_mm: [None; 3],
+        start_deg: [None; 3],
         ..Default::default()
     };
     let engine = profile.engine(profile.correction.engine, &Conditions::default())?;

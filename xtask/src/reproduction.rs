@@ -22,6 +22,7 @@ pub(crate) fn page() -> String {
          vpost solve samples/points/tangential_targets.csv -m machine-profiles/stan_s500.toml --engine tangential-quasi-differential-published\n\
          vpost solve samples/points/tangential_targets.csv -m machine-profiles/stan_s500.toml --engine tangential-quasi-differential\n\
          vpost solve samples/points/tangential_targets.csv -m machine-profiles/stan_s500.toml --engine kmtpp-published\n\
+         vpost solve samples/points/tangential_targets.csv -m machine-profiles/stan_s500.toml --engine kmtpp-published --gain 1 --step 0.05\n\
          ```\n\n",
     );
     text += &solutions::tangential();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use machine_model::{Command, Everywhere, LANES, Models, PathModel, Play, SolveError, Vector};
+use machine_model::{Command, Everywhere, LANES, Models, PathModel, Play, Vector};
 use toolpath::Kinematics;
 
 use crate::deviation::Machine;
@@ -182,7 +182,7 @@ impl<'m> Corrector<'m> {
         };
         match (answer, self.options.outside) {
             (Ok(command), _) => Ok(command),
-            (Err(SolveError::OutsideVolume { .. }), Outside::Clamp) => Ok(self.nearest(state, nominal)),
+            (Err(error), Outside::Clamp) if error.is_outside() => Ok(self.nearest(state, nominal)),
             (Err(error), _) => Err(error.into()),
         }
     }

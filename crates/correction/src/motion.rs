@@ -1,6 +1,6 @@
 //! One motion at a time.
 
-use machine_model::{Command, LANES, SolveError, Vector};
+use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, Kinematics, Motion, Partial, Shape};
 
@@ -129,7 +129,7 @@ impl Corrector<'_> {
         let (state, wanted, axes) = loop {
             let state = self.state(block, nominal.rotary_deg);
             let wanted = match self.solve(&state, end_mm) {
-                Err(CorrectionError::Solve(SolveError::OutsideVolume { .. })) => {
+                Err(CorrectionError::Solve(error)) if error.is_outside() => {
                     correction.clamped = true;
                     self.nearest(&state, end_mm)
                 }

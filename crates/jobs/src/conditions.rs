@@ -86,6 +86,13 @@ pub fn temperature(
     }))
 }
 
+/// What the profile's error vectors leave in doubt, where this engine uses them.
+#[must_use]
+pub fn doubts(profile: &Profile, id: EngineId) -> Option<Report> {
+    let diagnostics = profile.doubts(id);
+    (!diagnostics.is_empty()).then_some(Report { source: None, diagnostics })
+}
+
 /// The engine of a name or of the profile, with the profile's effects under the conditions of the command line.
 ///
 /// # Errors

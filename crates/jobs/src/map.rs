@@ -2,13 +2,13 @@
 
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use error_map::{ErrorMap, Grid, Nodes};
-use machine_model::{Command, Engine, PathModel, Range, Vector, Volume};
+use machine_model::{Command, Engine, PathModel, Range, SolveError, Vector, Volume};
 use machine_profile::Profile;
 use rayon::prelude::*;
 
 use crate::message::{Failure, Report};
 use crate::options::{JobOptions, Outside};
-use crate::predict::POINT_OUTSIDE;
+use crate::predict::{POINT_OUTSIDE, other_tool};
 use crate::values::{Given, Lattice, Rotary, ToolVector};
 
 /// The engine as a model of paths, which says errors.
@@ -29,6 +29,24 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
             ),
         )
     })
+}
+
+/// Refuses a tool vector of which the model knows nothing.
+///
+/// # Errors
+/// Which it knows.
+pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
+    let rotary_rad = Vector::zeros();
+    match model.knows(&Command { linear_mm: rotary_rad, rotary_rad, tool_mm, direction: [0; 3] }) {
+        Err(error @ SolveError::OtherTool { .. }) => {
+            let help = both!(
+                "give the tool vector of the measured vectors with `--tool-vector X,Y,Z`, or write it as default_mm",
+                "задайте вектор инструмента измеренных векторов: `--tool-vector X,Y,Z`, или напишите его в default_mm"
+            );
+            Err(Failure::usage(other_tool(error.text()).help(help)))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Boxes of nodes that reach outside the calibrated volume: refused, unless the nearest point's error is asked for.

@@ -1,11 +1,12 @@
 //! Forward: where the machine really goes.
 
-use diagnostic::{Code, Diagnostic, both};
-use machine_model::{Command, Engine, EngineId, PathModel, Vector, WithEffects, rotation};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both};
+use machine_model::{Command, Engine, EngineId, PathModel, SolveError, Vector, WithEffects, rotation};
 use machine_profile::Profile;
+use rewrite::OTHER_TOOL;
 
-use crate::conditions::{conditions, engine, failure};
-use crate::message::Failure;
+use crate::conditions::{self, conditions, engine, failure};
+use crate::message::{Failure, Report};
 use crate::options::{JobOptions, Outside};
 
 /// Points outside the calibrated volume.
@@ -50,7 +51,8 @@ impl<'p> Predictor<'p> {
             Frame::Machine => profile.machine(&conditions),
         }
         .map_err(|error| failure(&error))?;
-        let other = options.engine().filter(|id| *id != EngineId::RigidBody);
+        let id = profile.forward_engine(options.engine());
+        let other = Some(id).filter(|id| *id != EngineId::RigidBody);
         let engine = other.map(|id| engine(profile, id, options)).transpose()?;
         if let Some(engine) = engine.as_ref().filter(|engine| engine.path_model().is_none()) {
             return Err(Failure::option(
@@ -84,8 +86,34 @@ impl<'p> Predictor<'p> {
     /// True inside the calibrated volume; outside, a point has the error of the nearest one inside.
     #[must_use]
     pub fn contains(&self, command: &Command) -> bool {
-        let volume = self.other().map_or_else(|| self.machine.volume(), |other| other.volume());
-        volume.contains(&command.linear_mm) && self.machine.base().rotary_inside(command).is_ok()
+        let known = match self.other() {
+            None => self.machine.volume().contains(&command.linear_mm),
+            Some(other) => other.knows(command).is_ok(),
+        };
+        known && self.machine.base().rotary_inside(command).is_ok()
+    }
+
+    /// Refuses a command, of this row of a list from 0, whose tool the model knows nothing of.
+    ///
+    /// # Errors
+    /// Which tool it knows.
+    pub fn require_tool(&self, row: usize, command: &Command) -> Result<(), Diagnostic> {
+        match self.other().map(|other| other.knows(command)) {
+            Some(Err(error @ SolveError::OtherTool { .. })) => {
+                let said = error.text();
+                Err(other_tool(both!("point {}: {said}", "точка {}: {said:#}", row + 1)).help(both!(
+                    "give tool_x_mm, tool_y_mm and tool_z_mm of the vectors, or measure a field with this tool",
+                    "задайте tool_x_mm, tool_y_mm и tool_z_mm измеренных векторов или измерьте поле этим инструментом"
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the error vectors of the profile leave in doubt.
+    #[must_use]
+    pub fn doubts(&self) -> Option<Report> {
+        conditions::doubts(self.profile, self.engine.as_ref()?.id())
     }
 
     /// Where the tool is for a command.
@@ -111,6 +139,11 @@ impl<'p> Predictor<'p> {
         }
         Prediction { position_mm, error_mm }
     }
+}
+
+/// A tool that a field knows nothing of.
+pub(crate) fn other_tool(message: Text) -> Diagnostic {
+    Diagnostic::error(OTHER_TOOL, message)
 }
 
 /// Points of a list that lie outside the calibrated volume.

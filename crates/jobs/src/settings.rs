@@ -65,8 +65,13 @@ impl Settings {
         let stored = Stored::load(options, &profile, &dialect)?;
         let mut setup = setup(options, &profile, &stored)?;
         files.extend(stored.files);
-        // The other engines know no lever.
-        setup.lever_matters &= engine_id == EngineId::RigidBody;
+        setup.lever_matters = match engine_id {
+            EngineId::RigidBody => setup.lever_matters,
+            // It knows the tip of one tool.
+            EngineId::Field => true,
+            // The others know no lever.
+            _ => false,
+        };
         setup.lengths_settled = settle_lengths(options, &profile, &mut dialect)?;
         declare_harmless(&profile, &mut dialect)?;
         declare_switches(&profile, &mut dialect);
@@ -94,6 +99,7 @@ impl Settings {
             ));
         }
         let warning = conditions::temperature(&profile, options, tolerance_um)?;
+        let doubts = conditions::doubts(&profile, engine_id);
         let outside = match (options.outside, profile.correction.outside) {
             (Some(options::Outside::Refuse), _) | (None, machine_profile::Outside::Refuse) => Outside::Refuse,
             (Some(options::Outside::Clamp), _) | (None, machine_profile::Outside::Clamp) => Outside::Clamp,
@@ -120,7 +126,7 @@ impl Settings {
             flow,
             strict: options.strict,
             guards,
-            warnings: warning.into_iter().collect(),
+            warnings: warning.into_iter().chain(doubts).collect(),
         })
     }
 

@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 
 /// A vector in the machine frame, mm.
 pub type Vector = Vector3<f64>;
+/// A linear map of such vectors.
+pub type Matrix = nalgebra::Matrix3<f64>;
 
 /// What the axes are told, with everything the error depends on.
 ///

@@ -1,5 +1,6 @@
 //! What a correction engine must answer.
 
+use nalgebra::Matrix3;
 use toolpath::{Kinematics, TiltedPlane};
 
 use crate::{Command, Everywhere, Move, Vector, Volume};
@@ -91,11 +92,39 @@ pub enum SolveError {
         /// Distance left, mm.
         residual_mm: f64,
     },
+    /// In the box of the volume, but too far from the measured vectors.
+    #[error(
+        "X {:.3} Y {:.3} Z {:.3} lies in the box of the measured vectors, but beyond their hull",
+        place_mm[0], place_mm[1], place_mm[2]
+    )]
+    OutsideVectors {
+        /// Commands of X, Y, Z, mm.
+        place_mm: [f64; 3],
+    },
+    /// Another tool than the one that the model knows the tip of.
+    #[error(
+        "the tool vector {:.3} {:.3} {:.3} mm is not that of the measured vectors, {:.3} {:.3} {:.3} mm, and a field knows no angles",
+        found_mm[0], found_mm[1], found_mm[2], measured_mm[0], measured_mm[1], measured_mm[2]
+    )]
+    OtherTool {
+        /// The tool vector asked for, mm.
+        found_mm: [f64; 3],
+        /// That of the vectors, mm.
+        measured_mm: [f64; 3],
+    },
     /// The engine is defined on a narrower domain than the volume (published variants).
     ///
     /// Why, in English and in Russian.
     #[error("{0}")]
     Undefined(&'static str, &'static str),
+}
+
+impl SolveError {
+    /// True where a place was asked for that lies outside what is calibrated.
+    #[must_use]
+    pub fn is_outside(&self) -> bool {
+        matches!(self, Self::OutsideVolume { .. } | Self::OutsideVectors { .. })
+    }
 }
 
 /// The engines by the names of the command line.
@@ -121,6 +150,8 @@ pub enum EngineId {
     TangentialQuasiDifferential,
     /// `kmtpp`
     Kmtpp,
+    /// `field`
+    Field,
     /// `tangential-static-published`
     TangentialStaticPublished,
     /// `tangential-interval-published`
@@ -160,6 +191,14 @@ pub trait Engine: Send + Sync {
 
     /// Where it knows the machine.
     fn volume(&self) -> Volume;
+
+    /// Whether it says something of this command: its place and its tool.
+    ///
+    /// # Errors
+    /// What it does not know.
+    fn knows(&self, command: &Command) -> Result<(), SolveError> {
+        crate::solve::inside(&command.linear_mm, &self.volume())
+    }
 
     /// What to command so that the tool tip comes to `target`.
     ///
@@ -280,6 +319,12 @@ pub trait PathModel: Engine {
     /// Angle between the tool's real and its ideal direction, seen from the workpiece, rad.
     fn tilt_rad(&self, _command: &Command) -> f64 {
         0.0
+    }
+
+    /// `∂e_c/∂q_a` of [`PathModel::error_mm`] in row c and column a, mm per mm, where the model is one of places and not of
+    /// axes.
+    fn jacobian(&self, _command: &Command) -> Option<Matrix3<f64>> {
+        None
     }
 
     /// Bounds that hold in the whole volume for this tool and these rotary axes, whatever `linear_mm` and

@@ -33,7 +33,7 @@ mod with_effects;
 
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
-pub use command::{Command, Move, Range, Turn, Vector, Volume};
+pub use command::{Command, Matrix, Move, Range, Turn, Vector, Volume};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;

@@ -4,6 +4,7 @@ use diagnostic::Speaks;
 
 use crate::effects::{EffectError, MissingCondition, UnknownEffect};
 use crate::engines::BuildError;
+use crate::engines::FieldError;
 use crate::{ChainError, SolveError, TableError, UnknownCondition, Unusable};
 
 impl Speaks for ChainError {
@@ -94,6 +95,12 @@ impl Speaks for SolveError {
             Self::NotConverged { iterations, residual_mm } => format!(
                 "обратная задача не сходится: после итераций, которых было {iterations}, остаётся {residual_mm:.3e} мм"
             ),
+            Self::OutsideVectors { place_mm: [x, y, z] } => {
+                format!("X {x:.3} Y {y:.3} Z {z:.3} лежит в коробке измеренных векторов, но за их оболочкой")
+            }
+            Self::OtherTool { found_mm: [a, b, c], measured_mm: [x, y, z] } => format!(
+                "вектор инструмента {a:.3} {b:.3} {c:.3} мм — не тот, с которым измерены векторы, {x:.3} {y:.3} {z:.3} мм, а углов поле не знает"
+            ),
             Self::Undefined(_, russian) => (*russian).to_owned(),
         }
     }
@@ -159,5 +166,52 @@ impl Speaks for TableError {
 impl Speaks for Unusable {
     fn russian(&self) -> String {
         format!("ось {}: у её таблиц и её хода нет общего отрезка", self.axis)
+    }
+}
+
+impl Speaks for FieldError {
+    fn russian(&self) -> String {
+        match self {
+            Self::TooFew { found, needed } => {
+                format!("мест с векторами ошибок {found}; полю с заданным шумом нужно не меньше {needed}")
+            }
+            Self::Flat { shape } => format!(
+                "все векторы ошибок измерены {}: об объёме вокруг они ничего не говорят",
+                match *shape {
+                    "place" => "в одной точке",
+                    "line" => "на одной прямой",
+                    _ => "в одной плоскости",
+                }
+            ),
+            Self::Repeated { component, apart_mm, allowed_mm, .. } => {
+                let why = if *allowed_mm > 0.0 {
+                    format!("больше, чем объясняет их неопределённость ({:.2} мкм)", allowed_mm * 1e3)
+                } else {
+                    "а шум задан равным 0".to_owned()
+                };
+                let axis = ['X', 'Y', 'Z'][*component];
+                format!("два вектора одной точки расходятся на {:.2} мкм по {axis}, {why}", apart_mm * 1e3)
+            }
+            Self::Hole { counts: [x, y, z], missing, place_mm } => format!(
+                "в решётке из {x} x {y} x {z} узлов недостаёт {missing}, первый — X {} Y {} Z {}",
+                place_mm.x, place_mm.y, place_mm.z
+            ),
+            Self::Scattered { places } => {
+                format!("шум задан равным 0, а {places} точек не образуют полной решётки")
+            }
+            Self::Exact { .. } => "неопределённость 0 рядом с другими больше 0".to_owned(),
+            Self::Noise(doubt) => format!(
+                "векторы рассеяны около лучшего для них поля примерно на {:.3} мкм, а задан шум {:.3} мкм",
+                doubt.scatter_mm * 1e3,
+                doubt.stated_mm * 1e3
+            ),
+            Self::Offset { offset_mm, .. } => format!(
+                "серия этого вектора лежит на {:.2} {:.2} {:.2} мкм в стороне от остальных: у неё своя установка или своё направление подхода",
+                offset_mm.x * 1e3,
+                offset_mm.y * 1e3,
+                offset_mm.z * 1e3
+            ),
+            Self::NotDetermined => "места векторов не определяют поля".to_owned(),
+        }
     }
 }

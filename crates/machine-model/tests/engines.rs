@@ -30,6 +30,7 @@ fn continuous() -> Vec<(String, Box<dyn Engine>)> {
         EngineId::TangentialStatic,
         EngineId::TangentialQuasiDifferential,
         EngineId::Kmtpp,
+        EngineId::Field,
     ] {
         all.push((id.name().to_owned(), engine(id, Interpolation::Monotone)));
     }

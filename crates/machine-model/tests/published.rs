@@ -132,6 +132,25 @@ fn published_kmtpp_table_4_9_reproduces_in_steps_but_in_one_point_only() {
     assert_printed(&solution.linear_mm, [129.545, 139.663, 105.239], 1e-3);
 }
 
+/// Measured after the solutions were driven to, so that only m can be computed: all five are.
+#[test]
+fn published_kmtpp_table_4_8_reproduces_in_steps() {
+    let fine = tables().map(|table| table.refined(2.0));
+    let target = Command { linear_mm: Vector::from(TARGET), ..at(0.0, 0.0, 0.0) };
+    let rows = published("table_4_8_kmtpp_fine_grid_step");
+    assert_eq!(rows.len(), 5);
+    for row in rows {
+        let engine = KmtppPublished::new(fine.clone(), &traverses(315), 1.5, row[0]).unwrap();
+        let solution = engine.solve(&target).unwrap();
+        assert_eq!(f64::from(solution.iterations), row[1], "m for l = {}", row[0]);
+        if row[0] == 0.5 {
+            // Said to be measured, and the command itself but for tenths.
+            let apart = solution.linear_mm - Vector::new(row[2], row[3], row[4]);
+            assert_printed(&apart, [0.2, 0.2, 0.1], 1e-3);
+        }
+    }
+}
+
 /// Printed as positions that the tracker measured after the solutions were driven to; nine of ten are the
 /// solutions themselves, to the last digit.
 #[test]

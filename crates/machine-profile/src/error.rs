@@ -26,6 +26,10 @@ pub(crate) const CONFLICT: Code = Code(309);
 pub(crate) const FORMAT: Code = Code(310);
 /// An effect that does not exist or lacks parameters.
 pub(crate) const EFFECT: Code = Code(311);
+/// Error vectors that make no field.
+pub(crate) const FIELD: Code = Code(312);
+/// Error vectors that leave something in doubt.
+pub(crate) const DOUBTFUL_FIELD: Code = Code(313);
 
 /// One thing wrong with a profile or with a table it names.
 #[derive(Clone, Debug, PartialEq)]

@@ -60,6 +60,9 @@ pub(crate) struct Document {
     pub(crate) squareness: Squareness,
     /// Laser-tracker traverses, one per axis.
     pub(crate) tracker: Option<Tracker>,
+    /// Error vectors measured in the volume.
+    #[schemars(with = "Option<Field>")]
+    pub(crate) field: Option<Spanned<Field>>,
     /// The rotary axes.
     #[serde(default)]
     pub(crate) rotary: Rotary,
@@ -196,6 +199,18 @@ pub(crate) struct Tracker {
     pub(crate) y: Spanned<String>,
     #[schemars(with = "String")]
     pub(crate) z: Spanned<String>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Field {
+    /// CSV file of error vectors on a lattice or anywhere: x_mm, y_mm, z_mm, dx_um, dy_um, dz_um and further columns of
+    /// measurements.
+    #[schemars(with = "String")]
+    pub(crate) file: Spanned<String>,
+    /// Standard uncertainty of a component of the vectors that have none in the file; 0: they are met exactly.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) noise_um: Option<Spanned<Finite>>,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]

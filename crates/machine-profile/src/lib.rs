@@ -5,6 +5,7 @@
 
 mod effects;
 mod error;
+mod field;
 mod format;
 mod lathe;
 mod load;
@@ -16,6 +17,7 @@ mod write;
 
 pub use effects::EngineError;
 pub use error::ProfileError;
+pub use field::MeasuredField;
 pub use load::{Read, load};
 pub use profile::{
     AfterChange, BareLengths, Calibrated, CorrectionOptions, EffectEntry, FlankFrom, Kinematics, LatheParts,

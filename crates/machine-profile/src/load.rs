@@ -13,6 +13,7 @@ use toolpath::{TiltRule, WholeTurns};
 use units::{Angle, Length};
 
 use crate::error::{CHAIN, CONFLICT, EFFECT, FILE, FORMAT, KEY, ProfileError, VALUE, span};
+use crate::field::Around;
 use crate::format::{
     self, ChangePlace, ContourCompensation, DecimalName, Document, Finite, FlankName, InterpolationName,
     OutsideName, PecksName, ToolChange, XName,
@@ -144,6 +145,19 @@ impl Loader<'_> {
             rotation_rad: triple(document.setup.rotation_urad).map(|v| Angle::from_urad(v).rad()),
         };
         let linear: [LinearAxis; 3] = linear.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()?;
+        let field = document.field.as_ref().and_then(|written| {
+            let turning = if is_lathe {
+                Some(both!("a spindle", "шпиндель"))
+            } else {
+                rotary_axes(chain.as_ref())
+            };
+            let around = Around {
+                travel_mm: linear.each_ref().map(|axis| axis.travel_mm),
+                default_tool_mm: triple(document.tool.default_mm),
+                noise_um: None,
+            };
+            self.field(written, turning, around)
+        });
         let description = Description { chain: chain?, linear, rotary, squareness };
         let lathe = lathe.map(|mut parts| {
             parts.noses = self.noses(&document.tool, &mut tools);
@@ -171,6 +185,7 @@ impl Loader<'_> {
             interpolation,
             rows,
             traverses,
+            field,
             default_tool_mm: triple(document.tool.default_mm),
             gauge_point_mm,
             tool_names,
@@ -472,7 +487,7 @@ impl Loader<'_> {
     }
 
     /// The bytes of a table; an error where it cannot be read.
-    fn file(&mut self, name: &Spanned<String>) -> Option<Vec<u8>> {
+    pub(crate) fn file(&mut self, name: &Spanned<String>) -> Option<Vec<u8>> {
         match (self.read)(name.get_ref()) {
             Ok(bytes) => Some(bytes),
             Err(e) => {
@@ -491,7 +506,7 @@ impl Loader<'_> {
     }
 
     /// The result, or its error put on the list.
-    fn keep<T>(&mut self, result: Result<T, Box<ProfileError>>) -> Option<T> {
+    pub(crate) fn keep<T>(&mut self, result: Result<T, Box<ProfileError>>) -> Option<T> {
         result.map_err(|e| self.errors.push(*e)).ok()
     }
 
@@ -1046,6 +1061,14 @@ impl Loader<'_> {
         }
         effects
     }
+}
+
+/// `rotary axes A, C`, where the chain has some.
+fn rotary_axes(chain: Option<&Chain>) -> Option<Text> {
+    let letters: Vec<String> =
+        chain?.axes().filter(|axis| !axis.is_linear()).map(|axis| axis.letter().to_string()).collect();
+    let names = letters.join(", ");
+    (!letters.is_empty()).then(|| both!("rotary axes, {names}", "поворотные оси, {names}"))
 }
 
 /// Year-month-day of the Gregorian calendar.

@@ -6,6 +6,7 @@ use machine_model::{
 };
 use toolpath::{RotaryChain, RotaryLink, TiltRule};
 
+use crate::field::MeasuredField;
 use crate::tables::ErrorRows;
 
 /// When, how warm and with what a machine was measured.
@@ -209,6 +210,8 @@ pub struct Profile {
     pub rows: [Option<ErrorRows>; 3],
     /// Tracker traverses of X, Y, Z.
     pub traverses: Option<[Traverse; 3]>,
+    /// Error vectors measured in the volume.
+    pub field: Option<MeasuredField>,
     /// Tool vector without G43, gauge point to tip, mm.
     pub default_tool_mm: [f64; 3],
     /// The length that the control would have of a tool that ends at the gauge point, mm, where the profile says it.
@@ -334,6 +337,15 @@ impl Profile {
             traverses: self.traverses.clone(),
             traverse_interpolation: self.interpolation,
             tables,
+            field: self.field.as_ref().map(|measured| measured.field.clone()),
         }
+    }
+
+    /// The engine that the command line names, else the field where programs are corrected by it, else the rigid body: what
+    /// says where the machine goes.
+    #[must_use]
+    pub fn forward_engine(&self, named: Option<EngineId>) -> EngineId {
+        let own = self.correction.engine;
+        named.unwrap_or(if own == EngineId::Field { own } else { EngineId::RigidBody })
     }
 }

@@ -137,6 +137,9 @@ impl Profile {
                 .collect();
             writeln!(out, "tracker      {}", text.join(", "))?;
         }
+        if let Some(field) = &self.field {
+            field.write(out)?;
+        }
         let [x, y, z] = self.default_tool_mm;
         writeln!(out, "tool         default {x} {y} {z} mm")?;
         if let Some(length_mm) = self.gauge_point_mm {

@@ -148,6 +148,9 @@ pub fn rename_tables(profile: &mut DocumentMut, rename: &mut dyn FnMut(&str) -> 
             rename_at(tracker, file, rename);
         }
     }
+    if let Some(field) = profile.get_mut("field") {
+        rename_at(field, "file", rename);
+    }
 }
 
 fn rename_at(table: &mut Item, key: &str, rename: &mut dyn FnMut(&str) -> String) {

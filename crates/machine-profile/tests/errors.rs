@@ -101,7 +101,7 @@ fn unknown_table() {
     assert_snapshot!(told(&format!("{}\n[sqareness]\nEC0Y_urad = 1\n", base())), @r####"
     error[VP0302]: unknown key `sqareness`
       line 12: `sqareness` not a key of this table
-    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
+    help: did you mean `squareness`? Known here: format, name, control, chain, interpolation, calibrated, axis, squareness, tracker, field, rotary, spindle, headstock, tailstock, workpiece, tool, work_offsets_mm, correction, program, m_codes, kinematics, effect, setup
     "####);
 }
 
@@ -233,7 +233,7 @@ fn unknown_engine() {
     assert_snapshot!(told(&format!("{}\n[correction]\nengine = \"rigidbody\"\n", base())), @r####"
     error[VP0303]: `rigidbody` is no engine that corrects programs
       line 13: `"rigidbody"` this engine
-    help: did you mean "rigid-body"? Engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp
+    help: did you mean "rigid-body"? Engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, field
     "####);
 }
 
@@ -242,7 +242,7 @@ fn published_engines_correct_no_programs() {
     assert_snapshot!(told(&format!("{}\n[correction]\nengine = \"kmtpp-published\"\n", base())), @r####"
     error[VP0303]: `kmtpp-published` is no engine that corrects programs
       line 13: `"kmtpp-published"` this engine
-    help: engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp
+    help: engines: rigid-body, tracker, tangential-static, tangential-interval, tangential-quasi-differential, kmtpp, field
     "####);
 }
 

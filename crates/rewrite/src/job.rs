@@ -40,6 +40,8 @@ pub const NO_BOUNDS_FOR_TURNS: Code = Code(530);
 pub const DIRECTION: Code = Code(531);
 /// F would mean another speed in the corrected block.
 pub const ROTARY_FEED: Code = Code(532);
+/// Another tool than the one with which a field was measured.
+pub const OTHER_TOOL: Code = Code(533);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
 pub const SIDEWAYS: Code = Code(519);
 

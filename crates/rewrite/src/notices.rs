@@ -11,7 +11,8 @@ use toolpath::{AXIS_NAMES, Motion};
 
 use crate::job::{
     COMPENSATED, DIRECTION, LEANING_CYCLE, MUST_NOT_SPLIT, NO_BOUNDS_FOR_TURNS, NOT_CONVERGED,
-    NOT_WITHIN_TOLERANCE, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
+    NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE,
+    UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -152,6 +153,16 @@ fn stands_at(axis: usize, motion: &Motion, context: &Context) -> String {
     format!("{}{}", AXIS_NAMES[axis], if number == "-0." { "0." } else { number })
 }
 
+/// What to say of a motion with a tool that a field knows nothing of.
+pub(crate) fn other_tool(error: &SolveError, whole: std::ops::Range<u64>) -> Diagnostic {
+    Diagnostic::error(OTHER_TOOL, error.text())
+        .at(whole, both!("moved with this tool", "движение с этим инструментом"))
+        .help(both!(
+            "measure a field with this tool's length, or use `--engine rigid-body` with tables of angles; before G43 the tool vector is default_mm of the profile",
+            "измерьте поле с длиной этого инструмента или примените `--engine rigid-body` с таблицами углов; до G43 вектор инструмента — default_mm профиля"
+        ))
+}
+
 /// What to say of a motion that cannot be corrected.
 pub(crate) fn refusal(
     error: &CorrectionError,
@@ -171,6 +182,15 @@ pub(crate) fn refusal(
                     if value_mm < low_mm { low_mm - value_mm } else { high_mm - value_mm }
                 ))
         }
+        CorrectionError::Solve(error @ SolveError::OutsideVectors { .. }) => {
+            Diagnostic::error(OUTSIDE, error.text())
+                .at(whole, both!("no vector was measured near enough", "достаточно близко нет измеренных векторов"))
+                .help(both!(
+                    "place the workpiece where vectors were measured with `--work-offset`, measure there, or accept the nearest place's correction with `--outside clamp`",
+                    "поместите деталь туда, где векторы измерены (`--work-offset`), измерьте там или примите поправку ближайшей точки: `--outside clamp`"
+                ))
+        }
+        CorrectionError::Solve(error @ SolveError::OtherTool { .. }) => other_tool(error, whole),
         CorrectionError::Solve(error @ SolveError::NotConverged { .. }) => {
             Diagnostic::error(NOT_CONVERGED, error.text())
                 .at(whole, both!("here", "здесь"))

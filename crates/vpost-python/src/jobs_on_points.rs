@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use diagnostic::{Diagnostic, Severity};
+use diagnostic::{Diagnostic, Severity, both};
 use jobs::diagnose::{Books, Model};
 use jobs::message::{Failure, Report};
 use jobs::options::JobOptions;
@@ -12,7 +12,7 @@ use jobs::settings::machine;
 use jobs::solve::Solver;
 use jobs::values::{Given, Lattice, Rotary, ToolVector, Value};
 use jobs::{conditions, map as volume_map, profile};
-use machine_model::{Command, EngineId, PathModel, RigidBody};
+use machine_model::{Command, PathModel, RigidBody};
 use machine_profile::Profile;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -40,13 +40,17 @@ fn points(profile: &Profile, arrays: &Arrays) -> Result<Vec<Command>, Failure> {
     let has = profile.has_rotary();
     for (row, command) in commands.iter().enumerate() {
         if let Some(axis) = (0..3).find(|&axis| command.rotary_rad[axis] != 0.0 && !has[axis]) {
-            let message = format!(
+            let message = both!(
                 "point {}: the machine has no axis {}: its chain is {}",
+                "точка {}: оси {} у станка нет: его цепь — {}",
                 row + 1,
                 ['A', 'B', 'C'][axis],
                 profile.chain()
             );
-            let help = "leave the column out, or give the profile of the machine that turns";
+            let help = both!(
+                "leave the column out, or give the profile of the machine that turns",
+                "уберите этот столбец или задайте профиль станка с поворотной осью"
+            );
             return Err(Failure::usage(Diagnostic::error(POINTS, message).help(help)));
         }
     }
@@ -79,14 +83,15 @@ pub(crate) fn predict<'py>(
         let frame = if include_setup { Frame::Measuring } else { Frame::Machine };
         let predictor = Predictor::new(&profile, &options, frame)?;
         let (mut positions, mut errors) = (Vec::new(), Vec::new());
-        for command in &commands {
+        for (row, command) in commands.iter().enumerate() {
+            predictor.require_tool(row, command).map_err(Failure::usage)?;
             let predicted = predictor.predict(command);
             positions.extend(predicted.position_mm.iter());
             errors.extend(predicted.error_mm.iter().map(|mm| mm * 1e3));
             errors.push(predicted.error_mm.norm() * 1e3);
         }
         let inside: Vec<bool> = commands.iter().map(|command| predictor.contains(command)).collect();
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<Report> = predictor.doubts().into_iter().collect();
         if let Some(outside) = PointsOutside::of(inside.iter().copied()) {
             let diagnostic = outside.diagnostic(&options);
             if diagnostic.severity == Severity::Error {
@@ -173,16 +178,18 @@ pub(crate) fn grid<'py>(
     let work = || -> Result<_, Failure> {
         let options = JobOptions::read(options)?;
         let profile = mill(&options)?;
-        let id = options.engine().unwrap_or(EngineId::RigidBody);
+        let id = profile.forward_engine(options.engine());
         let engine = conditions::engine(&profile, id, &options)?;
         let model = volume_map::model(engine.as_ref())?;
         let tool = tool.map(|text| given::<ToolVector>("--tool-vector", text)).transpose()?;
         let tool_mm = volume_map::tool(tool.as_ref(), &options, &profile)?;
+        volume_map::require_tool(model, tool_mm)?;
         let rotary = rotary.map(|text| given::<Rotary>("--rotary", text)).transpose()?;
         let rotary_rad = volume_map::rotary(rotary.as_ref(), &profile)?;
         let grid = volume_map::grid(&given::<Lattice>("--grid", nodes)?, model.volume())?;
         let box_mm = grid.axes().each_ref().map(|nodes| nodes.range_mm());
-        let warnings = volume_map::outside([box_mm], model.volume(), &options)?;
+        let mut warnings = volume_map::outside([box_mm], model.volume(), &options)?;
+        warnings.extend(conditions::doubts(&profile, id));
         let places = grid.axes().each_ref().map(|nodes| nodes.places_mm().to_vec());
         let map = volume_map::evaluated(grid, |place_mm| {
             model.error_mm(&Command { linear_mm: *place_mm, rotary_rad, tool_mm, direction: [0; 3] })

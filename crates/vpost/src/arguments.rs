@@ -118,6 +118,12 @@ pub struct Solve {
     /// Target points (CSV); - for standard input.
     #[arg(value_name = "POINTS.csv")]
     pub points: PathBuf,
+    /// K of the astatic law of `kmtpp-published`; 1.5 if not given.
+    #[arg(long, value_name = "K", value_parser = size)]
+    pub gain: Option<f64>,
+    /// Its step l of model time; 0.1 if not given.
+    #[arg(long, value_name = "L", value_parser = size)]
+    pub step: Option<f64>,
 }
 
 /// `vpost profile`

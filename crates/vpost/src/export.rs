@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use diagnostic::{Code, Diagnostic, Text, both};
-use machine_model::{Axis, Command, Interpolation, PathModel, Six, Vector};
+use machine_model::{Axis, Command, EngineId, Interpolation, PathModel, Six, Vector};
 use machine_profile::Profile;
 
 use crate::message::{Deed, Failure, Messages, Report};
@@ -146,6 +146,15 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
             both!("write `--step 50`", "напишите `--step 50`"),
         ));
     }
+    if profile.correction.engine == EngineId::Field && arguments.format != Format::Lattice {
+        return Err(Failure::option(
+            both!(
+                "the profile corrects by error vectors, which are no functions of axes",
+                "профиль исправляет по векторам ошибок, а это не функции осей"
+            ),
+            both!("write them as a lattice: `--format lattice`", "выведите их решёткой: `--format lattice`"),
+        ));
+    }
     std::fs::create_dir_all(&arguments.folder)
         .map_err(|error| Failure::file(&file::name(&arguments.folder), Deed::Make, &error))?;
     let lost = match arguments.format {
@@ -254,7 +263,12 @@ fn isg(profile: &Profile, folder: &Path) -> Result<Vec<Text>, Failure> {
 /// Vectors on a lattice over the calibrated volume, its far faces included.
 fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> {
     const MOST_POINTS: f64 = 1e6;
-    let volume = profile.volume();
+    let field = profile.field.as_ref().filter(|_| profile.correction.engine == EngineId::Field);
+    let model: &dyn PathModel = match field {
+        Some(measured) => &measured.field,
+        None => profile.rigid_body_without_effects(),
+    };
+    let volume = model.volume();
     let cells = volume.0.map(|range| ((range.high - range.low) / arguments.step - 1e-9).ceil().max(1.0));
     // Counted before there are any.
     let points: f64 = cells.iter().map(|cells| cells + 1.0).product();
@@ -269,8 +283,8 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> 
         let range = volume.0[i];
         (0..=cells[i] as usize).map(|k| (range.low + k as f64 * arguments.step).min(range.high)).collect()
     });
-    let model = profile.rigid_body_without_effects();
-    let tool_mm = Vector::from(profile.default_tool_mm);
+    let tool_mm =
+        field.map_or_else(|| Vector::from(profile.default_tool_mm), |measured| measured.field.tool_mm());
     let (sign, head) = match arguments.lattice {
         Sign::Errors => (1.0, "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,dx_um,dy_um,dz_um\n"),
         Sign::Corrections => (-1.0, "run,x_mm,y_mm,z_mm,tool_x_mm,tool_y_mm,tool_z_mm,cx_um,cy_um,cz_um\n"),

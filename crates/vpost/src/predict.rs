@@ -26,7 +26,11 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
     out.push_str(",px_mm,py_mm,pz_mm,dx_um,dy_um,dz_um,d_um");
     out.push_str(if predictor.turns() { DIRECTION_COLUMNS } else { "" });
     out.push('\n');
-    for (fields, command) in &points.rows {
+    predictor.doubts().iter().for_each(|report| messages.report(report));
+    for (row, (fields, command)) in points.rows.iter().enumerate() {
+        predictor
+            .require_tool(row, command)
+            .map_err(|diagnostic| Failure::refused(&name, &bytes, vec![diagnostic]))?;
         let Prediction { position_mm, error_mm } = predictor.predict(command);
         out.push_str(&fields.join(","));
         for value in position_mm.iter() {

@@ -11,9 +11,10 @@ use crate::settings::{machine, setup_tool};
 use crate::{file, profile};
 
 /// `vpost solve POINTS.csv -m PROFILE`
-pub(crate) fn run(arguments: &Solve, shared: &Shared, _: &Messages) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Solve, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
     let profile = profile::load_mill(machine(&shared.job)?)?.profile;
-    let solver = Solver::new(&profile, &shared.job)?;
+    let solver = Solver::with_law(&profile, &shared.job, arguments.gain, arguments.step)?;
+    solver.doubts(&profile).iter().for_each(|report| messages.report(report));
     let bytes = file::read(&arguments.points)?;
     let name = file::name(&arguments.points);
     let points = points::read(&name, &bytes, setup_tool(&profile), &profile)?;

@@ -2,13 +2,14 @@
 
 use crate::EngineId;
 
-const NAMES: [(EngineId, &str); 10] = [
+const NAMES: [(EngineId, &str); 11] = [
     (EngineId::RigidBody, "rigid-body"),
     (EngineId::Tracker, "tracker"),
     (EngineId::TangentialStatic, "tangential-static"),
     (EngineId::TangentialInterval, "tangential-interval"),
     (EngineId::TangentialQuasiDifferential, "tangential-quasi-differential"),
     (EngineId::Kmtpp, "kmtpp"),
+    (EngineId::Field, "field"),
     (EngineId::TangentialStaticPublished, "tangential-static-published"),
     (EngineId::TangentialIntervalPublished, "tangential-interval-published"),
     (EngineId::TangentialQuasiDifferentialPublished, "tangential-quasi-differential-published"),
@@ -17,8 +18,8 @@ const NAMES: [(EngineId, &str); 10] = [
 
 impl EngineId {
     /// All engines, the default first, the published variants last.
-    pub const ALL: [Self; 10] = {
-        let mut all = [Self::RigidBody; 10];
+    pub const ALL: [Self; 11] = {
+        let mut all = [Self::RigidBody; 11];
         let mut i = 0;
         while i < all.len() {
             all[i] = NAMES[i].0;

@@ -4,6 +4,7 @@
 
 mod build_error;
 mod engine_id;
+mod field;
 mod kmtpp;
 mod kmtpp_bound;
 mod parametric;
@@ -15,6 +16,7 @@ mod tracker;
 mod traverses;
 
 pub use build_error::BuildError;
+pub use field::{Doubt, ErrorVector, Field, FieldError, Made};
 pub use kmtpp::{Kmtpp, PathDependence};
 pub use parametric::ParametricTable;
 pub use tangential::{PUBLISHED_INTERVAL, Tangential};
@@ -36,6 +38,8 @@ pub struct EngineInputs {
     pub traverse_interpolation: Interpolation,
     /// The rows of the interferometer tables of X, Y, Z.
     pub tables: Option<[ParametricTable; 3]>,
+    /// The measured error vectors of `[field]`.
+    pub field: Option<Field>,
 }
 
 /// Builds an engine from what the profile offers.
@@ -69,6 +73,10 @@ pub fn build(id: EngineId, inputs: EngineInputs) -> Result<Box<dyn Engine>, Buil
         EngineId::Kmtpp => {
             let given = Traverses::new(&inputs.traverses.ok_or_else(traverses)?)?;
             Box::new(kmtpp(&inputs.tables.ok_or_else(tables)?, &given)?)
+        }
+        EngineId::Field => {
+            let vectors = || lacks("error vectors measured in the volume", "[field] with file and noise_um");
+            Box::new(inputs.field.ok_or_else(vectors)?)
         }
         EngineId::TangentialStaticPublished => {
             published(&inputs.traverses.ok_or_else(traverses)?, Method::Static)?

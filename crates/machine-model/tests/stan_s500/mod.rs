@@ -6,9 +6,10 @@
 
 use std::path::{Path, PathBuf};
 
-use machine_model::engines::{EngineInputs, ParametricTable};
+use machine_model::engines::{EngineInputs, ErrorVector, Field, ParametricTable};
 use machine_model::{
-    AxisTables, Chain, Description, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis,
+    AxisTables, Chain, Command, Description, Interpolation, LinearAxis, PathModel as _, Range, RigidBody,
+    RotaryAxis,
 };
 use machine_model::{Squareness, Traverse, Vector};
 
@@ -114,6 +115,27 @@ pub fn rigid_body(tables: &[ParametricTable; 3], squareness: Squareness) -> Rigi
     RigidBody::new(Description { chain, linear, rotary, squareness }).expect("shipped tables make a machine")
 }
 
+/// The error of a machine at all nodes of its tables, as vectors that are met exactly.
+pub fn field(machine: &RigidBody, tables: &[ParametricTable; 3]) -> Field {
+    let [x, y, z] = tables.each_ref().map(ParametricTable::positions_mm);
+    let mut vectors = Vec::with_capacity(x.len() * y.len() * z.len());
+    for &z in z {
+        for &y in y {
+            for &x in x {
+                let place_mm = Vector::new(x, y, z);
+                let error_mm = machine.error_mm(&Command {
+                    linear_mm: place_mm,
+                    rotary_rad: Vector::zeros(),
+                    tool_mm: Vector::zeros(),
+                    direction: [0; 3],
+                });
+                vectors.push(ErrorVector { place_mm, error_mm, uncertainty_mm: Vector::zeros(), run: 0 });
+            }
+        }
+    }
+    Field::new(&vectors, Vector::zeros()).expect("a complete lattice")
+}
+
 /// Everything the engines can be built from.
 pub fn inputs(
     tables: &[ParametricTable; 3],
@@ -125,5 +147,6 @@ pub fn inputs(
         traverses: Some(traverses.clone()),
         traverse_interpolation: Interpolation::Monotone,
         tables: Some(tables.clone()),
+        field: Some(field(&rigid_body(tables, squareness), tables)),
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use diagnostic::Diagnostic;
+use machine_model::{Command, SolveError, Vector};
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
@@ -13,6 +14,7 @@ use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
 use crate::job::Job;
+use crate::notices::other_tool;
 
 /// What becomes of blocks under `/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,6 +164,10 @@ impl<'a, 'n> Program<'a, 'n> {
             self.process_number = None;
         }
         for motion in motions {
+            if let Some(unknown) = self.other_tool(block, motion, context) {
+                (self.refused, self.ended) = (Some(vec![unknown]), true);
+                return;
+            }
             let (process, dwell) = match motion {
                 Motion::Hole(hole) => {
                     let process = self.process.in_cycle(self.interpreter.modal().cycle.as_ref());
@@ -214,6 +220,19 @@ impl<'a, 'n> Program<'a, 'n> {
     /// The number of the process in force.
     fn number(&mut self) -> u32 {
         *self.process_number.get_or_insert_with(|| self.numbers.borrow_mut().of_process(&self.process))
+    }
+
+    /// The refusal of a cut with a tool that the model knows nothing of.
+    fn other_tool(&self, block: &Block<'_>, motion: &Motion, context: &Context) -> Option<Diagnostic> {
+        if !matches!(motion, Motion::Feed(_) | Motion::Hole(_)) {
+            return None;
+        }
+        let (linear_mm, rotary_rad, direction) = (Vector::zeros(), Vector::zeros(), [0; 3]);
+        let command = Command { linear_mm, rotary_rad, tool_mm: context.tool_mm.into(), direction };
+        match self.job.models.axes.knows(&command) {
+            Err(error @ SolveError::OtherTool { .. }) => Some(other_tool(&error, block.file_range())),
+            _ => None,
+        }
     }
 
     /// What the rounding of rotary words adds where they turn on a feed's way: half a step each, as the comparison sees it.

@@ -2,15 +2,23 @@
 
 use std::fmt::Write;
 
+use super::deformation;
 use super::study::{Kind, Study};
 use crate::figures::fixed;
 
 /// Decimals of a micrometre.
 const DECIMALS: usize = 6;
 
-/// `x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um`, a row for each node, X fastest.
+/// `x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um`, a row for each node, X fastest; of a field also stretch, shear and rotation of
+/// the cell that begins at the node, nothing at the last nodes.
 pub(super) fn csv(study: &Study) -> Vec<u8> {
-    let mut out = String::from("x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um\n");
+    let mut out = String::from("x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,d_um");
+    let names: &[&str] = if study.cells.is_empty() { &[] } else { &deformation::NAMES };
+    for name in names {
+        out.push(',');
+        out.push_str(name);
+    }
+    out.push('\n');
     for (index, error) in study.map.errors_mm().iter().enumerate() {
         let place = study.map.grid().place_mm(index);
         for value in place.iter() {
@@ -22,6 +30,13 @@ pub(super) fn csv(study: &Study) -> Vec<u8> {
             out.push(',');
         }
         out.push_str(&fixed(error.norm() * 1e3, DECIMALS));
+        let cell = deformation::of_node(&study.map, &study.cells, index).map(|cell| cell.values());
+        for which in 0..names.len() {
+            out.push(',');
+            if let Some(values) = cell {
+                out.push_str(&fixed(values[which], DECIMALS));
+            }
+        }
         out.push('\n');
     }
     out.into_bytes()
@@ -60,6 +75,18 @@ pub(super) fn vtk(study: &Study) -> Vec<u8> {
         for error in study.map.errors_mm() {
             out.push_str(&fixed((error - shift).norm() * 1e3, DECIMALS));
             out.push('\n');
+        }
+    }
+    if !study.cells.is_empty() {
+        let _ = writeln!(out, "CELL_DATA {}", study.cells.len());
+        for (first, name) in [(0, "stretch_um_m"), (3, "shear_urad"), (6, "rotation_urad")] {
+            let _ = writeln!(out, "VECTORS {name} double");
+            for cell in &study.cells {
+                let values = cell.values();
+                let text = [0, 1, 2].map(|k| fixed(values[first + k], DECIMALS));
+                out.push_str(&text.join(" "));
+                out.push('\n');
+            }
         }
     }
     out.into_bytes()

@@ -4,6 +4,7 @@ use error_map::Statistics;
 use machine_model::{Range, Vector};
 use serde_json::{Value, json};
 
+use super::deformation;
 use super::drawn::classes;
 use super::second_order::SecondOrder;
 use super::study::{Part, Proof, Study, ZeroPoint};
@@ -52,8 +53,24 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
         })).collect::<Vec<_>>(),
         "histogram": { "width_um": um(sizes.width_mm), "before": sizes.before, "after": sizes.after },
         "second_order": study.second_order.as_ref().map(second_order),
+        "deformation": deformations(study),
     });
     jobs::summary::json(&document)
+}
+
+/// Stretch, shear and rotation of the cells of a field.
+fn deformations(study: &Study) -> Value {
+    let Some(found) = deformation::figures(&study.cells) else { return Value::Null };
+    let named = deformation::NAMES.iter().zip(&found).map(|(name, (range, rms))| {
+        let figures = json!({
+            "range": [round(range.low, 6), round(range.high, 6)],
+            "rms": round(*rms, 6),
+        });
+        ((*name).to_owned(), figures)
+    });
+    let mut all: serde_json::Map<String, Value> = named.collect();
+    all.insert("cells".to_owned(), json!(study.cells.len()));
+    Value::Object(all)
 }
 
 fn part(study: &Study, part: &Part) -> Value {

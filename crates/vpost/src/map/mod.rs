@@ -2,6 +2,7 @@
 
 mod arguments;
 mod curves;
+mod deformation;
 mod drawn;
 mod export;
 mod json;
@@ -15,7 +16,7 @@ pub use arguments::Map;
 
 use diagnostic::both;
 use jobs::map::model;
-use machine_model::{EngineId, Range, Volume};
+use machine_model::{Range, Volume};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -35,10 +36,12 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         .writes("--html", arguments.html.as_deref())
         .are_apart()?;
     let conditions = conditions::conditions(&shared.job)?;
-    let id = shared.job.engine().unwrap_or(EngineId::RigidBody);
+    let id = profile.forward_engine(shared.job.engine());
     let engine = profile.engine(id, &conditions).map_err(|error| conditions::failure(&error))?;
     let model = model(engine.as_ref())?;
     let asked = options::read(arguments, shared, &profile, model.volume())?;
+    jobs::map::require_tool(model, asked.tool_mm)?;
+    conditions::doubts(&profile, id).iter().for_each(|report| messages.report(report));
     let grid_mm = asked.grid.axes().each_ref().map(|nodes| nodes.range_mm());
     outside(asked.part_box_mm.into_iter().chain([grid_mm]), model.volume(), shared, messages)?;
     let study = study::Study::new(&profile, id, model, &asked)?;

@@ -9,6 +9,7 @@ use report::page::{Page, Section, figure, table};
 use report::scale::nice;
 use report::text::{number, number_of_digits, percent, shown};
 
+use super::deformation;
 use super::drawn::{classes, median};
 use super::study::{Part, Study};
 use super::text::{freedom_name, proof};
@@ -39,6 +40,9 @@ pub(super) fn html(study: &Study, facts: &Facts, json: &str) -> String {
         Section { id: "diagonals", title: "Body diagonals", body: diagonals(study) },
         Section { id: "zero-point", title: "Where to put the zero point", body: zero_points(study) },
     ];
+    if let Some(body) = deformations(study) {
+        sections.insert(5, Section { id: "deformation", title: "Stretch, shear and rotation", body });
+    }
     if !study.places.is_empty() {
         sections.push(Section { id: "clamp", title: "Where to clamp", body: places(study) });
     }
@@ -100,6 +104,27 @@ fn figures(study: &Study) -> Markup {
         p { "\u{b5}m. Ranges per axis are those of ISO 230-1 for the volumetric accuracy of three linear axes; the others are of the length of the error." }
         (table(&header, &[1, 2, 3, 4, 5, 6, 7, 8, 9], &rows))
     }
+}
+
+/// What a field does to small boxes of commands.
+fn deformations(study: &Study) -> Option<Markup> {
+    let figures = deformation::figures(&study.cells)?;
+    let rows: Vec<Vec<String>> = figures
+        .iter()
+        .enumerate()
+        .map(|(which, (range, rms))| {
+            let unit = if which < 3 { "\u{b5}m/m" } else { "\u{b5}rad" };
+            let numbers = [range.low, range.high, *rms].map(|v| number_of_digits(v, 2));
+            [deformation::WORDS[which].to_owned(), unit.to_owned()].into_iter().chain(numbers).collect()
+        })
+        .collect();
+    Some(html! {
+        p {
+            "The Jacobian of the field in the middle of each of " (study.cells.len())
+            " cells of the grid. Shear: by how much the right angle between two axes is smaller there. Rotation is that of a small box of commands; how the tool turns, a field does not say. All cells are in the files of --csv and --vtk."
+        }
+        (table(&["of a cell", "unit", "least", "largest", "RMS"], &[2, 3, 4], &rows))
+    })
 }
 
 /// Every so many nodes of an axis, ends included.

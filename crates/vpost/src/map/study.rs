@@ -11,6 +11,7 @@ use machine_profile::Profile;
 use rayon::prelude::*;
 
 use super::curves::{Curve, curves};
+use super::deformation::{self, Deformation};
 use super::options::{Asked, command};
 use super::second_order::{self, SecondOrder};
 use crate::message::Failure;
@@ -37,6 +38,8 @@ pub(super) struct Study {
     pub second_order: Option<SecondOrder>,
     /// Errors along each axis through the middle.
     pub curves: Vec<Curve>,
+    /// Of each cell of the grid, where the model is a field.
+    pub cells: Vec<Deformation>,
 }
 
 /// A part of the volume, its figures and its zero points.
@@ -133,6 +136,7 @@ impl Study {
             places,
             second_order: asked.second_order.then(|| second_order::of(profile, &map, asked)).transpose()?,
             curves: curves(&map, model, asked),
+            cells: deformation::cells(&map, model, asked),
             map,
         })
     }

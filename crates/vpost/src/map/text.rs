@@ -6,6 +6,7 @@ use error_map::Statistics;
 use error_map::placement::Freedom;
 use machine_model::Vector;
 
+use super::deformation;
 use super::second_order::SecondOrder;
 use super::study::{Kind, Part, Proof, Study, ZeroPoint};
 use crate::figures::{fixed, printable, triple, um};
@@ -14,6 +15,7 @@ use crate::figures::{fixed, printable, triple, um};
 pub(super) fn page(study: &Study) -> String {
     let mut out = head(study);
     figures(study, &mut out);
+    deformations(study, &mut out);
     diagonals(study, &mut out);
     for part in &study.parts {
         zero_points(study, part, &mut out);
@@ -44,6 +46,24 @@ fn head(study: &Study) -> String {
         triple(&study.tool_mm, 3),
         triple(&study.rotary_rad.map(f64::to_degrees), 3),
     )
+}
+
+/// What a field does to small boxes of commands.
+fn deformations(study: &Study, out: &mut String) {
+    let Some(figures) = deformation::figures(&study.cells) else { return };
+    let _ = writeln!(
+        out,
+        "\nof {:<27} {:>11} {:>11} {:>11}",
+        format!("{} cells", study.cells.len()),
+        "least",
+        "largest",
+        "rms"
+    );
+    for (which, (range, rms)) in figures.iter().enumerate() {
+        let name = format!("{}, {}", deformation::WORDS[which], deformation::unit(which));
+        let numbers = [range.low, range.high, *rms].map(|v| fixed(v, 2));
+        let _ = writeln!(out, "  {name:<28} {:>11} {:>11} {:>11}", numbers[0], numbers[1], numbers[2]);
+    }
 }
 
 fn figures(study: &Study, out: &mut String) {
