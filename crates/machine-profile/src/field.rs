@@ -480,6 +480,15 @@ impl Profile {
             };
             doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
         }
+        if let Some(mm) = measured.field.blind_to_mm() {
+            let message = format!(
+                "{}: its runs have too few places in common: an offset between them of up to {:.0} um would pass for the machine",
+                measured.file,
+                Length::from_mm(mm).um()
+            );
+            let help = "where each run had a set-up of its own, measure some places in all of them; where all had one, give them one name";
+            doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
+        }
         if let Made::Smooth { missing: missing @ 1.., .. } = measured.field.made() {
             let message = both!(
                 "{}: the lattice of its places lacks {missing} node(s)",

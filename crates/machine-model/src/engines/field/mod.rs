@@ -186,6 +186,7 @@ pub struct Field {
     tool_mm: Vector,
     made: Made,
     doubt: Option<Doubt>,
+    blind_mm: Option<f64>,
 }
 
 impl Field {
@@ -207,7 +208,14 @@ impl Field {
         if all_exact {
             let spline = places.lattice(vectors)?;
             let support = Support::of_box(spline.ranges());
-            return Ok(Self { spline, support, tool_mm, made: Made::Lattice(places.counts()), doubt: None });
+            return Ok(Self {
+                spline,
+                support,
+                tool_mm,
+                made: Made::Lattice(places.counts()),
+                doubt: None,
+                blind_mm: None,
+            });
         }
         let found = places.groups.len();
         if found < LEAST_VECTORS {
@@ -217,7 +225,14 @@ impl Field {
         let smooth = smooth::smooth(vectors, support.volume.0)?;
         let missing = places.missing().map_or(0, |(missing, _)| missing);
         let made = Made::Smooth { vectors: vectors.len(), missing, residuals: smooth.residuals };
-        Ok(Self { spline: smooth.spline, support, tool_mm, made, doubt: smooth.doubt })
+        Ok(Self {
+            spline: smooth.spline,
+            support,
+            tool_mm,
+            made,
+            doubt: smooth.doubt,
+            blind_mm: smooth.blind_mm,
+        })
     }
 
     /// What it was made of.
@@ -230,6 +245,13 @@ impl Field {
     #[must_use]
     pub fn doubt(&self) -> Option<Doubt> {
         self.doubt
+    }
+
+    /// The largest offset between runs that would pass for the machine, mm, where that is far above the noise: runs that
+    /// have hardly a place in common.
+    #[must_use]
+    pub fn blind_to_mm(&self) -> Option<f64> {
+        self.blind_mm
     }
 
     /// The tool vector with which it was measured, mm.

@@ -26,8 +26,12 @@ const DOUBTFUL: f64 = 4.0;
 const TOO_LARGE: f64 = 2.0;
 /// … or the noise is of another unit.
 const TOO_SMALL: f64 = 0.04;
-/// An offset between runs that is not there exceeds so many of its uncertainties once in ten million times.
-const OFFSET: f64 = 5.5;
+/// Twice the logarithm of the likelihoods' ratio from which runs have offsets: jagged tables of layers, each a run, reach 18.
+const OFFSET: f64 = 30.0;
+/// So many of its standard uncertainties an offset has to have to be seen …
+const SEEN: f64 = 5.5;
+/// … and so many times the noise it may be without being seen before that is said.
+const BLIND: f64 = 10.0;
 /// Rows of a run from which its offset is asked for.
 const ROWS_OF_A_RUN: usize = 3;
 
@@ -37,6 +41,8 @@ pub(super) struct Smooth {
     pub(super) doubt: Option<Doubt>,
     /// Squared residuals over what the noise says.
     pub(super) residuals: f64,
+    /// The largest offset between runs that would pass for the machine, mm, where that is far above the noise.
+    pub(super) blind_mm: Option<f64>,
 }
 
 /// Products of modes that share a variance: which modes of X, Y and Z.
@@ -106,7 +112,7 @@ pub(super) fn smooth(vectors: &[ErrorVector], ranges: [Range; 3]) -> Result<Smoo
         let model = Model { y: &y, fixed: &fixed, kernels: &kernels, noise: &noise };
         found.push((model.likeliest().ok_or(FieldError::NotDetermined)?, noise));
     }
-    offsets(vectors, &chosen, &found)?;
+    let blind_mm = offsets(vectors, &chosen, &fixed, &kernels, &found)?;
     let (doubt, residuals) = doubt(&found)?;
     let mut of_modes = Coefficients::zeros(&modes);
     let survey = (chosen.len() < vectors.len()).then(|| Survey::new(vectors, &all, &classes));
@@ -124,7 +130,7 @@ pub(super) fn smooth(vectors: &[ErrorVector], ranges: [Range; 3]) -> Result<Smoo
             }
         }
     }
-    Ok(Smooth { spline: of_modes.into_spline(&modes), doubt, residuals })
+    Ok(Smooth { spline: of_modes.into_spline(&modes), doubt, residuals, blind_mm })
 }
 
 /// The kernels at the places, with a mean diagonal of 1, and what they were divided by.
@@ -170,34 +176,65 @@ fn scrambled(number: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Runs that lie beside the others by more than the noise lets them.
-fn offsets(vectors: &[ErrorVector], chosen: &[usize], found: &[(Found, Vec<f64>)]) -> Result<(), FieldError> {
+/// Looks for runs that lie beside one another: a smooth field with an offset of each run is so much likelier than one
+/// without that no machine makes the difference. Else: the largest offset that would pass for the machine, mm, where that
+/// is far above the noise.
+fn offsets(
+    vectors: &[ErrorVector],
+    chosen: &[usize],
+    fixed: &[Vec<f64>],
+    kernels: &[Square],
+    found: &[(Found, Vec<f64>)],
+) -> Result<Option<f64>, FieldError> {
     let mut runs: Vec<usize> = chosen.iter().map(|&i| vectors[i].run).collect();
     runs.sort_unstable();
     runs.dedup();
-    if runs.len() < 2 {
-        return Ok(());
+    // Runs of a row or two are repeats, and an offset of each would be noise.
+    if runs.len() < 2 || runs.len() * ROWS_OF_A_RUN > chosen.len() {
+        return Ok(None);
     }
-    let mut worst: Option<(f64, usize, Vector)> = None;
-    for &run in &runs {
-        let marked: Vec<bool> = chosen.iter().map(|&i| vectors[i].run == run).collect();
-        let own = marked.iter().filter(|marked| **marked).count();
-        if own < ROWS_OF_A_RUN || own + ROWS_OF_A_RUN > marked.len() {
-            continue;
+    let marked = |run: usize| chosen.iter().map(|&i| vectors[i].run == run).collect::<Vec<bool>>();
+    let mut kernels = kernels.to_vec();
+    kernels.push(same_run(vectors, chosen));
+    let (mut sure, mut offsets) = (0.0_f64, vec![Vector::zeros(); runs.len()]);
+    for (c, (without, noise)) in found.iter().enumerate() {
+        let y: Vec<f64> = chosen.iter().map(|&i| vectors[i].error_mm[c]).collect();
+        let Some(with) = (Model { y: &y, fixed, kernels: &kernels, noise }).likeliest() else { continue };
+        sure = sure.max(2.0 * (with.likelihood - without.likelihood));
+        let theta = with.variances.last().copied().unwrap_or_default();
+        for (run, offset) in runs.iter().zip(&mut offsets) {
+            let own = marked(*run).into_iter().zip(&with.weighted).filter(|(own, _)| *own);
+            offset[c] = theta * own.map(|(_, weighted)| weighted).sum::<f64>();
         }
-        let by_component: Vec<(f64, f64)> = found.iter().map(|(found, _)| found.offset(&marked)).collect();
-        let sure = by_component.iter().map(|(_, sure)| sure.abs()).fold(0.0, f64::max);
-        if sure > OFFSET && worst.as_ref().is_none_or(|(most, ..)| sure > *most) {
-            worst = Some((sure, run, Vector::from_fn(|c, _| by_component[c].0)));
+    }
+    if sure > OFFSET {
+        let worst =
+            (0..runs.len()).max_by(|a, b| offsets[*a].norm().total_cmp(&offsets[*b].norm())).unwrap_or(0);
+        let vector = vectors.iter().position(|v| v.run == runs[worst]).unwrap_or(0);
+        return Err(FieldError::Offset { vector, offset_mm: offsets[worst] });
+    }
+    let mut blind: Option<f64> = None;
+    for (found, noise) in found {
+        let noise_mm = (noise.iter().sum::<f64>() / noise.len() as f64).sqrt();
+        for run in &runs {
+            let hidden_mm = SEEN * found.uncertainty_of_offset_mm(&marked(*run));
+            if hidden_mm > BLIND * noise_mm {
+                blind = Some(blind.unwrap_or(0.0).max(hidden_mm));
+            }
         }
     }
-    match worst {
-        None => Ok(()),
-        Some((_, run, offset_mm)) => Err(FieldError::Offset {
-            vector: vectors.iter().position(|v| v.run == run).unwrap_or(0),
-            offset_mm,
-        }),
+    Ok(blind)
+}
+
+/// 1 between vectors of one run.
+fn same_run(vectors: &[ErrorVector], chosen: &[usize]) -> Square {
+    let mut kernel = Square::zeros(chosen.len());
+    for (i, a) in chosen.iter().enumerate() {
+        for (value, b) in kernel.row_mut(i).iter_mut().zip(chosen) {
+            *value = f64::from(u8::from(vectors[*a].run == vectors[*b].run));
+        }
     }
+    kernel
 }
 
 /// Whether the residuals say of the noise what was stated.

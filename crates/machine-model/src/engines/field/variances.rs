@@ -31,7 +31,7 @@ pub(super) struct Found {
     pub(super) weighted: Vec<f64>,
     /// `β`
     pub(super) fixed: Vec<f64>,
-    likelihood: f64,
+    pub(super) likelihood: f64,
 }
 
 impl Model<'_> {
@@ -146,12 +146,11 @@ impl Found {
         sums
     }
 
-    /// A constant that would be added to the readings marked: its likeliest value, mm, and that in its own standard
-    /// uncertainties.
-    pub(super) fn offset(&self, marked: &[bool]) -> (f64, f64) {
+    /// Standard uncertainty of a constant that would be added to the readings marked, mm.
+    pub(super) fn uncertainty_of_offset_mm(&self, marked: &[bool]) -> f64 {
         let column: Vec<f64> = marked.iter().map(|marked| f64::from(u8::from(*marked))).collect();
         let information = dot(&column, &self.projection.times(&column));
-        let pull = dot(&column, &self.weighted);
-        if information > 0.0 { (pull / information, pull / information.sqrt()) } else { (0.0, 0.0) }
+        // Nothing is told of a constant that the fixed part of the model holds.
+        1.0 / information.max(f64::MIN_POSITIVE).sqrt()
     }
 }
