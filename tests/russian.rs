@@ -25,7 +25,10 @@ fn latin_sentence(text: &str) -> Option<String> {
             && !word.bytes().all(|byte| byte.is_ascii_uppercase())
     };
     let words: Vec<&str> = text.split_whitespace().collect();
-    words.windows(3).find(|three| three.iter().all(is_prose)).map(|three| three.join(" "))
+    // A list of keys or units is no sentence.
+    let goes_on = |three: &&[&str]| three[..2].iter().all(|word| !word.ends_with(','));
+    let found = words.windows(3).filter(goes_on).find(|three| three.iter().all(is_prose));
+    found.map(|three| three.join(" "))
 }
 
 fn codes(said: &str) -> Vec<&str> {

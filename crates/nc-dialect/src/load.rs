@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Text, both, of_toml};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{
     Action, CodeEntry, Colon, Command, CycleLevels, Flow, FrameRules, GCode, LatheSign, LengthAfter, MCode,
@@ -257,7 +257,11 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
 fn refused_by_toml(error: &toml::de::Error) -> Diagnostic {
     let diagnostic = Diagnostic::error(
         Code(801),
-        both!("the grammar cannot be read: {}", "таблица диалекта не читается: {}", error.message().trim()),
+        both!(
+            "the grammar cannot be read: {}",
+            "таблица диалекта не читается: {:#}",
+            of_toml(error.message().trim())
+        ),
     )
     .help(both!(
         "docs/dialects.md lists every field of a grammar",
