@@ -113,11 +113,16 @@ esac
     }
 
     /// Runs a block: standard output, with standard error where it was written.
-    fn run(&self, script: &str) -> (Option<i32>, String) {
+    ///
+    /// A Russian page's reader has a Russian locale.
+    fn run(&self, script: &str, document: &str) -> (Option<i32>, String) {
         let path = std::env::var("PATH").unwrap_or_default();
         let mut command = Command::new("bash");
         command.args(["-e", "-o", "pipefail", "-c", &format!("exec 2>&1\n{script}")]);
         command.current_dir(self.folder.path().join("project")).env_remove("NO_COLOR");
+        // `LC_ALL` would have the shell look for the locale, which need not be installed.
+        let locale = if document.ends_with(".ru.md") { "ru_RU.UTF-8" } else { "C" };
+        command.env_remove("LC_ALL").env("LC_MESSAGES", locale);
         command.env("PATH", format!("{}:{path}", self.folder.path().join("tools").display()));
         command.env("VPOST_UNDER_TEST", env!("CARGO_BIN_EXE_vpost")).stdin(Stdio::null());
         let output: Output = command.output().expect("bash is there");
@@ -162,7 +167,7 @@ fn every_command_of_the_documents_runs_and_prints_what_they_show() {
         for fence in &fences {
             match fence.language() {
                 "sh" => {
-                    let (status, output) = clone.run(&fence.text);
+                    let (status, output) = clone.run(&fence.text, &document);
                     ran += 1;
                     if status != Some(0) {
                         wrong.push(format!("{document}:{}: exit {status:?}\n{output}", fence.line));
@@ -271,14 +276,18 @@ fn the_first_two_blocks_of_the_readme_are_the_two_commands() {
 }
 
 #[test]
-fn russian_pages_have_the_same_commands_outputs_and_pictures() {
+fn russian_pages_have_the_same_commands_and_pictures() {
     for (english, russian) in [
         ("README.md", "README.ru.md"),
         ("docs/tutorial.md", "docs/tutorial.ru.md"),
         ("docs/how-to/turn-straight.md", "docs/how-to/turn-straight.ru.md"),
     ] {
         let blocks = |name: &str| {
-            let kept = |fence: &Fence| (fence.info.clone(), fence.text.clone());
+            // What is printed is in the reader's language.
+            let kept = |fence: &Fence| {
+                let text = if fence.language() == "text" { String::new() } else { fence.text.clone() };
+                (fence.info.clone(), text)
+            };
             fences(&read(name)).iter().map(kept).collect::<Vec<_>>()
         };
         assert_eq!(blocks(english), blocks(russian), "{russian}");
@@ -445,7 +454,7 @@ fn the_reference_has_every_key_of_a_profile_and_its_example_is_one() {
     let project = clone.folder.path().join("project");
     std::fs::write(project.join("example.toml"), &example.text).expect("a writable folder");
     std::fs::write(project.join("errors_x.csv"), "position_mm,EXX_um\n0,0\n1000,5\n").expect("the same");
-    let (status, output) = clone.run("vpost profile check example.toml");
+    let (status, output) = clone.run("vpost profile check example.toml", "docs/reference.md");
     assert_eq!(status, Some(0), "{output}");
 }
 
@@ -525,7 +534,7 @@ fn every_message_number_has_an_entry_and_every_entry_a_message() {
     assert!(missing.is_empty() && stale.is_empty(), "no entry: {missing:?}; no such message: {stale:?}");
 }
 
-/// Each example below an entry is given to the command, which must answer with that number.
+/// Each example below an entry is given to the command, which must answer with that number, in Russian too.
 ///
 /// `nc D`: a program of dialect D for the STAN S500 or for the profile that is named with further options behind it; `toml`: a profile;
 /// `csv predict`, `csv diagnose`: a file for that job.
@@ -555,10 +564,14 @@ fn the_examples_of_messages_cause_them() {
             _ => continue,
         };
         std::fs::write(project.join(file), &fence.text).expect("a writable folder");
-        let (_, output) = clone.run(&job);
+        let (_, output) = clone.run(&job, "docs/diagnostics.md");
         tried += 1;
         if !output.contains(&code) {
             wrong.push(format!("docs/diagnostics.md:{}: no {code} but\n{output}", fence.line));
+        }
+        let (_, russian) = clone.run(&format!("{job} --lang ru"), "docs/diagnostics.md");
+        if let Some(fault) = crate::russian::fault(&output, &russian) {
+            wrong.push(format!("docs/diagnostics.md:{}: in Russian {fault}\n{russian}", fence.line));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -25,7 +25,10 @@ fn latin_sentence(text: &str) -> Option<String> {
             && !word.bytes().all(|byte| byte.is_ascii_uppercase())
     };
     let words: Vec<&str> = text.split_whitespace().collect();
-    words.windows(3).find(|three| three.iter().all(is_prose)).map(|three| three.join(" "))
+    // A list of keys or units is no sentence.
+    let goes_on = |three: &&[&str]| three[..2].iter().all(|word| !word.ends_with(','));
+    let found = words.windows(3).filter(goes_on).find(|three| three.iter().all(is_prose));
+    found.map(|three| three.join(" "))
 }
 
 fn codes(said: &str) -> Vec<&str> {
@@ -37,7 +40,7 @@ fn places(said: &str) -> Vec<&str> {
 }
 
 /// Both outputs: what is wrong with the Russian, if anything.
-fn fault(english: &str, russian: &str) -> Option<String> {
+pub(crate) fn fault(english: &str, russian: &str) -> Option<String> {
     if codes(english) != codes(russian) || places(english) != places(russian) {
         return Some("other codes or places".to_owned());
     }
@@ -73,6 +76,45 @@ fn refusals_of_the_corpus_are_said_in_russian() {
     }
     assert!(failed.is_empty(), "{} of {count} programs:\n{}", failed.len(), failed.join("\n"));
     assert!(count > 250 && seen.len() > 50, "only {count} programs, {} codes", seen.len());
+}
+
+#[test]
+fn help_and_wrong_arguments_are_said_in_russian() {
+    for command in [
+        &[][..],
+        &["correct"],
+        &["batch"],
+        &["batch", "run"],
+        &["check"],
+        &["calibrate", "tracker"],
+        &["map"],
+    ] {
+        let ran = run(&[command, &["--help", "--lang", "ru"]].concat());
+        let help = String::from_utf8_lossy(&ran.stdout).into_owned();
+        assert!(ran.status.success() && help.contains("Запуск: vpost"), "{command:?}\n{help}");
+        assert!(
+            !["Usage", "Options:", "Commands:", "Arguments:"].iter().any(|word| help.contains(word)),
+            "{help}"
+        );
+        let told = help.lines().filter(|line| !line.contains("vpost "));
+        let told = told.collect::<Vec<_>>().join("\n");
+        assert_eq!(latin_sentence(&told), None, "{command:?}\n{help}");
+    }
+    let cases: [(&[&str], &str); 6] = [
+        (&["part.nc", "--machin", "x"], "ключ `--machin` незнаком"),
+        (&["check", "part.nc"], "не хватает: <OUT.nc>"),
+        (&["check", "a.nc", "b.nc", "--force"], "ключ `--force` незнаком"),
+        (&["check", "a.nc", "b.nc", "--guard"], "`vpost check` не читает `--guard`"),
+        (&["part.nc", "--color", "pink"], "`--color <COLOR>`: значения `pink` нет; есть auto, always, never"),
+        (&["batch", "frobnicate-it", "--nothing"], "ключ `--nothing` незнаком"),
+    ];
+    for (arguments, expected) in cases {
+        let ran = run(&[arguments, &["--lang", "ru"]].concat());
+        let said = messages(&ran);
+        assert_eq!(ran.status.code(), Some(2), "{arguments:?}\n{said}");
+        assert!(said.starts_with("ошибка: ") && said.contains(expected), "{arguments:?}\n{said}");
+        assert_eq!(latin_sentence(&said), None, "{arguments:?}\n{said}");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! The list of codes with cause and remedy is `docs/diagnostics.md`.
 
 mod language;
+mod others;
 mod speaks;
 mod text;
 
@@ -12,6 +13,7 @@ use std::fmt;
 use std::ops::Range;
 
 pub use language::{Language, russian_plural};
+pub use others::{of_system, of_toml};
 pub use speaks::Speaks;
 pub use text::Text;
 

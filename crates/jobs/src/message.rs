@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use diagnostic::{Code, Diagnostic, Language, Severity, Text, both};
+use diagnostic::{Code, Diagnostic, Language, Severity, Text, both, of_system};
 
 use crate::shown::{is_obeyed, shown};
 
@@ -152,7 +152,7 @@ pub fn file_diagnostic(name: &Text, deed: Deed, error: &std::io::Error) -> Diagn
             "ничего не изменено; повторите, когда причина устранена",
         ),
     };
-    let error = said(error);
+    let error = of_system(error);
     let message = match deed {
         Deed::Read => both!("cannot read {name}: {error}", "{name:#} не читается: {error:#}"),
         Deed::Write => both!("cannot write {name}: {error}", "{name:#} не записывается: {error:#}"),
@@ -161,34 +161,6 @@ pub fn file_diagnostic(name: &Text, deed: Deed, error: &std::io::Error) -> Diagn
         Deed::Empty => both!("cannot empty {name}: {error}", "{name:#} не очищается: {error:#}"),
     };
     Diagnostic::error(FILE, message).help(help)
-}
-
-/// What the system says of an error: in English its own words.
-fn said(error: &std::io::Error) -> Text {
-    use std::io::ErrorKind;
-    if let Some(text) = error.get_ref().and_then(|inner| inner.downcast_ref::<Text>()) {
-        return text.clone();
-    }
-    // `tempfile` adds the name of its file, which means nothing to the user.
-    let own = error.to_string();
-    let own = own.split(" at path ").next().unwrap_or_default();
-    let russian = match error.kind() {
-        ErrorKind::NotFound => "нет такого файла или папки",
-        ErrorKind::PermissionDenied => "нет прав",
-        ErrorKind::AlreadyExists => "уже существует",
-        ErrorKind::IsADirectory => "это папка",
-        ErrorKind::NotADirectory => "это не папка",
-        ErrorKind::DirectoryNotEmpty => "папка не пуста",
-        ErrorKind::StorageFull => "на устройстве нет места",
-        ErrorKind::QuotaExceeded => "исчерпана дисковая квота",
-        ErrorKind::ReadOnlyFilesystem => "файловая система только для чтения",
-        ErrorKind::FileTooLarge => "файл слишком велик",
-        ErrorKind::BrokenPipe => "принимающая программа закрыла канал",
-        ErrorKind::InvalidFilename => "недопустимое имя",
-        ErrorKind::UnexpectedEof => "файл кончился раньше времени",
-        _ => own,
-    };
-    both!("{own}", "{russian}")
 }
 
 /// What was to be done with a file.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use diagnostic::{Diagnostic, Speaks, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both, of_system};
 use machine_model::effects::EffectTerm;
 use machine_model::{
     Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
@@ -493,7 +493,12 @@ impl Loader<'_> {
             Err(e) => {
                 let diagnostic = Diagnostic::error(
                     FILE,
-                    both!("cannot read the table {}: {e}", "таблица {} не читается: {e}", name.get_ref()),
+                    both!(
+                        "cannot read the table {}: {}",
+                        "таблица {} не читается: {:#}",
+                        name.get_ref(),
+                        of_system(&e)
+                    ),
                 )
                 .help(both!(
                     "paths are relative to the profile's own folder",

@@ -1,6 +1,6 @@
 //! What the TOML reader found, said in the product's way.
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, both, of_toml};
 
 use crate::error::{KEY, SYNTAX, VALUE, span};
 
@@ -12,7 +12,7 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
     if !parsed {
         let mut diagnostic = Diagnostic::error(
             SYNTAX,
-            both!("the profile is not TOML: {}", "профиль — не TOML: {}", one_line(message)),
+            both!("the profile is not TOML: {}", "профиль — не TOML: {:#}", of_toml(message)),
         );
         if let Some(place) = &whole {
             diagnostic = diagnostic.at(span(place), both!("here", "здесь"));
@@ -42,44 +42,11 @@ pub(crate) fn diagnostic(text: &str, error: &toml::de::Error) -> Diagnostic {
         if message.starts_with("missing field") || message.starts_with("duplicate") { KEY } else { VALUE };
     let message = match message.strip_prefix("missing field ") {
         Some(name) => both!("the profile lacks the key {name}", "в профиле нет ключа {name}"),
-        None => of_reader(&one_line(message)),
+        None => of_toml(message),
     };
     let mut diagnostic = Diagnostic::error(code, message);
     if let Some(place) = whole.filter(|place| place.len() < text.len() || place.len() < 200) {
         diagnostic = diagnostic.at(span(&place), both!("here", "здесь"));
     }
     diagnostic
-}
-
-/// What the reader says of a value: its words in English, and what they mean in Russian.
-fn of_reader(message: &str) -> Text {
-    // serde speaks of Rust's types.
-    let english = message
-        .replace("expected f64", "expected a number")
-        .replace("expected i64", "expected a whole number");
-    let russian = |text: &str| {
-        const WORDS: [(&str, &str); 14] = [
-            ("invalid type: ", "значение другого вида: "),
-            ("invalid value: ", "недопустимое значение: "),
-            ("invalid length ", "неверная длина "),
-            ("unknown variant ", "незнакомое значение "),
-            ("duplicate key", "ключ стоит дважды"),
-            ("expected one of ", "ожидалось одно из "),
-            ("expected a whole number", "ожидалось целое число"),
-            ("expected a number", "ожидалось число"),
-            ("expected a string", "ожидался текст"),
-            ("expected an array of length ", "ожидался список, его длина "),
-            ("expected ", "ожидалось "),
-            ("floating point ", "число "),
-            ("integer ", "целое число "),
-            ("string ", "текст "),
-        ];
-        WORDS.iter().fold(text.to_owned(), |text, (english, russian)| text.replace(english, russian))
-    };
-    let russian = russian(&english);
-    Text::new(english, russian)
-}
-
-fn one_line(message: &str) -> String {
-    message.lines().collect::<Vec<_>>().join("; ")
 }

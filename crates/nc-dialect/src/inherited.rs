@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use diagnostic::{Code, Diagnostic, both};
+use diagnostic::{Code, Diagnostic, both, of_toml};
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
@@ -97,7 +97,11 @@ fn lay_over<'i>(table: &mut DeTable<'i>, over: DeTable<'i>, sections: bool) {
 fn refused(error: &Error) -> Diagnostic {
     let diagnostic = Diagnostic::error(
         Code(801),
-        both!("the grammar cannot be read: {}", "таблица диалекта не читается: {}", error.message().trim()),
+        both!(
+            "the grammar cannot be read: {}",
+            "таблица диалекта не читается: {:#}",
+            of_toml(error.message().trim())
+        ),
     )
     .help(both!(
         "docs/dialects.md lists every field of a grammar",

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::rc::Rc;
 
-use diagnostic::{Text, both};
+use diagnostic::{Text, both, of_system};
 use nc_syntax::dialect::{Macros, PointFree};
 
 use crate::codes;
@@ -235,8 +235,9 @@ impl<'a> Run<'a, '_> {
                     return Err(say(
                         codes::UNREADABLE_FILE,
                         both!(
-                            "subprogram file {name} cannot be read: {error}",
-                            "файл подпрограммы {name} не читается: {error}"
+                            "subprogram file {name} cannot be read: {}",
+                            "файл подпрограммы {name} не читается: {:#}",
+                            of_system(&error)
                         ),
                         both!("called here", "вызвана здесь"),
                         both!(

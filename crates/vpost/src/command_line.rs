@@ -1,6 +1,8 @@
 //! The command line: the main job, and what is asked for besides it.
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use diagnostic::Language;
 
 use crate::arguments::{Check, Completions, Correct, Grammar, Manual, Predict, Profile, Shared, Solve};
 use crate::batch::Batch;
@@ -9,6 +11,7 @@ use crate::calibrate::Calibrate;
 use crate::diagnose::Diagnose;
 use crate::explain::Explain;
 use crate::map::Map;
+use crate::{language, russian};
 
 /// Rewrites NC programs so that a measured machine goes where the program says.
 #[derive(Debug, Parser)]
@@ -142,6 +145,11 @@ pub fn command() -> clap::Command {
     )
 }
 
+/// An argument as it is typed.
+fn option(argument: &clap::Arg) -> String {
+    argument.get_long().map_or_else(|| "IN.nc".to_owned(), |long| format!("--{long}"))
+}
+
 /// Help on one screen, by `-h` and `--help` alike.
 fn compact(command: clap::Command) -> clap::Command {
     let help = clap::Arg::new("help").short('h').long("help").action(clap::ArgAction::HelpShort);
@@ -154,7 +162,11 @@ impl Arguments {
     /// # Errors
     /// What clap refuses, help and version among it; options that the command does not read.
     pub fn read(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<Self, clap::Error> {
-        let mut command = command();
+        let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
+        let mut command = match language::of_arguments(&arguments) {
+            Language::English => command(),
+            Language::Russian => russian::spoken(command()),
+        };
         let matches = command.try_get_matches_from_mut(arguments)?;
         let given = |matches: &clap::ArgMatches, id: &str| {
             matches.try_contains_id(id).is_ok()
@@ -175,10 +187,13 @@ impl Arguments {
                 let message = format!(
                     "`vpost {}` does not read `{}`\n\nSee `vpost {} --help`",
                     names.join(" "),
-                    argument.get_long().map_or_else(|| "IN.nc".to_owned(), |long| format!("--{long}")),
+                    option(argument),
                     if stray.is_some() { first.to_owned() } else { names.join(" ") },
                 );
-                return Err(command.error(clap::error::ErrorKind::ArgumentConflict, message));
+                let russian = format!("`vpost {}` не читает `{}`", names.join(" "), option(argument));
+                let mut error = command.error(clap::error::ErrorKind::ArgumentConflict, message);
+                error.insert(ContextKind::Custom, ContextValue::String(russian));
+                return Err(error);
             }
         }
         clap::FromArgMatches::from_arg_matches(&matches)

@@ -28,6 +28,7 @@ mod profile_command;
 pub mod profile_new;
 mod progress;
 mod roles;
+mod russian;
 pub mod session;
 mod settings;
 mod solve;
@@ -42,6 +43,8 @@ use std::process::ExitCode;
 
 pub use jobs::values;
 use jobs::{conditions, expand, figures, points, profile, summary};
+
+use diagnostic::Language;
 
 use arguments::{Color, MessageOptions};
 use command_line::{Arguments, Command};
@@ -62,7 +65,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             let status = if error.use_stderr() { USAGE } else { DONE };
             let printed = if error.use_stderr() {
                 // It quotes what was typed, or what a script put there.
-                let text = error.render().to_string();
+                let text = match language::of_arguments(&arguments) {
+                    Language::English => error.render().to_string(),
+                    Language::Russian => russian::error(&error),
+                };
                 writeln!(std::io::stderr(), "{}", terminal::shown(text.trim_end())).is_ok()
             } else {
                 error.print().is_ok() && open_streams::is_stdout_open()

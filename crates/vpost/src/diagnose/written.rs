@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use diagnostic::{Code, Text, both};
+use diagnostic::{Code, both, of_toml};
 use gap_diagnosis::Diagnosis;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, Value};
 
@@ -18,7 +18,7 @@ const UNREADABLE: Code = Code(301);
 pub(super) fn write(path: &Path, from: &Path, diagnosis: &Diagnosis) -> Result<(), Failure> {
     let text = String::from_utf8_lossy(&file::read(from)?).into_owned();
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
-        let diagnostic = diagnostic::Diagnostic::error(UNREADABLE, Text::english_only(error.to_string()));
+        let diagnostic = diagnostic::Diagnostic::error(UNREADABLE, of_toml(&error.to_string()));
         Failure::usage(
             diagnostic
                 .help(both!("run `vpost profile check` on it", "запустите для него `vpost profile check`")),

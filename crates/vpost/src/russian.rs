@@ -1,0 +1,346 @@
+//! The command line in Russian: help, and what is wrong with arguments.
+//!
+//! clap's texts are doc comments and its own words; the Russian is put in their place where it is asked for.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
+
+/// Parts of a page of help, with the words that clap would put in English.
+const PAGE: &str = "{about-with-newline}\nЗапуск: {usage}\n\n{all-args}{after-help}";
+
+/// The command and all below it, with help in Russian.
+///
+/// Built before, since the flags and commands that clap adds itself are there only then.
+pub(crate) fn spoken(mut command: Command) -> Command {
+    command.build();
+    said(command)
+}
+
+fn said(command: Command) -> Command {
+    let about = command.get_about().map(|text| russian(&text.to_string()));
+    let after = command.get_after_help().map(|text| russian(&text.to_string()));
+    let command = command
+        .help_template(PAGE)
+        .subcommand_help_heading("Команды")
+        .mut_args(argument)
+        .mut_subcommands(said);
+    let command = match about {
+        Some(about) => command.about(about),
+        None => command,
+    };
+    match after {
+        Some(after) => command.after_help(after),
+        None => command,
+    }
+}
+
+fn argument(argument: Arg) -> Arg {
+    let help = argument.get_help().map(|text| russian(&text.to_string()) + &values(&argument));
+    let heading = match argument.get_help_heading() {
+        Some(heading) => russian(heading),
+        None if argument.is_positional() => "Аргументы".to_owned(),
+        None => "Ключи".to_owned(),
+    };
+    let heading = HEADINGS.into_iter().find(|known| *known == heading);
+    let argument = argument.help_heading(heading).hide_possible_values(true).hide_default_value(true);
+    match help {
+        Some(help) => argument.help(help),
+        None => argument,
+    }
+}
+
+/// What clap says of values in English: the default, and all that there are.
+fn values(argument: &Arg) -> String {
+    if !argument.get_action().takes_values() {
+        return String::new();
+    }
+    let mut said = String::new();
+    let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+    if !default.is_empty() && !argument.is_hide_default_value_set() {
+        said.push_str(&format!(" [по умолчанию {}]", default.join(" ")));
+    }
+    let possible: Vec<String> = argument
+        .get_possible_values()
+        .iter()
+        .filter(|value| !value.is_hide_set())
+        .map(|value| value.get_name().to_owned())
+        .collect();
+    if !possible.is_empty() && !argument.is_hide_possible_values_set() {
+        said.push_str(&format!(" [одно из: {}]", possible.join(", ")));
+    }
+    said
+}
+
+const HEADINGS: [&str; 5] = ["Аргументы", "Ключи", "Станок", "Программа", "Сообщения"];
+
+/// A text of the help in Russian; as it is where it is not known.
+fn russian(english: &str) -> String {
+    let at = TEXTS.binary_search_by_key(&english, |(known, _)| known);
+    at.map_or(english, |at| TEXTS[at].1).to_owned()
+}
+
+/// What is wrong with arguments.
+pub(crate) fn error(error: &clap::Error) -> String {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => text.clone(),
+        Some(ContextValue::Strings(texts)) => texts.join(", "),
+        Some(ContextValue::StyledStr(text)) => text.to_string(),
+        Some(ContextValue::StyledStrs(texts)) => {
+            texts.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        }
+        Some(ContextValue::Number(number)) => number.to_string(),
+        _ => String::new(),
+    };
+    let (argument, value) = (text(ContextKind::InvalidArg), text(ContextKind::InvalidValue));
+    let one_of = match text(ContextKind::ValidValue) {
+        values if values.is_empty() => String::new(),
+        values => format!("; есть {values}"),
+    };
+    let mut said = match error.kind() {
+        ErrorKind::InvalidValue if value.is_empty() => format!("у `{argument}` нет значения{one_of}"),
+        ErrorKind::InvalidValue => format!("`{argument}`: значения `{value}` нет{one_of}"),
+        ErrorKind::UnknownArgument => format!("ключ `{argument}` незнаком"),
+        ErrorKind::InvalidSubcommand => {
+            format!("команды `{}` нет", text(ContextKind::InvalidSubcommand))
+        }
+        ErrorKind::MissingRequiredArgument => format!("не хватает: {argument}"),
+        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            "не хватает команды".to_owned()
+        }
+        ErrorKind::ArgumentConflict => {
+            let (own, prior) = (text(ContextKind::Custom), text(ContextKind::PriorArg));
+            if !own.is_empty() {
+                own
+            } else if prior == argument {
+                format!("`{argument}` дан дважды")
+            } else {
+                format!("`{argument}` и `{prior}` исключают друг друга")
+            }
+        }
+        ErrorKind::NoEquals => format!("`{argument}`: значение пишется через `=`"),
+        ErrorKind::TooManyValues => format!("`{argument}`: значение `{value}` лишнее"),
+        ErrorKind::TooFewValues | ErrorKind::WrongNumberOfValues => {
+            format!(
+                "`{argument}`: значений {}, а нужно {}",
+                text(ContextKind::ActualNumValues),
+                text(ContextKind::MinValues) + &text(ContextKind::ExpectedNumValues)
+            )
+        }
+        ErrorKind::ValueValidation => format!("`{argument}`: значение `{value}` непонятно"),
+        ErrorKind::InvalidUtf8 => "аргумент не в UTF-8".to_owned(),
+        _ => return error.render().to_string(),
+    };
+    said.insert_str(0, "ошибка: ");
+    for kind in [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue] {
+        let near = text(kind);
+        if !near.is_empty() {
+            said.push_str(&format!("\n\nимелось в виду `{near}`?"));
+        }
+    }
+    let usage = text(ContextKind::Usage);
+    if !usage.is_empty() {
+        said.push_str(&format!("\n\n{}", usage.replace("Usage:", "Запуск:")));
+    }
+    said.push_str("\n\nПодробнее: `--help`");
+    said
+}
+
+/// English and Russian, in the order of the English.
+#[rustfmt::skip]
+const TEXTS: &[(&str, &str)] = &[
+    ("A part of the volume to give figures and zero points for, mm (repeatable)", "Часть объёма, для которой дать числа и нули, мм (повторяемый)"),
+    ("A point of a rotary axis' line, machine coordinates; one for each", "Точка линии поворотной оси, координаты станка; по одной на каждую"),
+    ("A point through which the axes of the table should go, machine coordinates, mm, where the base profile has no centre_mm", "Точка, через которую должны проходить оси стола, координаты станка, мм, если в исходном профиле нет centre_mm"),
+    ("All options: vpost correct --help\n\nExit: 0 done; 1 refused, nothing is written; 2 usage; 75 try again; 130, 143 signal\nExample: vpost in.nc -m machine-profiles/stan_s500.toml -o out.nc", "Все ключи: `vpost correct --help`\n\nКод завершения: 0 сделано; 1 не принято, ничего не записано; 2 ошибка вызова;\n75 повторить позже; 130, 143 сигнал\nПример: vpost in.nc -m machine-profiles/stan_s500.toml -o out.nc"),
+    ("At which angles products of errors begin to matter", "При каких углах начинают сказываться произведения погрешностей"),
+    ("Axes from workpiece to tool, b the bed", "Оси от детали к инструменту, станина — b"),
+    ("Axes from workpiece to tool, for a new profile: \"[w X Y b Z t]\"", "Оси от детали к инструменту, для нового профиля: \"[w X Y b Z t]\""),
+    ("Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes", "Телескопический измеритель: положение поворотных осей стола или перпендикулярность, масштаб и люфт линейных осей"),
+    ("Beyond the volume: refuse, or clamp to its edge", "Вне объёма: refuse (отказать) или clamp (взять край)"),
+    ("Check that every program of a manifest was corrected; say what is missing", "Проверить, все ли программы задания исправлены; сказать, чего не хватает"),
+    ("Column of the measurements to pass over (repeatable)", "Столбец измерений, который пропустить (повторяемый)"),
+    ("Column to pass over (repeatable)", "Столбец, который пропустить (повторяемый)"),
+    ("Commanded points (CSV), or with --lathe the program; - for standard input", "Заданные точки (CSV), с --lathe — программа; - стандартный ввод"),
+    ("Completions for a shell", "Автодополнение для оболочки"),
+    ("Conditions: temp_c=24, time_s=600 … (repeatable)", "Условия: temp_c=24, time_s=600 … (повторяемый)"),
+    ("Control points of a file instead (CSV, as for `vpost predict`); - for standard input", "Контрольные точки из файла (CSV, как для `vpost predict`); - стандартный ввод"),
+    ("Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each (40:880:40,30:450:20,5:505:25)", "Контрольные точки: узлы X, Y и Z, сколько их на объём (22x22x21) или от:до:шаг в мм для каждой (40:880:40,30:450:20,5:505:25)"),
+    ("Correct a program that says it was corrected before", "Исправить программу, в которой сказано, что она исправлена"),
+    ("Correct a program: the main job, which needs no name", "Исправить программу: главная работа, имя можно опустить"),
+    ("Correct all again, and write over any file", "Исправить всё заново и писать поверх любых файлов"),
+    ("Correct many programs, on all cores or on many machines", "Исправить много программ, на всех ядрах или на многих машинах"),
+    ("Correct one share of a manifest's programs", "Исправить одну часть программ задания"),
+    ("Correction engine; default: the profile's", "Метод исправления; иначе — из профиля"),
+    ("Day of the measurement: year-month-day", "День измерения: год-месяц-день"),
+    ("Deviations that stay as they are while the others are made smaller: EXX,EC0Y (repeatable)", "Отклонения, которые остаются, пока уменьшают другие: EXX,EC0Y (повторяемый)"),
+    ("Dialect of the control, see `vpost grammar list`", "Диалект стойки, см. `vpost grammar list`"),
+    ("Dialect of the control; default: the profile's", "Диалект стойки; иначе — из профиля"),
+    ("Diameters of further parts that judge the profile; one that makes them worse is not written", "Диаметры других образцов, которые судят профиль; если он их ухудшает, он не записывается"),
+    ("Distance of the lattice's points, mm", "Расстояние между точками решётки, мм"),
+    ("Do two programs cut alike on this machine?", "Одинаково ли режут две программы на этом станке?"),
+    ("Effect that this machine does not have, or the instrument (repeatable)", "Эффект, которого у станка или прибора нет (повторяемый)"),
+    ("Files with runs or tables. Where a file does not say what it holds: FILE=EXX:um", "Файлы с проходами или таблицами. Если файл не говорит, что в нём: FILE=EXX:um"),
+    ("Find the place for a workpiece of this size, mm", "Найти место для детали такого габарита, мм"),
+    ("Folder for the files", "Папка для файлов"),
+    ("Folder of subprograms (repeatable)", "Папка подпрограмм (повторяемый)"),
+    ("Folder of the corrected programs", "Папка исправленных программ"),
+    ("From the gauge point to the optics that moved, mm", "От базовой точки до подвижной оптики, мм"),
+    ("Give positions in the measuring frame: apply the profile's `[setup]`", "Положения в измерительной системе: с разделом `[setup]` профиля"),
+    ("Grammar files (TOML)", "Файлы таблиц диалектов (TOML)"),
+    ("How finer tables, and the profile, go between the targets", "Как идут между целями более частые таблицы и профиль"),
+    ("In folders, leave out such (repeatable)", "В папках исключить такие (повторяемый)"),
+    ("In folders, take such files (repeatable)", "В папках брать такие файлы (повторяемый)"),
+    ("Interval whose directions make G and r01, from 0", "Интервал, по направлениям которого составлены G и r01, с 0"),
+    ("Largest path deviation, um", "Наибольшее отклонение пути, мкм"),
+    ("Length of an H number, mm (repeatable)", "Длина по номеру H, мм (повторяемый)"),
+    ("List or check dialect tables", "Перечислить или проверить таблицы диалектов"),
+    ("Machine", "Станок"),
+    ("Machine coordinates of a zero, mm (repeatable)", "Координаты нуля на станке, мм (повторяемый)"),
+    ("Machine position through which the measured lines ran, mm", "Положение станка, через которое шли измеренные линии, мм"),
+    ("Machine profile (TOML)", "Профиль станка (TOML)"),
+    ("Make a machine profile from an instrument's files", "Сделать профиль станка по файлам прибора"),
+    ("Make, check, show or describe machine profiles", "Создать, проверить, показать или описать профиль станка"),
+    ("Measured points (CSV): dx_um dy_um dz_um, xm_mm ym_mm zm_mm, or length_mm from a station bx_mm by_mm bz_mm", "Измеренные точки (CSV): dx_um dy_um dz_um, xm_mm ym_mm zm_mm или length_mm от стоянки bx_mm by_mm bz_mm"),
+    ("Measured test pieces (CSV): part, z_mm, diameter_mm, d_um; feature, tool, time_s, u_um where known", "Измеренные образцы (CSV): part, z_mm, diameter_mm, d_um; feature, tool, time_s, u_um, если известны"),
+    ("Measured test pieces of a lathe: taper, bow, squareness, sizes of the tools, growth and wear", "Измеренные образцы токарного станка: конус, прогиб, перпендикулярность, размеры резцов, рост и износ"),
+    ("Measurements (CSV); - for standard input", "Измерения (CSV); - стандартный ввод"),
+    ("Measurements that no fit may see: the predicted shrinkage is checked on them", "Измерения, которых подгонка не видит: по ним проверяется предсказанное уменьшение"),
+    ("Messages", "Сообщения"),
+    ("More about what is done", "Больше о том, что делается"),
+    ("N of the shards that were run", "N — число частей, которые шли"),
+    ("NC program; - for standard input", "Управляющая программа; - стандартный ввод"),
+    ("NC programs, or folders with all programs in them", "Программы или папки, в которых лежат программы"),
+    ("Name of the machine", "Имя станка"),
+    ("Name of the machine, for a new profile", "Имя станка, для нового профиля"),
+    ("Nodes of the tables per axis", "Узлов таблиц на ось"),
+    ("Nodes: how many (22x22x21), or from:to:step of each axis, mm", "Узлы: сколько (22x22x21) или от:до:шаг по каждой оси, мм"),
+    ("Number of a message: VP0509, or 509", "Номер сообщения: VP0509 или 509"),
+    ("One point of so many is held out of a first fit and judges it, spread over the rows; 0: none", "Одна точка из стольких оставлена от первой подгонки и судит её, вразброс по строкам; 0 — ни одной"),
+    ("Points anywhere in the volume, of a tracker or a tracking interferometer: all rigid-body terms", "Точки где угодно в объёме, от трекера или следящего интерферометра: все погрешности твёрдых тел"),
+    ("Predict what a lathe turns by a program: radius along Z, roundness, cylindricity, roughness", "Предсказать, что токарный станок выточит по программе: радиус вдоль Z, круглость, цилиндричность, шероховатость"),
+    ("Print only the shards that must run again, in the form that this engine takes", "Напечатать только части, которые надо запустить снова, в записи этого планировщика"),
+    ("Print the JSON Schema of profiles", "Напечатать JSON Schema профилей"),
+    ("Print this help", "Напечатать эту справку"),
+    ("Print this message or the help of the given subcommand(s)", "Напечатать эту справку или справку названных команд"),
+    ("Print version", "Напечатать версию"),
+    ("Print what to measure next instead of the summary: rows to fill in, or the NC program that goes there", "Напечатать вместо сводки, что измерить дальше: строки для заполнения или управляющую программу"),
+    ("Print what to measure on this machine, and nothing else: rows to fill in, or the NC program that goes there", "Напечатать, что измерить на этом станке, и больше ничего: строки для заполнения или управляющую программу"),
+    ("Program", "Программа"),
+    ("Programs at once; default: one a core", "Программ сразу; иначе — одна на ядро"),
+    ("Put in blocks that stop where offsets differ", "Вставить кадры, которые остановят при других смещениях"),
+    ("Read a profile and everything it names; say what is wrong", "Прочесть профиль и всё, что он называет; сказать, что неверно"),
+    ("Read grammar files; say what is wrong", "Прочесть таблицы диалектов; сказать, что неверно"),
+    ("Readings (CSV): run, x_mm … z_mm of the moving ball, bx_mm … bz_mm of the other at angle 0, length_mm, and a_deg, b_deg, c_deg, spindle_deg or dir_x … dir_z", "Показания (CSV): run, x_mm … z_mm подвижного шара, bx_mm … bz_mm другого при угле 0, length_mm и a_deg, b_deg, c_deg, spindle_deg или dir_x … dir_z"),
+    ("Refuse doubtful programs", "Не принимать сомнительных программ"),
+    ("Relative standard uncertainty of the instrument, µm/m", "Относительная стандартная неопределённость прибора, мкм/м"),
+    ("Report progress: linuxcnc", "Сообщать о ходе работы: linuxcnc"),
+    ("Rewrites NC programs so that a measured machine goes where the program says", "Переписывает управляющие программы так, чтобы измеренный станок шёл туда, куда велит программа"),
+    ("Runs of an interferometer, or tables of a control: eighteen functions, squareness, ISO 230-2", "Проходы интерферометра или таблицы стойки: восемнадцать функций, перпендикулярность, ИСО 230-2"),
+    ("Say what a profile means", "Сказать, что значит профиль"),
+    ("Say whether the machine has changed since this profile was made", "Сказать, изменился ли станок с тех пор, как сделан этот профиль"),
+    ("Seed of the random relabellings behind the p values of places", "Начальное число случайных перестановок для p мест"),
+    ("Show the cosines without their signs, as Tables 2.6 to 2.12 of Pimushkin 2023 print them. The profile keeps the signs", "Показать косинусы без знаков, как в таблицах 2.6–2.12 Пимушкина (2023). В профиле знаки остаются"),
+    ("Slopes of the straightness curves: part of what was read as squareness (they are taken off), or not", "Наклоны кривых прямолинейности: часть измеренной перпендикулярности (их снимают) или нет"),
+    ("Squareness as the instrument gave it, µrad: XY=12,ZX=-3,YZ=5; what is left out stays as it is", "Перпендикулярность, как её дал прибор, мкрад: XY=12,ZX=-3,YZ=5; опущенное остаётся прежним"),
+    ("Standard uncertainty of one reading, µm; default: from the repeats, or from the roughness of the lines", "Стандартная неопределённость одного показания, мкм; иначе — по повторам или по неровности линий"),
+    ("Step of the coordinates that the control takes, mm", "Дискрета координат, которую принимает стойка, мм"),
+    ("Table of an axis' errors, relative to the profile", "Таблица погрешностей оси, путь от профиля"),
+    ("Take the columns as named: no look for flipped signs, swapped columns", "Брать столбцы как названы: не искать обратных знаков и переставленных столбцов"),
+    ("Target points (CSV); - for standard input", "Цели (CSV); - стандартный ввод"),
+    ("Temperature of the machine during the measurement, °C; default: the mean of the files' temp_c", "Температура станка при измерении, °C; иначе — среднее temp_c файлов"),
+    ("The corrected program", "Исправленная программа"),
+    ("The dialects vpost knows, with their assumptions", "Диалекты, которые знает vpost, и что о них принято"),
+    ("The error over the volume, and where to put the workpiece", "Погрешность по объёму и куда поставить деталь"),
+    ("The form", "Форма"),
+    ("The instrument's frame: turned until the lines lie along the axes, or aligned to the machine and taken as it is", "Система прибора: повёрнута так, что линии лежат вдоль осей, или выставлена по станку и взята как есть"),
+    ("The manifest", "Задание"),
+    ("The manifest to write (JSON Lines)", "Записать такое задание (JSON Lines)"),
+    ("The manual pages (roff)", "Страницы руководства (roff)"),
+    ("The profile; a file that is there is left alone", "Профиль; существующий файл не тронут"),
+    ("The program as posted", "Программа, какой её выдал постпроцессор"),
+    ("The result as JSON on standard output", "Результат как JSON в стандартный вывод"),
+    ("The same for a layer of nodes, at a place of the third axis in mm, or for every layer (repeatable)", "То же для слоя узлов, в месте третьей оси в мм, или для каждого слоя (повторяемый)"),
+    ("The same for a workpiece, where its axis commands lie, mm", "То же для детали, где лежат команды её осей, мм"),
+    ("The same tests after a compensation: a table before and after", "Те же опыты после компенсации: таблица до и после"),
+    ("The shell", "Оболочка"),
+    ("Three axis traverses of a laser tracker: directions, squareness, positioning and straightness", "Три прохода по осям лазерным трекером: направления, перпендикулярность, позиционирование и прямолинейность"),
+    ("Tolerance for the share of nodes within it, µm", "Допуск для доли узлов в нём, мкм"),
+    ("Tool lengths: CSV, a dump of G10, or .tbl", "Длины инструмента: CSV, вывод G10 или .tbl"),
+    ("Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's", "Вектор инструмента, от базовой точки к вершине, мм: номер H профиля или X,Y,Z; иначе — из профиля"),
+    ("Travel of a linear axis, mm; one for each", "Ход линейной оси, мм; по одному на каждую"),
+    ("Traverses of X, of Y and of Z (CSV), in this order", "Проходы X, Y и Z (CSV), в этом порядке"),
+    ("Two directions: a table for each, or the mean and one reversal value", "Два направления: таблица для каждого или среднее и одна погрешность реверса"),
+    ("Use nodes this far apart only: longer chords know their directions better", "Брать только узлы на таком расстоянии: у длинных хорд направления известны лучше"),
+    ("Variable that the program does not set", "Переменная, которую программа не задаёт"),
+    ("Wanted M, largest error at the control points, µm: what to mend, and what each deviation may be", "Желаемая M, наибольшая погрешность в контрольных точках, мкм: что исправить и каким может быть каждое отклонение"),
+    ("What Z10 is: increments or millimetres", "Что такое Z10: increments (дискреты) или millimetres"),
+    ("What a message means and what to do: VP0509", "Что значит сообщение и что делать: VP0509"),
+    ("What a positive squareness means to the instrument", "Что значит у прибора положительная перпендикулярность"),
+    ("What became of each program (JSON Lines)", "Что стало с каждой программой (JSON Lines)"),
+    ("What each deviation of the machine costs", "Во что обходится каждое отклонение станка"),
+    ("What it was measured with", "Чем измерено"),
+    ("What the numbers of a control's table are", "Что такое числа таблицы стойки"),
+    ("What to command so that the tool reaches points", "Что задать, чтобы инструмент пришёл в точки"),
+    ("Where the axes stand at the start, mm", "Где стоят оси в начале, мм"),
+    ("Where the machine really goes for commanded points", "Куда станок на самом деле придёт по заданным точкам"),
+    ("Where the rotary axes stand at the nodes of the grid, degrees; 0 if not given", "Где стоят поворотные оси в узлах сетки, градусы; 0, если не задано"),
+    ("Where the rotary axes stand, degrees; 0 if not given", "Где стоят поворотные оси, градусы; 0, если не задано"),
+    ("Where the tables of axes that carry the workpiece were defined (ISG CSV)", "Где заданы таблицы осей, несущих деталь (ISG CSV)"),
+    ("Whether the lattice holds what the machine does wrong or what the control adds", "Что в решётке: погрешности станка или то, что прибавляет стойка"),
+    ("Which share: the I-th of N, I from 1; or `auto/N`: I from `HQ_TASK_ID`, `SLURM_ARRAY_TASK_ID` (both from 1) or `JOB_COMPLETION_INDEX` (from 0), the first that is set. Default: all", "Какая часть: I-я из N, I от 1; или `auto/N`: I из `HQ_TASK_ID`, `SLURM_ARRAY_TASK_ID` (оба от 1) или `JOB_COMPLETION_INDEX` (от 0), первая из заданных. Иначе — все"),
+    ("Which unmodelled effect explains the measurements", "Какой неучтённый эффект объясняет измерения"),
+    ("With --lathe: distance of the places along Z, mm", "С --lathe: расстояние между местами вдоль Z, мм"),
+    ("With --lathe: the result as JSON on standard output", "С --lathe: результат как JSON в стандартный вывод"),
+    ("With --lathe: the tool cuts a bore, so that the largest radius counts", "С --lathe: резец растачивает, так что считается наибольший радиус"),
+    ("Write a profile to begin with, its sections explained", "Записать профиль для начала, с пояснениями разделов"),
+    ("Write a summary (JSON)", "Записать сводку (JSON)"),
+    ("Write all figures (JSON)", "Записать все числа (JSON)"),
+    ("Write down which programs are to be corrected, and how: the manifest", "Записать, какие программы исправлять и как: задание"),
+    ("Write finer tables, with this step", "Записать более частые таблицы, с этим шагом"),
+    ("Write the diagnosis as JSON", "Записать диагностику как JSON"),
+    ("Write the diagnosis as one page for a browser: drawings, no network, no script", "Записать диагностику одной страницей для браузера: рисунки, без сети и сценариев"),
+    ("Write the errors of all nodes (CSV)", "Записать погрешности всех узлов (CSV)"),
+    ("Write the map as one page with drawings (HTML)", "Записать карту одной страницей с рисунками (HTML)"),
+    ("Write the map for ParaView (VTK)", "Записать карту для ParaView (VTK)"),
+    ("Write the model in a form that a control takes", "Записать модель в форме, которую принимает стойка"),
+    ("Write the numbers of the drawings as CSV", "Записать числа рисунков как CSV"),
+    ("Write the pages of all commands into this folder", "Записать страницы всех команд в эту папку"),
+    ("Write the profile with the causes added as effects", "Записать профиль, в который причины внесены эффектами"),
+    ("Write the result as one page: the tool path coloured by its error, the worst blocks (HTML)", "Записать результат одной страницей: путь инструмента, раскрашенный погрешностью, худшие кадры (HTML)"),
+    ("Write this profile, its tables in a folder of the same name beside it. With -m: that profile with what was measured in place of what it says. Without: the report only", "Записать этот профиль, его таблицы — в папку того же имени рядом. С -m: тот профиль, где измеренное стоит вместо прежнего. Без ключа — только отчёт"),
+    ("Write to this file, all or nothing", "Записать в этот файл, целиком или ничего"),
+    ("Write what became of each program (JSON Lines, in the order of the outputs' names); `-` for standard output", "Записать, что стало с каждой программой (JSON Lines, по порядку имён выходных файлов); `-` — стандартный вывод"),
+    ("Write what was found as JSON", "Записать найденное как JSON"),
+    ("Write what was found as one page for a browser: drawings, their numbers, no network, no script", "Записать найденное одной страницей для браузера: рисунки, их числа, без сети и сценариев"),
+    ("Zeros and lengths of a LinuxCNC machine", "Нули и длины станка с LinuxCNC"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_of_the_help_is_known_and_no_other() {
+        fn collect(command: &Command, found: &mut Vec<String>) {
+            found.extend(command.get_about().map(ToString::to_string));
+            found.extend(command.get_after_help().map(ToString::to_string));
+            for argument in command.get_arguments().filter(|argument| !argument.is_hide_set()) {
+                found.extend(argument.get_help().map(ToString::to_string));
+                found.extend(argument.get_help_heading().map(str::to_owned));
+            }
+            command.get_subcommands().for_each(|inner| collect(inner, found));
+        }
+        let mut command = crate::command_line::command();
+        command.build();
+        let mut found = Vec::new();
+        collect(&command, &mut found);
+        found.retain(|text| !text.is_empty());
+        found.sort_unstable();
+        found.dedup();
+        let known: Vec<&str> = TEXTS.iter().map(|(english, _)| *english).collect();
+        let missing: Vec<_> = found.iter().filter(|text| !known.contains(&text.as_str())).collect();
+        let stale: Vec<_> = known.iter().filter(|text| !found.iter().any(|found| found == *text)).collect();
+        assert!(missing.is_empty() && stale.is_empty(), "missing: {missing:#?}\nstale: {stale:#?}");
+        assert!(TEXTS.is_sorted_by(|(a, _), (b, _)| a < b));
+    }
+}
