@@ -20,6 +20,7 @@ mod mistakes;
 pub mod rigid_motion;
 pub mod rotary_ballbar;
 pub mod rotary_sequence;
+pub mod rtest;
 mod student;
 pub mod tracker;
 mod traverse;
