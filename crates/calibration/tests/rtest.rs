@@ -236,3 +236,248 @@ fn every_term_lies_in_its_interval_as_often_as_it_says_and_unseen_places_are_pre
     let share = f64::from(inside as u32) / f64::from(all as u32);
     assert!((0.92..0.98).contains(&share), "{inside} of {all}");
 }
+
+/// A quiet machine with these functions, and its base.
+fn machine(seed: u64, from_group: usize) -> (Base, Description) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let base = base(&mut random);
+    let functions = truth(&mut random, from_group);
+    let machine = real(&base, &mut random, &functions);
+    (base, machine)
+}
+
+/// B and C everywhere, C by 15 degrees.
+fn table_angles() -> Vec<(f64, f64)> {
+    (0..13).flat_map(|b| (0..24).map(move |c| (-90.0 + 10.0 * f64::from(b), 15.0 * f64::from(c)))).collect()
+}
+
+/// C alone, by 15 degrees.
+fn around() -> Vec<(f64, f64)> {
+    (0..24).map(|c| (0.0, 15.0 * f64::from(c))).collect()
+}
+
+const TOOL: Vector = Vector::new(0.0, 0.0, -120.0);
+
+#[test]
+fn means_and_once_per_turn_parts_go_to_their_owners_and_unseen_balls_are_predicted() {
+    let (base, machine) = machine(11, 0);
+    let result = found(&whole(&machine, &mut silent()), &base).unwrap();
+    assert!(result.not_told_apart.is_empty() && result.counted_as.is_empty() && result.unseen.is_empty());
+    // One owner each: these parts have none of their own.
+    for owned in ["EXC.mean", "EYC.mean", "EZC.mean", "EAC.mean", "ECC.mean", "EYC.cos1", "EBC.sin1"] {
+        assert!(result.terms.iter().all(|t| t.term.name() != owned), "{owned}");
+    }
+    for own in ["EXC.cos1", "EZC.cos1", "EAC.sin1", "ECC.cos1", "EX0C", "EB0B", "EAB.p3"] {
+        assert_eq!(result.terms.iter().any(|t| t.term.name() == own), own != "EB0B", "{own}");
+    }
+    let angles: Vec<(f64, f64)> =
+        (0..50).map(|k| (-90.0 + 2.4 * f64::from(k), (77.0 * f64::from(k)) % 360.0)).collect();
+    let unseen = read(
+        &machine,
+        0,
+        Vector::new(-90.0, 60.0, 10.0),
+        Vector::new(20.0, 0.0, -90.0),
+        &angles,
+        &mut silent(),
+    );
+    let held = result.held_out(&unseen, &base).unwrap();
+    // Interpolation of the written tables, and of the made-up truth.
+    assert!(held.rms_before_mm > 0.01 && held.max_after_mm < 5e-5, "{held:?}");
+}
+
+#[test]
+fn one_ball_shows_neither_all_functions_nor_what_its_height_hides() {
+    let (base, machine) = machine(12, 2);
+    let rows = read(&machine, 0, Vector::new(120.0, 0.0, 50.0), TOOL, &around(), &mut silent());
+    let result = found(&rows, &base).unwrap();
+    assert_eq!(result.still, [Axis::B]);
+    // From one ball the tilts are seen by the wobble along Z; of six functions no three.
+    let written: Vec<String> = result.terms.iter().filter(|t| t.is_written).map(|t| t.term.name()).collect();
+    assert_eq!(written, ["EX0C", "EY0C", "EA0C", "EB0C"]);
+    let open = result.not_told_apart.concat();
+    for name in ["EXC", "EYC", "EZC", "EAC", "EBC", "ECC"] {
+        assert!(open.contains(&name.to_owned()), "{name}: {open:?}");
+    }
+    assert!(result.tables.is_empty() && result.description.rotary[2].errors.is_none());
+    assert!(
+        result
+            .counted_as
+            .iter()
+            .any(|(part, owners)| part == "EZC.cos1" && owners.contains(&"EB0C".to_owned()))
+    );
+}
+
+#[test]
+fn a_ball_on_the_axis_says_nothing_of_where_the_axis_is() {
+    let (base, machine) = machine(13, 2);
+    let rows = read(&machine, 0, Vector::new(0.0, 0.0, 50.0), TOOL, &around(), &mut silent());
+    let error = found(&rows, &base).unwrap_err();
+    assert!(
+        matches!(error, CalibrationError::Unobservable(_)) && error.to_string().contains("lies on the axis"),
+        "{error}"
+    );
+    // Readings across the axis alone, at one height: a shift and a tilt look alike.
+    let mut rows = read(&machine, 0, Vector::new(120.0, 0.0, 50.0), TOOL, &around(), &mut silent());
+    rows.iter_mut().for_each(|row| row.deviation_mm[2] = None);
+    let error = found(&rows, &base).unwrap_err();
+    assert!(error.to_string().contains("EB0C from EX0C"), "{error}");
+}
+
+#[test]
+fn rows_of_two_machines_and_a_blunder_are_refused_by_what_they_are() {
+    let (base, machine_a) = machine(14, 2);
+    let mut random = ChaCha8Rng::seed_from_u64(99);
+    let functions = truth(&mut random, 2);
+    let machine_b = real(&base, &mut random, &functions);
+    let mut noise = || 0.001 * normal(&mut random);
+    let mut rows = whole(&machine_a, &mut noise);
+    let other = whole(&machine_b, &mut noise);
+    let good = rows.clone();
+    for (row, from_other) in rows.iter_mut().zip(&other) {
+        if row.run >= 2 {
+            *row = *from_other;
+        }
+    }
+    let error = found(&rows, &base).unwrap_err();
+    assert!(
+        matches!(error, CalibrationError::Contradicted(_))
+            && error.to_string().contains("Rows of two machines"),
+        "{error}"
+    );
+    let mut rows = good;
+    rows[321].deviation_mm[1] = rows[321].deviation_mm[1].map(|mm| mm + 0.03);
+    match found(&rows, &base).unwrap_err() {
+        CalibrationError::Outlier { point, message } => {
+            assert!(point == 321 && message.contains("this row's Y"), "{point} {message}");
+        }
+        error => panic!("{error}"),
+    }
+}
+
+#[test]
+fn what_turns_nothing_is_refused() {
+    let (base, machine) = machine(15, 2);
+    let still: Vec<BallReading> = (0..4)
+        .flat_map(|run| {
+            let angle = [(0.0, 30.0 * f64::from(run)); 5];
+            read(&machine, run as usize, Vector::new(100.0, 0.0, 50.0), TOOL, &angle, &mut silent())
+        })
+        .collect();
+    // Every mounting at an angle of its own: the offsets take all.
+    let error = found(&still, &base).unwrap_err();
+    assert!(matches!(error, CalibrationError::Axes(_)) && error.to_string().contains("one angle"), "{error}");
+    let mut plain = base.clone();
+    plain.description.chain = Chain::parse("[w b X Y Z t]").expect("a chain");
+    let error = found(&still, &plain).unwrap_err();
+    assert!(error.to_string().contains("no rotary axis"), "{error}");
+    let few = [(0.0, 0.0), (0.0, 90.0)];
+    let few = read(&machine, 0, Vector::new(100.0, 0.0, 50.0), TOOL, &few, &mut silent());
+    assert!(matches!(found(&few, &base).unwrap_err(), CalibrationError::TooFew(_)));
+}
+
+#[test]
+fn no_finer_function_is_chosen_than_there_is() {
+    let mut random = ChaCha8Rng::seed_from_u64(16);
+    let base = base(&mut random);
+    let mut functions = truth(&mut random, 2);
+    functions.retain(|(term, _)| matches!(term, Term::Coefficient { axis: Axis::C, group: 2, .. }));
+    let machine = real(&base, &mut random, &functions);
+    let mut noise = || 0.0005 * normal(&mut random);
+    let result = found(&whole(&machine, &mut noise), &base).unwrap();
+    let groups: Vec<(Axis, usize, usize)> =
+        result.axes.iter().map(|a| (a.axis, a.groups, a.most_groups)).collect();
+    assert_eq!(groups, [(Axis::C, 3, 6), (Axis::B, 0, 5)]);
+}
+
+/// The intervals of readings that repeat one another ten times are those of one, where places differ by more than repeats do.
+#[test]
+fn repeats_are_no_new_places() {
+    let (base, machine) = machine(17, 2);
+    let mut random = ChaCha8Rng::seed_from_u64(17);
+    let mut noise = || 0.002 * normal(&mut random);
+    let once = whole(&machine, &mut noise);
+    let mut fine = || 0.0001 * normal(&mut random);
+    let mut many = Vec::new();
+    for row in &once {
+        for _ in 0..4 {
+            let mut row = *row;
+            row.deviation_mm = row.deviation_mm.map(|mm| mm.map(|mm| mm + fine()));
+            many.push(row);
+        }
+    }
+    let (one, four) = (found(&once, &base).unwrap(), found(&many, &base).unwrap());
+    let (repeats_mm, free) = four.repeats_mm.unwrap();
+    assert!(one.repeats_mm.is_none() && (repeats_mm - 0.0001).abs() < 5e-6 && free == 3 * once.len() * 3);
+    for (a, b) in one.terms.iter().zip(&four.terms) {
+        assert_eq!(a.term, b.term);
+        assert!(
+            (b.half_width_95 / a.half_width_95 - 1.0).abs() < 0.05,
+            "{} {} {}",
+            a.term.name(),
+            a.half_width_95,
+            b.half_width_95
+        );
+    }
+}
+
+/// A table that carries C and a head that swivels about a leaning line; the tool ball at tools of three kinds.
+#[test]
+fn a_head_is_found_as_a_table_is() {
+    let mut random = ChaCha8Rng::seed_from_u64(18);
+    let mut base = base(&mut random);
+    base.description.chain = Chain::parse("[w C b X Y Z B t]").expect("a chain");
+    base.description.rotary[1] = RotaryAxis::perfect(Vector::new(0.0, 0.0, 30.0));
+    base.description.rotary[1].direction = Some(Vector::new(0.0, 0.6, 0.8));
+    let functions = truth(&mut random, 2);
+    let machine = real(&base, &mut random, &functions);
+    let angles = table_angles();
+    let balls = [(120.0, 0.0, 50.0), (-60.0, 100.0, 80.0), (-50.0, -90.0, 20.0), (30.0, 40.0, 150.0)];
+    let tools = [(0.0, 0.0, -100.0), (40.0, 10.0, -180.0), (-30.0, 40.0, -140.0), (10.0, -30.0, -60.0)];
+    let mut rows = Vec::new();
+    for (k, ((x, y, z), (i, j, l))) in balls.into_iter().zip(tools).enumerate() {
+        rows.extend(read(&machine, k, Vector::new(x, y, z), Vector::new(i, j, l), &angles, &mut silent()));
+    }
+    let result = found(&rows, &base).unwrap();
+    assert!(result.not_told_apart.is_empty(), "{:?}", result.not_told_apart);
+    let other: Vec<(f64, f64)> =
+        (0..40).map(|k| (-89.0 + 2.9 * f64::from(k), (53.0 * f64::from(k)) % 360.0)).collect();
+    let unseen = read(
+        &machine,
+        0,
+        Vector::new(60.0, -60.0, 90.0),
+        Vector::new(10.0, 25.0, -90.0),
+        &other,
+        &mut silent(),
+    );
+    let held = result.held_out(&unseen, &base).unwrap();
+    assert!(held.rms_before_mm > 0.01 && held.max_after_mm < 5e-5, "{held:?}");
+}
+
+#[test]
+fn a_reversal_about_the_axis_is_taken_off_and_said() {
+    let (base, machine) = machine(19, 2);
+    let mut rows = whole(&machine, &mut silent());
+    let model = RigidBody::new(base.description.clone()).expect("a machine");
+    for (k, row) in rows.iter_mut().enumerate() {
+        let side = if k % 3 == 0 { -1 } else { 1 };
+        row.turning[2] = side;
+        // 30 µrad between the sides: the workpiece stands turned by half of it.
+        let turned = |angle: f64| {
+            let mut command = row.command;
+            command.rotary_rad[2] += angle;
+            let nominal = |c: &Command| model.predict(c).position_mm - model.predict(c).error_mm;
+            nominal(&command)
+        };
+        let by = turned(-15e-6 * f64::from(side)) - turned(0.0);
+        row.deviation_mm = [0, 1, 2].map(|i| row.deviation_mm[i].map(|mm| mm + by[i]));
+    }
+    let result = found(&rows, &base).unwrap();
+    let reversal = result.terms.iter().find(|t| t.term == Term::Reversal(Axis::C)).unwrap();
+    assert!((reversal.change - 30e-6).abs() < 1e-7 && !reversal.is_written, "{reversal:?}");
+    let exact = found(&whole(&machine, &mut silent()), &base).unwrap();
+    for term in exact.terms {
+        let own = result.terms.iter().find(|t| t.term == term.term).unwrap();
+        // Products of 15 µrad and the machine's own errors.
+        assert!((own.change - term.change).abs() < 1e-6, "{}", term.term.name());
+    }
+}

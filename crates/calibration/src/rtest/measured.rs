@@ -25,7 +25,7 @@ pub(super) struct Measured<'r> {
     columns: &'r Columns,
     runs: usize,
     pub(super) readings: Vec<Reading>,
-    /// Reading minus what the ideal machine would show (nothing), mm.
+    /// What was read, mm.
     pub(super) values: DVector<f64>,
     /// Standard uncertainty of each reading in parts of the typical one.
     pub(super) relative: Vec<f64>,
@@ -97,8 +97,10 @@ impl<'r> Measured<'r> {
         DMatrix::from_fn(design.nrows(), design.ncols(), |i, k| design[(i, k)] / self.relative[i])
     }
 
-    pub(super) fn weighted_values(&self) -> DVector<f64> {
-        DVector::from_fn(self.values.len(), |i, _| self.values[i] / self.relative[i])
+    /// What a machine leaves of the readings, offsets included, weighted.
+    pub(super) fn weighted_rest(&self, description: &Description) -> DVector<f64> {
+        let predicted = self.predicted(description);
+        DVector::from_fn(self.values.len(), |i, _| (self.values[i] - predicted[i]) / self.relative[i])
     }
 
     /// What a machine would show, without offsets, mm; not finite where it is no machine.

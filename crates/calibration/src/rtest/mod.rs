@@ -164,10 +164,10 @@ pub fn calibrate(
     let columns = Columns::new(description, &turning, &commands)?;
     let measured = Measured::new(rows, &columns, runs.len())?;
     let mut axes = turned_axes(rows, &turning, &columns);
-    choose_groups(&mut axes, &measured)?;
+    choose_groups(&mut axes, &measured, description);
     let terms = all_terms(&axes, &measured, &|axis: &TurnedAxis| axis.groups);
     let design = measured.design(&terms);
-    let normal = Normal::new(&measured.weighted(&design), &measured.weighted_values());
+    let normal = Normal::new(&measured.weighted(&design), &measured.weighted_rest(description));
     let offsets = measured.offsets();
     let order: Vec<usize> = (0..offsets + terms.len()).collect();
     let sweep = normal.sweep(&order);
@@ -360,10 +360,10 @@ fn coefficients(axes: &[TurnedAxis], groups: &dyn Fn(&TurnedAxis) -> usize) -> V
 }
 
 /// How fine the error functions of each axis are, by Akaike's criterion for small samples: equation (103).
-fn choose_groups(axes: &mut [TurnedAxis], measured: &Measured<'_>) -> Result<(), CalibrationError> {
+fn choose_groups(axes: &mut [TurnedAxis], measured: &Measured<'_>, description: &Description) {
     let terms = all_terms(axes, measured, &|own| own.most_groups);
     let design = measured.weighted(&measured.design(&terms));
-    let normal = Normal::new(&design, &measured.weighted_values());
+    let normal = Normal::new(&design, &measured.weighted_rest(description));
     let (offsets, readings) = (measured.offsets(), measured.values.len() as f64);
     let floor = readings * FINEST_MM * FINEST_MM;
     let mut chosen: Vec<usize> = axes.iter().map(|own| own.most_groups).collect();
@@ -407,7 +407,6 @@ fn choose_groups(axes: &mut [TurnedAxis], measured: &Measured<'_>) -> Result<(),
     for (own, groups) in axes.iter_mut().zip(chosen) {
         own.groups = groups;
     }
-    Ok(())
 }
 
 /// Terms that no balls anywhere could tell from others: equation (102).
