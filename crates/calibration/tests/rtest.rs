@@ -11,7 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Machines of the test that counts intervals.
-const MACHINES: u64 = 6;
+const MACHINES: u64 = 20;
 
 const ARC: Range = Range { low: -0.5 * std::f64::consts::PI, high: std::f64::consts::PI / 6.0 };
 
@@ -228,11 +228,13 @@ fn every_term_lies_in_its_interval_as_often_as_it_says_and_unseen_places_are_pre
             result.axes.iter().map(|a| a.groups).collect::<Vec<_>>(),
             result.field_u95_mm
         );
-        assert!(held.rms_before_mm > 0.010 && held.rms_after_mm < 0.0005, "{held:?}");
+        assert!(held.rms_before_mm > 0.004 && held.rms_after_mm < 0.0005, "{held:?}");
         assert!(held.max_after_mm < 2.5 * result.field_u95_mm, "{held:?} {}", result.field_u95_mm);
     }
-    let worst = by_name.iter().min_by(|a, b| (a.1.0 * b.1.1).cmp(&(b.1.0 * a.1.1))).unwrap();
-    println!("{inside} of {all}; worst {worst:?}");
+    // Of the terms that every machine has; a finer group is chosen now and then.
+    by_name.retain(|_, own| own.1 == MACHINES);
+    let worst = by_name.iter().min_by_key(|(_, own)| own.0).expect("location errors are always found");
+    println!("{inside} of {all}; worst of {} terms {worst:?}", by_name.len());
     let share = f64::from(inside as u32) / f64::from(all as u32);
     assert!((0.92..0.98).contains(&share), "{inside} of {all}");
 }

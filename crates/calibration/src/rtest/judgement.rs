@@ -1,11 +1,9 @@
 //! What may be written, which reading does not belong, and whether the rows are of one machine: equations (102) and (104).
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::measured::Measured;
+use super::measured::{Measured, Repeats};
 use super::ownership::{Normal, Sweep};
 use super::terms::{FUNCTIONS, Term};
 use crate::adjustment::Estimate;
@@ -172,29 +170,7 @@ pub(super) fn runs_alone(
 /// Scatter of readings that repeat a command within a run, and its degrees of freedom. Where places scatter more than repeats
 /// do, every interval of the estimate is counted by the scatter of the places: a repeat is no new place.
 pub(super) fn repeats(estimate: &mut Estimate, measured: &Measured<'_>) -> Option<(f64, usize)> {
-    let key = |i: usize| {
-        let reading = measured.readings[i];
-        let row = &measured.rows[reading.row];
-        let command = &row.command;
-        let numbers = [command.linear_mm, command.rotary_rad, command.tool_mm]
-            .map(|v| [v.x, v.y, v.z].map(f64::to_bits));
-        (row.run, reading.component, numbers, command.direction, row.turning)
-    };
-    let mut groups: BTreeMap<_, Vec<usize>> = BTreeMap::new();
-    for i in 0..measured.readings.len() {
-        groups.entry(key(i)).or_default().push(i);
-    }
-    let (mut squares, mut free) = (0.0, 0);
-    for own in groups.values().filter(|own| own.len() > 1) {
-        let weight = |i: &usize| 1.0 / (measured.relative[*i] * measured.relative[*i]);
-        let weights: f64 = own.iter().map(weight).sum();
-        let mean = own.iter().map(|i| weight(i) * measured.values[*i]).sum::<f64>() / weights;
-        squares += own
-            .iter()
-            .map(|i| weight(i) * (measured.values[*i] - mean) * (measured.values[*i] - mean))
-            .sum::<f64>();
-        free += own.len() - 1;
-    }
+    let Repeats { squares, free } = measured.repeats;
     if free == 0 {
         return None;
     }

@@ -1,5 +1,7 @@
 //! Rows as readings of an adjustment, with the offsets of their runs.
 
+use std::collections::BTreeMap;
+
 use machine_model::{
     Axis, Command, Description, LinearAxis, PathModel, Range, RotaryAxis, Squareness, Vector,
 };
@@ -19,6 +21,14 @@ pub(super) struct Reading {
     pub(super) component: usize,
 }
 
+/// What readings that repeat a command within a run differ by.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Repeats {
+    /// Weighted squares about the mean of each place.
+    pub(super) squares: f64,
+    pub(super) free: usize,
+}
+
 /// Readings, flat.
 pub(super) struct Measured<'r> {
     pub(super) rows: &'r [BallReading],
@@ -31,6 +41,7 @@ pub(super) struct Measured<'r> {
     pub(super) relative: Vec<f64>,
     /// The typical one, where stated, mm.
     pub(super) stated_mm: Option<f64>,
+    pub(super) repeats: Repeats,
 }
 
 impl<'r> Measured<'r> {
@@ -58,7 +69,9 @@ impl<'r> Measured<'r> {
             Some(typical) => uncertainties.iter().map(|u| u / typical).collect(),
             None => vec![1.0; readings.len()],
         };
-        Ok(Self { rows, columns, runs, readings, values: DVector::from_vec(values), relative, stated_mm })
+        let values = DVector::from_vec(values);
+        let repeats = repeats(rows, &readings, &values, &relative);
+        Ok(Self { rows, columns, runs, readings, values, relative, stated_mm, repeats })
     }
 
     /// How many columns belong to offsets: three a run.
@@ -137,6 +150,30 @@ impl<'r> Measured<'r> {
         let rest = self.about_offsets_mm(description)?;
         Ok((rest.norm_squared() / rest.len() as f64).sqrt())
     }
+}
+
+fn repeats(rows: &[BallReading], readings: &[Reading], values: &DVector<f64>, relative: &[f64]) -> Repeats {
+    let key = |reading: &Reading| {
+        let row = &rows[reading.row];
+        let command = &row.command;
+        let numbers = [command.linear_mm, command.rotary_rad, command.tool_mm]
+            .map(|v| [v.x, v.y, v.z].map(f64::to_bits));
+        (row.run, reading.component, numbers, command.direction, row.turning)
+    };
+    let mut places: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+    for (i, reading) in readings.iter().enumerate() {
+        places.entry(key(reading)).or_default().push(i);
+    }
+    let mut found = Repeats::default();
+    for own in places.values().filter(|own| own.len() > 1) {
+        let weight = |i: &usize| 1.0 / (relative[*i] * relative[*i]);
+        let weights: f64 = own.iter().map(weight).sum();
+        let mean = own.iter().map(|i| weight(i) * values[*i]).sum::<f64>() / weights;
+        let square = |i: &usize| weight(i) * (values[*i] - mean) * (values[*i] - mean);
+        found.squares += own.iter().map(square).sum::<f64>();
+        found.free += own.len() - 1;
+    }
+    found
 }
 
 /// The same chain with nothing wrong.

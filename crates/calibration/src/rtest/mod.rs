@@ -364,7 +364,9 @@ fn choose_groups(axes: &mut [TurnedAxis], measured: &Measured<'_>, description: 
     let terms = all_terms(axes, measured, &|own| own.most_groups);
     let design = measured.weighted(&measured.design(&terms));
     let normal = Normal::new(&design, &measured.weighted_rest(description));
-    let (offsets, readings) = (measured.offsets(), measured.values.len() as f64);
+    // A repeat is no new place: what repeats differ by says nothing of a function of the angle.
+    let (offsets, repeats) = (measured.offsets(), measured.repeats);
+    let readings = (measured.values.len() - repeats.free) as f64;
     let floor = readings * FINEST_MM * FINEST_MM;
     let mut chosen: Vec<usize> = axes.iter().map(|own| own.most_groups).collect();
     // What one axis needs may hide behind what another one is allowed: twice round settles it.
@@ -397,7 +399,7 @@ fn choose_groups(axes: &mut [TurnedAxis], measured: &Measured<'_>, description: 
                 if free < 0.1 * readings {
                     return f64::INFINITY;
                 }
-                readings * units::math::ln(left.max(floor) / readings)
+                readings * units::math::ln((left - repeats.squares).max(floor) / readings)
                     + 2.0 * unknowns * (1.0 + (unknowns + 1.0) / free)
             };
             let best = (0..=axes[k].most_groups).min_by(|a, b| criterion(*a).total_cmp(&criterion(*b)));
