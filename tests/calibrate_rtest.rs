@@ -7,13 +7,16 @@ use crate::common::{messages, run};
 
 /// Functions of an axis over its angle: waves of one to three a turn, no mean where the location has it.
 fn table(axis: char, low: i32, high: i32, seed: f64) -> String {
-    let mut text = format!("position_deg,EX{axis}_um,EY{axis}_um,EZ{axis}_um,EA{axis}_urad,EB{axis}_urad,EC{axis}_urad\n");
+    let mut text = format!(
+        "position_deg,EX{axis}_um,EY{axis}_um,EZ{axis}_um,EA{axis}_urad,EB{axis}_urad,EC{axis}_urad\n"
+    );
     for deg in low..=high {
         let angle = f64::from(deg).to_radians();
         let value = |f: usize| -> f64 {
             let part = |k: u32| {
                 let phase = seed + f64::from(k) * 1.7 + f as f64 * 0.9;
-                (if f < 3 { 2.5 } else { 9.0 }) / f64::from(k) * units::math::sin(f64::from(k) * angle + phase)
+                (if f < 3 { 2.5 } else { 9.0 }) / f64::from(k)
+                    * units::math::sin(f64::from(k) * angle + phase)
             };
             (1..=3).map(part).sum()
         };
@@ -37,7 +40,9 @@ fn profile(folder: &Path, name: &str, locations: Option<[&str; 2]>) -> String {
         }
     }
     text += "[squareness]\nEC0Y_urad = 20\n";
-    for (k, (axis, centre, low, high)) in [('B', "[5, 0, -40]", -100, 40), ('C', "[0, 0, 0]", -360, 360)].into_iter().enumerate() {
+    for (k, (axis, centre, low, high)) in
+        [('B', "[5, 0, -40]", -100, 40), ('C', "[0, 0, 0]", -360, 360)].into_iter().enumerate()
+    {
         let _ = writeln!(text, "[rotary.{axis}]\ncentre_mm = {centre}\ntravel_deg = [{low}, {high}]");
         if let Some(own) = locations {
             let file = format!("{}.csv", axis.to_ascii_lowercase());
@@ -177,7 +182,19 @@ fn the_known_machine_comes_back_from_its_own_rows_and_predicts_others() {
     let held = rows(at, "held.csv", &unseen(), &real);
     let made = at.join("made.toml").to_str().expect("a plain name").to_owned();
     let json = at.join("made.json").to_str().expect("a plain name").to_owned();
-    let found = run(&["calibrate", "rtest", &measured, "-m", &base, "-o", &made, "--holdout", &held, "--json", &json]);
+    let found = run(&[
+        "calibrate",
+        "rtest",
+        &measured,
+        "-m",
+        &base,
+        "-o",
+        &made,
+        "--holdout",
+        &held,
+        "--json",
+        &json,
+    ]);
     assert!(found.status.success(), "{}", messages(&found));
     assert!(apart_um(at, &unseen(), &real, &base) > 20.0);
     let left_um = apart_um(at, &unseen(), &real, &made);
@@ -193,11 +210,16 @@ fn the_known_machine_comes_back_from_its_own_rows_and_predicts_others() {
     let terms = json["terms"].as_array().expect("terms");
     assert_eq!(json["covariance"].as_array().map(Vec::len), Some(terms.len()));
     assert!(json["holdout"]["max_after_um"].as_f64().is_some_and(|um| um < 0.1), "{}", json["holdout"]);
-    assert!(terms.iter().any(|t| t["name"] == "EB0C" && t["written"] == true && t["u95"].as_f64() < Some(0.1)));
+    assert!(
+        terms.iter().any(|t| t["name"] == "EB0C" && t["written"] == true && t["u95"].as_f64() < Some(0.1))
+    );
     // Same input, same bytes.
     let before = std::fs::read(&made).expect("written");
     let repeated = run(&["calibrate", "rtest", &measured, "-m", &base, "-o", &made, "--holdout", &held]);
-    assert_eq!((repeated.stdout == found.stdout, std::fs::read(&made).expect("written") == before), (true, true));
+    assert_eq!(
+        (repeated.stdout == found.stdout, std::fs::read(&made).expect("written") == before),
+        (true, true)
+    );
 }
 
 #[test]
@@ -261,23 +283,47 @@ fn each_bad_input_has_its_own_message() {
         lines[line] = cells.join(",");
         lines.join("\n")
     };
-    let says = |said: &str, code: &str, words: &str| assert!(said.contains(code) && said.contains(words), "{said}");
+    let says =
+        |said: &str, code: &str, words: &str| assert!(said.contains(code) && said.contains(words), "{said}");
     says(&refused("nan.csv", &changed(3, 9, "NaN"), &base, &[]), "VP0912", "`NaN` is not a number");
     says(&refused("empty.csv", &changed(3, 0, ""), &base, &[]), "VP0912", "says no run");
     says(&refused("mm.csv", &changed(3, 9, "9000"), &base, &[]), "VP1102", "none that an R-test reads");
     let said = refused("blunder.csv", &changed(100, 10, "151.5"), &base, &[]);
     says(&said, "VP1107", "this row's Y");
     assert!(said.contains("blunder.csv:101"), "{said}");
-    says(&refused("outside.csv", &changed(5, 1, "700"), &base, &[]), "VP1101", "lies outside what the profile knows");
+    says(
+        &refused("outside.csv", &changed(5, 1, "700"), &base, &[]),
+        "VP1101",
+        "lies outside what the profile knows",
+    );
     says(&refused("angle.csv", &changed(5, 4, "50"), &base, &[]), "VP1101", "axis B at 50");
-    says(&refused("norun.csv", &text.replacen("run,", "note,", 1), &base, &[]), "VP0911", "column `run` is missing");
-    says(&refused("nod.csv", &text.replace(",dx_um,dy_um,dz_um", ",u_x_um,u_y_um,u_z_um"), &base, &[]), "VP1106", "--sphere");
+    says(
+        &refused("norun.csv", &text.replacen("run,", "note,", 1), &base, &[]),
+        "VP0911",
+        "column `run` is missing",
+    );
+    says(
+        &refused("nod.csv", &text.replace(",dx_um,dy_um,dz_um", ",u_x_um,u_y_um,u_z_um"), &base, &[]),
+        "VP1106",
+        "--sphere",
+    );
     says(&refused("sphere.csv", &text, &base, &["--sphere"]), "VP1101", "with `--sphere`");
-    says(&refused("some.csv", &text.replacen("dz_um", "note", 1).replacen("dx_um", "u_um", 1), &base, &[]), "VP0912", "above zero");
+    says(
+        &refused("some.csv", &text.replacen("dz_um", "note", 1).replacen("dx_um", "u_um", 1), &base, &[]),
+        "VP0912",
+        "above zero",
+    );
     // Chains: none of the axes, another one.
-    let plain = file(at, "plain.toml", "format = 1\nname = \"m\"\nchain = \"[w b X Y Z t]\"\n[axis.X]\ntravel_mm = [-600, 600]\n[axis.Y]\ntravel_mm = [-600, 600]\n[axis.Z]\ntravel_mm = [-600, 600]\n");
+    let plain = file(
+        at,
+        "plain.toml",
+        "format = 1\nname = \"m\"\nchain = \"[w b X Y Z t]\"\n[axis.X]\ntravel_mm = [-600, 600]\n[axis.Y]\ntravel_mm = [-600, 600]\n[axis.Z]\ntravel_mm = [-600, 600]\n",
+    );
     says(&refused("plain.csv", &text, &plain, &[]), "VP1101", "has no rotary axis");
-    let other = std::fs::read_to_string(&base).expect("written").replace("[w C B b", "[w C A b").replace("rotary.B", "rotary.A");
+    let other = std::fs::read_to_string(&base)
+        .expect("written")
+        .replace("[w C B b", "[w C A b")
+        .replace("rotary.B", "rotary.A");
     let other = file(at, "other.toml", &other);
     says(&refused("other.csv", &text, &other, &[]), "VP1101", "the machine has no axis B");
     // What shows nothing.
@@ -288,7 +334,11 @@ fn each_bad_input_has_its_own_message() {
     let on_axis = std::fs::read_to_string(on_axis).expect("written");
     says(&refused("axis.csv", &on_axis, &base, &[]), "VP1105", "the ball lies on the axis in every run");
     // Two machines.
-    let swapped = profile(at, "second", Some([LOCATIONS[0], "EX0C_um = 30\nEY0C_um = -40\nEA0C_urad = -80\nEB0C_urad = 10"]));
+    let swapped = profile(
+        at,
+        "second",
+        Some([LOCATIONS[0], "EX0C_um = 30\nEY0C_um = -40\nEA0C_urad = -80\nEB0C_urad = 10"]),
+    );
     let second = rows(at, "second.csv", &everywhere(), &swapped);
     let output = run(&["calibrate", "rtest", &good, &second, "-m", &base, "-o", &made]);
     says(&messages(&output), "VP1113", "the runs contradict one another");
@@ -326,11 +376,15 @@ fn what_one_ball_cannot_tell_is_named_and_stays_as_the_profile_says() {
     assert!(found.status.success(), "{}", messages(&found));
     let said = String::from_utf8(found.stdout).expect("UTF-8");
     assert!(said.contains("axis B: turns in no run, and stays as in the profile"), "{said}");
-    assert!(said.contains("not told apart by these rows, not written: EAC, EBC, ECC, EXC, EYC, EZC"), "{said}");
+    assert!(
+        said.contains("not told apart by these rows, not written: EAC, EBC, ECC, EXC, EYC, EZC"),
+        "{said}"
+    );
     assert!(said.contains("counted as"), "{said}");
     let written = std::fs::read_to_string(&made).expect("written");
     assert!(written.contains("EB0C_urad") && !written.contains("errors = \"made/c.csv\""), "{written}");
-    let section = |text: &str| text.split("[rotary.B]").nth(1).and_then(|t| t.split('[').nth(1)).map(str::to_owned);
+    let section =
+        |text: &str| text.split("[rotary.B]").nth(1).and_then(|t| t.split('[').nth(1)).map(str::to_owned);
     let before = std::fs::read_to_string(&base).expect("written");
     assert_eq!(section(&written), section(&before));
 }

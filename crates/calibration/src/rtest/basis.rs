@@ -3,8 +3,8 @@
 use machine_model::Range;
 use units::math;
 
-/// Angles nearer than this are one, rad: commands come from degrees with six decimals at most.
-pub(crate) const SAME_RAD: f64 = 1e-8;
+/// Angles nearer than this count as one, rad: 20 arc seconds, as far as a table that was stopped by hand may miss.
+const SAME_RAD: f64 = 1e-4;
 
 /// An axis turns fully where no gap between neighbouring angles is wider: three places a turn would not do for a wave.
 const WIDEST_GAP_RAD: f64 = 0.5 * std::f64::consts::PI + 1e-6;

@@ -7,11 +7,18 @@ use super::measured::{Measured, Repeats};
 use super::ownership::{Normal, Sweep};
 use super::terms::{FUNCTIONS, Term};
 use crate::adjustment::Estimate;
-use crate::ballbar::RESOLVED_MM;
 use crate::error::{CalibrationError, LETTERS};
 
 /// A good measurement has a reading as far from the others as one that is refused with this chance.
 const OUTLIER_CHANCE: f64 = 1e-6;
+
+/// A reading so many times the usual scatter off is none of it; the scatter of all is so many times the usual one then. A normal
+/// distribution has 1, Student's with three degrees of freedom 1.5.
+const FAR: f64 = 8.0;
+const TAILS: f64 = 2.5;
+
+/// No nest and no probe reads finer, mm: what is smaller is no contradiction, however small the noise.
+const RESOLVED_MM: f64 = 5e-4;
 
 /// What runs leave alone and what they leave together differs by chance in one good measurement of a million.
 const RUNS_CHANCE: f64 = 1e-6;
@@ -51,16 +58,25 @@ impl Open {
         let mut sets: Vec<Vec<String>> = Vec::new();
         let (mut unseen, mut counted_as) = (Vec::new(), Vec::new());
         for (column, owners) in &sweep.owned {
-            let Some(term) = name(*column).filter(|term| !hidden.contains(term)) else { continue };
+            let Some(term) = name(*column) else { continue };
+            if hidden.contains(&term) {
+                // Of a function its owners have the part; a location error has no other place.
+                if matches!(term, Term::Location(_)) {
+                    unseen.push(term);
+                }
+                continue;
+            }
             let owners: Vec<Term> = owners.iter().filter_map(|owner| name(*owner)).collect();
             let is_part = |term: &Term| matches!(term, Term::Coefficient { .. });
             let rivals: Vec<&Term> = owners.iter().filter(|owner| is_part(owner) == is_part(&term)).collect();
-            if !rivals.is_empty() {
+            // A reversal is no part of the machine that is written: what it is mistaken for is not in doubt.
+            let is_doubt = !rivals.is_empty() && !matches!(term, Term::Reversal(_));
+            if is_doubt {
                 let mut set: Vec<String> = rivals.into_iter().chain([&term]).map(symbol).collect();
                 set.sort();
                 set.dedup();
                 sets.push(set);
-            } else if owners.is_empty() {
+            } else if owners.is_empty() || matches!(term, Term::Reversal(_)) {
                 unseen.push(term);
             } else {
                 counted_as.push((term.name(), owners.iter().map(Term::name).collect()));
@@ -97,21 +113,42 @@ fn joined(sets: Vec<Vec<String>>) -> Vec<Vec<String>> {
     all
 }
 
-/// Refuses rows of which one reading is far from all others.
+/// Refuses rows of which one reading is far from all others, or of which many are: those hide behind the scatter that they
+/// make, and half of the readings do not.
 pub(super) fn no_outlier(estimate: &Estimate, measured: &Measured<'_>) -> Result<(), CalibrationError> {
-    let Some(outlier) = estimate.outlier(OUTLIER_CHANCE).filter(|o| o.residual.abs() > RESOLVED_MM) else {
-        return Ok(());
+    let refuse = |reading: usize, more: String| {
+        let own = measured.readings[reading];
+        Err(CalibrationError::Outlier {
+            point: own.row,
+            message: format!(
+                "this row's {} is {:.1} um off what all other rows say{more}",
+                LETTERS[own.component],
+                estimate.residuals[reading] * 1e3
+            ),
+        })
     };
-    let reading = measured.readings[outlier.reading];
-    Err(CalibrationError::Outlier {
-        point: reading.row,
-        message: format!(
-            "this row's {} is {:.1} um off what all other rows say: {:.0} times its standard deviation",
-            LETTERS[reading.component],
-            outlier.residual * 1e3,
-            outlier.standardised.abs()
-        ),
-    })
+    if let Some(one) = estimate.outlier(OUTLIER_CHANCE).filter(|one| one.residual.abs() > RESOLVED_MM) {
+        return refuse(one.reading, format!(": {:.0} times its standard deviation", one.standardised.abs()));
+    }
+    let sizes: Vec<f64> = estimate
+        .residuals
+        .iter()
+        .zip(&measured.relative)
+        .map(|(rest, relative)| (rest / relative).abs())
+        .collect();
+    let mut ordered = sizes.clone();
+    ordered.sort_by(f64::total_cmp);
+    let free = estimate.redundancy as f64 / sizes.len() as f64;
+    // The median of normal deviations is 0.6745 standard deviations.
+    let usual = ordered[ordered.len() / 2] / (0.6745 * free.sqrt());
+    let far = sizes.iter().filter(|size| **size > FAR * usual && **size > RESOLVED_MM).count();
+    let largest = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
+    match largest.filter(|_| far > 0 && estimate.misfit > TAILS * usual) {
+        Some(largest) => {
+            refuse(largest, format!(", and so are {far} readings by more than {FAR} times the usual scatter"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses runs that contradict one another: each explained by a machine of its own leaves far less than all by one machine.

@@ -16,7 +16,7 @@ use crate::arguments::Shared;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
 
-use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, UNFIT, failure, question};
+use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, UNFIT, UNSAID, failure, question};
 use super::output::{Output, Target, error_table, warn};
 use rows::Rows;
 
@@ -79,6 +79,9 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
         file::write(path, text.as_bytes())?;
     }
     judge(&found, held.as_ref(), messages)?;
+    if arguments.target.output.is_none() && arguments.target.against.is_none() {
+        return Ok(());
+    }
     write(&mut output, &found);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
     output.calibrated(
@@ -209,6 +212,15 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
             ),
             linear,
         );
+    }
+    let open: Vec<&str> = found.not_told_apart.iter().flatten().map(String::as_str).collect();
+    if !open.is_empty() {
+        let message = format!(
+            "{} cannot be told apart by these rows: they stay as in the profile, and `uncertainty_um` does not count them",
+            open.join(", ")
+        );
+        let help = "mount the ball at three places at least, not in one line, at two heights";
+        warn(messages, Diagnostic::warning(UNSAID, message).help(help));
     }
     let [before, after] = found.rms_mm;
     if after > before && after > ROUGH * sigma_mm {

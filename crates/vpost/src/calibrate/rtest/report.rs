@@ -125,8 +125,9 @@ fn write_text(out: &mut String, found: &RotaryTables, held: Option<&HeldOut>, ro
     }
     writeln!(
         out,
-        "field known to ±{:.2} um at 95 % of the places and angles, frames taken off",
-        found.field_u95_mm * 1e3
+        "field known to ±{:.2} um at 95 % of the places and angles, frames taken off{}",
+        found.field_u95_mm * 1e3,
+        if found.not_told_apart.is_empty() { "" } else { ", what is not written not counted" }
     )
 }
 
