@@ -137,13 +137,16 @@ pub struct HeldOut {
 const TURNS_RAD: f64 = 1e-6;
 
 /// A ball nearer to an axis than this says nothing of its tilts, mm.
-const ON_AXIS_MM: f64 = 1.0;
+pub const ON_AXIS_MM: f64 = 1.0;
 
 /// No location error of a machine is larger: 5 mm, 50 mrad.
 const LARGEST: [f64; 2] = [5.0, 0.05];
 
-/// No finer noise is told apart from rounding: 0.1 nm.
-const FINEST_MM: f64 = 1e-7;
+/// What is left below is nothing that a table is worth, mm: tables are written to 0.01 µm.
+const FINEST_MM: f64 = 5e-6;
+
+/// The adjustment is settled where a step changes no prediction by more, mm: digits of the readings end there.
+const SETTLED_MM: f64 = 1e-7;
 
 /// Fits the location errors and error functions of all axes that turn.
 ///
@@ -206,7 +209,7 @@ pub fn calibrate(
         forward: &forward,
         jacobian: Jacobian::Constant(&jacobian),
         gauge: &gauge,
-        settled: 1e-9,
+        settled: SETTLED_MM,
     };
     let mut estimate = adjust(&problem, &DVector::zeros(sweep.kept.len()))
         .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;

@@ -46,8 +46,8 @@ const CONTRADICTION: f64 = 5.0;
 /// Above this the stated uncertainty does not explain what is left.
 const ROUGH: f64 = 1.5;
 
-/// No R-test and no touch probe scatters so, mm: refused, doubted.
-const SCATTER_MM: [f64; 2] = [0.020, 0.005];
+/// No R-test and no touch probe scatters so, mm: refused, doubted. Who knows better states it as `u_um`.
+const SCATTER_MM: [f64; 2] = [0.010, 0.004];
 
 /// Held-out rows that a profile predicts leave no more than so many times the noise.
 const UNSEEN: f64 = 2.0;

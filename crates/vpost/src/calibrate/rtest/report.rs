@@ -2,7 +2,9 @@
 
 use std::fmt::{Result, Write};
 
-use calibration::rtest::{Basis, FoundTerm, HeldOut, RotaryTables, Term, TurnedAxis, WrittenTable};
+use calibration::rtest::{
+    Basis, FoundTerm, HeldOut, ON_AXIS_MM, RotaryTables, Term, TurnedAxis, WrittenTable,
+};
 use serde_json::{Value, json};
 
 use crate::number::short;
@@ -30,6 +32,9 @@ fn axis_line(out: &mut String, own: &TurnedAxis) -> Result {
         "axis {}: {} angles from {low} to {high} degrees, balls up to {:.0} mm from it; ",
         own.axis, own.angles, own.arm_mm
     )?;
+    if own.arm_mm < ON_AXIS_MM {
+        write!(out, "on the axis, which hides how it leans; ")?;
+    }
     let degree = |groups: usize| match own.basis {
         _ if groups == 0 => "none".to_owned(),
         Basis::Turn => format!("{} a turn", groups - 1),
@@ -38,9 +43,13 @@ fn axis_line(out: &mut String, own: &TurnedAxis) -> Result {
     };
     writeln!(
         out,
-        "error functions to {} ({} allowed by the angles)",
+        "error functions to {} ({})",
         degree(own.groups),
-        degree(own.most_groups)
+        if own.groups < own.most_groups {
+            format!("{} allowed by the angles", degree(own.most_groups))
+        } else {
+            "all that the angles allow: more of them might show finer ones".to_owned()
+        }
     )
 }
 

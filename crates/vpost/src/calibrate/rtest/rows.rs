@@ -73,7 +73,7 @@ impl Rows {
                     all.runs.push(name.clone());
                     all.runs.len() - 1
                 });
-                let mut reading = reading(&row, run, arguments.sphere, profile, &machine)?;
+                let mut reading = reading(&row, run, arguments.sphere, profile, machine)?;
                 let mut here = said;
                 let warm = row.number("temp_c")?.or(arguments.target.temperature);
                 here.temp_c = here.temp_c.map(|known| warm.or(known));
@@ -98,7 +98,7 @@ impl Rows {
             ));
         }
         if arguments.sphere {
-            all.from_one_place()?;
+            all.about_one_place()?;
         }
         Ok(all)
     }
@@ -119,7 +119,7 @@ impl Rows {
     /// Nominal places of a sphere, which [`reading`] has given as deviations, about their mean in each run.
     ///
     /// The tip is at one place of the workpiece, `p_nominal + e = b`: `e = b - p_nominal`, b the offset of the run.
-    fn from_one_place(&mut self) -> Result<(), Failure> {
+    fn about_one_place(&mut self) -> Result<(), Failure> {
         let place = |reading: &BallReading| reading.deviation_mm.map(|mm| mm.unwrap_or_default());
         for run in 0..self.runs.len() {
             let own = || self.readings.iter().filter(|reading| reading.run == run);
