@@ -21,6 +21,7 @@ mod calibrate;
 mod calibrate_interferometer;
 mod calibrate_machine;
 mod calibrate_pages;
+mod calibrate_rtest;
 mod calibrate_turning;
 mod closed_loop;
 mod controls;

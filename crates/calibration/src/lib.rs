@@ -1,8 +1,8 @@
 //! Measurements to machine profiles: what an instrument read becomes error functions with their uncertainty.
 //!
 //! Millimetres and radians throughout, as in [`machine_model`]; no files, no text formats, no clock. Every result
-//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40), (47) to (51), (71) to (73), (79) and (80) of
-//! `docs/equations.md`.
+//! carries a standard uncertainty, and every method says what it cannot see. Equations (30) to (40), (47) to (51), (71) to (73), (79), (80) and
+//! (100) to (104) of `docs/equations.md`.
 
 pub mod adjustment;
 mod ballbar;
@@ -20,6 +20,7 @@ mod mistakes;
 pub mod rigid_motion;
 pub mod rotary_ballbar;
 pub mod rotary_sequence;
+pub mod rtest;
 mod student;
 pub mod tracker;
 mod traverse;

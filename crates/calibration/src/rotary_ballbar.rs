@@ -49,7 +49,7 @@ pub struct Location {
 
 impl Location {
     /// The four of an axis: `EY0A EZ0A EB0A EC0A` …
-    fn of(axis: Axis) -> impl Iterator<Item = Self> {
+    pub(crate) fn of(axis: Axis) -> impl Iterator<Item = Self> {
         [true, false].into_iter().flat_map(move |is_length| {
             (0..3).filter(move |direction| *direction != axis.direction()).map(move |direction| Self {
                 axis,

@@ -50,6 +50,7 @@ type Letters = &'static str;
 
 const XYZ: Letters = "x y z";
 const ABC: Letters = "a b c";
+const XYZABC: Letters = "x y z a b c";
 const ONE: Letters = "";
 const ERROR_FUNCTION: &str = "E%";
 /// Direction of the error, then the axis that moves.
@@ -140,7 +141,7 @@ static FAMILIES: &[Family] = &[
     of(PLACE, "measured_%", XYZ, &[]),
     of(PLAIN, "published_cos_%", XYZ, &[]),
     of(PLACE, "tool_%", XYZ, &["вылет %", "инструмент %"]),
-    of(PLAIN, "dir_%", XYZ, &["direction %", "направление %"]),
+    of(PLAIN, "dir_%", XYZABC, &["direction %", "направление %"]),
     of(PLAIN, "dir", ONE, &["direction", "направление"]),
     of(PLACE, "position", ONE, &["target", "позиция", "положение", "координата"]),
     of(TURN, "position", ONE, &["angle", "угол", "позиция", "положение"]),

@@ -14,6 +14,7 @@ mod options;
 mod output;
 mod page;
 mod plausibility;
+mod rtest;
 mod sources;
 mod squareness;
 mod tracker;
@@ -51,6 +52,9 @@ pub enum CalibrateCommand {
     Volumetric(volumetric::Volumetric),
     /// Ball bar: location errors of a table's rotary axes, or squareness, scale mismatch and backlash of linear axes.
     Ballbar(ballbar::Ballbar),
+    /// Ball deviations at angles of A, B, C, by R-test or by probe and sphere: location errors and error functions of rotary axes.
+    #[command(name = "rtest")]
+    RTest(rtest::RTest),
     /// Measured test pieces of a lathe: taper, bow, squareness, sizes of the tools, growth and wear.
     Turning(turning::Turning),
 }
@@ -64,6 +68,7 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         }
         CalibrateCommand::Volumetric(a) => (&a.target, a.files.clone()),
         CalibrateCommand::Ballbar(a) => (&a.target, a.files.iter().chain(&a.after).cloned().collect()),
+        CalibrateCommand::RTest(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
         CalibrateCommand::Turning(a) => (&a.target, a.files.iter().chain(&a.holdout).cloned().collect()),
     };
     let shown = match &arguments.command {
@@ -71,15 +76,21 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::Ballbar(a) => a.shown.clone(),
         _ => Shown::default(),
     };
+    let json = match &arguments.command {
+        CalibrateCommand::RTest(a) => a.json.as_deref(),
+        CalibrateCommand::Turning(a) => a.json.as_deref(),
+        _ => None,
+    };
     let roles = Roles::default()
         .reads_all(&both!("a measurement", "измерения"), &files)
         .writes("--output", target.output.as_deref());
-    shown.roles(roles).are_apart()?;
+    shown.roles(roles).writes("--json", json).are_apart()?;
     match &arguments.command {
         CalibrateCommand::Tracker(a) => tracker::run(a, shared, messages),
         CalibrateCommand::Interferometer(a) => interferometer::run(a, shared, messages),
         CalibrateCommand::Volumetric(a) => volumetric::run(a, shared, messages),
         CalibrateCommand::Ballbar(a) => ballbar::run(a, shared, messages),
+        CalibrateCommand::RTest(a) => rtest::run(a, shared, messages),
         CalibrateCommand::Turning(a) => turning::run(a, shared, messages),
     }
 }

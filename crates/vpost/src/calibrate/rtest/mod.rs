@@ -1,0 +1,274 @@
+//! `vpost calibrate rtest`.
+
+mod report;
+mod rows;
+
+use std::path::PathBuf;
+
+use calibration::Base;
+use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
+use clap::Args;
+use diagnostic::Diagnostic;
+use machine_model::{Description, RigidBody};
+use machine_profile::Calibrated;
+
+use crate::arguments::Shared;
+use crate::file;
+use crate::message::{Failure, Messages, Report};
+
+use super::codes::{AXES, CONTRADICTED, DOUBTFUL, OPEN, OUTLIER, UNFIT, UNSAID, failure, question};
+use super::output::{Output, Target, error_table, warn};
+use rows::Rows;
+
+/// `vpost calibrate rtest FILES… -m PROFILE -o OUT`
+#[derive(Debug, Args)]
+pub struct RTest {
+    /// Ball deviations (CSV): run, one mounting of the ball; x_mm … z_mm, a_deg … c_deg commanded; dx_um dy_um dz_um, workpiece
+    /// frame; tool_x_mm …, dir_a …, u_um or u_x_um …, repeat, temp_c where known.
+    #[arg(value_name = "ROWS.csv", required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub target: Target,
+    /// The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um.
+    #[arg(long)]
+    pub sphere: bool,
+    /// Rows that no fit sees judge the profile; one that makes them worse is not written.
+    #[arg(long, value_name = "HELD.csv")]
+    pub holdout: Option<PathBuf>,
+    /// Write what was found, with covariance, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// What is left of the readings, in units of their stated uncertainty, is a contradiction above this.
+const CONTRADICTION: f64 = 5.0;
+
+/// Above this the stated uncertainty does not explain what is left.
+const ROUGH: f64 = 1.5;
+
+/// No R-test and no touch probe scatters so, mm: refused, doubted. Who knows better states it as `u_um`.
+const SCATTER_MM: [f64; 2] = [0.010, 0.004];
+
+/// Held-out rows that a profile predicts leave no more than so many times the noise.
+const UNSEEN: f64 = 2.0;
+
+/// `vpost calibrate rtest`
+pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let mut output = Output::start(&arguments.target, shared)?;
+    let Some(profile) = output.base.clone() else {
+        return Err(question(
+            "which machine? where its rotary axes are is not known",
+            "add `-m PROFILE.toml` with `centre_mm` of each rotary axis and the errors of the linear axes",
+        ));
+    };
+    let base = output.measured_from(&arguments.target)?;
+    let rows = Rows::read(&arguments.files, arguments, &profile, &output, shared)?;
+    let found = calibrate(&rows.readings, &base, &rows.runs).map_err(|error| refused(&rows, &error))?;
+    let held = match &arguments.holdout {
+        Some(path) => {
+            let held = Rows::read(std::slice::from_ref(path), arguments, &profile, &output, shared)?;
+            Some(held_out(&found, &held, &base)?)
+        }
+        None => None,
+    };
+    file::print(report::text(&found, held.as_ref(), &rows).as_bytes())?;
+    if let Some(path) = &arguments.json {
+        let mut text = serde_json::to_string_pretty(&report::json(&found, held.as_ref(), &rows))
+            .expect("plain values always serialise");
+        text.push('\n');
+        file::write(path, text.as_bytes())?;
+    }
+    judge(&found, held.as_ref(), messages)?;
+    if arguments.target.output.is_none() && arguments.target.against.is_none() {
+        return Ok(());
+    }
+    write(&mut output, &found);
+    let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
+    output.calibrated(
+        &arguments.target,
+        messages,
+        Calibrated {
+            temperature_c: rows.temperature_c(),
+            repeatability_um: Some(found.estimate.sigma * 1e3),
+            uncertainty_um: Some(uncertainty_mm * 1e3),
+            ..Calibrated::default()
+        },
+    )?;
+    output.write(&arguments.target, messages)
+}
+
+/// What contradicts the readings, an outlier at its row.
+fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
+    use calibration::CalibrationError::{Axes, Contradicted, Outlier, Unobservable};
+    let help = match error {
+        Outlier { point, .. } => {
+            return match rows.refuse(
+                *point,
+                OUTLIER,
+                error.to_string(),
+                "measure it again, or take the row out",
+            ) {
+                Some(refusal) => refusal,
+                None => failure("", &[], error),
+            };
+        }
+        Axes(_) => {
+            "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest"
+        }
+        Unobservable(_) => {
+            "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all"
+        }
+        Contradicted(_) => {
+            "measure again, a file for each machine; or calibrate the linear axes of the profile first"
+        }
+        _ => return failure("", &[], error),
+    };
+    let code = match error {
+        Axes(_) => AXES,
+        Unobservable(_) => OPEN,
+        _ => CONTRADICTED,
+    };
+    refusal(code, error.to_string(), help)
+}
+
+fn refusal(code: diagnostic::Code, message: String, help: &str) -> Failure {
+    Failure::Refused(vec![Report {
+        source: None,
+        diagnostics: vec![Diagnostic::error(code, message).help(help)],
+    }])
+}
+
+/// Judges by rows that the fit did not see; each must stand where the changed machine is known.
+fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, Failure> {
+    let machine = model(&found.description)?;
+    for (row, reading) in held.readings.iter().enumerate() {
+        if let Err(error) = machine.rotary_inside(&reading.command) {
+            let help = "hold out rows at angles between those that were measured";
+            return Err(held
+                .refuse(row, AXES, error.to_string(), help)
+                .unwrap_or_else(|| refusal(AXES, error.to_string(), help)));
+        }
+    }
+    if held.readings.len() < 2 * held.runs.len() {
+        let message = "the hold-out has runs of one row: the offset of the run takes all it says".to_owned();
+        return Err(refusal(OPEN, message, "hold out several angles of each mounting"));
+    }
+    found.held_out(&held.readings, base).map_err(|error| failure("", &[], &error))
+}
+
+fn model(description: &Description) -> Result<RigidBody, Failure> {
+    RigidBody::new(description.clone())
+        .map_err(|error| question(error.to_string(), "run `vpost profile check` on the base"))
+}
+
+/// Refuses what contradicts what is known of noise or unseen rows; warns where it is doubtful.
+fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
+    let doubt =
+        |message: String, help: &str| warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+    let sigma_mm = found.estimate.sigma;
+    let linear = "calibrate the linear axes of the profile first; measure more places of the ball; state the scatter as `u_um`";
+    if let Some(stated_mm) = found.stated_mm {
+        let times = sigma_mm / stated_mm;
+        if times > CONTRADICTION {
+            let message = format!(
+                "the best machine leaves {times:.1} times what `u_um` states: the rows are of no one machine of this chain"
+            );
+            return Err(refusal(
+                CONTRADICTED,
+                message,
+                "look for rows of two machines, exchanged columns, errors of the linear axes",
+            ));
+        }
+        if times > ROUGH {
+            doubt(
+                format!(
+                    "the best machine leaves {times:.1} times what `u_um` states: intervals are widened by as much"
+                ),
+                linear,
+            );
+        }
+    } else if sigma_mm > SCATTER_MM[0] {
+        let message = format!(
+            "the best machine leaves {:.1} um: no R-test scatters so, the rows are of no one machine of this chain",
+            sigma_mm * 1e3
+        );
+        return Err(refusal(
+            CONTRADICTED,
+            message,
+            "look for rows of two machines, exchanged columns, errors of the linear axes",
+        ));
+    } else if sigma_mm > SCATTER_MM[1] {
+        doubt(
+            format!("the best machine leaves {:.1} um, more than an R-test scatters", sigma_mm * 1e3),
+            linear,
+        );
+    }
+    if let Some(alone_mm) = found.alone_mm {
+        doubt(
+            format!(
+                "runs leave {:.2} um one by one and {:.2} um together: they differ by more than noise",
+                alone_mm * 1e3,
+                found.estimate.misfit * 1e3
+            ),
+            linear,
+        );
+    }
+    let open: Vec<&str> = found.not_told_apart.iter().flatten().map(String::as_str).collect();
+    if !open.is_empty() {
+        let message = format!(
+            "{} cannot be told apart by these rows: they stay as in the profile, and `uncertainty_um` does not count them",
+            open.join(", ")
+        );
+        let help = "mount the ball at three places at least, not in one line, at two heights";
+        warn(messages, Diagnostic::warning(UNSAID, message).help(help));
+    }
+    let [before, after] = found.rms_mm;
+    if after > before && after > ROUGH * sigma_mm {
+        let message = format!(
+            "what may be written leaves {:.2} um of the rows, the base {:.2} um: most of it cannot be told apart",
+            after * 1e3,
+            before * 1e3
+        );
+        return Err(refusal(UNFIT, message, "mount the ball at three places at least, not in one line"));
+    }
+    let Some(judged) = held else { return Ok(()) };
+    if judged.rms_after_mm > judged.rms_before_mm && judged.rms_after_mm > ROUGH * sigma_mm {
+        let message = format!(
+            "{} held-out readings get worse: {:.2} um RMS before, {:.2} um after",
+            judged.readings,
+            judged.rms_before_mm * 1e3,
+            judged.rms_after_mm * 1e3
+        );
+        let help = "look for rows of another machine or another day; nothing was written";
+        return Err(refusal(UNFIT, message, help));
+    }
+    if judged.rms_after_mm > UNSEEN * sigma_mm.max(1e-5) {
+        doubt(
+            format!(
+                "held-out readings keep {:.2} um, the noise is {:.2} um: the profile does not hold everywhere as it holds where it was measured",
+                judged.rms_after_mm * 1e3,
+                sigma_mm * 1e3
+            ),
+            linear,
+        );
+    }
+    Ok(())
+}
+
+fn write(output: &mut Output, found: &RotaryTables) {
+    for term in found.terms.iter().filter(|term| term.is_written) {
+        let Term::Location(location) = term.term else { continue };
+        let (unit, scale) = if location.is_length { ("um", 1e3) } else { ("urad", 1e6) };
+        let key = format!("{}_{unit}", location.name());
+        let axis = location.axis.letter().to_string();
+        output.text.set_number(&["rotary", &axis, &key], (term.base + term.change) * scale, 4);
+    }
+    for table in &found.tables {
+        let functions: [Option<Vec<f64>>; 6] =
+            std::array::from_fn(|f| table.given[f].then(|| table.rows.iter().map(|row| row[f]).collect()));
+        let text = error_table(table.axis, &table.angles_deg, &functions);
+        let letter = table.axis.letter();
+        let name = output.table(&format!("{}.csv", letter.to_ascii_lowercase()), text.into_bytes());
+        output.text.set_text(&["rotary", &letter.to_string(), "errors"], &name);
+    }
+}
