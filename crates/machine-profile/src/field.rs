@@ -481,12 +481,16 @@ impl Profile {
             doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
         }
         if let Some(mm) = measured.field.blind_to_mm() {
-            let message = format!(
+            let message = both!(
                 "{}: its runs have too few places in common: an offset between them of up to {:.0} um would pass for the machine",
+                "{}: у его серий слишком мало общих точек: сдвиг между ними до {:.0} мкм сошёл бы за станок",
                 measured.file,
                 Length::from_mm(mm).um()
             );
-            let help = "where each run had a set-up of its own, measure some places in all of them; where all had one, give them one name";
+            let help = both!(
+                "where each run had a set-up of its own, measure some places in all of them; where all had one, give them one name",
+                "если у каждой серии была своя установка, измерьте часть точек во всех; если установка одна, назовите серии одинаково"
+            );
             doubts.push(Diagnostic::warning(DOUBTFUL_FIELD, message).help(help));
         }
         if let Made::Smooth { missing: missing @ 1.., .. } = measured.field.made() {
