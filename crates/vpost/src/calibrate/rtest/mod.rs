@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use calibration::Base;
 use calibration::rtest::{HeldOut, RotaryTables, Term, calibrate};
 use clap::Args;
-use diagnostic::Diagnostic;
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Description, RigidBody};
 use machine_profile::Calibrated;
 
@@ -57,8 +57,14 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
     let mut output = Output::start(&arguments.target, shared)?;
     let Some(profile) = output.base.clone() else {
         return Err(question(
-            "which machine? where its rotary axes are is not known",
-            "add `-m PROFILE.toml` with `centre_mm` of each rotary axis and the errors of the linear axes",
+            both!(
+                "which machine? where its rotary axes are is not known",
+                "какой станок? где его поворотные оси, неизвестно"
+            ),
+            both!(
+                "add `-m PROFILE.toml` with `centre_mm` of each rotary axis and the errors of the linear axes",
+                "добавьте `-m PROFILE.toml` с `centre_mm` каждой поворотной оси и погрешностями линейных осей"
+            ),
         ));
     };
     let base = output.measured_from(&arguments.target)?;
@@ -105,22 +111,25 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
             return match rows.refuse(
                 *point,
                 OUTLIER,
-                error.to_string(),
-                "measure it again, or take the row out",
+                Text::english_only(error.to_string()),
+                both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
             ) {
                 Some(refusal) => refusal,
                 None => failure("", &[], error),
             };
         }
-        Axes(_) => {
-            "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest"
-        }
-        Unobservable(_) => {
-            "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all"
-        }
-        Contradicted(_) => {
-            "measure again, a file for each machine; or calibrate the linear axes of the profile first"
-        }
+        Axes(_) => both!(
+            "is `-m` the profile of the machine that was measured? an R-test turns A, B or C within a run, the ball in its nest",
+            "`-m` — профиль измеренного станка? в R-тесте внутри серии поворачивается A, B или C, а шар остаётся в гнезде"
+        ),
+        Unobservable(_) => both!(
+            "mount the ball beside the axis as well, 100 mm from it, at another height: three places not in one line show all",
+            "ставьте шар и в стороне от оси, в 100 мм от неё, на другой высоте: три точки не на одной прямой покажут всё"
+        ),
+        Contradicted(_) => both!(
+            "measure again, a file for each machine; or calibrate the linear axes of the profile first",
+            "измерьте снова, на каждый станок свой файл; или сначала откалибруйте линейные оси профиля"
+        ),
         _ => return failure("", &[], error),
     };
     let code = match error {
@@ -128,10 +137,10 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
         Unobservable(_) => OPEN,
         _ => CONTRADICTED,
     };
-    refusal(code, error.to_string(), help)
+    refusal(code, Text::english_only(error.to_string()), help)
 }
 
-fn refusal(code: diagnostic::Code, message: String, help: &str) -> Failure {
+fn refusal(code: diagnostic::Code, message: Text, help: Text) -> Failure {
     Failure::Refused(vec![Report {
         source: None,
         diagnostics: vec![Diagnostic::error(code, message).help(help)],
@@ -143,113 +152,154 @@ fn held_out(found: &RotaryTables, held: &Rows, base: &Base) -> Result<HeldOut, F
     let machine = model(&found.description)?;
     for (row, reading) in held.readings.iter().enumerate() {
         if let Err(error) = machine.rotary_inside(&reading.command) {
-            let help = "hold out rows at angles between those that were measured";
+            let help = both!(
+                "hold out rows at angles between those that were measured",
+                "откладывайте строки с углами между измеренными"
+            );
             return Err(held
-                .refuse(row, AXES, error.to_string(), help)
-                .unwrap_or_else(|| refusal(AXES, error.to_string(), help)));
+                .refuse(row, AXES, error.text(), help.clone())
+                .unwrap_or_else(|| refusal(AXES, error.text(), help)));
         }
     }
     if held.readings.len() < 2 * held.runs.len() {
-        let message = "the hold-out has runs of one row: the offset of the run takes all it says".to_owned();
-        return Err(refusal(OPEN, message, "hold out several angles of each mounting"));
+        let message = both!(
+            "the hold-out has runs of one row: the offset of the run takes all it says",
+            "среди отложенных есть серии из одной строки: её целиком забирает сдвиг серии"
+        );
+        let help = both!(
+            "hold out several angles of each mounting",
+            "откладывайте несколько углов каждой установки шара"
+        );
+        return Err(refusal(OPEN, message, help));
     }
     found.held_out(&held.readings, base).map_err(|error| failure("", &[], &error))
 }
 
 fn model(description: &Description) -> Result<RigidBody, Failure> {
-    RigidBody::new(description.clone())
-        .map_err(|error| question(error.to_string(), "run `vpost profile check` on the base"))
+    RigidBody::new(description.clone()).map_err(|error| {
+        question(
+            error.text(),
+            both!(
+                "run `vpost profile check` on the base",
+                "запустите `vpost profile check` для исходного профиля"
+            ),
+        )
+    })
 }
 
 /// Refuses what contradicts what is known of noise or unseen rows; warns where it is doubtful.
 fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> Result<(), Failure> {
-    let doubt =
-        |message: String, help: &str| warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+    let doubt = |message: Text, help: Text| warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
     let sigma_mm = found.estimate.sigma;
-    let linear = "calibrate the linear axes of the profile first; measure more places of the ball; state the scatter as `u_um`";
+    let linear = || {
+        both!(
+            "calibrate the linear axes of the profile first; measure more places of the ball; state the scatter as `u_um`",
+            "сначала откалибруйте линейные оси профиля; измерьте шар в большем числе мест; укажите разброс в `u_um`"
+        )
+    };
+    let strangers = || {
+        both!(
+            "look for rows of two machines, exchanged columns, errors of the linear axes",
+            "ищите строки двух станков, перепутанные столбцы, погрешности линейных осей"
+        )
+    };
     if let Some(stated_mm) = found.stated_mm {
         let times = sigma_mm / stated_mm;
         if times > CONTRADICTION {
-            let message = format!(
-                "the best machine leaves {times:.1} times what `u_um` states: the rows are of no one machine of this chain"
+            let message = both!(
+                "the best machine leaves {times:.1} times what `u_um` states: the rows are of no one machine of this chain",
+                "наилучшая модель оставляет в {times:.1} раза больше, чем указано в `u_um`: строки не от одного станка с этой цепью"
             );
-            return Err(refusal(
-                CONTRADICTED,
-                message,
-                "look for rows of two machines, exchanged columns, errors of the linear axes",
-            ));
+            return Err(refusal(CONTRADICTED, message, strangers()));
         }
         if times > ROUGH {
             doubt(
-                format!(
-                    "the best machine leaves {times:.1} times what `u_um` states: intervals are widened by as much"
+                both!(
+                    "the best machine leaves {times:.1} times what `u_um` states: intervals are widened by as much",
+                    "наилучшая модель оставляет в {times:.1} раза больше, чем указано в `u_um`: интервалы расширены во столько же"
                 ),
-                linear,
+                linear(),
             );
         }
     } else if sigma_mm > SCATTER_MM[0] {
-        let message = format!(
+        let message = both!(
             "the best machine leaves {:.1} um: no R-test scatters so, the rows are of no one machine of this chain",
+            "наилучшая модель оставляет {:.1} мкм: у R-теста такого разброса нет, строки не от одного станка с этой цепью",
             sigma_mm * 1e3
         );
-        return Err(refusal(
-            CONTRADICTED,
-            message,
-            "look for rows of two machines, exchanged columns, errors of the linear axes",
-        ));
+        return Err(refusal(CONTRADICTED, message, strangers()));
     } else if sigma_mm > SCATTER_MM[1] {
         doubt(
-            format!("the best machine leaves {:.1} um, more than an R-test scatters", sigma_mm * 1e3),
-            linear,
+            both!(
+                "the best machine leaves {:.1} um, more than an R-test scatters",
+                "наилучшая модель оставляет {:.1} мкм: больше разброса R-теста",
+                sigma_mm * 1e3
+            ),
+            linear(),
         );
     }
     if let Some(alone_mm) = found.alone_mm {
         doubt(
-            format!(
+            both!(
                 "runs leave {:.2} um one by one and {:.2} um together: they differ by more than noise",
+                "серии порознь оставляют {:.2} мкм, вместе {:.2} мкм: они различаются больше, чем на шум",
                 alone_mm * 1e3,
                 found.estimate.misfit * 1e3
             ),
-            linear,
+            linear(),
         );
     }
     let open: Vec<&str> = found.not_told_apart.iter().flatten().map(String::as_str).collect();
     if !open.is_empty() {
-        let message = format!(
+        let message = both!(
             "{} cannot be told apart by these rows: they stay as in the profile, and `uncertainty_um` does not count them",
+            "{}: по этим строкам не различить; они остаются как в профиле, и `uncertainty_um` их не учитывает",
             open.join(", ")
         );
-        let help = "mount the ball at three places at least, not in one line, at two heights";
+        let help = both!(
+            "mount the ball at three places at least, not in one line, at two heights",
+            "ставьте шар не меньше чем в трёх местах не на одной прямой, на двух высотах"
+        );
         warn(messages, Diagnostic::warning(UNSAID, message).help(help));
     }
     let [before, after] = found.rms_mm;
     if after > before && after > ROUGH * sigma_mm {
-        let message = format!(
+        let message = both!(
             "what may be written leaves {:.2} um of the rows, the base {:.2} um: most of it cannot be told apart",
+            "с тем, что можно записать, в строках остаётся {:.2} мкм, с исходным профилем {:.2} мкм: большую часть не различить",
             after * 1e3,
             before * 1e3
         );
-        return Err(refusal(UNFIT, message, "mount the ball at three places at least, not in one line"));
+        let help = both!(
+            "mount the ball at three places at least, not in one line",
+            "ставьте шар не меньше чем в трёх местах не на одной прямой"
+        );
+        return Err(refusal(UNFIT, message, help));
     }
     let Some(judged) = held else { return Ok(()) };
     if judged.rms_after_mm > judged.rms_before_mm && judged.rms_after_mm > ROUGH * sigma_mm {
-        let message = format!(
+        let message = both!(
             "{} held-out readings get worse: {:.2} um RMS before, {:.2} um after",
+            "отложенных отсчётов {}, и они становятся хуже: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
             judged.readings,
             judged.rms_before_mm * 1e3,
             judged.rms_after_mm * 1e3
         );
-        let help = "look for rows of another machine or another day; nothing was written";
+        let help = both!(
+            "look for rows of another machine or another day; nothing was written",
+            "ищите строки другого станка или другого дня; ничего не записано"
+        );
         return Err(refusal(UNFIT, message, help));
     }
     if judged.rms_after_mm > UNSEEN * sigma_mm.max(1e-5) {
         doubt(
-            format!(
+            both!(
                 "held-out readings keep {:.2} um, the noise is {:.2} um: the profile does not hold everywhere as it holds where it was measured",
+                "в отложенных отсчётах остаётся {:.2} мкм при шуме {:.2} мкм: профиль верен не везде так, как там, где измеряли",
                 judged.rms_after_mm * 1e3,
                 sigma_mm * 1e3
             ),
-            linear,
+            linear(),
         );
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use calibration::rtest::BallReading;
-use diagnostic::Code;
+use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, RigidBody, Vector};
 use machine_profile::Profile;
 use measurement_files::{Row, Sheet};
@@ -21,7 +21,10 @@ use super::RTest;
 const COLUMNS: &str = "run x_mm y_mm z_mm a_deg b_deg c_deg dx_um dy_um dz_um tool_x_mm tool_y_mm tool_z_mm dir_x dir_y dir_z \
                        dir_a dir_b dir_c u_um u_x_um u_y_um u_z_um repeat temp_c time_s load_kg feed_mm_min note";
 
-const EXPECTED: &str = "expected: run,x_mm,y_mm,z_mm,a_deg … c_deg and dx_um,dy_um,dz_um";
+const EXPECTED: Text = Text::pair(
+    "expected: run,x_mm,y_mm,z_mm,a_deg … c_deg and dx_um,dy_um,dz_um",
+    "ожидалось: run,x_mm,y_mm,z_mm,a_deg … c_deg и dx_um,dy_um,dz_um",
+);
 
 const DEVIATIONS: [&str; 3] = ["dx_um", "dy_um", "dz_um"];
 const UNCERTAINTIES: [&str; 3] = ["u_x_um", "u_y_um", "u_z_um"];
@@ -63,8 +66,9 @@ impl Rows {
             for (line, row) in sheet.rows().enumerate() {
                 let mut name = row.text("run").into_owned();
                 if name.is_empty() {
-                    let message = "the row says no run".to_owned();
-                    return Err(row.refuse(CELL, "run", message, "a run is one mounting of the ball").into());
+                    let message = both!("the row says no run", "в строке не названа серия");
+                    let help = both!("a run is one mounting of the ball", "серия — одна установка шара");
+                    return Err(row.refuse(CELL, "run", message, help).into());
                 }
                 if files.len() > 1 {
                     name = format!("{} {name}", sheet.name());
@@ -93,8 +97,15 @@ impl Rows {
         let stated = all.readings.iter().filter(|r| r.uncertainty_mm.is_some()).count();
         if stated > 0 && stated < all.readings.len() {
             return Err(question(
-                format!("{stated} of {} rows state their uncertainty, the others do not", all.readings.len()),
-                "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+                both!(
+                    "{stated} of {} rows state their uncertainty, the others do not",
+                    "неопределённость указана в {stated} строках из {}, в остальных нет",
+                    all.readings.len()
+                ),
+                both!(
+                    "fill the column u_um in every row, or pass it over with `--ignore-column u_um`",
+                    "заполните столбец u_um во всех строках или пропустите его: `--ignore-column u_um`"
+                ),
             ));
         }
         if arguments.sphere {
@@ -110,10 +121,10 @@ impl Rows {
     }
 
     /// A refusal at the row of a reading.
-    pub(super) fn refuse(&self, reading: usize, code: Code, message: String, help: &str) -> Option<Failure> {
+    pub(super) fn refuse(&self, reading: usize, code: Code, message: Text, help: Text) -> Option<Failure> {
         let (sheet, line) = *self.places.get(reading)?;
         let row = self.sheets.get(sheet)?.row(line)?;
-        Some(row.refuse_row(code, message, "this row", help).into())
+        Some(row.refuse_row(code, message, both!("this row", "эта строка"), help).into())
     }
 
     /// Nominal places of a sphere, which [`reading`] has given as deviations, about their mean in each run.
@@ -134,14 +145,18 @@ impl Rows {
                 }
             }
             if let Some((k, off_mm)) = far {
-                let message = format!(
+                let message = both!(
                     "by the profile the tip was {off_mm:.1} mm from where run `{}` has the sphere in the mean",
+                    "по профилю щуп был в {off_mm:.1} мм от среднего места сферы в серии `{}`",
                     self.runs[run]
                 );
-                let help = "a sphere stands at one place of the workpiece: check centre_mm, the tool vector, the signs of the angles, the run";
+                let help = both!(
+                    "a sphere stands at one place of the workpiece: check centre_mm, the tool vector, the signs of the angles, the run",
+                    "сфера стоит в одном месте детали: проверьте centre_mm, вектор инструмента, знаки углов, серию"
+                );
                 return Err(self
-                    .refuse(k, AXES, message, help)
-                    .unwrap_or_else(|| question("the sphere moves", help)));
+                    .refuse(k, AXES, message, help.clone())
+                    .unwrap_or_else(|| question(both!("the sphere moves", "сфера смещается"), help)));
             }
         }
         Ok(())
@@ -150,19 +165,33 @@ impl Rows {
 
 /// Refuses a file that lacks a column, or has one of the other kind.
 fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure> {
-    sheet.need(&["run"], "a run is one mounting of the ball: its offset is never the machine's")?;
-    sheet.need(&["x_mm", "y_mm", "z_mm"], "the commanded position of all three axes is needed")?;
+    let help = both!(
+        "a run is one mounting of the ball: its offset is never the machine's",
+        "серия — одна установка шара: её сдвиг к станку не относится"
+    );
+    sheet.need(&["run"], help)?;
+    let help = both!(
+        "the commanded position of all three axes is needed",
+        "нужно заданное положение всех трёх осей"
+    );
+    sheet.need(&["x_mm", "y_mm", "z_mm"], help)?;
     let deviation = DEVIATIONS.iter().find(|key| sheet.has(key));
     match (sphere, deviation) {
         (true, Some(key)) => {
-            let message = format!("`{}` with `--sphere`", sheet.header(key));
-            let help = "rows of a sphere hold where the axes stood when the probe was centred; deviations are read without --sphere";
+            let message = both!("`{}` with `--sphere`", "`{}` вместе с `--sphere`", sheet.header(key));
+            let help = both!(
+                "rows of a sphere hold where the axes stood when the probe was centred; deviations are read without --sphere",
+                "строки по сфере — положения осей, при которых щуп был отцентрирован; отклонения читаются без --sphere"
+            );
             return Err(sheet.refuse_column(AXES, key, message, help).into());
         }
         (false, None) => {
             return Err(question(
-                format!("{} has no reading", sheet.name()),
-                "give dx_um,dy_um,dz_um; where a touch probe was centred on a sphere at every row, add `--sphere`",
+                both!("{} has no reading", "в {} нет отсчётов", sheet.name()),
+                both!(
+                    "give dx_um,dy_um,dz_um; where a touch probe was centred on a sphere at every row, add `--sphere`",
+                    "дайте dx_um,dy_um,dz_um; если в каждой строке щуп центрировали по сфере, добавьте `--sphere`"
+                ),
             ));
         }
         _ => {}
@@ -170,19 +199,30 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
     let angles = ["a_deg", "b_deg", "c_deg"];
     let has = profile.has_rotary();
     if has == [false; 3] {
-        return Err(Failure::usage(
-            diagnostic::Diagnostic::error(AXES, format!("the chain {} has no rotary axis", profile.chain()))
-                .help("give the profile of a machine with A, B or C: an R-test measures its rotary axes"),
-        ));
+        let message =
+            both!("the chain {} has no rotary axis", "в цепи {} нет поворотной оси", profile.chain());
+        let help = both!(
+            "give the profile of a machine with A, B or C: an R-test measures its rotary axes",
+            "дайте профиль станка с A, B или C: R-тест измеряет его поворотные оси"
+        );
+        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
     }
     if !(0..3).any(|axis| has[axis] && sheet.has(angles[axis])) {
         let wanted: Vec<&str> = (0..3).filter(|axis| has[*axis]).map(|axis| angles[axis]).collect();
-        return Err(sheet
-            .lacks(wanted[0], &format!("the angles of {} are needed: {}", profile.chain(), wanted.join(", ")))
-            .into());
+        let help = both!(
+            "the angles of {} are needed: {}",
+            "нужны углы осей цепи {}: {}",
+            profile.chain(),
+            wanted.join(", ")
+        );
+        return Err(sheet.lacks(wanted[0], help).into());
     }
     if UNCERTAINTIES.iter().any(|key| sheet.has(key)) {
-        sheet.need(&UNCERTAINTIES, "give the uncertainty of all three components, or u_um")?;
+        let help = both!(
+            "give the uncertainty of all three components, or u_um",
+            "дайте неопределённость всех трёх составляющих или u_um"
+        );
+        sheet.need(&UNCERTAINTIES, help)?;
     }
     Ok(())
 }
@@ -204,18 +244,25 @@ fn reading(
         let read = row.any_of(DEVIATIONS)?;
         for (key, um) in DEVIATIONS.iter().zip(read) {
             if um.is_some_and(|um| um.abs() > MOST_UM) {
-                let message =
-                    format!("a deviation of {} um is none that an R-test reads", um.unwrap_or_default());
-                let help =
-                    "measured minus commanded position of the tip, in um: look for another column or unit";
+                let message = both!(
+                    "a deviation of {} um is none that an R-test reads",
+                    "отклонений в {} мкм R-тест не показывает",
+                    um.unwrap_or_default()
+                );
+                let help = both!(
+                    "measured minus commanded position of the tip, in um: look for another column or unit",
+                    "измеренное минус заданное положение наконечника, в мкм: ищите другой столбец или единицу"
+                );
                 return Err(row.refuse(UNITS, key, message, help).into());
             }
         }
         if read == [None; 3] {
-            let message = "the row holds no reading".to_owned();
-            return Err(row
-                .refuse(CELL, DEVIATIONS[0], message, "fill dx_um, dy_um or dz_um, or take the row out")
-                .into());
+            let message = both!("the row holds no reading", "в строке нет отсчёта");
+            let help = both!(
+                "fill dx_um, dy_um or dz_um, or take the row out",
+                "заполните dx_um, dy_um или dz_um либо уберите строку"
+            );
+            return Err(row.refuse(CELL, DEVIATIONS[0], message, help).into());
         }
         read.map(|um| um.map(|um| um * 1e-3))
     };
@@ -231,8 +278,10 @@ fn uncertainty(row: &Row<'_>) -> Result<Option<[f64; 3]>, Failure> {
     for (key, um) in UNCERTAINTIES.iter().zip(all) {
         if um.is_some_and(|um| um <= 0.0) {
             let key = if common.is_some() { "u_um" } else { key };
-            let message = "an uncertainty is above zero".to_owned();
-            return Err(row.refuse(CELL, key, message, "give the standard uncertainty in um").into());
+            let message = both!("an uncertainty is above zero", "неопределённость больше нуля");
+            let help =
+                both!("give the standard uncertainty in um", "дайте стандартную неопределённость в мкм");
+            return Err(row.refuse(CELL, key, message, help).into());
         }
     }
     Ok(match all {
@@ -251,8 +300,15 @@ fn stands_where_the_profile_knows(
     for axis in &Axis::ALL[3..] {
         let at = axis.direction();
         if command.rotary_rad[at] != 0.0 && !has[at] {
-            let message = format!("the machine has no axis {axis}: its chain is {}", profile.chain());
-            let help = "leave the column out, or give the profile of the machine that turns";
+            let message = both!(
+                "the machine has no axis {axis}: its chain is {}",
+                "у станка нет оси {axis}: его цепь {}",
+                profile.chain()
+            );
+            let help = both!(
+                "leave the column out, or give the profile of the machine that turns",
+                "уберите столбец или дайте профиль станка с этой осью"
+            );
             return Err(row.refuse(AXES, ["a_deg", "b_deg", "c_deg"][at], message, help).into());
         }
     }
@@ -260,19 +316,26 @@ fn stands_where_the_profile_knows(
     for (axis, key) in ["x_mm", "y_mm", "z_mm"].into_iter().enumerate() {
         let (at, range) = (command.linear_mm[axis], volume.0[axis]);
         if at < range.low - SLACK_MM || at > range.high + SLACK_MM {
-            let message = format!(
+            let message = both!(
                 "{} at {at} mm lies outside what the profile knows, {} to {} mm",
+                "{} = {at} мм вне того, что знает профиль: от {} до {} мм",
                 Axis::ALL[axis],
                 range.low,
                 range.high
             );
-            let help = "x_mm y_mm z_mm are machine coordinates; is `-m` the profile of this machine?";
+            let help = both!(
+                "x_mm y_mm z_mm are machine coordinates; is `-m` the profile of this machine?",
+                "x_mm y_mm z_mm — координаты станка; `-m` — профиль этого станка?"
+            );
             return Err(row.refuse(AXES, key, message, help).into());
         }
     }
     if let Err(error) = machine.rotary_inside(command) {
-        let help = "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go";
-        return Err(row.refuse_row(AXES, error.to_string(), "this row", help).into());
+        let help = both!(
+            "angles are machine coordinates, degrees; `travel_deg` and the error tables of the profile say how far they go",
+            "углы — координаты станка в градусах; их пределы — `travel_deg` и таблицы погрешностей профиля"
+        );
+        return Err(row.refuse_row(AXES, error.text(), both!("this row", "эта строка"), help).into());
     }
     Ok(())
 }
