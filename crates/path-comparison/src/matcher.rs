@@ -218,7 +218,15 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             match last {
                 Reached::Nowhere => return last,
                 Reached::OnTheWay => {}
-                Reached::At(ahead, distance_mm) => self.note(ahead, distance_mm),
+                Reached::At(ahead, distance_mm) => {
+                    self.note(ahead, distance_mm);
+                    if self.traces == Traces::WithPlaces
+                        && let Some(feed) = self.alignment.wanted.feed(ahead)
+                    {
+                        let begins = feed.made.last().copied();
+                        feed.made.extend(stretch.places().skip_while(|place| Some(*place) == begins));
+                    }
+                }
             }
         }
         last
@@ -297,11 +305,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     /// What is to be remembered of a programmed item.
     fn record(&mut self, item: Item) {
         let Item::Feed(feed) = item else { return };
-        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, .. } = *feed;
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, made: made_mm, .. } =
+            *feed;
         self.result.before.note(before_mm, line);
         self.result.after.note(after_mm, line);
-        if let (Traces::Kept, Some(way)) = (self.traces, way) {
-            self.result.traces.push(Trace { line, way, before_mm, after_mm });
+        if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {
+            self.result.traces.push(Trace { line, way, before_mm, after_mm, made_mm });
         }
         let minutes = minutes.unwrap_or(0.0);
         (self.time.made, self.time.compared) = (self.time.made - minutes, self.time.compared - minutes);
