@@ -93,6 +93,8 @@ fn reads(command: &[&str], option: &str) -> bool {
         // The manifest says which profile and options hold.
         ["batch", "run" | "merge"] => false,
         ["explain"] => OF_PAGES.contains(&option),
+        // Of their `--viewer`.
+        ["check" | "map" | "diagnose", ..] if OF_PAGES.contains(&option) => true,
         _ if OF_PAGES.contains(&option) => false,
         ["correct" | "batch", ..] => true,
         // A plan may be written as a program.

@@ -35,6 +35,7 @@ mod source;
 mod terminal;
 mod to_disk;
 mod turned;
+mod viewer;
 
 use std::ffi::OsString;
 use std::io::Write;

@@ -1,0 +1,303 @@
+//! Fewer places, by a bound.
+//!
+//! The method of Ramer (1972) and Douglas and Peucker (1973): of a stretch the ends are kept, and the place that lies
+//! farthest from what is drawn between them, if that is farther than the bound; then the same for both halves. Here far is
+//! a place in space and every displacement, each by its own bound.
+
+use super::scene::{Place, Scene};
+
+/// No more places are drawn: what a slow computer turns without a jerk.
+const MOST_DRAWN: usize = 30_000;
+/// Nor more than so many bytes of their numbers, of which a place has so many besides those of its displacements, and each
+/// of these so many more (it lies along one axis mostly).
+const MOST_BYTES: usize = 1_200_000;
+const BYTES_OF_A_PLACE: usize = 10;
+const BYTES_OF_A_DISPLACEMENT: usize = 2;
+/// So many times as many are held before they are thinned further.
+const HELD: usize = 8;
+/// From the finest bound to the coarsest in so many steps.
+const STEPS: u32 = 12;
+/// Within a motion places are left out that make no difference to anybody, µm.
+const FINEST_PATH_UM: f64 = 0.5;
+const FINEST_DISPLACED_UM: f64 = 0.01;
+/// The coarsest bounds: so many parts of the path's size, and of the largest displacement.
+const PARTS_OF_SIZE: f64 = 400.0;
+const PARTS_OF_LARGEST: f64 = 40.0;
+
+/// Even by the coarsest bound more places are left than a page can hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TooLarge {
+    /// Places read so far.
+    pub places: usize,
+    /// Places left, and how many a page can hold.
+    pub left: usize,
+    /// How many a page can hold.
+    pub most: usize,
+    /// The bound, µm.
+    pub path_bound_um: f64,
+}
+
+/// Takes places in order and keeps those that have to be drawn.
+#[derive(Clone, Debug)]
+pub struct Thinning {
+    /// Size of the path, µm, and the largest displacement.
+    size_um: f64,
+    largest_um: f64,
+    most: usize,
+    kept: Vec<Place>,
+    /// The motion under way.
+    motion: Vec<Place>,
+    of: usize,
+    /// So many of those kept are thinned by the bound of this step.
+    settled: usize,
+    step: u32,
+    /// What all steps together have left out.
+    bounds_um: Option<Bounds>,
+}
+
+/// How far off a place, and a displacement, may be, µm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Bounds {
+    path: f64,
+    displaced: f64,
+}
+
+impl Thinning {
+    /// Of a path about so large, mm, with displacements of about that size, µm, so many at each place.
+    #[must_use]
+    pub fn new(size_mm: f64, largest_um: f64, displacements: usize) -> Self {
+        let bytes = BYTES_OF_A_PLACE + displacements * BYTES_OF_A_DISPLACEMENT;
+        Self {
+            size_um: size_mm * 1e3,
+            largest_um,
+            most: MOST_DRAWN.min(MOST_BYTES / bytes),
+            kept: Vec::new(),
+            motion: Vec::new(),
+            of: 0,
+            settled: 0,
+            step: 0,
+            bounds_um: None,
+        }
+    }
+
+    /// The next place.
+    ///
+    /// # Errors
+    /// [`TooLarge`]
+    pub fn push(&mut self, place: Place) -> Result<(), TooLarge> {
+        self.of += 1;
+        if place.begins {
+            self.end_motion();
+        }
+        let ends = place.ends;
+        self.motion.push(place);
+        if ends {
+            self.end_motion();
+        }
+        if self.kept.len() > HELD * self.most { self.reduce_to(HELD / 2 * self.most) } else { Ok(()) }
+    }
+
+    /// What is drawn.
+    ///
+    /// # Errors
+    /// [`TooLarge`]
+    pub fn finish(mut self) -> Result<Scene, TooLarge> {
+        self.end_motion();
+        self.reduce_to(self.most)?;
+        let Bounds { path, displaced } = self.bounds_um.unwrap_or_default();
+        Ok(Scene {
+            causes: Vec::new(),
+            places: self.kept,
+            of: self.of,
+            path_bound_um: path,
+            displaced_bound_um: displaced,
+            remainder_um: 0.0,
+        })
+    }
+
+    /// Places within a motion; its ends are kept while there is room.
+    fn end_motion(&mut self) {
+        let motion = std::mem::take(&mut self.motion);
+        if motion.len() > 2 {
+            self.bounds_um.get_or_insert(self.bounds(0));
+        }
+        // The motion before ends where this one starts: it is part of the stretch.
+        let start = motion.first().filter(|first| !first.begins).and_then(|_| self.kept.pop());
+        let whole: Vec<Place> = start.into_iter().chain(motion).collect();
+        let before = self.kept.len();
+        self.kept.extend(thinned(whole, self.bounds(0)));
+        self.settled = self.settled.min(before);
+    }
+
+    fn bounds(&self, step: u32) -> Bounds {
+        let at = |finest: f64, coarsest: f64| {
+            let share = f64::from(step) / f64::from(STEPS);
+            finest * units::math::powf((coarsest / finest).max(1.0), share)
+        };
+        Bounds {
+            path: at(FINEST_PATH_UM, self.size_um / PARTS_OF_SIZE),
+            displaced: at(FINEST_DISPLACED_UM, self.largest_um / PARTS_OF_LARGEST),
+        }
+    }
+
+    fn reduce_to(&mut self, most: usize) -> Result<(), TooLarge> {
+        loop {
+            if self.step > 0 && self.settled < self.kept.len() {
+                // What has come since has not been thinned by this step.
+                let new = self.kept.split_off(self.settled.saturating_sub(1));
+                self.kept.extend(self.in_stretches(new));
+                self.settled = self.kept.len();
+            }
+            if self.kept.len() <= most {
+                return Ok(());
+            }
+            if self.step == STEPS {
+                let path_bound_um = self.bounds_um.unwrap_or_default().path;
+                return Err(TooLarge { places: self.of, left: self.kept.len(), most, path_bound_um });
+            }
+            // Far from the goal every other step will do.
+            let far = self.kept.len() > 4 * most;
+            self.step = (self.step + if far { 2 } else { 1 }).min(STEPS);
+            let added = self.bounds(self.step);
+            let bounds = self.bounds_um.get_or_insert_default();
+            *bounds =
+                Bounds { path: bounds.path + added.path, displaced: bounds.displaced + added.displaced };
+            let all = std::mem::take(&mut self.kept);
+            self.kept = self.in_stretches(all);
+            self.settled = self.kept.len();
+        }
+    }
+
+    /// Stretch by stretch, no farther than so many places: a path that goes to and fro costs the square of that.
+    fn in_stretches(&self, places: Vec<Place>) -> Vec<Place> {
+        const LONGEST: usize = 256;
+        let bounds = self.bounds(self.step);
+        let (mut kept, mut stretch) = (Vec::new(), Vec::new());
+        for place in places {
+            if place.begins {
+                kept.extend(thinned(std::mem::take(&mut stretch), bounds));
+            }
+            if stretch.len() >= LONGEST {
+                let mut done = thinned(std::mem::take(&mut stretch), bounds);
+                // The next stretch begins where this one ends.
+                stretch.extend(done.pop());
+                kept.extend(done);
+            }
+            stretch.push(place);
+        }
+        kept.extend(thinned(stretch, bounds));
+        kept
+    }
+}
+
+/// Those of a stretch's places that have to be kept, its ends among them.
+fn thinned(places: Vec<Place>, bounds: Bounds) -> Vec<Place> {
+    if places.len() <= 2 {
+        return places;
+    }
+    let mut keep = vec![false; places.len()];
+    let last = places.len() - 1;
+    (keep[0], keep[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let far = |k: usize| distance(&places[from], &places[to], &places[k], bounds);
+        let farthest = (from + 1..to).map(|k| (far(k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((distance, middle)) = farthest
+            && distance > 1.0
+        {
+            keep[middle] = true;
+            open.extend([(from, middle), (middle, to)]);
+        }
+    }
+    let mut keep = keep.into_iter();
+    places.into_iter().filter(|_| keep.next() == Some(true)).collect()
+}
+
+/// How far a place is from what is drawn between two others, as parts of the bounds.
+fn distance(from: &Place, to: &Place, place: &Place, bounds: Bounds) -> f64 {
+    if place.unknown_after != from.unknown_after || place.unknown_after != to.unknown_after {
+        return f64::INFINITY;
+    }
+    let along = [0, 1, 2].map(|axis| to.at_mm[axis] - from.at_mm[axis]);
+    let here = [0, 1, 2].map(|axis| place.at_mm[axis] - from.at_mm[axis]);
+    let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let square = dot(&along, &along);
+    let s = if square > 0.0 { (dot(&here, &along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let beside = [0, 1, 2].map(|axis| here[axis] - s * along[axis]);
+    let path = 1e3 * dot(&beside, &beside).sqrt() / bounds.path;
+    let displaced = place.displaced_um.iter().zip(from.displaced_um.iter().zip(&to.displaced_um));
+    displaced.fold(path, |far, (here, (from, to))| {
+        let off = [0, 1, 2].map(|axis| {
+            let [from, to, here] = [from[axis], to[axis], here[axis]].map(f64::from);
+            here - (from + s * (to - from))
+        });
+        far.max(dot(&off, &off).sqrt() / bounds.displaced)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(at_mm: [f64; 3], um: f32, line: u64) -> Place {
+        let displaced_um = vec![[um, 0.0, 0.0], [0.0; 3]];
+        Place {
+            at_mm,
+            line,
+            begins: line == 1,
+            ends: true,
+            off_um: [um, 0.0],
+            unknown_after: false,
+            displaced_um,
+        }
+    }
+
+    fn of(places: &[Place], size_mm: f64, largest_um: f64) -> Result<Scene, TooLarge> {
+        let mut thinning = Thinning::new(size_mm, largest_um, 2);
+        for place in places {
+            thinning.push(place.clone())?;
+        }
+        thinning.finish()
+    }
+
+    #[test]
+    fn few_places_are_all_drawn() {
+        let places: Vec<Place> = (1..1000).map(|k| place([k as f64, 0.0, 0.0], 0.0, k)).collect();
+        let scene = of(&places, 1000.0, 1.0).unwrap();
+        assert_eq!(scene.places, places);
+        assert_eq!((scene.path_bound_um, scene.displaced_bound_um), (0.0, 0.0));
+    }
+
+    /// A spiral whose error swings: every place that was left out lies within the bounds of what is drawn.
+    #[test]
+    fn what_is_left_out_lies_within_the_bounds() {
+        let at = |k: u64| {
+            let angle = k as f64 * 0.01;
+            let (sin, cos) = units::math::sin_cos(angle);
+            let um = 20.0 * units::math::sin_cos(angle * 0.37).0;
+            place([(10.0 + angle * 0.05) * cos, (10.0 + angle * 0.05) * sin, 0.0], um as f32, k)
+        };
+        let places: Vec<Place> = (1..400_000).map(at).collect();
+        let scene = of(&places, 400.0, 20.0).unwrap();
+        assert!((1000..=MOST_DRAWN).contains(&scene.places.len()), "{}", scene.places.len());
+        assert!(scene.path_bound_um > 0.0 && scene.path_bound_um < 2000.0, "{}", scene.path_bound_um);
+        let bounds = Bounds { path: scene.path_bound_um, displaced: scene.displaced_bound_um };
+        for pair in scene.places.windows(2) {
+            let [from, to] = pair else { unreachable!() };
+            for place in &places[from.line as usize..to.line as usize - 1] {
+                let far = distance(from, to, place, bounds);
+                assert!(far <= 1.0 + 1e-9, "line {}: {far}", place.line);
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_thinned_is_refused() {
+        // To and fro through a cube, never twice the same way.
+        let at = |k: u64| [0.618_034, 0.754_877, 0.569_84].map(|step| 100.0 * (k as f64 * step).fract());
+        let places: Vec<Place> = (1..100_000).map(|k| place(at(k), 0.0, k)).collect();
+        let refused = of(&places, 173.0, 1.0).map(|scene| scene.places.len()).unwrap_err();
+        assert_eq!((refused.most, refused.places), (MOST_DRAWN, 99_999));
+        assert!(refused.left > 80_000 && refused.path_bound_um > 350.0, "{refused:?}");
+    }
+}
