@@ -142,23 +142,27 @@ impl Viewer<'_> {
             html! { button type="button" id=(id) data-label=(key) aria-label=(word(key, language)) title=(word(key, language)) { (sign) } }
         };
         html! {
-            div #view.needs-script tabindex="0" role="application" data-label="view" aria-label=(word("view", language)) {
-                canvas #canvas aria-hidden="true" {}
-                svg #overlay xmlns="http://www.w3.org/2000/svg" aria-hidden="true" {
-                    @for id in ["x", "x0", "x1", "y", "y0", "y1", "z", "z0", "z1"] { text id=(id) {} }
-                    path #whole {}
-                    g #arms {}
-                    circle #foot r="3.5" {}
-                    circle #left r="5" {}
-                    circle #tip r="7" {}
+            div.frame.needs-script {
+                div #view tabindex="0" role="application" data-label="view" aria-label=(word("view", language)) {
+                    canvas #canvas aria-hidden="true" {}
+                    svg #overlay xmlns="http://www.w3.org/2000/svg" aria-hidden="true" {
+                        @for id in ["x", "x0", "x1", "y", "y0", "y1", "z", "z0", "z1"] { text id=(id) {} }
+                        path #whole {}
+                        g #arms {}
+                        circle #foot r="3.5" {}
+                        circle #left r="5" {}
+                        circle #tip r="7" {}
+                    }
                 }
-            }
-            div.buttons.needs-script role="group" data-label="views" aria-label=(word("views", language)) {
-                @for view in ["view_corner", "view_top", "view_front", "view_side"] {
-                    button type="button" id=(view) { (t(view)) }
+                div.corner.views role="group" data-label="views" aria-label=(word("views", language)) {
+                    @for view in ["view_corner", "view_top", "view_front", "view_side"] {
+                        button type="button" id=(view) { (t(view)) }
+                    }
                 }
-                (button("out", "out", "\u{2212}"))
-                (button("in", "in", "+"))
+                div.corner.zooms {
+                    (button("out", "out", "\u{2212}"))
+                    (button("in", "in", "+"))
+                }
             }
             fieldset.legend.needs-script data-label="shown" aria-label=(word("shown", language)) {
                 label { input #show_commanded type="checkbox" checked; span.dash.k-commanded {} (t(&format!("commanded_{kind}"))) }

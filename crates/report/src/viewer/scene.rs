@@ -74,13 +74,13 @@ impl Scene {
         self.places.iter().map(|place| size(&place.displaced_um[BEFORE])).fold(0.0, f64::max)
     }
 
-    /// How much larger than they are displacements are drawn at first: the largest as a twelfth of the path's size, or
+    /// How much larger than they are displacements are drawn at first: the largest as an eighth of the path's size, or
     /// less, 1, 2, 5, 10 … times.
     #[must_use]
     pub fn magnification(&self) -> f64 {
         let largest_um = self.largest_um();
         let square: f64 = self.ranges_mm().iter().map(|(low, high)| (high - low).powi(2)).sum();
-        let wanted = square.sqrt() * 1e3 / 12.0 / largest_um;
+        let wanted = square.sqrt() * 1e3 / 8.0 / largest_um;
         if !(wanted.is_finite() && wanted > 1.0) {
             return 1.0;
         }

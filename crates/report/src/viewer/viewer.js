@@ -109,11 +109,11 @@
   const fit = () => {
     const axes = turn(), half = [0, 0];
     for (let k = 0; k < 8; k++) {
-      const p = [0, 1, 2].map(a => (k >> a & 1 ? 1 : -1) * ((high[a] - low[a]) / 2 + largestReal * state.by * 1e-3 * 0.6));
+      const p = [0, 1, 2].map(a => (k >> a & 1 ? 1 : -1) * ((high[a] - low[a]) / 2 + largestReal * state.by * 1e-3 * 0.25));
       for (const a of [0, 1]) half[a] = Math.max(half[a], Math.abs(dot(axes[a], p)));
     }
     state.target = [0, 0, 0];
-    state.zoom = Math.min((width / 2 - 46) / (half[0] || 1), (height / 2 - 40) / (half[1] || 1));
+    state.zoom = Math.min((width / 2 - 40) / (half[0] || 1), (height / 2 - 34) / (half[1] || 1));
   };
 
   // ---------------------------------------------------------------- drawing
@@ -241,8 +241,9 @@
         const common = { ratio, by, upto };
         stroke(box, { ...common, upto: n, width: 1, low: rgb('line'), by: 0 });
         const few = n < 8000;
-        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: few ? 1.6 : 1, low: rgb('commanded'), front: 0.0004 });
-        if (state.shown.corrected) stroke(path.corrected, { ...common, width: few ? 2 : 1.2, low: rgb('after'), front: 0.0012 });
+        // The programmed path is a broad band on which the corrected one lies as a line, as far as it does.
+        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: few ? 5 : 2.4, low: rgb('commanded'), front: 0.0004 });
+        if (state.shown.corrected) stroke(path.corrected, { ...common, width: few ? 1.8 : 1.2, low: rgb('after'), front: 0.0012 });
         if (state.shown.real) stroke(path.real, { ...common, width: few ? 2.4 : 1.3, low: rgb('before-low'), high: rgb('before'), front: 0.0008 });
         if (state.shown.real && state.shown.commanded && few) stroke(path.real, { ...common, ribbon: true, low: rgb('before'), alpha: 0.15 });
       },

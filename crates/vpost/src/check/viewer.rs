@@ -40,7 +40,7 @@ pub(super) fn write(
         let machines = 1 + others.len();
         let joins = |place: &[f64; 3]| end.is_some_and(|end| apart_mm(place, &end) < SAME_MM);
         let begins = !course.places_mm.first().is_some_and(joins);
-        let made = Made::around(traces, read, begins);
+        let made = Made::of(traces, read, begins);
         read += 1;
         let last = course.places_mm.len().saturating_sub(1);
         let mut from = 0;
@@ -144,23 +144,23 @@ fn apart_mm(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Where the corrected program brings the tool for a motion, from the end of the one before to the start of the next.
-struct Made(Vec<[f64; 3]>);
+/// Where the corrected program brings the tool for a motion.
+struct Made<'t>(&'t [[f64; 3]]);
 
-impl Made {
-    fn around(traces: &[Trace], at: usize, begins: bool) -> Self {
-        let before = at.checked_sub(1).filter(|_| !begins).and_then(|before| traces[before].made_mm.last());
-        let next =
-            traces.get(at + 1).filter(|next| (next.way.at(0.0) - traces[at].way.at(1.0)).norm() < SAME_MM);
-        let next = next.and_then(|next| next.made_mm.first());
-        Self(before.into_iter().chain(&traces[at].made_mm).chain(next).copied().collect())
+impl<'t> Made<'t> {
+    /// Where nothing is made of a motion, being shorter than the limit, the tool stays at the end of the one before.
+    fn of(traces: &'t [Trace], at: usize, begins: bool) -> Self {
+        let own = traces[at].made_mm.as_slice();
+        let before = at.checked_sub(1).filter(|_| own.is_empty() && !begins);
+        let before = before.map_or(&[][..], |before| traces[before].made_mm.as_slice());
+        Self(if own.is_empty() { &before[before.len().saturating_sub(1)..] } else { own })
     }
 
     /// From a programmed place to the nearest real one, mm; `None` where nothing was made of the motion.
     ///
     /// * `from` – where the place before was nearest; `places` – how many there are
     fn displaced_mm(&self, at_mm: &[f64; 3], from: &mut usize, places: usize) -> Option<[f64; 3]> {
-        let made = &self.0;
+        let made = self.0;
         if made.len() < 2 {
             return made.first().map(|only| [0, 1, 2].map(|axis| only[axis] - at_mm[axis]));
         }
