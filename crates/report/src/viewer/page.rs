@@ -181,12 +181,16 @@ impl Viewer<'_> {
                 }
             }
             div.sliders.needs-script {
-                label for="mag" { (t("magnification")) }
-                input #mag type="range" min="0" max="1000" step="any" value="0";
-                output #mag_now for="mag" {}
-                label for="at" { (t(&format!("along_{kind}"))) }
-                input #at type="range" min="0" max="0" step="1" value="0";
-                output #at_now for="at" {}
+                div {
+                    label for="mag" { (t("magnification")) }
+                    input #mag type="range" min="0" max="1000" step="any" value="0";
+                    output #mag_now for="mag" {}
+                }
+                div {
+                    label for="at" { (t(&format!("along_{kind}"))) }
+                    input #at type="range" min="0" max="0" step="1" value="0";
+                    output #at_now for="at" {}
+                }
             }
             div.buttons.needs-script {
                 button #play type="button" aria-pressed="false" { (t("play")) }

@@ -240,11 +240,11 @@
         const by = magnified(), upto = state.cut ? state.here : n;
         const common = { ratio, by, upto };
         stroke(box, { ...common, upto: n, width: 1, low: rgb('line'), by: 0 });
-        const few = n < 8000;
+        const few = n < 8000, bold = width < 560 ? 0.6 : 1;
         // The programmed path is a broad band on which the corrected one lies as a line, as far as it does.
-        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: few ? 5 : 2.4, low: rgb('commanded'), front: 0.0004 });
-        if (state.shown.corrected) stroke(path.corrected, { ...common, width: few ? 1.8 : 1.2, low: rgb('after'), front: 0.0012 });
-        if (state.shown.real) stroke(path.real, { ...common, width: few ? 2.4 : 1.3, low: rgb('before-low'), high: rgb('before'), front: 0.0008 });
+        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: (few ? 5 : 2.4) * bold, low: rgb('commanded'), front: 0.0004 });
+        if (state.shown.corrected) stroke(path.corrected, { ...common, width: (few ? 1.8 : 1.2) * bold, low: rgb('after'), front: 0.0012 });
+        if (state.shown.real) stroke(path.real, { ...common, width: (few ? 2.4 : 1.3) * bold, low: rgb('before-low'), high: rgb('before'), front: 0.0008 });
         if (state.shown.real && state.shown.commanded && few) stroke(path.real, { ...common, ribbon: true, low: rgb('before'), alpha: 0.15 });
       },
     };
@@ -288,7 +288,7 @@
       const [from, to] = [ends[a], ends[a + 1]], mid = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
       const seen = Math.hypot(to[0] - from[0], to[1] - from[1]) > 56;
       const away = Math.hypot(mid[0] - centre[0], mid[1] - centre[1]) || 1;
-      const [dx, dy] = [(mid[0] - centre[0]) / away * 16, (mid[1] - centre[1]) / away * 16];
+      const [dx, dy] = [(mid[0] - centre[0]) / away * 24, (mid[1] - centre[1]) / away * 18];
       for (const [id, p, text] of [[name + '0', from.map((v, k) => v + 0.06 * (to[k] - v)), digits(low[a], 0)], [name + '1', from.map((v, k) => v + 0.94 * (to[k] - v)), digits(high[a], 0)], [name, mid, name.toUpperCase() + ', mm']]) {
         put(id, { x: p[0] + dx, y: p[1] + dy + 4, visibility: seen ? 'visible' : 'hidden' });
         $(id).textContent = text;

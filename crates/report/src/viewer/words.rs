@@ -95,7 +95,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ("out", "Zoom out", "Дальше"),
     ("line_check", "Line {line}", "Строка {line}"),
     ("line_map", "Node {line}", "Узел {line}"),
-    ("line_diagnosis", "Row {line}", "Строка {line}"),
+    ("line_diagnosis", "Line {line}", "Строка {line}"),
     ("displaced", "Displacement, µm", "Смещение, мкм"),
     ("size", "size", "длина"),
     (

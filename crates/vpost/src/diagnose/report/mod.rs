@@ -7,6 +7,7 @@ mod pictures;
 mod provenance;
 mod rows;
 mod unseen;
+mod viewer;
 
 pub(super) use facts::Facts;
 pub(super) use page::Report;
