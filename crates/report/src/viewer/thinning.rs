@@ -15,14 +15,14 @@ const BYTES_OF_A_PLACE: usize = 10;
 const BYTES_OF_A_DISPLACEMENT: usize = 2;
 /// So many times as many are held before they are thinned further.
 const HELD: usize = 8;
-/// From the finest bound to the coarsest in so many steps.
-const STEPS: u32 = 12;
 /// Within a motion places are left out that make no difference to anybody, µm.
-const FINEST_PATH_UM: f64 = 0.5;
-const FINEST_DISPLACED_UM: f64 = 0.01;
-/// The coarsest bounds: so many parts of the path's size, and of the largest displacement.
-const PARTS_OF_SIZE: f64 = 400.0;
-const PARTS_OF_LARGEST: f64 = 40.0;
+const WITHIN_MOTIONS: Bounds = Bounds { path: 0.5, displaced: 0.01 };
+/// Motions are left out by bounds that are these parts of the path's size, the finest and the coarsest, in so many steps.
+const FINEST: f64 = 1.0 / 40_000.0;
+const COARSEST: f64 = 1.0 / 400.0;
+const STEPS: u32 = 8;
+/// The largest displacement is drawn about as large as this part of the path: what is small in space is as small there.
+const DRAWN_AS: f64 = 1.0 / 8.0;
 
 /// Even by the coarsest bound more places are left than a page can hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,25 +119,20 @@ impl Thinning {
     fn end_motion(&mut self) {
         let motion = std::mem::take(&mut self.motion);
         if motion.len() > 2 {
-            self.bounds_um.get_or_insert(self.bounds(0));
+            self.bounds_um.get_or_insert(WITHIN_MOTIONS);
         }
         // The motion before ends where this one starts: it is part of the stretch.
         let start = motion.first().filter(|first| !first.begins).and_then(|_| self.kept.pop());
         let whole: Vec<Place> = start.into_iter().chain(motion).collect();
         let before = self.kept.len();
-        self.kept.extend(thinned(whole, self.bounds(0)));
+        self.kept.extend(thinned(whole, WITHIN_MOTIONS));
         self.settled = self.settled.min(before);
     }
 
     fn bounds(&self, step: u32) -> Bounds {
-        let at = |finest: f64, coarsest: f64| {
-            let share = f64::from(step) / f64::from(STEPS);
-            finest * units::math::powf((coarsest / finest).max(1.0), share)
-        };
-        Bounds {
-            path: at(FINEST_PATH_UM, self.size_um / PARTS_OF_SIZE),
-            displaced: at(FINEST_DISPLACED_UM, self.largest_um / PARTS_OF_LARGEST),
-        }
+        let share = f64::from(step - 1) / f64::from(STEPS - 1);
+        let part = FINEST * units::math::powf(COARSEST / FINEST, share);
+        Bounds { path: part * self.size_um, displaced: part / DRAWN_AS * self.largest_um }
     }
 
     fn reduce_to(&mut self, most: usize) -> Result<(), TooLarge> {

@@ -23,11 +23,14 @@
 
   // ---------------------------------------------------------------- numbers
   // Rows of differences, seven bits a byte, negative ones folded between: see encode.rs.
-  const bytes = Uint8Array.from(atob($('places').textContent.trim()), c => c.charCodeAt(0));
+  const packed = atob($('places').textContent.trim()), bytes = new Uint8Array(packed.length);
+  for (let k = 0; k < bytes.length; k++) bytes[k] = packed.charCodeAt(k);
   const n = data.places;
   let byte = 0;
   const next = () => {
-    let value = 0, scale = 1, b;
+    let b = bytes[byte++];
+    if (b < 128) return b;
+    let value = b & 127, scale = 128;
     do { b = bytes[byte++]; value += (b & 127) * scale; scale *= 128; } while (b & 128);
     return value;
   };
@@ -123,7 +126,7 @@
     return [0, 2, 4].map(k => parseInt(h.slice(k, k + 2), 16) / 255);
   };
   const canvas = $('canvas');
-  const gl = canvas.getContext('webgl2', { antialias: true, alpha: true, premultipliedAlpha: true });
+  const gl = canvas.getContext('webgl2', { antialias: n < 8000, alpha: true, premultipliedAlpha: true });
   root.dataset.webgl = gl ? 'yes' : 'no';
 
   /** Draws lines of a width in pixels, and ribbons between a path and what is made of it. */
@@ -242,7 +245,7 @@
         stroke(box, { ...common, upto: n, width: 1, low: rgb('line'), by: 0 });
         const few = n < 8000, bold = width < 560 ? 0.6 : 1;
         // The programmed path is a broad band on which the corrected one lies as a line, as far as it does.
-        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: (few ? 5 : 2.4) * bold, low: rgb('commanded'), front: 0.0004 });
+        if (state.shown.commanded) stroke(path.real, { ...common, by: 0, width: (few ? (data.kind === 'map' ? 2.6 : 5) : 2.4) * bold, low: rgb('commanded'), front: 0.0004 });
         if (state.shown.corrected) stroke(path.corrected, { ...common, width: (few ? 1.8 : 1.2) * bold, low: rgb('after'), front: 0.0012 });
         if (state.shown.real) stroke(path.real, { ...common, width: (few ? 2.4 : 1.3) * bold, low: rgb('before-low'), high: rgb('before'), front: 0.0008 });
         if (state.shown.real && state.shown.commanded && few) stroke(path.real, { ...common, ribbon: true, low: rgb('before'), alpha: 0.15 });
@@ -446,6 +449,7 @@
   const all = on => { for (const cause of causes) cause.on = cause.box.checked = on; apply(); };
   $('all').addEventListener('click', () => all(true));
   $('none').addEventListener('click', () => all(false));
+  if (data.kind === 'diagnosis') for (const id of ['play', 'cut']) $(id).closest('button, label').hidden = true;
   $('causes_part').hidden = causes.length === 0;
 
   const translate = () => {

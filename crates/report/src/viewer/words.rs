@@ -148,8 +148,8 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     ),
     (
         "remainder_diagnosis",
-        "What the causes do not explain stays: up to {remainder} µm in a row.",
-        "Необъяснённое причинами остаётся: до {remainder} мкм в строке.",
+        "Measured is the gap between the rows and the model, the measuring frame aligned; a cause is what it makes of the rows, the frame aligned once more. What the causes do not explain, and what aligning all of them at once does otherwise, is up to {remainder} µm in a row.",
+        "Измерено – это расхождение строк и модели после совмещения систем координат; причина – то, что она даёт в строках, тоже после совмещения. Необъяснённое, вместе с разницей от общего совмещения, – до {remainder} мкм в строке.",
     ),
     (
         "undivided",

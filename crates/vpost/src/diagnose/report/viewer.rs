@@ -3,6 +3,7 @@
 use report::viewer::scene::{CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::{Figures, Kind, Viewer};
 
+use super::alignment::Alignment;
 use super::page::Report;
 use super::rows::Rows;
 use crate::arguments::Shared;
@@ -26,15 +27,26 @@ impl Report<'_> {
             ..Scene::default()
         };
         let um = |v: machine_model::Vector| -> Displacement { [v.x as f32, v.y as f32, v.z as f32] };
-        let mut run = None;
+        // Of what a cause does only that can be seen which was measured and which no alignment takes away.
+        let alignment = Alignment::new(&rows, self.data);
+        let seen_um: Vec<Vec<f64>> = d
+            .causes
+            .iter()
+            .map(|cause| {
+                alignment.seen(|row| {
+                    let measured = &self.data.rows[row];
+                    let mm = cause.term.displacement_mm(&measured.command, &measured.conditions);
+                    mm.unwrap_or_default() * 1e3
+                })
+            })
+            .collect();
+        let (mut run, mut equation) = (None, 0);
         for row in &rows.all {
             let measured = &self.data.rows[row.row];
             let (before, after) = row.vectors_um();
-            // Of what a cause does only what was measured can be seen.
-            let by = d.causes.iter().map(|cause| {
-                let whole = cause.term.displacement_mm(&measured.command, &measured.conditions);
-                let whole_um = whole.unwrap_or_default() * 1e3;
-                um(row.equations.iter().map(|seen| seen.along * seen.along.dot(&whole_um)).sum())
+            let by = seen_um.iter().map(|seen_um| {
+                let parts = row.equations.iter().zip(&seen_um[equation..]);
+                um(parts.map(|(seen, value)| seen.along * *value).sum())
             });
             let displaced_um: Vec<Displacement> = [um(before), um(after)].into_iter().chain(by).collect();
             let place = Place {
@@ -47,6 +59,7 @@ impl Report<'_> {
                 displaced_um,
             };
             run = Some(measured.run);
+            equation += row.equations.len();
             if place.displaced_um.len() > CAUSES {
                 scene.remainder_um = scene.remainder_um.max(viewer::remainder_um(&place));
             }
