@@ -131,24 +131,32 @@
 
   /** Draws lines of a width in pixels, and ribbons between a path and what is made of it. */
   const painter = gl && (() => {
+    const ROW = 2048; // places in a row of a texture; a power of two
+    // Two triangles for every two places that follow one another, made in the shader: drawing them as instances is slow
+    // where there is no graphics card, and expanding them here takes memory.
     const SPACE = `#version 300 es
       precision highp float;
-      in vec3 p0, p1, d0, d1; in float f1, f2; in vec2 corner;
+      precision highp sampler2D;
+      uniform sampler2D places, shifts; // X, Y, Z, and 1 where nothing leads here; X, Y, Z, and 1 where it is not known
       uniform mat3 turn; uniform vec3 target; uniform vec2 half_size; uniform float zoom, by, width, depth, front, upto; uniform bool ribbon;
       out float amount; out float late;
       void main() {
-        vec3 a = turn * (p0 + d0 * by - target), b = turn * (p1 + d1 * by - target);
-        if (ribbon && corner.y < 0.0) { a = turn * (p0 - target); b = turn * (p1 - target); }
+        int segment = gl_VertexID / 6, k = gl_VertexID % 6;
+        vec2 corner = vec2(k == 1 || k == 3 || k == 4 ? 1.0 : 0.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
+        ivec2 one = ivec2(segment & ROW - 1, segment / ROW), two = ivec2(segment + 1 & ROW - 1, (segment + 1) / ROW);
+        vec4 p0 = texelFetch(places, one, 0), p1 = texelFetch(places, two, 0), d0 = texelFetch(shifts, one, 0), d1 = texelFetch(shifts, two, 0);
+        vec3 a = turn * (p0.xyz + d0.xyz * by - target), b = turn * (p1.xyz + d1.xyz * by - target);
+        if (ribbon && corner.y < 0.0) { a = turn * (p0.xyz - target); b = turn * (p1.xyz - target); }
         vec2 from = a.xy * zoom, to = b.xy * zoom, way = to - from;
         float far = length(way);
         way = far > 1e-4 ? way / far : vec2(1.0, 0.0);
         vec2 aside = vec2(-way.y, way.x) * corner.y + way * (corner.x * 2.0 - 1.0) * 0.5;
         vec2 place = mix(from, to, corner.x) + (ribbon ? vec2(0.0) : aside * width * 0.5);
         gl_Position = vec4(place / half_size, -mix(a.z, b.z, corner.x) * depth - front, 1.0);
-        amount = mix(length(d0), length(d1), corner.x);
-        late = float(gl_InstanceID) + corner.x > upto ? 1.0 : 0.0;
-        if (f1 > 0.5 || f2 > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-      }`;
+        amount = mix(length(d0.xyz), length(d1.xyz), corner.x);
+        late = float(segment) + corner.x > upto ? 1.0 : 0.0;
+        if (p1.w > 0.5 || d0.w > 0.5 || d1.w > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+      }`.replaceAll('ROW', ROW);
     const INK = `#version 300 es
       precision highp float;
       in float amount; in float late;
@@ -169,47 +177,42 @@
     gl.linkProgram(program);
     gl.useProgram(program);
     const uniform = name => gl.getUniformLocation(program, name);
-    const u = Object.fromEntries(['turn', 'target', 'half_size', 'zoom', 'by', 'width', 'depth', 'front', 'upto', 'ribbon', 'low', 'high', 'most', 'alpha'].map(k => [k, uniform(k)]));
-    const buffer = content => {
-      const made = gl.createBuffer();
-      gl.bindBuffer(gl.ARRAY_BUFFER, made);
-      gl.bufferData(gl.ARRAY_BUFFER, content, gl.DYNAMIC_DRAW);
+    const u = Object.fromEntries(['places', 'shifts', 'turn', 'target', 'half_size', 'zoom', 'by', 'width', 'depth', 'front', 'upto', 'ribbon', 'low', 'high', 'most', 'alpha'].map(k => [k, uniform(k)]));
+    /** A texture of a vector and a mark for each place. */
+    const texture = (vectors, marks, made = gl.createTexture()) => {
+      const count = marks.length, rows = Math.ceil(count / ROW), all = new Float32Array(4 * ROW * rows);
+      for (let i = 0; i < count; i++) {
+        for (let axis = 0; axis < 3; axis++) all[4 * i + axis] = vectors[3 * i + axis];
+        all[4 * i + 3] = marks[i];
+      }
+      gl.bindTexture(gl.TEXTURE_2D, made);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ROW, rows, 0, gl.RGBA, gl.FLOAT, all);
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
       return made;
-    };
-    const corners = buffer(new Float32Array([0, -1, 0, 1, 1, -1, 1, 1]));
-    const point = (name, from, parts, stride, offset, divisor) => {
-      const where = gl.getAttribLocation(program, name);
-      gl.bindBuffer(gl.ARRAY_BUFFER, from);
-      gl.enableVertexAttribArray(where);
-      gl.vertexAttribPointer(where, parts, gl.FLOAT, false, stride, offset);
-      gl.vertexAttribDivisor(where, divisor);
-    };
-    /** Points joined one after the other; `gap`: nothing leads to it, or to and from it. */
-    const chain = (places, shifts, gap, hole) => {
-      const vao = gl.createVertexArray();
-      gl.bindVertexArray(vao);
-      const [p, f, h] = [places, gap, hole].map(buffer), d = buffer(shifts);
-      point('corner', corners, 2, 8, 0, 0);
-      for (const [name, from] of [['p', p], ['d', d]]) for (const k of [0, 1]) point(name + k, from, 3, 12, 12 * k, 1);
-      point('f1', f, 1, 4, 4, 1);
-      point('f2', h, 1, 4, 4, 1);
-      return { vao, count: gap.length - 1, d };
     };
     const here = new Float32Array(3 * n);
     for (let i = 0; i < 3 * n; i++) here[i] = at[i] - middle[i % 3];
     const none = new Float32Array(n);
-    const path = { real: chain(here, real, begins, none), corrected: chain(here, after, begins, unknown) };
+    const places = texture(here, begins);
+    const path = {
+      real: { places, shifts: texture(real, none), count: n - 1 },
+      corrected: { places, shifts: texture(after, unknown), count: n - 1 },
+    };
     const edges = [];
     for (let k = 0; k < 8; k++) for (const a of [1, 2, 4]) if (!(k & a)) for (const c of [k, k | a]) edges.push(...[0, 1, 2].map(x => (c >> x & 1 ? high[x] : low[x]) - middle[x]));
     const corner = edges.length / 3;
-    const box = chain(new Float32Array(edges), new Float32Array(3 * corner), Float32Array.from({ length: corner }, (_, k) => (k + 1) % 2), new Float32Array(corner));
+    const box = {
+      places: texture(edges, Float32Array.from({ length: corner }, (_, k) => (k + 1) % 2)),
+      shifts: texture(new Float32Array(3 * corner), new Float32Array(corner)), count: corner - 1,
+    };
+    gl.uniform1i(u.shifts, 1);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
 
     const stroke = (chain, o) => {
-      gl.bindVertexArray(chain.vao);
+      [chain.places, chain.shifts].forEach((bound, unit) => { gl.activeTexture(gl.TEXTURE0 + unit); gl.bindTexture(gl.TEXTURE_2D, bound); });
       gl.uniform1i(u.ribbon, o.ribbon ? 1 : 0);
       gl.uniform1f(u.by, o.by || 0);
       gl.uniform1f(u.width, (o.width || 1) * o.ratio);
@@ -220,13 +223,12 @@
       gl.uniform1f(u.alpha, o.alpha || 1);
       gl.uniform1f(u.upto, o.upto);
       gl.depthMask(!o.ribbon);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, chain.count);
+      gl.drawArrays(gl.TRIANGLES, 0, 6 * chain.count);
       gl.depthMask(true);
     };
     return {
       changed() {
-        gl.bindBuffer(gl.ARRAY_BUFFER, path.real.d);
-        gl.bufferSubData(gl.ARRAY_BUFFER, 0, real);
+        texture(real, none, path.real.shifts);
       },
       draw(axes) {
         const ratio = Math.min(devicePixelRatio || 1, 2);
