@@ -103,7 +103,8 @@ impl Thinning {
     /// [`TooLarge`]
     pub fn finish(mut self) -> Result<Scene, TooLarge> {
         self.end_motion();
-        self.reduce_to(self.most)?;
+        self.settle();
+        self.fit()?;
         let Bounds { path, displaced } = self.bounds_um.unwrap_or_default();
         Ok(Scene {
             causes: Vec::new(),
@@ -129,83 +130,109 @@ impl Thinning {
         self.settled = self.settled.min(before);
     }
 
-    fn bounds(&self, step: u32) -> Bounds {
-        let share = f64::from(step - 1) / f64::from(STEPS - 1);
+    /// Bounds between the finest (0) and the coarsest (1).
+    fn bounds(&self, share: f64) -> Bounds {
         let part = FINEST * units::math::powf(COARSEST / FINEST, share);
         Bounds { path: part * self.size_um, displaced: part / DRAWN_AS * self.largest_um }
     }
 
+    fn bounds_of_step(&self) -> Bounds {
+        self.bounds(f64::from(self.step) / f64::from(STEPS))
+    }
+
+    /// What has come since the last step is thinned by it as well.
+    fn settle(&mut self) {
+        if self.step > 0 && self.settled < self.kept.len() {
+            let new = self.kept.split_off(self.settled.saturating_sub(1));
+            self.kept.extend(thinned(new, self.bounds_of_step()));
+        }
+        self.settled = self.kept.len();
+    }
+
+    /// Step by step coarser, while a path comes that is longer than can be held.
     fn reduce_to(&mut self, most: usize) -> Result<(), TooLarge> {
-        loop {
-            if self.step > 0 && self.settled < self.kept.len() {
-                // What has come since has not been thinned by this step.
-                let new = self.kept.split_off(self.settled.saturating_sub(1));
-                self.kept.extend(self.in_stretches(new));
-                self.settled = self.kept.len();
-            }
-            if self.kept.len() <= most {
-                return Ok(());
-            }
+        self.settle();
+        while self.kept.len() > most {
             if self.step == STEPS {
-                let path_bound_um = self.bounds_um.unwrap_or_default().path;
-                return Err(TooLarge { places: self.of, left: self.kept.len(), most, path_bound_um });
+                return Err(self.too_large(self.kept.len(), Bounds::default()));
             }
             // Far from the goal every other step will do.
             let far = self.kept.len() > 4 * most;
             self.step = (self.step + if far { 2 } else { 1 }).min(STEPS);
-            let added = self.bounds(self.step);
-            let bounds = self.bounds_um.get_or_insert_default();
-            *bounds =
-                Bounds { path: bounds.path + added.path, displaced: bounds.displaced + added.displaced };
-            let all = std::mem::take(&mut self.kept);
-            self.kept = self.in_stretches(all);
-            self.settled = self.kept.len();
+            self.thin_by(self.bounds_of_step());
         }
+        Ok(())
     }
 
-    /// Stretch by stretch, no farther than so many places: a path that goes to and fro costs the square of that.
-    fn in_stretches(&self, places: Vec<Place>) -> Vec<Place> {
-        const LONGEST: usize = 256;
-        let bounds = self.bounds(self.step);
-        let (mut kept, mut stretch) = (Vec::new(), Vec::new());
-        for place in places {
-            if place.begins {
-                kept.extend(thinned(std::mem::take(&mut stretch), bounds));
-            }
-            if stretch.len() >= LONGEST {
-                let mut done = thinned(std::mem::take(&mut stretch), bounds);
-                // The next stretch begins where this one ends.
-                stretch.extend(done.pop());
-                kept.extend(done);
-            }
-            stretch.push(place);
+    /// The whole path at once, by the finest bounds that leave no more than a page can hold.
+    fn fit(&mut self) -> Result<(), TooLarge> {
+        /// Halvings of the range of bounds.
+        const ROUNDS: u32 = 7;
+        if self.kept.len() <= self.most {
+            return Ok(());
         }
-        kept.extend(thinned(stretch, bounds));
-        kept
+        let left = |bounds| needed(&self.kept, bounds).into_iter().filter(|needed| *needed).count();
+        let coarsest = left(self.bounds(1.0));
+        if coarsest > self.most {
+            return Err(self.too_large(coarsest, self.bounds(1.0)));
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..ROUNDS {
+            let middle = 0.5 * (low + high);
+            if left(self.bounds(middle)) > self.most { low = middle } else { high = middle }
+        }
+        self.thin_by(self.bounds(high));
+        Ok(())
+    }
+
+    /// What is left out lies off what was left before, and that off the path: bounds add up.
+    fn thin_by(&mut self, added: Bounds) {
+        let bounds = self.bounds_um.get_or_insert_default();
+        *bounds = Bounds { path: bounds.path + added.path, displaced: bounds.displaced + added.displaced };
+        self.kept = thinned(std::mem::take(&mut self.kept), added);
+        self.settled = self.kept.len();
+    }
+
+    fn too_large(&self, left: usize, added: Bounds) -> TooLarge {
+        let path_bound_um = self.bounds_um.unwrap_or_default().path + added.path;
+        TooLarge { places: self.of, left, most: self.most, path_bound_um }
     }
 }
 
-/// Those of a stretch's places that have to be kept, its ends among them.
-fn thinned(places: Vec<Place>, bounds: Bounds) -> Vec<Place> {
-    if places.len() <= 2 {
-        return places;
-    }
-    let mut keep = vec![false; places.len()];
-    let last = places.len() - 1;
-    (keep[0], keep[last]) = (true, true);
-    let mut open = vec![(0, last)];
-    while let Some((from, to)) = open.pop() {
-        let far = |k: usize| distance(&places[from], &places[to], &places[k], bounds);
-        let farthest = (from + 1..to).map(|k| (far(k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((distance, middle)) = farthest
-            && distance > 1.0
-        {
-            keep[middle] = true;
-            open.extend([(from, middle), (middle, to)]);
+/// Those places that have to be kept.
+fn thinned(mut places: Vec<Place>, bounds: Bounds) -> Vec<Place> {
+    let mut needed = needed(&places, bounds).into_iter();
+    places.retain(|_| needed.next() == Some(true));
+    places
+}
+
+/// Which places have to be kept: both ends of every stretch, and what is far from the line between those kept.
+///
+/// A stretch has no more than so many places: a path that goes to and fro costs the square of that.
+fn needed(places: &[Place], bounds: Bounds) -> Vec<bool> {
+    const LONGEST: usize = 256;
+    let mut needed = vec![false; places.len()];
+    let mut from = 0;
+    while from < places.len() {
+        let most = places.len().min(from + LONGEST);
+        let to = (from + 1..most).find(|next| places[*next].begins).unwrap_or(most) - 1;
+        (needed[from], needed[to]) = (true, true);
+        let mut open = vec![(from, to)];
+        while let Some((from, to)) = open.pop() {
+            let far = |k: usize| distance(&places[from], &places[to], &places[k], bounds);
+            let farthest = (from + 1..to).map(|k| (far(k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((distance, middle)) = farthest
+                && distance > 1.0
+            {
+                needed[middle] = true;
+                open.extend([(from, middle), (middle, to)]);
+            }
         }
+        // The next stretch begins where this one ends, if it goes on.
+        let goes_on = places.get(to + 1).is_some_and(|next| !next.begins) && to > from;
+        from = if goes_on { to } else { to + 1 };
     }
-    let mut keep = keep.into_iter();
-    places.into_iter().filter(|_| keep.next() == Some(true)).collect()
+    needed
 }
 
 /// How far a place is from what is drawn between two others, as parts of the bounds.

@@ -577,6 +577,7 @@
   for (const which of ['commanded', 'real', 'corrected']) $('show_' + which).addEventListener('change', event => { state.shown[which] = event.target.checked; draw(); });
   $('cut').addEventListener('change', event => { state.cut = event.target.checked; draw(); });
   $('at').max = n - 1;
+  $('at').value = state.here;
   $('at').addEventListener('input', event => { play(false); look(Number(event.target.value)); });
   // Logarithmic, from its true size to twenty times what it begins with.
   const most = Math.log10(Math.max(10, data.magnification * 20));

@@ -44,10 +44,14 @@ pub(super) fn write(
         read += 1;
         let last = course.places_mm.len().saturating_sub(1);
         let mut from = 0;
+        let after: Vec<Option<[f64; 3]>> =
+            course.places_mm.iter().map(|at_mm| made.displaced_mm(at_mm, &mut from, last)).collect();
+        let largest_mm =
+            after.iter().flatten().map(|mm| apart_mm(mm, &[0.0; 3])).fold(trace.after_mm, f64::max);
         for (k, (at_mm, errors)) in
             course.places_mm.iter().zip(course.errors_mm.chunks_exact(machines)).enumerate()
         {
-            let after = made.displaced_mm(at_mm, &mut from, last);
+            let after = after[k];
             // A motion that goes on begins where the last has ended.
             if k == 0 && !begins {
                 continue;
@@ -57,7 +61,7 @@ pub(super) fn write(
                 line: line_of(file, course.line),
                 begins: k == 0,
                 ends: k == last,
-                off_um: [trace.before_mm, trace.after_mm].map(|mm| (mm * 1e3) as f32),
+                off_um: [trace.before_mm, largest_mm].map(|mm| (mm * 1e3) as f32),
                 unknown_after: after.is_none(),
                 displaced_um: viewer::displacements(errors[0], after.unwrap_or_default(), &errors[1..]),
             };
