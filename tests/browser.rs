@@ -70,9 +70,15 @@ pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, St
 }
 
 pub(crate) fn visit(browser: &str, page: &Path) -> Visit {
+    visit_with(browser, page, &[])
+}
+
+/// The same with more options.
+pub(crate) fn visit_with(browser: &str, page: &Path, more: &[&str]) -> Visit {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let log = folder.path().join("net.json");
-    let more = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
+    let own = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
+    let more: Vec<String> = own.into_iter().chain(more.iter().map(|option| (*option).to_owned())).collect();
     let (dom, said) = browse(browser, page, &more);
     let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned).collect();
     let net = std::fs::read_to_string(&log).expect("the browser writes its log of requests");
@@ -122,19 +128,19 @@ fn backlash() -> Report {
     report("samples/diagnosis/backlash.csv", "samples/diagnosis/backlash.toml", &unseen)
 }
 
-fn text(path: &Path) -> String {
+pub(crate) fn text(path: &Path) -> String {
     std::fs::read_to_string(path).expect("the report was written")
 }
 
 /// The data that a page carries along.
-fn data_of(page: &str) -> serde_json::Value {
+pub(crate) fn data_of(page: &str) -> serde_json::Value {
     let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
     serde_json::from_str(data.expect("a data block")).expect("JSON")
 }
 
 /// A page full of elements that try to act: none does. The page's own policy would hide a mistake, so it is tried
 /// without it, too.
-fn nothing_acted(browser: &str, report: &Report) {
+pub(crate) fn nothing_acted(browser: &str, report: &Report) {
     let page = text(&report.page);
     let policy = page.find("<meta http-equiv").expect("a policy");
     let end = policy + page[policy..].find('>').expect("it ends") + 1;

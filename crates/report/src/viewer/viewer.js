@@ -512,8 +512,8 @@
   const pointers = new Map();
   let travelled = 0;
   view.addEventListener('pointerdown', event => {
-    view.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
+    if (event.isTrusted) view.setPointerCapture(event.pointerId); // what a script makes up cannot be captured
     if (pointers.size === 1) travelled = 0;
   });
   view.addEventListener('pointermove', event => {
