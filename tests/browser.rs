@@ -43,7 +43,7 @@ impl Visit {
 const QUIET: [&str; 12] = [
     "--headless",
     "--no-sandbox",
-    "--disable-gpu",
+    NO_GPU,
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -55,11 +55,19 @@ const QUIET: [&str; 12] = [
     "--enable-logging=stderr",
 ];
 
+const NO_GPU: &str = "--disable-gpu";
+
+/// For pages that draw in space: WebGL by the processor.
+pub(crate) const SPACE: [&str; 3] =
+    ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
 /// One run of the browser with an empty profile.
 pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
     let profile = tempfile::tempdir().expect("a temporary folder");
     let ran = Command::new(browser)
-        .args(QUIET)
+        .args(
+            QUIET.into_iter().filter(|flag| *flag != NO_GPU || !more.iter().any(|option| option == SPACE[0])),
+        )
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(more)
         .arg(format!("file://{}", page.display()))
@@ -140,14 +148,14 @@ pub(crate) fn data_of(page: &str) -> serde_json::Value {
 
 /// A page full of elements that try to act: none does. The page's own policy would hide a mistake, so it is tried
 /// without it, too.
-pub(crate) fn nothing_acted(browser: &str, report: &Report) {
+pub(crate) fn nothing_acted(browser: &str, report: &Report, more: &[&str]) {
     let page = text(&report.page);
     let policy = page.find("<meta http-equiv").expect("a policy");
     let end = policy + page[policy..].find('>').expect("it ends") + 1;
     let unprotected = report.folder.path().join("unprotected.html");
     std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
     for page in [&report.page, &unprotected] {
-        let visit = visit(browser, page);
+        let visit = visit_with(browser, page, more);
         let root = visit.dom.split('>').nth(1).unwrap_or_default();
         assert!(root.contains("<html") && !root.contains("acted"), "{root}");
         assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
@@ -240,7 +248,7 @@ fn nothing_in_a_file_can_act() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &report);
+    nothing_acted(browser, &report, &[]);
 }
 
 #[test]
@@ -370,7 +378,7 @@ fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &Report { folder, page });
+    nothing_acted(browser, &Report { folder, page }, &[]);
 }
 
 #[test]
@@ -442,5 +450,5 @@ fn nothing_in_a_program_can_act_in_a_check() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &report);
+    nothing_acted(browser, &report, &[]);
 }
