@@ -294,7 +294,7 @@
       const seen = Math.hypot(to[0] - from[0], to[1] - from[1]) > 56;
       const away = Math.hypot(mid[0] - centre[0], mid[1] - centre[1]) || 1;
       const [dx, dy] = [(mid[0] - centre[0]) / away * 24, (mid[1] - centre[1]) / away * 18];
-      for (const [id, p, text] of [[name + '0', from.map((v, k) => v + 0.06 * (to[k] - v)), digits(low[a], 0)], [name + '1', from.map((v, k) => v + 0.94 * (to[k] - v)), digits(high[a], 0)], [name, mid, name.toUpperCase() + ', mm']]) {
+      for (const [id, p, text] of [[name + '0', from.map((v, k) => v + 0.06 * (to[k] - v)), digits(low[a], 0)], [name + '1', from.map((v, k) => v + 0.94 * (to[k] - v)), digits(high[a], 0)], [name, mid, name.toUpperCase() + ', ' + word('mm')]]) {
         put(id, { x: p[0] + dx, y: p[1] + dy + 4, visibility: seen ? 'visible' : 'hidden' });
         $(id).textContent = text;
       }
@@ -392,7 +392,7 @@
     $('line').textContent = title;
     $('block').textContent = text ?? '';
     $('block').hidden = text === undefined;
-    $('place').textContent = ['X', 'Y', 'Z'].map((a, k) => a + '\u00a0' + digits(at[3 * i + k], 3)).join('  ') + '\u00a0mm';
+    $('place').textContent = ['X', 'Y', 'Z'].map((a, k) => a + '\u00a0' + digits(at[3 * i + k], 3)).join('  ') + '\u00a0' + word('mm');
     const fill = (id, v, gone) => [...triple(v, i, um), um(size(v, i))].forEach((text, k) => { $(id + k).textContent = gone ? '\u2014' : text; });
     fill('r', real, false);
     fill('a', after, unknown[i]);

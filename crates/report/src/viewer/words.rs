@@ -113,6 +113,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
         "Смещение {real} мкм, исправленное {after} мкм",
     ),
     ("um", "µm", "мкм"),
+    ("mm", "mm", "мм"),
     ("causes", "What makes the error", "Из чего погрешность"),
     (
         "causes_how",
