@@ -36,7 +36,7 @@ pub struct MessageOptions {
     pub color: Color,
     /// Language: en, ru; default: the locale's.
     ///
-    /// Of `vpost explain`; LC_ALL, LC_MESSAGES, LANG say it otherwise.
+    /// Of `vpost explain` and of the pages of `--viewer`; LC_ALL, LC_MESSAGES, LANG say it otherwise.
     #[arg(id = "lang", long = "lang", value_name = "LANG", global = true, help_heading = "Messages")]
     pub language: Option<Given<Language>>,
 }
@@ -87,7 +87,9 @@ pub struct Check {
     /// Write the result as one page: the tool path coloured by its error, the worst blocks (HTML).
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
-    /// Write a page in which the error moves: the path in space, magnified, cause by cause (HTML with a script).
+    /// Write a page in which the error moves.
+    ///
+    /// The path in space, magnified, cause by cause; HTML with a script of its own.
     #[arg(long, value_name = "FILE")]
     pub viewer: Option<PathBuf>,
 }

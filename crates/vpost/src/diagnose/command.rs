@@ -33,10 +33,14 @@ pub struct Diagnose {
     /// Write the diagnosis as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the diagnosis as one page for a browser: drawings, no network, no script.
+    /// Write the diagnosis as one page for a browser.
+    ///
+    /// Drawings, no network, no script.
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
-    /// Write a page in which the error moves: the rows, magnified, cause by cause (HTML with a script).
+    /// Write a page in which the error moves.
+    ///
+    /// The rows in space, magnified, cause by cause; HTML with a script of its own.
     #[arg(long, value_name = "FILE")]
     pub viewer: Option<PathBuf>,
     /// Write the profile with the causes added as effects.
