@@ -14,9 +14,12 @@ pub(super) struct Encoded {
     pub(super) rows: String,
 }
 
+/// One number of each place.
+type Row = Box<dyn Fn(&Place) -> i64>;
+
 /// Line and flags; X, Y, Z; off before and after; then X, Y, Z of each displacement.
 pub(super) fn encoded(places: &[Place], displacements: usize) -> Encoded {
-    let mut rows: Vec<Box<dyn Fn(&Place) -> i64 + '_>> = vec![Box::new(|place| place.line as i64)];
+    let mut rows: Vec<Row> = vec![Box::new(|place| place.line as i64)];
     for axis in 0..3 {
         rows.push(Box::new(move |place| (place.at_mm[axis] * 1e3 / PLACE_UM).round() as i64));
     }
