@@ -165,7 +165,7 @@ fn the_picked_line_is_the_block_with_its_figures() {
             go({places} - 1);
             for (const type of ['pointerdown', 'pointerup'])
                 $('view').dispatchEvent(new PointerEvent(type, {{ pointerId: 7, clientX: box.left + spot[0], clientY: box.top + spot[1], bubbles: true }}));
-            say({{ found, picked: $('line').textContent, first: found[0][0] }});
+            say({{ found, picked: $('line').textContent, left: $('after_most').textContent, first: found[0][0] }});
         }});"
     );
     let value = act(browser, &report, &script, &[]);
@@ -183,6 +183,11 @@ fn the_picked_line_is_the_block_with_its_figures() {
         assert!(row[2].as_str().is_some_and(|place| place.starts_with("X\u{a0}")), "{row}");
     }
     assert_eq!(value["picked"], value["first"], "a pointer picks what lies under it");
+    // What is left is drawn no larger than the check found it, and not much smaller.
+    let left = value["left"].as_str().and_then(|said| said.split(' ').nth(2)).expect("up to so much");
+    let (left, found): (f64, f64) =
+        (left.parse().expect("a number"), data["values"]["after"].as_f64().expect("a number"));
+    assert!(left <= found + 0.02 && left > 0.8 * found, "{left} drawn, {found} found");
 }
 
 /// What is shown without a cause is what the machine does without it: the same program on a machine that has not got it.
@@ -235,6 +240,21 @@ fn a_cause_that_is_switched_off_is_gone() {
         }
     }
     assert!(compared >= 8, "{compared} places are in both pages");
+}
+
+/// Each cause, the rows aligned: together they are what the diagnosis says that they explain.
+#[test]
+fn causes_of_a_diagnosis_add_up_to_what_they_explain() {
+    let report = diagnosis();
+    let data = data_of(&text(&report.page));
+    let remainder = data["values"]["remainder"].as_f64().expect("a number");
+    let Some(browser) = chromium() else {
+        println!("skipped: chromium is not installed");
+        return;
+    };
+    let left = act(browser, &report, "say($('after_most').textContent.split(' ')[2]);", &[]);
+    let left: f64 = left.as_str().and_then(|text| text.parse().ok()).expect("a number");
+    assert!(left > 10.0 && (remainder - left).abs() < 0.1, "{remainder} {left}");
 }
 
 #[test]

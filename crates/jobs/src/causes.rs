@@ -1,4 +1,8 @@
 //! The machine without one of its causes of error at a time.
+//!
+//! A cause displaces the tool by what is missing without it: the error with all coefficients ε = 1 less that with those of
+//! the cause 0, equation (52) and those behind it in `docs/equations.md`. Products of errors make the sum of all causes
+//! another number than the whole: second order, some 10 nm for angles of 100 µrad.
 
 use error_budget::{Family, Machine};
 use machine_model::effects::Conditions;
