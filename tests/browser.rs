@@ -43,7 +43,7 @@ impl Visit {
 const QUIET: [&str; 12] = [
     "--headless",
     "--no-sandbox",
-    "--disable-gpu",
+    NO_GPU,
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -55,11 +55,19 @@ const QUIET: [&str; 12] = [
     "--enable-logging=stderr",
 ];
 
+const NO_GPU: &str = "--disable-gpu";
+
+/// For pages that draw in space: WebGL by the processor.
+pub(crate) const SPACE: [&str; 3] =
+    ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
 /// One run of the browser with an empty profile.
 pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, String) {
     let profile = tempfile::tempdir().expect("a temporary folder");
     let ran = Command::new(browser)
-        .args(QUIET)
+        .args(
+            QUIET.into_iter().filter(|flag| *flag != NO_GPU || !more.iter().any(|option| option == SPACE[0])),
+        )
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(more)
         .arg(format!("file://{}", page.display()))
@@ -70,9 +78,15 @@ pub(crate) fn browse(browser: &str, page: &Path, more: &[String]) -> (String, St
 }
 
 pub(crate) fn visit(browser: &str, page: &Path) -> Visit {
+    visit_with(browser, page, &[])
+}
+
+/// The same with more options.
+pub(crate) fn visit_with(browser: &str, page: &Path, more: &[&str]) -> Visit {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let log = folder.path().join("net.json");
-    let more = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
+    let own = ["--dump-dom".to_owned(), format!("--log-net-log={}", log.display())];
+    let more: Vec<String> = own.into_iter().chain(more.iter().map(|option| (*option).to_owned())).collect();
     let (dom, said) = browse(browser, page, &more);
     let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned).collect();
     let net = std::fs::read_to_string(&log).expect("the browser writes its log of requests");
@@ -122,26 +136,26 @@ fn backlash() -> Report {
     report("samples/diagnosis/backlash.csv", "samples/diagnosis/backlash.toml", &unseen)
 }
 
-fn text(path: &Path) -> String {
+pub(crate) fn text(path: &Path) -> String {
     std::fs::read_to_string(path).expect("the report was written")
 }
 
 /// The data that a page carries along.
-fn data_of(page: &str) -> serde_json::Value {
+pub(crate) fn data_of(page: &str) -> serde_json::Value {
     let data = page.split("type=\"application/json\">").nth(1).and_then(|t| t.split("</script>").next());
     serde_json::from_str(data.expect("a data block")).expect("JSON")
 }
 
 /// A page full of elements that try to act: none does. The page's own policy would hide a mistake, so it is tried
 /// without it, too.
-fn nothing_acted(browser: &str, report: &Report) {
+pub(crate) fn nothing_acted(browser: &str, report: &Report, more: &[&str]) {
     let page = text(&report.page);
     let policy = page.find("<meta http-equiv").expect("a policy");
     let end = policy + page[policy..].find('>').expect("it ends") + 1;
     let unprotected = report.folder.path().join("unprotected.html");
     std::fs::write(&unprotected, format!("{}{}", &page[..policy], &page[end..])).expect("writable");
     for page in [&report.page, &unprotected] {
-        let visit = visit(browser, page);
+        let visit = visit_with(browser, page, more);
         let root = visit.dom.split('>').nth(1).unwrap_or_default();
         assert!(root.contains("<html") && !root.contains("acted"), "{root}");
         assert!(!visit.dom.contains("<img") && !visit.dom.contains("<b onmouseover"), "an element got in");
@@ -234,7 +248,7 @@ fn nothing_in_a_file_can_act() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &report);
+    nothing_acted(browser, &report, &[]);
 }
 
 #[test]
@@ -364,7 +378,7 @@ fn nothing_in_a_profile_or_an_option_can_act_in_a_map() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &Report { folder, page });
+    nothing_acted(browser, &Report { folder, page }, &[]);
 }
 
 #[test]
@@ -436,5 +450,5 @@ fn nothing_in_a_program_can_act_in_a_check() {
         println!("skipped: chromium is not installed");
         return;
     };
-    nothing_acted(browser, &report);
+    nothing_acted(browser, &report, &[]);
 }

@@ -22,7 +22,7 @@ fn circles() -> Report {
 }
 
 /// How far a page reaches to the right in a frame as wide as a telephone.
-fn width_in_a_frame(browser: &str, report: &Report, width: u32) -> u32 {
+pub(crate) fn width_in_a_frame(browser: &str, report: &Report, width: u32) -> u32 {
     let outside = report.folder.path().join("frame.html");
     let script = "document.getElementById('f').onload=function(){document.documentElement.setAttribute('reaches',this.contentDocument.documentElement.scrollWidth)}";
     let frame = format!(

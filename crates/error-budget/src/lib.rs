@@ -24,5 +24,5 @@ mod zonotope;
 pub use budget::{Budget, Item, OneSided};
 pub use combined::{Extreme, Field, balanced_signs, root_sum_of_squares, worst_case};
 pub use criteria::Criteria;
-pub use machine::{Deviation, Machine, Unit};
+pub use machine::{Deviation, Family, Machine, Unit};
 pub use zonotope::{Farthest, farthest};

@@ -29,6 +29,60 @@ pub struct Deviation {
     place: Place,
 }
 
+/// What kind of deviation it is, as ISO 230-1 sorts them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// Positioning error of a linear axis: `EXX`.
+    Positioning(Axis),
+    /// Straightness errors of a linear axis: `EYX`, `EZX`.
+    Straightness(Axis),
+    /// Angular errors of a linear axis: `EAX`, `EBX`, `ECX`.
+    Angular(Axis),
+    /// Reversal value of a linear axis.
+    Reversal(Axis),
+    /// Squareness of two linear axes.
+    Squareness,
+    /// Error functions of a rotary axis.
+    Rotary(Axis),
+    /// Where a rotary axis lies, and how.
+    Location(Axis),
+    /// An effect beyond the tables.
+    Effect,
+}
+
+impl Deviation {
+    /// What kind it is of.
+    ///
+    /// ```
+    /// use error_budget::{Family, Machine};
+    /// use machine_model::effects::Conditions;
+    /// use machine_model::{Axis, Chain, Description, LinearAxis, Range, RigidBody, RotaryAxis, Squareness, Vector, WithEffects};
+    ///
+    /// let mut linear = [(); 3].map(|()| LinearAxis::perfect(Range { low: 0.0, high: 100.0 }));
+    /// linear[0].backlash_mm = 0.004;
+    /// let rotary = [(); 3].map(|()| RotaryAxis::perfect(Vector::zeros()));
+    /// let chain = Chain::parse("[w X Y b Z t]").unwrap();
+    /// let squareness = Squareness { ec0y_rad: 20e-6, ..Squareness::default() };
+    /// let body = RigidBody::new(Description { chain, linear, rotary, squareness }).unwrap();
+    /// let machine = Machine::new(WithEffects::new(body, Vec::new(), Conditions::default()).unwrap());
+    /// let families: Vec<Family> = machine.deviations().iter().map(|deviation| deviation.family()).collect();
+    /// assert_eq!(families, [Family::Reversal(Axis::X), Family::Squareness]);
+    /// ```
+    #[must_use]
+    pub fn family(&self) -> Family {
+        match self.place {
+            Place::Function(axis @ 3.., _) => Family::Rotary(Axis::ALL[axis]),
+            Place::Function(axis, 3..) => Family::Angular(Axis::ALL[axis]),
+            Place::Function(axis, component) if component == axis => Family::Positioning(Axis::ALL[axis]),
+            Place::Function(axis, _) => Family::Straightness(Axis::ALL[axis]),
+            Place::Reversal(axis) => Family::Reversal(Axis::ALL[axis]),
+            Place::Squareness(_) => Family::Squareness,
+            Place::Location(axis, _) => Family::Location(Axis::ALL[axis + 3]),
+            Place::Effect(_) => Family::Effect,
+        }
+    }
+}
+
 /// Where the machine's description has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {

@@ -1,8 +1,9 @@
 //! The closed loop: two programs through the machine model, what they make of the part compared.
 
 use diagnostic::{Text, both};
+use machine_model::Models;
 use nc_expand::Expanded;
-use path_comparison::{Comparison, Traces};
+use path_comparison::{Comparison, Course, Traces};
 use rewrite::Checked;
 use serde::Serialize;
 
@@ -148,4 +149,33 @@ pub fn closed(
         let (name, text, expanded) = [&wanted, &commanded][unreadable.program];
         Failure::Refused(expand::reports(expanded, name, text, unreadable.diagnostics))
     })
+}
+
+/// Largest distance between places of a [`Course`], mm.
+const COURSE_STEP_MM: f64 = 2.0;
+
+/// A program that is called by another: its name and bytes, by the number of its file.
+pub type CalledFile = (usize, String, Vec<u8>);
+
+/// Runs a program on the machine and on others beside it: every feed motion in order, with the number of its file (0 is the
+/// program itself) and the errors of each machine. One for each trace of [`closed`].
+///
+/// # Errors
+/// The messages of a program that cannot be read.
+pub fn courses(
+    (name, text): (&str, &[u8]),
+    settings: &Settings,
+    others: &[Models<'_>],
+    each: &mut dyn FnMut(usize, Course),
+) -> Result<Vec<CalledFile>, Failure> {
+    let expanded = expand::expanded(text, name, settings)?;
+    let job = settings.job(true, "")?;
+    let models: Vec<Models<'_>> = std::iter::once(job.models).chain(others.iter().copied()).collect();
+    rewrite::courses(&job, &models, &expanded, COURSE_STEP_MM, each)
+        .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))?;
+    let called = (1..).map_while(|file| {
+        let (name, text) = expanded.file(file)?;
+        Some((file, name.to_owned(), text.to_vec()))
+    });
+    Ok(called.collect())
 }

@@ -95,6 +95,8 @@ pub struct Trace {
     pub before_mm: f64,
     /// Largest distance of the corrected motions made for it, mm.
     pub after_mm: f64,
+    /// Where these bring the tool, mm, as the workpiece sees it: places in order, with [`Traces::WithPlaces`].
+    pub made_mm: Vec<[f64; 3]>,
 }
 
 /// Whether a comparison remembers every motion.
@@ -104,4 +106,6 @@ pub enum Traces {
     Forgotten,
     /// One for each programmed feed motion.
     Kept,
+    /// The same, each with [`Trace::made_mm`].
+    WithPlaces,
 }

@@ -10,6 +10,7 @@ use toolpath::{
     CycleKind, FeedRate, Hole, HoleMove, Kinematics, MOST_PECKS, Motion, Partial, PeckRetreats, whole_pecks,
 };
 
+use crate::course::{Course, Others};
 use crate::stretch::{LEVER_MM, Place, Span, Stretch};
 use crate::way::Way;
 use crate::{Act, Step};
@@ -105,6 +106,10 @@ pub(crate) struct Feeding {
     pub(crate) off_mm: f64,
     /// Largest distance of what was made of it, mm.
     pub(crate) made_off_mm: f64,
+    /// Where the tool was brought for it, where that is to be remembered.
+    pub(crate) made: Vec<[f64; 3]>,
+    /// The errors along it, where they are asked for.
+    pub(crate) course: Option<Box<Course>>,
 }
 
 impl Feeding {
@@ -246,6 +251,8 @@ pub(crate) struct Items<'m, I> {
     place: Option<Place>,
     counted: Counted,
     ready: VecDeque<Item>,
+    /// Machines that go the same way, and how densely: [`crate::courses`].
+    others: Option<Others<'m>>,
     /// Feeds in a row under cutter compensation.
     compensated: u32,
     /// Feed motions so far, a hole being one.
@@ -291,10 +298,17 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             place: None,
             counted,
             ready: VecDeque::new(),
+            others: None,
             compensated: 0,
             feeds: 0,
             limit_mm: 0.0,
         }
+    }
+
+    /// The same, and what other machines make of it.
+    pub(crate) fn with_others(mut self, others: Others<'m>) -> Self {
+        self.others = Some(others);
+        self
     }
 
     /// The item so many behind the next.
@@ -335,6 +349,8 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             way: None,
             off_mm: 0.0,
             made_off_mm: 0.0,
+            made: Vec::new(),
+            course: None,
         }));
         true
     }
@@ -379,15 +395,18 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         self.play = self.model.depends_on_direction().then(Play::unknown);
         self.at.linear_mm = [None; 3];
         self.place = None;
+        if let Some(others) = &mut self.others {
+            others.switch(kinematics);
+        }
     }
 
     fn positioning(&mut self, common: &Common, start: Partial, end: Partial, kind: Kind) {
         let rotary_rad = Vector::from(end.rotary_deg.map(f64::to_radians));
-        if let Some(play) = &mut self.play {
+        let position = |model: &dyn PathModel, play: &mut Play| {
             // From where the program begins a first move has a direction too.
             for place in [start, end] {
                 let known = Vector::from(place.linear_mm.map(|at| at.unwrap_or(0.0)));
-                play.go(self.model, &common.command(known, rotary_rad));
+                play.go(model, &common.command(known, rotary_rad));
             }
             for axis in 0..3 {
                 let [from, to] = [start.linear_mm[axis], end.linear_mm[axis]];
@@ -397,6 +416,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                     play.forget(axis, to);
                 }
             }
+        };
+        if let Some(play) = &mut self.play {
+            position(self.model, play);
+        }
+        for (model, play) in self.others.iter_mut().flat_map(Others::playing) {
+            position(model, play);
         }
         let error = end.complete().map(|end| {
             let at = Vector::from(end.linear_mm);
@@ -451,8 +476,12 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let along_rad = units::math::powf(125.0 * PARABOLA_MM / (radius_mm * steep).max(1e-9), 1.0 / 3.0);
         let turn_rad = square_rad.min(along_rad).min(SAMPLE_RAD);
         let pieces = (way.turning_rad() / turn_rad).max(way.rotary_turn_rad() / TURN_RAD);
-        let samples = pieces.max(length_mm / SAMPLE_MM).ceil().clamp(1.0, MOST_SAMPLES);
-        let real = self.real(common, &way, samples);
+        let samples = match &self.others {
+            None => pieces.max(length_mm / SAMPLE_MM),
+            Some(others) => others.pieces(&way, length_mm),
+        };
+        let real = self.real(common, &way, samples.ceil().clamp(1.0, MOST_SAMPLES));
+        let course = self.course(common, &way, &real);
         let seen =
             |s: f64, error_mm: &Vector| self.place(&common.command(way.at(s) + error_mm, way.rotary_rad(s)));
         let nominal = |s: f64| seen(s, &Vector::zeros());
@@ -505,7 +534,26 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             way: Some(way),
             off_mm,
             made_off_mm: 0.0,
+            made: Vec::new(),
+            course,
         })));
+    }
+
+    /// What every machine makes of a way, at the places of the first.
+    fn course(&mut self, common: &Common, way: &Way, real: &[(f64, Vector)]) -> Option<Box<Course>> {
+        let mut others = self.others.take()?;
+        let mut course = Course { line: common.line, places_mm: Vec::new(), errors_mm: Vec::new() };
+        for (s, error_mm) in real {
+            let here = common.command(way.at(*s), way.rotary_rad(*s));
+            let seen =
+                |error_mm: Vector| self.place(&Command { linear_mm: here.linear_mm + error_mm, ..here });
+            let nominal = seen(Vector::zeros());
+            course.places_mm.push(first_three(&nominal));
+            let all = std::iter::once(*error_mm).chain(others.errors_mm(&here));
+            course.errors_mm.extend(all.map(|error_mm| first_three(&(seen(error_mm) - nominal))));
+        }
+        self.others = Some(others);
+        Some(Box::new(course))
     }
 
     /// The machine's errors along a way, evenly and wherever an axis turns or has its play taken up.
@@ -624,6 +672,11 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             at = to;
         }
     }
+}
+
+/// X, Y, Z of a place.
+pub(crate) fn first_three(place: &Place) -> [f64; 3] {
+    [place[0], place[1], place[2]]
 }
 
 /// What makes a positioning move.

@@ -19,6 +19,7 @@
 
 mod alignment;
 mod comparison;
+mod course;
 mod difference;
 mod items;
 mod matcher;
@@ -30,6 +31,7 @@ use machine_model::Models;
 use toolpath::PeckRetreats;
 
 pub use comparison::{Comparison, Deviation, Mismatch, Trace, Traces, What};
+pub use course::{Course, TURN_RAD, courses};
 pub use step::{Act, Step};
 pub use stretch::LEVER_MM;
 pub use way::Way;

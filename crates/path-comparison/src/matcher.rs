@@ -30,6 +30,8 @@ pub(crate) struct Matcher<'m, W, C> {
     /// How the next run begins.
     begins: Begins,
     time: Time,
+    /// So many feeds ahead is the one that was reached last.
+    reached: usize,
     /// Where the programs parted first without a name for it.
     unnamed: Option<Mismatch>,
     result: Comparison,
@@ -64,6 +66,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             traces,
             begins: Begins::AtStart,
             time: Time::default(),
+            reached: 0,
             unnamed: None,
             result: Comparison::default(),
         }
@@ -218,10 +221,27 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             match last {
                 Reached::Nowhere => return last,
                 Reached::OnTheWay => {}
-                Reached::At(ahead, distance_mm) => self.note(ahead, distance_mm),
+                Reached::At(ahead, distance_mm) => {
+                    self.note(ahead, distance_mm);
+                    self.remember(stretch, ahead);
+                }
             }
         }
         last
+    }
+
+    /// Keeps where a stretch leads, for the feed that is reached and for those on the way there.
+    fn remember(&mut self, stretch: &Stretch, ahead: usize) {
+        if self.traces != Traces::WithPlaces {
+            return;
+        }
+        for feed in self.reached.min(ahead)..=ahead {
+            if let Some(feed) = self.alignment.wanted.feed(feed) {
+                let begins = feed.made.last().copied();
+                feed.made.extend(stretch.places().skip_while(|place| Some(*place) == begins));
+            }
+        }
+        self.reached = ahead;
     }
 
     /// A distance from the feed so many ahead.
@@ -289,6 +309,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
 
     /// The next programmed item is done with.
     fn drop_wanted(&mut self) {
+        self.reached = self.reached.saturating_sub(1);
         if let Some(item) = self.alignment.wanted.pop() {
             self.record(item);
         }
@@ -297,11 +318,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     /// What is to be remembered of a programmed item.
     fn record(&mut self, item: Item) {
         let Item::Feed(feed) = item else { return };
-        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, .. } = *feed;
+        let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, made: made_mm, .. } =
+            *feed;
         self.result.before.note(before_mm, line);
         self.result.after.note(after_mm, line);
-        if let (Traces::Kept, Some(way)) = (self.traces, way) {
-            self.result.traces.push(Trace { line, way, before_mm, after_mm });
+        if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {
+            self.result.traces.push(Trace { line, way, before_mm, after_mm, made_mm });
         }
         let minutes = minutes.unwrap_or(0.0);
         (self.time.made, self.time.compared) = (self.time.made - minutes, self.time.compared - minutes);
@@ -335,6 +357,7 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
     ///
     /// * `done` – so many programmed items ahead are made
     fn part(&mut self, done: usize) {
+        self.reached = 0;
         let so_far = self.result.mismatches.len() + self.result.more_mismatches;
         let most = if so_far > AHEAD_IS_FAR { 2 } else { AHEAD };
         let [skipped, added] = self.meeting(done, most);

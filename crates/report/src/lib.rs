@@ -5,10 +5,11 @@
 //!
 //! A page is one file: styles and drawings inside it, no script, no network, the same bytes for the same results. It can be
 //! read in the light and in the dark, printed, walked through with the keyboard and read aloud; every drawing has its
-//! numbers in a table behind it. Texts from files enter through [`maud`], which escapes them, after [`text::shown`] has made
+//! numbers in a table behind it. The one page that runs a script is [`viewer`]'s, and its policy names it. Texts from files enter through [`maud`], which escapes them, after [`text::shown`] has made
 //! what is invisible visible.
 
 pub mod chart;
 pub mod page;
 pub mod scale;
 pub mod text;
+pub mod viewer;

@@ -46,6 +46,22 @@ pub fn json_block(json: &str) -> Markup {
     PreEscaped(out)
 }
 
+/// A string of JSON. (Before it enters a page it is a part of a [`json_block`].)
+#[must_use]
+pub fn json_string(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            '\u{0}'..='\u{1f}' => out.push_str(&format!("\\u{:04x}", u32::from(c))),
+            _ => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
 /// A number with three significant digits, as people write it: no exponent for what a machine measures.
 #[must_use]
 pub fn number(value: f64) -> String {

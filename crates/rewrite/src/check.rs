@@ -6,12 +6,13 @@ mod reading;
 use std::cell::RefCell;
 
 use diagnostic::{Diagnostic, Text, both};
+use machine_model::Models;
 use nc_expand::Expanded;
-use path_comparison::{Comparison, Traces, compare};
+use path_comparison::{Comparison, Course, Traces, compare};
 
 use crate::job::Job;
 use crate::words::retreats;
-use reading::{Numbers, Optional, Program};
+use reading::{Numbers, Optional, Program, file_and_line};
 
 /// How the corrected program compares with the posted one.
 #[derive(Debug)]
@@ -77,4 +78,26 @@ pub fn check(
         }
     }
     Ok(executed)
+}
+
+/// Runs a program on several machines: every feed motion with its file, and with the errors of each machine along it,
+/// blocks under `/` executed. See [`path_comparison::courses`].
+///
+/// # Errors
+/// What cannot be read of it.
+pub fn courses(
+    job: &Job<'_>,
+    models: &[Models<'_>],
+    program: &Expanded<'_>,
+    step_mm: f64,
+    each: &mut dyn FnMut(usize, Course),
+) -> Result<(), Vec<Diagnostic>> {
+    let numbers = RefCell::new(Numbers::default());
+    let mut steps = Program::new(program, job, Optional::Executed, &numbers, &|_| ()).with_files();
+    path_comparison::courses(models, &mut steps, retreats(job.dialect), step_mm, &mut |mut course| {
+        let (file, line) = file_and_line(course.line);
+        course.line = line;
+        each(file, course);
+    });
+    steps.refused.take().map_or(Ok(()), Err)
 }

@@ -52,7 +52,7 @@ mod tally;
 mod whole;
 mod words;
 
-pub use check::{Checked, Unreadable, check};
+pub use check::{Checked, Unreadable, check, courses};
 pub use job::*;
 pub use large::{Digest, Large, LargeEnd, Manner, Part, Source};
 pub use survey::refused_besides;

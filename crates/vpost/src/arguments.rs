@@ -87,6 +87,11 @@ pub struct Check {
     /// Write the result as one page: the tool path coloured by its error, the worst blocks (HTML).
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Write a page in which the error moves.
+    ///
+    /// The path in space, magnified, cause by cause; HTML with a script of its own.
+    #[arg(long, value_name = "FILE")]
+    pub viewer: Option<PathBuf>,
 }
 
 /// `vpost predict`

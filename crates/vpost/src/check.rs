@@ -1,6 +1,7 @@
 //! The closed loop: two programs through the machine model, what they make of the part compared.
 
 mod page;
+mod viewer;
 
 use std::path::Path;
 
@@ -24,12 +25,17 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
         .reads(both!("the corrected program", "исправленная программа"), &arguments.output)
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
         .writes("--html", arguments.html.as_deref())
+        .writes("--viewer", arguments.viewer.as_deref())
         .are_apart()?;
     let model = settings.path_model()?;
     let read = |path: &Path| -> Result<_, Failure> { Ok((file::name(path), file::read_program(path)?)) };
     let (wanted_name, wanted) = read(&arguments.input)?;
     let (commanded_name, commanded) = read(&arguments.output)?;
-    let traces = if arguments.html.is_some() { Traces::Kept } else { Traces::Forgotten };
+    let traces = match (&arguments.html, &arguments.viewer) {
+        (_, Some(_)) => Traces::WithPlaces,
+        (Some(_), None) => Traces::Kept,
+        (None, None) => Traces::Forgotten,
+    };
     let progress = Progress::new(messages, None);
     let programs = [(wanted_name.as_str(), wanted.as_slice()), (&commanded_name, &commanded)];
     let Checked { comparison, findings } =
@@ -39,27 +45,31 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let outcome = Outcome::new(&settings, &comparison, findings);
     let passed = outcome.passed;
     let findings: Vec<String> = outcome.findings.iter().map(|finding| finding.english().to_owned()).collect();
-    if arguments.json || arguments.html.is_some() {
-        let text = outcome.json();
+    let json = outcome.json();
+    if arguments.html.is_some() || arguments.viewer.is_some() {
+        let facts = page::Facts {
+            input: &wanted_name,
+            output: &commanded_name,
+            text: &measurement_files::utf8_or_1251(&wanted),
+            machine: &settings.profile.name,
+            profile: &settings.profile_name,
+            profile_hash: &settings.profile_hash.to_string(),
+            engine: model.id().name(),
+            limit_mm,
+            passed,
+            findings: &findings,
+        };
         if let Some(path) = &arguments.html {
-            let facts = page::Facts {
-                input: &wanted_name,
-                output: &commanded_name,
-                text: &measurement_files::utf8_or_1251(&wanted),
-                machine: &settings.profile.name,
-                profile: &settings.profile_name,
-                profile_hash: &settings.profile_hash.to_string(),
-                engine: model.id().name(),
-                limit_mm,
-                passed,
-                findings: &findings,
-            };
-            let json = String::from_utf8_lossy(&text);
+            let json = String::from_utf8_lossy(&json);
             file::write(path, page::html(&comparison, &facts, &json).as_bytes())?;
         }
-        if arguments.json {
-            file::print(&text)?;
+        if let Some(path) = &arguments.viewer {
+            let program = (wanted_name.as_str(), wanted.as_slice());
+            viewer::write(path, program, &comparison, &settings, &facts, (shared, messages))?;
         }
+    }
+    if arguments.json {
+        file::print(&json)?;
     }
     if !arguments.json {
         file::print(outcome.text().in_language(messages.language()).as_bytes())?;

@@ -36,6 +36,7 @@ mod source;
 mod terminal;
 mod to_disk;
 mod turned;
+mod viewer;
 
 use std::ffi::OsString;
 use std::io::Write;

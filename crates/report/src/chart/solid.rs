@@ -214,6 +214,35 @@ pub fn path(title: &str, solid: Solid, all: &[Stretch], largest: f64, unit: &str
     svg(placed.bottom + 66.0, title, &described, &body)
 }
 
+/// A path in pieces, with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// Classes of its sign in the legend, and of its lines.
+    pub class: (&'static str, &'static str),
+    /// What it is.
+    pub words: String,
+    /// Places that follow one another.
+    pub pieces: Vec<Vec<[f64; 3]>>,
+}
+
+/// Paths beside one another, the last on top.
+#[must_use]
+pub fn ways(title: &str, solid: Solid, all: &[Way]) -> Markup {
+    let placed = solid.placed(0.08);
+    let names: Vec<(&str, &str)> = all.iter().map(|way| (way.class.0, way.words.as_str())).collect();
+    let body = html! {
+        (legend(LEFT, 14.0, &names))
+        (placed.edges(false))
+        (placed.edges(true))
+        @for one in all {
+            path class={ "path " (one.class.1) } d=(one.pieces.iter().map(|piece| way(&placed, piece)).collect::<String>()) {}
+        }
+        (placed.labels())
+    };
+    let described: Vec<&str> = names.iter().map(|(_, words)| *words).collect();
+    svg(placed.bottom + 40.0, title, &described.join(", "), &body)
+}
+
 fn way(placed: &Placed, places: &[[f64; 3]]) -> String {
     places.iter().fold(String::new(), |mut path, place| {
         let (x, y) = placed.at(*place);

@@ -89,6 +89,16 @@ pub(super) struct Program<'a, 'n> {
     progress: &'n dyn Fn(f64),
     /// Where it is reported next, bytes.
     report_at: u64,
+    /// What a line of a file is called.
+    line_name: fn((usize, u64)) -> u64,
+}
+
+/// Of a file so many lines are told apart from those of the next.
+const LINES_OF_A_FILE: u64 = 1 << 32;
+
+/// The file and the line of a [`Program::with_files`].
+pub(super) const fn file_and_line(name: u64) -> (usize, u64) {
+    ((name / LINES_OF_A_FILE) as usize, name % LINES_OF_A_FILE)
 }
 
 /// Progress is reported so many times.
@@ -119,7 +129,14 @@ impl<'a, 'n> Program<'a, 'n> {
             may_skip: false,
             progress,
             report_at: 0,
+            line_name: |(_, line)| line,
         }
+    }
+
+    /// The same, lines named together with their file: [`file_and_line`].
+    pub(super) fn with_files(mut self) -> Self {
+        self.line_name = |(file, line)| file as u64 * LINES_OF_A_FILE + line;
+        self
     }
 
     /// The next block's steps; false behind the last one.
@@ -157,7 +174,7 @@ impl<'a, 'n> Program<'a, 'n> {
     }
 
     fn take(&mut self, block: &Block<'a>, says: BlockSays, motions: &[Motion], context: &Context) {
-        let line = self.expanded.source_line(block.line).1;
+        let line = (self.line_name)(self.expanded.source_line(block.line));
         let limit_mm = self.job.options.tolerance_mm + rounding_mm(self.job, context);
         says.before.into_iter().for_each(|said| self.say(said, line, limit_mm));
         if self.process.move_by(&context.kinematics) {

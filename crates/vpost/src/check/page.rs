@@ -60,7 +60,7 @@ fn head(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
 }
 
 /// A name without its folders, which stand at the end of the page.
-fn file_name(path: &str) -> &str {
+pub(super) fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 

@@ -34,9 +34,16 @@ pub struct Diagnose {
     /// Write the diagnosis as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the diagnosis as one page for a browser: drawings, no network, no script.
+    /// Write the diagnosis as one page for a browser.
+    ///
+    /// Drawings, no network, no script.
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Write a page in which the error moves.
+    ///
+    /// The rows in space, magnified, cause by cause; HTML with a script of its own.
+    #[arg(long, value_name = "FILE")]
+    pub viewer: Option<PathBuf>,
     /// Write the profile with the causes added as effects.
     #[arg(long, value_name = "FILE")]
     pub write_profile: Option<PathBuf>,
@@ -66,16 +73,17 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
         .reads_all(&both!("read by the profile", "файл, который читает профиль"), &model.files)
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
+        .writes("--viewer", arguments.viewer.as_deref())
         .writes("--write-profile", arguments.write_profile.as_deref())
         .are_apart()?;
     let books = if arguments.as_written { Books::AsWritten } else { Books::Checked };
-    let read = |path: &Path| {
-        let bytes = file::read(path)?;
-        jobs::diagnose::read(&file::name(path), &bytes, &model, &arguments.ignore_column, books)
+    let read = |path: &Path, bytes: &[u8]| {
+        jobs::diagnose::read(&file::name(path), bytes, &model, &arguments.ignore_column, books)
     };
-    let measured = read(measurements)?;
+    let bytes = file::read(measurements)?;
+    let measured = read(measurements, &bytes)?;
     let unseen = arguments.holdout.as_deref();
-    let holdout = unseen.map(read).transpose()?;
+    let holdout = unseen.map(|path| read(path, &file::read(path)?)).transpose()?;
     if let (Some(path), Some(held)) = (unseen, &holdout) {
         of_one_machine(&file::name(path), &measured, held)?;
     }
@@ -85,7 +93,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     if let Some(path) = &arguments.json {
         file::write(path, json.as_bytes())?;
     }
-    if let Some(path) = &arguments.html {
+    if arguments.html.is_some() || arguments.viewer.is_some() {
         let facts = facts(&model, arguments, shared, &measured, holdout.as_ref())?;
         let page = Report {
             diagnosis: &diagnosis,
@@ -95,7 +103,12 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
             facts: &facts,
             json: &json,
         };
-        file::write(path, page.html().as_bytes())?;
+        if let Some(path) = &arguments.html {
+            file::write(path, page.html().as_bytes())?;
+        }
+        if let Some(path) = &arguments.viewer {
+            page.write_viewer(path, &measurement_files::utf8_or_1251(&bytes), messages)?;
+        }
     }
     if let Some(path) = &arguments.write_profile {
         written::write(path, machine(&shared.job)?, &diagnosis)?;

@@ -51,6 +51,11 @@ pub struct Map {
     /// Write the map as one page with drawings (HTML).
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Write a page in which the error moves.
+    ///
+    /// A lattice, magnified, cause by cause; HTML with a script of its own.
+    #[arg(long, value_name = "FILE")]
+    pub viewer: Option<PathBuf>,
     /// Write the map for ParaView (VTK).
     #[arg(long, value_name = "FILE")]
     pub vtk: Option<PathBuf>,

@@ -11,6 +11,7 @@ mod page;
 mod second_order;
 mod study;
 mod text;
+mod viewer;
 
 pub use arguments::Map;
 
@@ -34,6 +35,7 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
         .writes("--vtk", arguments.vtk.as_deref())
         .writes("--json", arguments.json.as_deref())
         .writes("--html", arguments.html.as_deref())
+        .writes("--viewer", arguments.viewer.as_deref())
         .are_apart()?;
     let conditions = conditions::conditions(&shared.job)?;
     let id = profile.forward_engine(shared.job.engine());
@@ -54,8 +56,11 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
+    let facts = facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash);
+    if let Some(path) = &arguments.viewer {
+        viewer::write(path, &profile, model, (&study, &asked), &facts, (shared, messages))?;
+    }
     if let Some(path) = &arguments.html {
-        let facts = facts(arguments, shared, &profile, machine(&shared.job)?, &loaded.hash);
         let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
         file::write(path, page::html(&study, &facts, &json).as_bytes())?;
     }

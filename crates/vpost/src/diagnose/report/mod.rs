@@ -1,5 +1,6 @@
 //! The diagnosis as one page, in the order in which people ask: what, how much, where, how sure, what next, from what.
 
+mod alignment;
 mod causes;
 mod facts;
 mod page;
@@ -7,6 +8,7 @@ mod pictures;
 mod provenance;
 mod rows;
 mod unseen;
+mod viewer;
 
 pub(super) use facts::Facts;
 pub(super) use page::Report;
