@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use diagnostic::{Diagnostic, Severity};
+use diagnostic::{Diagnostic, Severity, both};
 use jobs::diagnose::{Books, Model};
 use jobs::message::{Failure, Report};
 use jobs::options::JobOptions;
@@ -40,13 +40,17 @@ fn points(profile: &Profile, arrays: &Arrays) -> Result<Vec<Command>, Failure> {
     let has = profile.has_rotary();
     for (row, command) in commands.iter().enumerate() {
         if let Some(axis) = (0..3).find(|&axis| command.rotary_rad[axis] != 0.0 && !has[axis]) {
-            let message = format!(
+            let message = both!(
                 "point {}: the machine has no axis {}: its chain is {}",
+                "точка {}: на станке нет оси {}: его цепь — {}",
                 row + 1,
                 ['A', 'B', 'C'][axis],
                 profile.chain()
             );
-            let help = "leave the column out, or give the profile of the machine that turns";
+            let help = both!(
+                "leave the column out, or give the profile of the machine that turns",
+                "уберите столбец или дайте профиль станка с этой осью"
+            );
             return Err(Failure::usage(Diagnostic::error(POINTS, message).help(help)));
         }
     }
