@@ -57,13 +57,13 @@ fn unknown(variable: Variable, span: Range<u64>, names: &Names, macros: Macros) 
         Variable::Numbered(_) => false,
     };
     let why = if local {
-        both!("it is read before anything sets it", "её читают раньше, чем ей что-то присвоено")
+        both!("it is read before anything sets it", "переменную читают раньше, чем ей что-то присвоено")
     } else if system {
-        both!("the control sets it while the program runs", "её задаёт стойка во время исполнения")
+        both!("the control sets it while the program runs", "переменную задаёт стойка во время исполнения")
     } else {
         both!(
             "nothing in this program sets it before, and an earlier program may have",
-            "в этой программе ей до этого ничего не присвоено, а прежняя могла присвоить"
+            "эта программа до этого места переменной ничего не присваивает, а прежняя могла"
         )
     };
     Diagnostic::error(

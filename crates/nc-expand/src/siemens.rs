@@ -220,7 +220,7 @@ fn assignments(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expressio
         if found.iter().any(|(set, _)| reads(&value, set)) {
             return Err(both!(
                 "it reads a variable that the same block sets: write it in a block of its own",
-                "читает переменную, которую задаёт тот же кадр: напишите отдельным кадром"
+                "в ней читается переменная, которую задаёт тот же кадр: напишите отдельным кадром"
             ));
         }
         found.push((target, value));

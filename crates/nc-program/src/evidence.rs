@@ -277,7 +277,7 @@ impl Evidence {
         let (Some(bare), Some(pointed)) = (&self.first_bare, &self.first_pointed) else { return Ok(()) };
         let message = both!(
             "{} length(s) without a decimal point beside lengths with one: a parameter of the control decides what they are",
-            "размеров без десятичной точки рядом с размерами с точкой: {}; что они значат, решает параметр стойки",
+            "рядом с размерами с десятичной точкой есть размеры без неё ({}): что они значат, решает параметр стойки",
             self.bare
         );
         let label = both!(
@@ -335,7 +335,7 @@ impl Evidence {
             let step = units::decimal::Decimal { mantissa: 1, decimals }.to_f64();
             let diagnostic = Diagnostic::doubt(
                 codes::BARE_LENGTHS,
-                both!("{} length(s) without a decimal point are read as increments of {step} mm", "размеров без десятичной точки: {}; они прочитаны в дискретах по {step} мм", self.bare),
+                both!("{} length(s) without a decimal point are read as increments of {step} mm", "размеры без десятичной точки ({}) прочитаны в дискретах по {step} мм", self.bare),
             )
             .at(at.span.clone(), both!("the first; on a control set to calculator-type input it is a thousand times as long", "первый; на стойке с вводом «как на калькуляторе» он в тысячу раз больше"))
             .help(both!("`--decimal increments` says that this is right, `--decimal millimetres` that it is not; or `decimal = \"…\"` under `[program]` in the profile", "`--decimal increments` говорит, что это верно, `--decimal millimetres` — что нет; или `decimal = \"…\"` в разделе `[program]` профиля"));

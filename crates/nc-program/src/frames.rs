@@ -128,7 +128,7 @@ pub(crate) fn execute(
             | Action::ProgramFrame { .. }
     );
     if !turns && !state.transform.is_none() {
-        let under = both!("under {}", "пока действует {:#}", state.transform.name());
+        let under = both!("under {}", "при действующем преобразовании ({:#})", state.transform.name());
         return Err(refuse(
             words,
             span,
@@ -665,7 +665,7 @@ fn in_which_order(
     span: Span,
     transform: &Transform,
 ) -> Box<diagnostic::Diagnostic> {
-    let under = both!("under {}", "пока действует {:#}", transform.name());
+    let under = both!("under {}", "при действующем преобразовании ({:#})", transform.name());
     refuse(words, span, &under, both!("the two together are neither", "вместе они ни то, ни другое"))
         .help(both!("write one of the two in the CAM", "выполните одно из двух в CAM"))
 }
@@ -717,7 +717,7 @@ fn transform(
     absolute(words, span, state)?;
     let again = matches!((action, state.transform), (Action::MirrorOn, Transform::Mirror(_)));
     if !state.transform.is_none() && !again {
-        let under = both!("under {}", "пока действует {:#}", state.transform.name());
+        let under = both!("under {}", "при действующем преобразовании ({:#})", state.transform.name());
         return Err(refuse(
             words,
             span,

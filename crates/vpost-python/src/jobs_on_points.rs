@@ -42,14 +42,14 @@ fn points(profile: &Profile, arrays: &Arrays) -> Result<Vec<Command>, Failure> {
         if let Some(axis) = (0..3).find(|&axis| command.rotary_rad[axis] != 0.0 && !has[axis]) {
             let message = both!(
                 "point {}: the machine has no axis {}: its chain is {}",
-                "точка {}: оси {} у станка нет: его цепь — {}",
+                "точка {}: на станке нет оси {}: его цепь — {}",
                 row + 1,
                 ['A', 'B', 'C'][axis],
                 profile.chain()
             );
             let help = both!(
                 "leave the column out, or give the profile of the machine that turns",
-                "уберите этот столбец или задайте профиль станка с поворотной осью"
+                "уберите столбец или дайте профиль станка с этой осью"
             );
             return Err(Failure::usage(Diagnostic::error(POINTS, message).help(help)));
         }

@@ -34,7 +34,7 @@ pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messa
     let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
     print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
     let found = confounding(&design(&plan, &model.geometry));
-    messages.note(&Text::english_only(summary(&plan, &found, &model.geometry)));
+    messages.note(&summary(&plan, &found, &model.geometry));
     Ok(())
 }
 
@@ -160,33 +160,51 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
 }
 
 /// Why two effects look alike on any lines, where they do.
-fn reason(a: EffectKind, b: EffectKind) -> &'static str {
+fn reason(a: EffectKind, b: EffectKind) -> Text {
     use EffectKind as K;
     match (a, b) {
-        (K::Sag(_), K::Straightness { .. }) | (K::Straightness { .. }, K::Sag(_)) => {
-            "a droop with the overhang is a bow of that axis"
-        }
-        (K::Warmup(_), K::Step(_)) | (K::Step(_), K::Warmup(_)) => "a quick warm-up is a step at its start",
+        (K::Sag(_), K::Straightness { .. }) | (K::Straightness { .. }, K::Sag(_)) => Text::pair(
+            "a droop with the overhang is a bow of that axis",
+            "прогиб с вылетом — то же, что изгиб этой оси",
+        ),
+        (K::Warmup(_), K::Step(_)) | (K::Step(_), K::Warmup(_)) => Text::pair(
+            "a quick warm-up is a step at its start",
+            "быстрый прогрев — то же, что скачок в его начале",
+        ),
         (K::Step(_) | K::Warmup(_), K::InstrumentDrift) | (K::InstrumentDrift, K::Step(_) | K::Warmup(_)) => {
-            "a slow change is machine or instrument: watch a fixed target to tell them apart"
+            Text::pair(
+                "a slow change is machine or instrument: watch a fixed target to tell them apart",
+                "медленный уход — станка или прибора: чтобы различить, следите за неподвижной целью",
+            )
         }
-        _ => "on these lines they move the tool alike",
+        _ => Text::pair(
+            "on these lines they move the tool alike",
+            "на этих линиях они двигают инструмент одинаково",
+        ),
     }
 }
 
-fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> String {
+fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> Text {
     let rows: usize = plan.iter().map(|l| l.stops.len()).sum();
     let hours = times(plan).last().and_then(|t| t.last().copied()).unwrap_or(0.0) / 3600.0;
-    let mut text = format!(
+    let mut text = both!(
         "{rows} rows in {} lines, about {hours:.1} hours; {} effects are told apart",
+        "строк {rows}, линий {}, около {hours:.1} ч; различимых эффектов {}",
         plan.len(),
         found.effects.len() - found.hidden.len()
     );
     for (a, b, value) in found.pairs(Confounding::ALIKE) {
-        let _ = write!(text, "\nexcept {a} from {b} ({value:.3}): {}", reason(a, b));
+        text.push(&both!(
+            "\nexcept {a} from {b} ({value:.3}): {}",
+            "\nкроме {a} и {b} ({value:.3}): {:#}",
+            reason(a, b)
+        ));
     }
     for kind in &found.hidden {
-        let _ = write!(text, "\nexcept {kind}, which these lines do not show");
+        text.push(&both!(
+            "\nexcept {kind}, which these lines do not show",
+            "\nкроме {kind}: этих линий для него мало"
+        ));
     }
     let rotary: Vec<&str> = ["A", "B", "C"]
         .into_iter()
@@ -195,12 +213,15 @@ fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> Str
         .map(|(name, _)| name)
         .collect();
     if !rotary.is_empty() {
-        let _ = write!(
-            text,
+        text.push(&both!(
             "\nexcept everything of {}: these lines keep rotary axes still; measure a target on the table at several angles as well",
+            "\nкроме всего, что относится к {}: на этих линиях поворотные оси стоят; измерьте ещё цель на столе под несколькими углами",
             rotary.join(", ")
-        );
+        ));
     }
-    text.push_str("\nthermal and load effects are asked for once temp_c and load_kg are filled in with more than one value");
+    text.push(&both!(
+        "\nthermal and load effects are asked for once temp_c and load_kg are filled in with more than one value",
+        "\nо тепловых эффектах и нагрузке будет спрошено, когда temp_c и load_kg заполнены разными значениями"
+    ));
     text
 }
