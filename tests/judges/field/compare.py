@@ -102,14 +102,14 @@ def compare(wanted, taken, tips, limit_mm, step):
     places = np.concatenate([x for xs in samples for x in xs] + [m.end[None] for m in landings if not np.isnan(m.end).any()])
     real = tips(places)
     at, worst, where, approaches = 0, 0.0, 0, 0
-    for ms, xs in zip(first, samples):
+    for ms, rs, xs in zip(first, second, samples):
         n = sum(len(x) for x in xs)
         path = real[at : at + n]
         at += n
         # a rapid moves its own axes only: a short feed may lead to the corrected start
         lead = len(xs[0])
         near = lambda p: np.linalg.norm(p - ms[0].start)  # noqa: E731
-        short = np.linalg.norm(xs[0][-1] - xs[0][0])
+        short = rs[0].length()
         if len(xs) > 1 and near(path[lead - 1]) <= limit_mm and short < APPROACH_MM and (near(path[0]) > limit_mm or short < 0.1 * ms[0].length()):
             path = path[lead:]
             approaches += 1

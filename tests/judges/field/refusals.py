@@ -30,7 +30,7 @@ CASES = {
     "another-tool": (r"tool", False),
     "program-outside": (r"outside|volume|travel", False),
     "arc-outside": (r"outside|volume|travel", False),
-    "points-outside": (r"outside|volume|travel", False),
+    "points-outside": (r"outside|volume|travel", True),
     "no-x": (r"x_mm", False),
     "no-dz": (r"dz_um", False),
     "travel-beyond-vectors": (r"outside|volume|travel|support|vector", False),
