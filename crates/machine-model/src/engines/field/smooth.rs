@@ -208,10 +208,12 @@ fn offsets(
         }
     }
     if sure > OFFSET {
-        let worst =
-            (0..runs.len()).max_by(|a, b| offsets[*a].norm().total_cmp(&offsets[*b].norm())).unwrap_or(0);
+        let all = offsets.iter().sum::<Vector>();
+        let beside = |run: usize| offsets[run] - (all - offsets[run]) / (runs.len() - 1) as f64;
+        let size = |run: &usize| beside(*run).norm();
+        let worst = (0..runs.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
         let vector = vectors.iter().position(|v| v.run == runs[worst]).unwrap_or(0);
-        return Err(FieldError::Offset { vector, offset_mm: offsets[worst] });
+        return Err(FieldError::Offset { vector, offset_mm: beside(worst) });
     }
     let mut blind: Option<f64> = None;
     for (found, noise) in found {
