@@ -11,7 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Machines of the test that counts intervals.
-const MACHINES: u64 = 200;
+const MACHINES: u64 = 10;
 
 const ARC: Range = Range { low: -0.5 * std::f64::consts::PI, high: std::f64::consts::PI / 6.0 };
 
