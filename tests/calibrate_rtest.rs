@@ -196,6 +196,7 @@ fn the_known_machine_comes_back_from_its_own_rows_and_predicts_others() {
         &json,
     ]);
     assert!(found.status.success(), "{}", messages(&found));
+    assert!(!messages(&found).contains("VP1109"), "{}", messages(&found));
     assert!(apart_um(at, &unseen(), &real, &base) > 20.0);
     let left_um = apart_um(at, &unseen(), &real, &made);
     assert!(left_um < 0.1, "{left_um}");
@@ -333,6 +334,20 @@ fn each_bad_input_has_its_own_message() {
     let on_axis = rows(at, "axis.csv", &around([0.0, 0.0, 50.0]), &real);
     let on_axis = std::fs::read_to_string(on_axis).expect("written");
     says(&refused("axis.csv", &on_axis, &base, &[]), "VP1105", "the ball lies on the axis in every run");
+    // C the other way round: the ball would not be in its nest.
+    let turned: Vec<String> = text
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(deg) = cells[5].parse::<f64>() {
+                cells[5] = (-deg).to_string();
+            }
+            cells.join(",")
+        })
+        .collect();
+    let turned = file(at, "turned.csv", &turned.join("\n"));
+    let output = run(&["calibrate", "rtest", &turned, "-m", &base]);
+    says(&messages(&output), "VP1109", "a ball stays in its nest");
     // Two machines.
     let swapped = profile(
         at,

@@ -69,6 +69,17 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
     };
     let base = output.measured_from(&arguments.target)?;
     let rows = Rows::read(&arguments.files, arguments, &profile, &output, shared)?;
+    if let Some((run, mm)) = rows.moving_ball().filter(|_| !arguments.sphere) {
+        let message = both!(
+            "run `{run}`: by the profile the place of the ball in the workpiece moves by {mm:.0} mm, and a ball stays in its nest",
+            "серия `{run}`: по профилю место шара на детали смещается на {mm:.0} мм, а шар остаётся в гнезде"
+        );
+        let help = both!(
+            "check centre_mm, the tool vector and the signs of the angles; nothing is wrong where the rows are points anywhere",
+            "проверьте centre_mm, вектор инструмента и знаки углов; если строки — произвольные точки, ошибки нет"
+        );
+        warn(messages, Diagnostic::warning(DOUBTFUL, message).help(help));
+    }
     let found = calibrate(&rows.readings, &base, &rows.runs).map_err(|error| refused(&rows, &error))?;
     let held = match &arguments.holdout {
         Some(path) => {
@@ -263,6 +274,20 @@ fn judge(found: &RotaryTables, held: Option<&HeldOut>, messages: &Messages) -> R
         warn(messages, Diagnostic::warning(UNSAID, message).help(help));
     }
     let [before, after] = found.rms_mm;
+    if found.field_u95_mm > 0.5 * before && before > 2.0 * sigma_mm {
+        doubt(
+            both!(
+                "what is written is known to {:.1} um over the volume, and the rows were {:.1} um off: more rows, farther from the axes, would say more",
+                "записанное известно по объёму с точностью {:.1} мкм, а строки отличались на {:.1} мкм: нужно больше строк, дальше от осей",
+                found.field_u95_mm * 1e3,
+                before * 1e3
+            ),
+            both!(
+                "mount the ball where the machine cuts, at places far from one another",
+                "ставьте шар там, где станок режет, в местах, далёких друг от друга"
+            ),
+        );
+    }
     if after > before && after > ROUGH * sigma_mm {
         let message = both!(
             "what may be written leaves {:.2} um of the rows, the base {:.2} um: most of it cannot be told apart",

@@ -46,6 +46,8 @@ pub(super) struct Rows {
     /// Sheet and row of each reading.
     places: Vec<(usize, usize)>,
     temperatures_c: Vec<f64>,
+    /// Where an ideal machine would have the tip, workpiece frame, mm.
+    nominal_mm: Vec<Vector>,
 }
 
 impl Rows {
@@ -88,6 +90,8 @@ impl Rows {
                 for (value, by) in reading.deviation_mm.iter_mut().zip(&by_effects_mm) {
                     *value = value.map(|mm| mm - by);
                 }
+                let there = machine.predict(&reading.command);
+                all.nominal_mm.push(there.position_mm - there.error_mm);
                 all.temperatures_c.extend(row.number("temp_c")?);
                 all.places.push((all.sheets.len(), line));
                 all.readings.push(reading);
@@ -118,6 +122,20 @@ impl Rows {
     pub(super) fn temperature_c(&self) -> Option<f64> {
         let count = self.temperatures_c.len();
         (count > 0).then(|| self.temperatures_c.iter().sum::<f64>() / count as f64)
+    }
+
+    /// The run in which the ball's place in the workpiece moves farthest by the profile, and how far, mm.
+    ///
+    /// A ball in its nest stays where it is. Where it does not, a sign or a centre may be wrong, or the linear axes did not follow.
+    pub(super) fn moving_ball(&self) -> Option<(&str, f64)> {
+        let spread = |run: usize| {
+            let own =
+                || self.readings.iter().zip(&self.nominal_mm).filter(|(r, _)| r.run == run).map(|(_, at)| at);
+            let low = own().fold(Vector::repeat(f64::INFINITY), |low, at| low.inf(at));
+            (own().fold(Vector::repeat(f64::NEG_INFINITY), |high, at| high.sup(at)) - low).norm()
+        };
+        let each = self.runs.iter().enumerate().map(|(run, name)| (name.as_str(), spread(run)));
+        each.filter(|(_, mm)| *mm > MOST_MM).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// A refusal at the row of a reading.
