@@ -8,11 +8,12 @@
 //! No files, no clocks, no messages to a terminal: a [`Refusal`] knows its place and what to write instead.
 //!
 //! ```
-//! use measurement_files::{Kind, Sheet, Codes, codes};
+//! use diagnostic::Text;
+//! use measurement_files::{Codes, Kind, Sheet, codes};
 //!
 //! let kind = Kind {
 //!     columns: "run x_mm dx_um",
-//!     expected: "expected: run,x_mm,dx_um",
+//!     expected: Text::pair("expected: run,x_mm,dx_um", "ожидалось: run,x_mm,dx_um"),
 //!     passes_over: None,
 //!     may_be_empty: false,
 //!     codes: Codes::all(codes::UNREADABLE),
