@@ -37,6 +37,7 @@ fn axis_line(out: &mut String, own: &TurnedAxis) -> Result {
     }
     let degree = |groups: usize| match own.basis {
         _ if groups == 0 => "none".to_owned(),
+        _ if groups == 1 => "the mean alone".to_owned(),
         Basis::Turn => format!("{} a turn", groups - 1),
         Basis::Arc(_) if groups <= 2 => format!("{} a turn", groups - 1),
         Basis::Arc(_) => format!("degree {}", groups),
