@@ -40,7 +40,7 @@ pub(crate) struct Bounds {
     read: [bool; 3],
     /// Longest reading, µm: all its components together, each from its median, or as they stand where that is less.
     longest_um: f64,
-    /// Lengths of the ranges of the components together, µm.
+    /// Lengths of the ranges of the components together, or the longest reading as it stands where that is less, µm.
     span_um: f64,
 }
 
@@ -50,7 +50,7 @@ pub(crate) enum Harm {
     /// They swing between the places measured: by so much they displace a place, or change from their mean over the rows; and the longest reading; µm.
     Swings(f64, f64),
     /// They shift: straight lines through machine zero, read on a short way far from it, move all of that way by so much,
-    /// which the measuring frame took off the readings; and the range of the readings; µm.
+    /// which the measuring frame took off the readings; and the range of these, or the longest; µm.
     Shifts(f64, f64),
     /// They cancel: with the first of them alone so much is left, and so much without any; RMS, µm.
     Cancels(f64, f64),
@@ -99,8 +99,9 @@ impl Bounds {
             }
         }
         let longest = |squares: Vec<f64>| squares.into_iter().fold(0.0, f64::max).sqrt();
-        let longest_um = longest(squares).min(longest(as_read));
-        let span_um = span_square.sqrt();
+        let as_read_um = longest(as_read);
+        let longest_um = longest(squares).min(as_read_um);
+        let span_um = span_square.sqrt().min(as_read_um);
         let places = [0, 1, 2].map(|axis| data.effective_places(axis));
         Self { probes, measured, places, largest_um, widest_um, read, longest_um, span_um }
     }

@@ -140,7 +140,7 @@ impl Harm {
                 "No correction is made of the causes: they cancel each other. With the first of them alone {alone_um:.1} um RMS are left, and {gap_um:.1} um without any; another cause with the shape of their difference is likelier."
             ),
             Self::Shifts(moved_um, range_um) => format!(
-                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, while the readings range over {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis."
+                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, and the readings reach and range over no more than {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis."
             ),
         }
     }
