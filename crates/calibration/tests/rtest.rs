@@ -464,6 +464,18 @@ fn a_head_is_found_as_a_table_is() {
     );
     let held = result.held_out(&unseen, &base).unwrap();
     assert!(held.rms_before_mm > 0.01 && held.max_after_mm < 5e-5, "{held:?}");
+
+    // Three lengths on the spindle's line cannot tell what the head does beside it.
+    let mut axial = Vec::new();
+    for (k, ((x, y, z), length)) in balls.into_iter().zip([-100.0, -180.0, -140.0, -60.0]).enumerate() {
+        let tool = Vector::new(0.0, 0.0, length);
+        axial.extend(read(&machine, k, Vector::new(x, y, z), tool, &angles, &mut silent()));
+    }
+    let error = found(&axial, &base).unwrap_err();
+    assert!(
+        matches!(&error, CalibrationError::Unobservable(why) if why.contains("beside one line")),
+        "{error}"
+    );
 }
 
 #[test]

@@ -136,6 +136,9 @@ pub struct HeldOut {
 /// An axis turns within a run where its angles differ by more, rad.
 const TURNS_RAD: f64 = 1e-6;
 
+/// Balls of a head this far beside a line, mm: 100 µrad of it are 1 µm there, the noise of a reading.
+const ASIDE_MM: f64 = 10.0;
+
 /// A ball nearer to an axis than this says nothing of its tilts, mm.
 pub const ON_AXIS_MM: f64 = 1.0;
 
@@ -163,6 +166,7 @@ pub fn calibrate(
 ) -> Result<RotaryTables, CalibrationError> {
     let description = &base.description;
     let (turning, still) = turning(rows, description)?;
+    styli_of_a_head(rows, description, &turning)?;
     let commands: Vec<Command> = rows.iter().map(|row| row.command).collect();
     let columns = Columns::new(description, &turning, &commands)?;
     let measured = Measured::new(rows, &columns, runs.len())?;
@@ -473,6 +477,32 @@ fn plausible(found: &[FoundTerm]) -> Result<(), CalibrationError> {
         "{} would be {:.1} {unit}: no axis is so far from its place; are centre_mm and the angles those of this machine?",
         wild.term.name(),
         (wild.base + wild.change) * size
+    )))
+}
+
+/// Refuses balls on one line of a head that turns: what its axes do beside that line no reading shows, and what several of
+/// them do along it together passes for one of them.
+fn styli_of_a_head(
+    rows: &[BallReading],
+    description: &Description,
+    turning: &[Axis],
+) -> Result<(), CalibrationError> {
+    let heads: Vec<Axis> =
+        description.chain.head().iter().copied().filter(|axis| turning.contains(axis)).collect();
+    let Some(first) = rows.first().filter(|_| !heads.is_empty()) else { return Ok(()) };
+    let from = |row: &BallReading| row.command.tool_mm - first.command.tool_mm;
+    let longest = rows.iter().map(from).fold(Vector::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
+    let aside_mm = match longest.try_normalize(0.0) {
+        Some(line) => rows.iter().map(|row| from(row).cross(&line).norm()).fold(0.0, f64::max),
+        None => 0.0,
+    };
+    if aside_mm >= ASIDE_MM {
+        return Ok(());
+    }
+    let names: Vec<String> = heads.iter().map(ToString::to_string).collect();
+    Err(CalibrationError::Unobservable(format!(
+        "what {} of the head does beside one line: the balls of all rows lie on it ({aside_mm:.1} mm beside it at most); read with styli that do not, {ASIDE_MM} mm or more beside the others",
+        names.join(" and ")
     )))
 }
 
