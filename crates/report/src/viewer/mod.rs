@@ -6,7 +6,7 @@
 //!
 //! * [`scene`]: what is drawn: places with their displacements, thinned by a bound that the page prints.
 //! * [`words`]: every text of the page in both languages.
-//! * [`page`]: the file.
+//! * `page`: the file.
 
 mod encode;
 mod page;
