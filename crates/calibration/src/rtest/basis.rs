@@ -19,7 +19,7 @@ const MOST_GROUPS: usize = 19;
 /// ```
 /// use calibration::rtest::Basis;
 ///
-/// let turn = Basis::of(&[0.0, 1.5, 3.0, 4.5]);
+/// let turn = Basis::of(&[0.0, 1.5, 3.0, 4.5, 6.0]);
 /// assert_eq!((turn.name(2, 1), turn.functions(3)), ("sin2".to_owned(), 5));
 /// // A quarter turn: Legendre polynomials from the third degree on take the place of finer waves.
 /// let arc = Basis::of(&[0.0, 0.5, 1.0, 1.5]);
