@@ -439,8 +439,9 @@ fn a_million_blocks_are_less_than_three_megabytes_and_drawn() {
         return;
     };
     // How long it takes to draw is for a quiet machine to say; here it is drawn, however busy the cores are.
-    let drawn = ["--timeout=8000", "--timeout=40000", "--timeout=120000"].into_iter().find_map(|patience| {
-        let visit = visit_with(browser, &report.page, &[&SPACE[..], &[patience]].concat());
+    let drawn = ["4000", "60000", "900000"].into_iter().find_map(|budget| {
+        let patience = format!("--virtual-time-budget={budget}");
+        let visit = visit_with(browser, &report.page, &[&SPACE[..], &[patience.as_str()]].concat());
         let drawn = visit.dom.split("data-drawn=\"").nth(1).and_then(|rest| rest.split('"').next());
         let milliseconds: f64 = drawn?.parse().ok()?;
         visit.was_quiet();
