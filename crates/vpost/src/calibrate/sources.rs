@@ -4,8 +4,9 @@ use std::path::Path;
 
 use calibration::functions::FunctionReading;
 use diagnostic::{Text, both};
+use machine_model::effects::Conditions;
 use measurement_files::series::{Content, Series, Told, Values, symbol};
-use measurement_files::{Codes, Kind, Sheet};
+use measurement_files::{Codes, Kind, Row, Sheet};
 
 use crate::file;
 use crate::message::Failure;
@@ -20,6 +21,24 @@ pub(super) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String
         codes: Codes::MEASUREMENTS,
     };
     Ok(Sheet::read(&file::name(path), &file::read(path)?, &kind, Some(ignore))?)
+}
+
+/// The conditions under which a row was read: its own, else those said for all.
+///
+/// * `temperature_c` – `--temperature`, of a row that says none
+pub(super) fn conditions_of(
+    row: &Row<'_>,
+    said: Conditions,
+    temperature_c: Option<f64>,
+) -> Result<Conditions, Failure> {
+    let warm = row.number("temp_c")?.or(temperature_c);
+    Ok(Conditions {
+        temp_c: said.temp_c.map(|known| warm.or(known)),
+        time_s: row.number("time_s")?.or(said.time_s),
+        load_kg: row.number("load_kg")?.or(said.load_kg),
+        feed_mm_min: row.number("feed_mm_min")?.or(said.feed_mm_min),
+        ..said
+    })
 }
 
 /// The file of `FILE[=SYMBOL[:UNIT]]`.

@@ -103,12 +103,7 @@ fn read(arguments: &Volumetric, shared: &Shared, output: &Output) -> Result<Read
                 all.runs.len() - 1
             });
             let mut point = point(&row, run, output)?;
-            let mut here = said;
-            let warm = row.number("temp_c")?.or(arguments.target.temperature);
-            here.temp_c = here.temp_c.map(|known| warm.or(known));
-            here.time_s = row.number("time_s")?.or(here.time_s);
-            here.load_kg = row.number("load_kg")?.or(here.load_kg);
-            here.feed_mm_min = row.number("feed_mm_min")?.or(here.feed_mm_min);
+            let here = sources::conditions_of(&row, said, arguments.target.temperature)?;
             point.by_effects_mm = output.by_effects_mm(&point.command, &here)?;
             all.temperatures.extend(row.number("temp_c")?);
             all.places.push((all.sheets.len(), line));

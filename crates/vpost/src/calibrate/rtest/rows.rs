@@ -80,12 +80,7 @@ impl Rows {
                     all.runs.len() - 1
                 });
                 let mut reading = reading(&row, run, arguments.sphere, profile, machine)?;
-                let mut here = said;
-                let warm = row.number("temp_c")?.or(arguments.target.temperature);
-                here.temp_c = here.temp_c.map(|known| warm.or(known));
-                here.time_s = row.number("time_s")?.or(here.time_s);
-                here.load_kg = row.number("load_kg")?.or(here.load_kg);
-                here.feed_mm_min = row.number("feed_mm_min")?.or(here.feed_mm_min);
+                let here = sources::conditions_of(&row, said, arguments.target.temperature)?;
                 let by_effects_mm = output.by_effects_mm(&reading.command, &here)?;
                 for (value, by) in reading.deviation_mm.iter_mut().zip(&by_effects_mm) {
                     *value = value.map(|mm| mm - by);
