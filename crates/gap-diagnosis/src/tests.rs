@@ -229,7 +229,7 @@ fn a_period_is_found_and_not_named_where_places_are_too_far_apart() {
     let (found, asked) = crate::search::proposals::Pitches::new(&source, 0).best(&source, &values, 0);
     // 400 mm of travel resolve 40.3² / 400 = 4 mm between neighbours of equal power; a tenth of that is enough here.
     assert!((found[0] - 40.3).abs() < 0.5 && asked > 17, "{found:?} of {asked}");
-    assert!(crate::library::seen::is_coarse(&data, 0, 40.3));
+    assert!(crate::library::sampling::Sampling::new(&data, 0).is_coarse(40.3));
     let answer = diagnose(&data, None, &Options::default());
     assert!(!names(&answer).contains(&"pitch.X") && answer.verdict != Verdict::Named, "{}", answer.sentence);
     assert!(answer.causes.iter().any(|c| c.cannot_be_told_from.iter().any(|r| r == "pitch.X")));

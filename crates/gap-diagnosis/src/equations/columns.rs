@@ -3,6 +3,8 @@
 //! Most columns are functions of where one axis stands and from which side it came there. An axis stands at far fewer
 //! places than there are rows, so such a column is evaluated once per place and looked up from then on.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::rc::Rc;
 
 use machine_model::effects::EffectGeometry;
@@ -17,6 +19,9 @@ const ROWS_PER_PLACE: usize = 4;
 /// Values of columns kept between extensions, at most this many numbers (256 MiB); what does not fit is evaluated
 /// again when it is needed.
 const KEPT: usize = 32 << 20;
+
+/// Vectors kept in tables by row, at most this many (48 MiB); the oldest go first.
+const TABULATED: usize = 2 << 20;
 
 /// Where the equations come from.
 #[derive(Clone, Copy, Debug)]
@@ -91,10 +96,12 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Rows by the place and the direction of approach of each axis, and the angles of the rotary axes.
+/// Rows by the place and the direction of approach of each axis, and the angles of the rotary axes; and what the columns
+/// asked about last displace at every row: a search puts the few columns of its model to one test after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
     axes: [AxisPlaces; 3],
+    tables: RefCell<VecDeque<(Term, Rc<[Vector]>)>>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -109,8 +116,28 @@ impl Places {
     /// Sorts the rows of a file.
     #[must_use]
     pub(crate) fn new(rows: &[Row]) -> Self {
-        Self { axes: [0, 1, 2].map(|axis| AxisPlaces::new(rows, axis)) }
+        Self { axes: [0, 1, 2].map(|axis| AxisPlaces::new(rows, axis)), tables: RefCell::default() }
     }
+
+    /// What a column displaces at every row of the file that these are the places of, µm.
+    fn by_row(&self, term: &Term, source: &Source<'_>) -> Rc<[Vector]> {
+        let known =
+            self.tables.borrow().iter().find(|(known, _)| known == term).map(|(_, table)| table.clone());
+        known.unwrap_or_else(|| {
+            let table = by_row(term, source);
+            let mut tables = self.tables.borrow_mut();
+            tables.push_back((*term, table.clone()));
+            while tables.len() * source.rows.len() > TABULATED {
+                tables.pop_front();
+            }
+            table
+        })
+    }
+}
+
+/// What a column displaces at every row, µm.
+fn by_row(term: &Term, source: &Source<'_>) -> Rc<[Vector]> {
+    source.rows.iter().map(|row| term.displacement_um(row, source.geometry)).collect()
 }
 
 impl AxisPlaces {
@@ -180,8 +207,9 @@ impl<'a> Column<'a> {
         let few = 2 * source.scalars.len() < source.rows.len();
         // The bar's length is no displacement.
         if column.table.is_none() && !few && *term != Term::BarLength {
-            let all = source.rows.iter().map(|row| term.displacement_um(row, source.geometry));
-            column.table = Some(Table { places: None, displaced_um: all.collect() });
+            let displaced_um =
+                source.places.map_or_else(|| by_row(term, source), |places| places.by_row(term, source));
+            column.table = Some(Table { places: None, displaced_um });
         }
         column
     }

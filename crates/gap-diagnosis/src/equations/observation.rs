@@ -194,26 +194,6 @@ impl Measurements {
         places
     }
 
-    /// Distance of neighbouring places of an axis, mm: the mean of the steps between them, each counted by its length.
-    ///
-    /// Even places give their step. Places in pairs (a few tenths apart, as where the way back stops beside the way
-    /// there) give the step from pair to pair: what lies within a pair says nothing about what is between pairs.
-    #[must_use]
-    pub(crate) fn spacing_mm(&self, axis: usize) -> f64 {
-        let places = self.places_mm(axis);
-        let (low, high) = self.range_mm(axis);
-        let square: f64 = places.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum();
-        if high > low { square / (high - low) } else { 0.0 }
-    }
-
-    /// Number of places of an axis that a curve can tell apart: those that its range holds at [`Self::spacing_mm`].
-    #[must_use]
-    pub(crate) fn effective_places(&self, axis: usize) -> f64 {
-        let (low, high) = self.range_mm(axis);
-        let spacing = self.spacing_mm(axis);
-        if spacing > 0.0 { (high - low) / spacing + 1.0 } else { 1.0 }
-    }
-
     /// Smallest and largest command of a linear axis, mm.
     #[must_use]
     pub fn range_mm(&self, axis: usize) -> (f64, f64) {

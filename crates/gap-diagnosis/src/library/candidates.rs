@@ -5,6 +5,7 @@ use std::ops::Range;
 use machine_model::effects::{EffectKind, Shape};
 
 use crate::equations::term::Term;
+use crate::library::sampling::Sampling;
 
 /// One form of an effect: columns of the design.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,8 @@ pub(crate) struct Part {
 /// All columns and all candidates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Library {
+    /// Where each linear axis stood.
+    pub sampling: [Sampling; 3],
     /// Set-up columns first, then those of the effects.
     pub terms: Vec<Term>,
     /// How many of the columns are the measuring frame's and the runs' angles.

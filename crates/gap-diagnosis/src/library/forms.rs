@@ -6,7 +6,8 @@ use crate::equations::observation::Measurements;
 use crate::equations::set_up::{Clamping, frame, instruments};
 use crate::equations::term::Term;
 use crate::library::candidates::{Candidate, Library, Variant};
-use crate::library::seen::{Seen, is_coarse};
+use crate::library::sampling::Sampling;
+use crate::library::seen::Seen;
 
 /// Places along an axis where damage is looked for; finer ones are proposed by the search.
 const LOCAL_PLACES: usize = 14;
@@ -37,7 +38,7 @@ impl Library {
             }
         }
         let nuisances = terms.len();
-        let mut library = Self { terms, framing, nuisances, candidates: Vec::new() };
+        let mut library = Self { sampling: seen.sampling, terms, framing, nuisances, candidates: Vec::new() };
         for kind in EffectKind::all().into_iter().filter(|k| !without.contains(k)) {
             let mut variants = library.forms(kind, &seen);
             variants.retain(|form| seen.carry(kind, form.columns.len()));
@@ -49,7 +50,7 @@ impl Library {
     }
 
     fn forms(&mut self, kind: EffectKind, seen: &Seen) -> Vec<Variant> {
-        let travels = |a: usize| seen.range[a].1 - seen.range[a].0 > 1e-6;
+        let travels = |a: usize| seen.sampling[a].range_mm.1 - seen.sampling[a].range_mm.0 > 1e-6;
         let none = Shape::default();
         match kind {
             EffectKind::Scale(a) if travels(a) => self.selections(kind, none, &[&[0]]),
@@ -90,7 +91,7 @@ impl Library {
                 self.selections(kind, none, &lists)
             }
             EffectKind::Step(_) => self.steps(kind, seen),
-            EffectKind::Local(a) if travels(a) => self.places(kind, seen.range[a], seen.narrowest_mm[a]),
+            EffectKind::Local(a) if travels(a) => self.places(kind, &seen.sampling[a]),
             EffectKind::Spike(a) => SPIKES_MM
                 .into_iter()
                 .filter(|width| seen.direction[a] && *width >= seen.turns_mm[a])
@@ -117,8 +118,10 @@ impl Library {
     fn curve(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
         let lists: [&[usize]; 5] = [&[0, 1], &[0], &[1], &[0, 1, 2, 3], &[0, 1, 2, 3, 4, 5]];
         // A polynomial with nearly as many terms as places is a guess between them.
-        let lists: Vec<&[usize]> =
-            lists.into_iter().filter(|l| l.len() <= 2 || 10 * (l.len() + 2) <= 7 * seen.places[a]).collect();
+        let lists: Vec<&[usize]> = lists
+            .into_iter()
+            .filter(|l| l.len() <= 2 || 10 * (l.len() + 2) <= 7 * seen.sampling[a].places)
+            .collect();
         let mut forms = self.selections(kind, seen.interval(a), &lists);
         // Any curve is one; only beyond the fifth order is it bent so that it could be anything.
         forms.iter_mut().for_each(|f| f.enriched = f.columns.len() > 4);
@@ -128,8 +131,10 @@ impl Library {
     /// An angle along an axis.
     fn angle(&mut self, kind: EffectKind, a: usize, about: usize, seen: &Seen) -> Vec<Variant> {
         let lists: [&[usize]; 6] = [&[0, 1], &[0], &[1], &[0, 1, 2], &[0, 1, 2, 3, 4], &[1, 2]];
-        let lists: Vec<&[usize]> =
-            lists.into_iter().filter(|l| l.len() <= 2 || 10 * (l.len() + 1) <= 7 * seen.places[a]).collect();
+        let lists: Vec<&[usize]> = lists
+            .into_iter()
+            .filter(|l| l.len() <= 2 || 10 * (l.len() + 1) <= 7 * seen.sampling[a].places)
+            .collect();
         let mut forms = self.selections(kind, seen.interval(a), &lists);
         forms.iter_mut().for_each(|form| form.only_rival = seen.one_lever[a][about]);
         forms
@@ -138,7 +143,7 @@ impl Library {
     /// A droop along an axis.
     fn sag(&mut self, kind: EffectKind, a: usize, seen: &Seen) -> Vec<Variant> {
         // The overhang begins where the ram leaves its support: at the end of travel, before or behind.
-        let (low, high) = seen.range[a];
+        let (low, high) = seen.sampling[a].range_mm;
         [0.0, -1.0, -0.4, 0.2, 0.4, 0.6]
             .into_iter()
             .flat_map(|share| {
@@ -184,8 +189,9 @@ impl Library {
             .collect()
     }
 
-    fn places(&mut self, kind: EffectKind, (low, high): (f64, f64), narrowest_mm: f64) -> Vec<Variant> {
-        let width_mm = (2.0 * (high - low) / LOCAL_PLACES as f64).max(narrowest_mm);
+    fn places(&mut self, kind: EffectKind, sampling: &Sampling) -> Vec<Variant> {
+        let (low, high) = sampling.range_mm;
+        let width_mm = (2.0 * (high - low) / LOCAL_PLACES as f64).max(sampling.narrowest_mm);
         if width_mm > LOCAL_WIDEST * (high - low) {
             return Vec::new();
         }
@@ -222,10 +228,11 @@ impl Library {
 
     /// Forms of a pitch error with this period: textbook, with harmonics, with a slope of the amplitude. A harmonic that the
     /// places are too coarse for is not asked about; where the period itself is, the forms stay rivals.
-    pub(crate) fn pitch(&mut self, data: &Measurements, axis: usize, pitch_mm: f64) -> Vec<Variant> {
-        let range = data.range_mm(axis);
-        let shape = Shape { pitch_mm, from_mm: range.0, to_mm: range.1, ..Shape::default() };
-        let only_rival = is_coarse(data, axis, pitch_mm);
+    pub(crate) fn pitch(&mut self, axis: usize, pitch_mm: f64) -> Vec<Variant> {
+        let sampling = self.sampling[axis];
+        let (from_mm, to_mm) = sampling.range_mm;
+        let shape = Shape { pitch_mm, from_mm, to_mm, ..Shape::default() };
+        let only_rival = sampling.is_coarse(pitch_mm);
         let lists: [(f64, &[usize]); 5] = [
             (1.0, &[0, 1]),
             (2.0, &[0, 1, 2, 3]),
@@ -235,8 +242,7 @@ impl Library {
         ];
         let shown = |(harmonic, list): &(f64, &[usize])| {
             list.len() == 2
-                || (!is_coarse(data, axis, pitch_mm / harmonic)
-                    && 2.0 * list.len() as f64 <= data.effective_places(axis))
+                || (!sampling.is_coarse(pitch_mm / harmonic) && 2.0 * list.len() as f64 <= sampling.effective)
         };
         let lists: Vec<&[usize]> = lists.into_iter().filter(shown).map(|(_, list)| list).collect();
         let mut forms = self.selections(EffectKind::Pitch(axis), shape, &lists);

@@ -2,4 +2,5 @@
 
 pub(crate) mod candidates;
 pub(crate) mod forms;
+pub(crate) mod sampling;
 pub(crate) mod seen;

@@ -4,22 +4,14 @@ use machine_model::effects::{EffectKind, Shape};
 
 use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Reading, Row};
+use crate::library::sampling::Sampling;
 
 /// A joint is proposed by the search where an axis has so many places: with fewer it is any curve.
 pub(crate) const JOINT_PLACES: f64 = 8.0;
-/// So many places at uneven distances show a wave even where they lie further apart than half its period.
-const ENOUGH_PLACES: usize = 24;
-/// A step that differs from the typical one by more than this share is uneven.
-const UNEVEN: f64 = 0.15;
 /// What the rows vary in.
 pub(super) struct Seen {
-    /// Number of different places per axis.
-    pub(super) places: [usize; 3],
-    /// Of these, as many as a curve can tell apart.
-    pub(super) effective: [f64; 3],
-    /// Narrowest damage that these places could show.
-    pub(super) narrowest_mm: [f64; 3],
-    pub(super) range: [(f64, f64); 3],
+    /// The places per axis.
+    pub(super) sampling: [Sampling; 3],
     pub(super) direction: [bool; 3],
     pub(super) unknown_direction: [bool; 3],
     pub(super) temperature: [bool; 3],
@@ -51,14 +43,15 @@ impl Seen {
     /// measured there, shift and slope (which are the set-up's) left over for two more.
     pub(super) fn carry(&self, kind: EffectKind, coefficients: usize) -> bool {
         curve_axis(kind).is_none_or(|axis| {
-            let places = self.effective[axis];
+            // Half a place is rounding.
+            let places = self.sampling[axis].effective + 0.5;
             2.0 * coefficients as f64 <= places && coefficients as f64 + 2.0 <= places
         })
     }
 
     /// A shape over the whole of an axis.
     pub(super) fn interval(&self, axis: usize) -> Shape {
-        let (from_mm, to_mm) = self.range[axis];
+        let (from_mm, to_mm) = self.sampling[axis].range_mm;
         Shape { from_mm, to_mm, ..Shape::default() }
     }
 
@@ -66,13 +59,8 @@ impl Seen {
         let accelerations = accelerations(&data.rows);
         let rows = &data.rows;
         let varies = |value: &dyn Fn(&Row) -> Option<f64>| range(rows, value).is_some_and(|(a, b)| b > a);
-        let places = [0, 1, 2].map(|a| data.places_mm(a).len());
         Self {
-            places,
-            // Half a place is rounding.
-            effective: [0, 1, 2].map(|a| data.effective_places(a) + 0.5),
-            narrowest_mm: [0, 1, 2].map(|a| narrowest_mm(data, a)),
-            range: [0, 1, 2].map(|a| data.range_mm(a)),
+            sampling: [0, 1, 2].map(|a| Sampling::new(data, a)),
             direction: [0, 1, 2].map(|a| {
                 let has = |d: i8| rows.iter().any(|r| r.command.direction[a] == d);
                 has(1) && has(-1)
@@ -166,14 +154,6 @@ pub(crate) const fn curve_axis(kind: EffectKind) -> Option<usize> {
     }
 }
 
-/// A bump narrower than this falls between the places measured: two and a half steps between them.
-#[must_use]
-pub(crate) fn narrowest_mm(data: &Measurements, axis: usize) -> f64 {
-    let places = data.places_mm(axis);
-    let mut steps: Vec<f64> = places.windows(2).map(|w| w[1] - w[0]).collect();
-    2.5 * median(&mut steps).unwrap_or(0.0)
-}
-
 fn distinct(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> usize {
     let mut values: Vec<f64> = rows.iter().filter_map(value).collect();
     values.sort_by(f64::total_cmp);
@@ -185,16 +165,4 @@ fn range(rows: &[Row], value: &dyn Fn(&Row) -> Option<f64>) -> Option<(f64, f64)
     let mut known = rows.iter().filter_map(value);
     let first = known.next()?;
     Some(known.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
-}
-
-/// True where a wave of this period is sampled at less than two places per period, so that it could be any curve.
-///
-/// Many places at uneven distances show a wave even where they lie further apart; even ones never do.
-#[must_use]
-pub(crate) fn is_coarse(data: &Measurements, axis: usize, period_mm: f64) -> bool {
-    let spacing = data.spacing_mm(axis);
-    let places = data.places_mm(axis);
-    let odd = |w: &&[f64]| ((w[1] - w[0]) / spacing - 1.0).abs() > UNEVEN;
-    let uneven = 3 * places.windows(2).filter(odd).count() >= places.len();
-    2.0 * spacing > period_mm && (places.len() <= ENOUGH_PLACES || !uneven)
 }

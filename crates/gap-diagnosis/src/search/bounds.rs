@@ -4,6 +4,9 @@
 //! readings of 40 µm may swing by millimetres between them, and two causes nearly alike with opposite signs cancel where
 //! they were fitted and nowhere else. So every cause is evaluated between the places, too.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use machine_model::Vector;
 use machine_model::effects::{EffectGeometry, EffectKind};
 
@@ -29,8 +32,8 @@ pub(crate) struct Bounds {
     probes: Vec<Row>,
     /// How many of them are rows.
     measured: usize,
-    /// How many places of each axis a curve can tell apart.
-    pub(crate) places: [f64; 3],
+    /// What the terms asked about displace there, one by one: a search asks for the same causes again and again.
+    known: RefCell<Vec<(Term, Rc<[Vector]>)>>,
     /// Largest reading, µm: measured minus predicted, from the median of its component.
     largest_um: f64,
     /// Largest difference of two readings of a component, µm: what an axis that leans or stretches shows from end to end,
@@ -102,8 +105,7 @@ impl Bounds {
         let as_read_um = longest(as_read);
         let longest_um = longest(squares).min(as_read_um);
         let span_um = span_square.sqrt().min(as_read_um);
-        let places = [0, 1, 2].map(|axis| data.effective_places(axis));
-        Self { probes, measured, places, largest_um, widest_um, read, longest_um, span_um }
+        Self { probes, measured, known: RefCell::default(), largest_um, widest_um, read, longest_um, span_um }
     }
 
     /// What is wrong with causes that each pass alone; `None` where nothing is. Faults of the instrument correct nothing.
@@ -150,7 +152,7 @@ impl Bounds {
                 EffectKind::Local(axis) | EffectKind::Joint(axis) => *axis,
                 _ => curve_axis(*kind)?,
             };
-            let all = displacements_um(&self.probes, terms, geometry);
+            let all = self.displacements_um(terms, geometry);
             let mean = self.mean(&all);
             let farthest =
                 (0..all.len()).max_by(|a, b| (all[*a] - mean).norm().total_cmp(&(all[*b] - mean).norm()))?;
@@ -159,14 +161,35 @@ impl Bounds {
         causes.iter().filter_map(summit).collect()
     }
 
-    /// Mean over the rows of what [`displacements_um`] gives.
+    /// Displacements by some terms at and between the places measured, µm.
+    fn displacements_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> Vec<Vector> {
+        let mut sums = vec![Vector::zeros(); self.probes.len()];
+        for (term, value) in terms {
+            let own = self.displaced_by(term, geometry);
+            sums.iter_mut().zip(own.iter()).for_each(|(sum, own)| *sum += own * *value);
+        }
+        sums
+    }
+
+    /// What one of a term displaces at and between the places measured, µm.
+    fn displaced_by(&self, term: &Term, geometry: &EffectGeometry) -> Rc<[Vector]> {
+        let known = self.known.borrow().iter().find(|(known, _)| known == term).map(|(_, all)| all.clone());
+        known.unwrap_or_else(|| {
+            let all: Rc<[Vector]> =
+                self.probes.iter().map(|row| term.displacement_um(row, geometry)).collect();
+            self.known.borrow_mut().push((*term, all.clone()));
+            all
+        })
+    }
+
+    /// Mean over the rows of what [`Self::displacements_um`] gives.
     fn mean(&self, all: &[Vector]) -> Vector {
         all.iter().take(self.measured).sum::<Vector>() / self.measured.max(1) as f64
     }
 
     /// Largest displacement by some terms at and between the places measured, from their mean over the rows, µm.
     fn excursion_um(&self, terms: &[(Term, f64)], geometry: &EffectGeometry) -> f64 {
-        let all = displacements_um(&self.probes, terms, geometry);
+        let all = self.displacements_um(terms, geometry);
         let mean = self.mean(&all);
         all.iter().map(|d| (d - mean).amax()).fold(0.0, f64::max)
     }

@@ -26,7 +26,11 @@ pub(crate) struct Stage<'a> {
     scalars: Vec<Scalar>,
     rho: f64,
     /// Columns of the model, weighted values.
-    columns: Vec<(usize, Term, Vec<f64>)>,
+    columns: Vec<(usize, Vec<f64>)>,
+    /// Products of these columns, the gap last.
+    products: DMatrix<f64>,
+    /// Per run: Σ w·along·alongᵀ, and Σ w·along·(column), the gap last.
+    runs: Vec<(Matrix3<f64>, Matrix3xX<f64>)>,
 }
 
 /// Rows of one run with the same number.
@@ -57,19 +61,39 @@ impl<'a> Stage<'a> {
         let scalars: Vec<Scalar> = thinned(source.scalars).into_iter().map(|i| source.scalars[i]).collect();
         let all: Vec<usize> = (0..scalars.len()).collect();
         let thin = Source { scalars: &scalars, ..*source };
-        let columns =
-            columns.into_iter().map(|(place, term)| (place, term, thin.weighted(&term, &all))).collect();
-        Self { source: *source, scalars, rho, columns }
+        let columns: Vec<(usize, Vec<f64>)> =
+            columns.into_iter().map(|(place, term)| (place, thin.weighted(&term, &all))).collect();
+        let gap: Vec<f64> = scalars.iter().map(|s| s.weight.sqrt() * s.gap_um).collect();
+        let values: Vec<&[f64]> = columns.iter().map(|(_, v)| v.as_slice()).chain([gap.as_slice()]).collect();
+        let count = values.len();
+        let mut products = DMatrix::zeros(count, count);
+        for j in 0..count {
+            for i in 0..=j {
+                products[(i, j)] = dot(values[i], values[j]);
+                products[(j, i)] = products[(i, j)];
+            }
+        }
+        let mut runs = vec![(Matrix3::zeros(), Matrix3xX::zeros(count)); source.runs];
+        for (i, scalar) in scalars.iter().enumerate() {
+            let (information, block) = &mut runs[source.rows[scalar.row].run];
+            *information += scalar.along * scalar.along.transpose() * scalar.weight;
+            let along = scalar.along * scalar.weight.sqrt();
+            for (j, values) in values.iter().enumerate() {
+                (0..3).for_each(|c| block[(c, j)] += along[c] * values[i]);
+            }
+        }
+        Self { source: *source, scalars, rho, columns, products, runs }
     }
 
     /// Everything but the columns `own` of the part whose numbers are `variable` of a row.
     fn rest(&self, own: &[usize], variable: impl Fn(&Row) -> Option<f64>) -> Rest {
         let rows = self.source.rows;
-        let others: Vec<&Vec<f64>> =
-            self.columns.iter().filter(|(place, ..)| !own.contains(place)).map(|(.., v)| v).collect();
-        let gap: Vec<f64> = self.scalars.iter().map(|s| s.weight.sqrt() * s.gap_um).collect();
-        let count = others.len() + 1;
-        let value = |j: usize, i: usize| others.get(j).map_or(gap[i], |v| v[i]);
+        // The gap comes last.
+        let gap = self.columns.len();
+        let is_other = |j: &usize| *j == gap || !own.contains(&self.columns[*j].0);
+        let kept: Vec<usize> = (0..=gap).filter(is_other).collect();
+        let count = kept.len();
+        let others: Vec<&Vec<f64>> = kept[..count - 1].iter().map(|j| &self.columns[*j].1).collect();
         let mut order: Vec<(usize, f64, usize)> = self
             .scalars
             .iter()
@@ -89,37 +113,23 @@ impl<'a> Stage<'a> {
             if let Some(group) = groups.last_mut() {
                 group.information += scalar.along * scalar.along.transpose() * scalar.weight;
                 let along = scalar.along * scalar.weight.sqrt();
-                for (j, to) in group.others.chunks_exact_mut(3).enumerate() {
-                    (0..3).for_each(|c| to[c] += along[c] * value(j, i));
+                let gap = scalar.weight.sqrt() * scalar.gap_um;
+                let values = others.iter().map(|v| v[i]).chain([gap]);
+                for (to, value) in group.others.chunks_exact_mut(3).zip(values) {
+                    (0..3).for_each(|c| to[c] += along[c] * value);
                 }
             }
         }
-        let mut products = DMatrix::zeros(count, count);
-        for j in 0..count {
-            for i in 0..=j {
-                let a = others.get(i).map_or(gap.as_slice(), |v| v.as_slice());
-                let b = others.get(j).map_or(gap.as_slice(), |v| v.as_slice());
-                products[(i, j)] = dot(a, b);
-                products[(j, i)] = products[(i, j)];
-            }
-        }
+        let mut products = self.products.select_rows(&kept).select_columns(&kept);
         let squares = (0..count).map(|i| products[(i, i)]).collect();
-        let mut blocks = vec![(Matrix3::zeros(), Matrix3xX::zeros(count)); self.source.runs];
-        for (i, scalar) in self.scalars.iter().enumerate() {
-            let (information, block) = &mut blocks[rows[scalar.row].run];
-            *information += scalar.along * scalar.along.transpose() * scalar.weight;
-            let along = scalar.along * scalar.weight.sqrt();
-            for j in 0..count {
-                (0..3).for_each(|c| block[(c, j)] += along[c] * value(j, i));
-            }
-        }
         let mut runs = Vec::new();
-        for (information, block) in blocks {
+        for (information, block) in &self.runs {
+            let block = block.select_columns(&kept);
             let inner =
                 if self.rho > 0.0 { Matrix3::identity() / self.rho + information } else { Matrix3::zeros() };
             let inverse =
                 if self.rho > 0.0 { inner.try_inverse().unwrap_or_else(Matrix3::zeros) } else { inner };
-            let solved = inverse * &block;
+            let solved: Matrix3xX<f64> = inverse * &block;
             products -= block.transpose() * &solved;
             runs.push((inverse, solved));
         }

@@ -5,7 +5,7 @@ use machine_model::effects::{EffectKind, Shape};
 use crate::equations::fit::residuals;
 use crate::equations::term::Term;
 use crate::library::candidates::Variant;
-use crate::library::seen::{JOINT_PLACES, narrowest_mm};
+use crate::library::seen::JOINT_PLACES;
 use crate::search::proposals;
 use crate::search::refine::Stage;
 use crate::search::state::State;
@@ -23,7 +23,7 @@ impl State<'_, '_> {
             }
             let (found, asked) = self.pitches[axis].best(self.source, &solution.residuals_um, axis);
             for pitch in found {
-                let variants = self.library.pitch(self.data, axis, pitch);
+                let variants = self.library.pitch(axis, pitch);
                 self.library.add_variants(kind, variants, asked);
             }
         }
@@ -52,21 +52,24 @@ impl State<'_, '_> {
             if self.without.contains(&kind) || self.uses(kind) {
                 continue;
             }
-            if let Some((centre, width, asked)) =
-                proposals::damage(self.source, &solution.residuals_um, axis, narrowest_mm(self.data, axis))
-            {
+            if let Some((centre, width, asked)) = proposals::damage(
+                self.source,
+                &solution.residuals_um,
+                axis,
+                self.library.sampling[axis].narrowest_mm,
+            ) {
                 let variants = self.library.place(kind, centre, width);
                 self.library.add_variants(kind, variants, asked);
             }
         }
         for axis in 0..3 {
             let kind = EffectKind::Joint(axis);
-            let few = self.bounds.places[axis] < JOINT_PLACES;
+            let few = self.library.sampling[axis].effective < JOINT_PLACES;
             if self.without.contains(&kind) || self.uses(kind) || few {
                 continue;
             }
             if let Some((centre, asked)) = proposals::joint(self.source, &solution.residuals_um, axis) {
-                let width = 0.4 * narrowest_mm(self.data, axis);
+                let width = 0.4 * self.library.sampling[axis].narrowest_mm;
                 let variants = self.library.join(kind, centre, width);
                 self.library.add_variants(kind, variants, asked.min(48));
             }
@@ -86,7 +89,7 @@ impl State<'_, '_> {
             let own = self.library.form(part).columns.clone();
             let Some((shape, indices)) = self.shape_of(&own) else { continue };
             let narrowest = match kind {
-                EffectKind::Local(axis) => narrowest_mm(self.data, axis),
+                EffectKind::Local(axis) => self.library.sampling[axis].narrowest_mm,
                 _ => 0.0,
             };
             let Some(better) = stage.refined(&own, kind, &shape, &indices, narrowest) else { continue };
@@ -94,7 +97,7 @@ impl State<'_, '_> {
                 continue;
             }
             let variants = match kind {
-                EffectKind::Pitch(axis) => self.library.pitch(self.data, axis, better.pitch_mm),
+                EffectKind::Pitch(axis) => self.library.pitch(axis, better.pitch_mm),
                 EffectKind::Local(_) => self.library.place(kind, better.centre_mm, better.width_mm),
                 EffectKind::Joint(_) => self.library.join(kind, better.centre_mm, better.width_mm),
                 _ => {
@@ -148,7 +151,7 @@ impl State<'_, '_> {
                     self.library.add_variants(kind, vec![form], 0);
                 }
                 let kind = EffectKind::Local(axis);
-                let narrowest = narrowest_mm(self.data, axis);
+                let narrowest = self.library.sampling[axis].narrowest_mm;
                 if let Some((centre, width, _)) =
                     proposals::damage(self.source, &displaced, axis, narrowest).filter(|_| allowed(kind))
                 {

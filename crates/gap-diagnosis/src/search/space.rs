@@ -1,6 +1,6 @@
 //! The space of all columns, set-up and run offsets taken out, in which models are judged.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 use machine_model::effects::EffectKind;
 use nalgebra::{DMatrix, Matrix3};
@@ -33,9 +33,9 @@ struct Level {
     pivots: Vec<(usize, Absorbed)>,
     /// One per column, the gap last.
     explained: Vec<Absorbed>,
-    /// Products that were asked for, not a number where none was: a search asks for few. A triangle, the gap first, so
-    /// that new columns come at its end.
-    known: Vec<Cell<f64>>,
+    /// Products that were asked for, not a number where none was: a search asks for few. A triangle by rows, the gap
+    /// first, so that new columns come at its end; a row nobody asked about takes no room.
+    known: Vec<OnceCell<Box<[Cell<f64>]>>>,
 }
 
 /// The vector `b` of a column: what run offsets and set-up absorb of it.
@@ -90,8 +90,7 @@ impl Level {
         }
         self.explained.extend(fresh);
         self.explained.extend(gap);
-        let kept = size - nuisances;
-        self.known.resize(kept * (kept + 1) / 2, Cell::new(f64::NAN));
+        self.known.resize_with(size - nuisances, OnceCell::new);
     }
 
     /// Eliminates the set-up columns that are independent (rank-revealing Cholesky). A column of which next to
@@ -343,7 +342,8 @@ impl Products for Whitened<'_> {
         let last = self.space.reference.len() - 1;
         let place = |k: usize| if k == last { 0 } else { k + 1 };
         let (low, high) = (place(i).min(place(j)), place(i).max(place(j)));
-        let known = &self.level.known[high * (high + 1) / 2 + low];
+        let row = self.level.known[high].get_or_init(|| vec![Cell::new(f64::NAN); high + 1].into());
+        let known = &row[low];
         if known.get().is_nan() {
             let (a, b) = (self.space.nuisances + i, self.space.nuisances + j);
             let taken_out = self.level.explained[a].product(&self.level.explained[b]);

@@ -17,7 +17,6 @@ use crate::search::space::{Fit, Space};
 
 /// A search under way.
 pub(crate) struct State<'a, 'b> {
-    pub(super) data: &'a Measurements,
     pub(super) source: &'a Source<'a>,
     pub(super) without: &'a [EffectKind],
     pub(super) library: Library,
@@ -64,7 +63,6 @@ impl<'a, 'b> State<'a, 'b> {
         let bounds = Bounds::new(data, source.scalars);
         let floor = (quantum_um(source.scalars).powi(2) / 12.0).max(1e-12);
         Self {
-            data,
             source,
             without,
             library,

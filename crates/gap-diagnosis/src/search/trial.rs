@@ -168,7 +168,7 @@ impl State<'_, '_> {
                 candidate.variants[part.variant].columns.iter().filter(move |_| own)
             });
             let seen = |c: &&usize| self.library.terms[**c].touches(component, self.source.geometry);
-            2.0 * columns.filter(seen).count() as f64 > self.bounds.places[axis] + 0.5
+            2.0 * columns.filter(seen).count() as f64 > self.library.sampling[axis].effective + 0.5
         };
         let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
         crowded.then_some(
