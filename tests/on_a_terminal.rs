@@ -2,8 +2,9 @@
 
 #![cfg(target_os = "linux")]
 
-use std::fmt::Write;
-use std::process::Command;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
 
 use crate::common::{root, run};
 
@@ -75,4 +76,38 @@ fn long_work_shows_how_far_it_is() {
     assert!(answer.ends_with("passed\r\n") && !answer.contains('%'), "{answer:?}");
     let piped = run(&arguments);
     assert!(piped.status.success() && piped.stderr.is_empty());
+}
+
+/// Five questions, a wrong answer among them, and Enter for the file.
+#[test]
+fn a_profile_is_asked_for() {
+    if !have_terminals() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let answers = "Mill 5\nfanuk\nfanuc\n2\n0..500\n400..0\n-400..0\n-300..0\n\n";
+    let command = format!("{} profile new --lang en", env!("CARGO_BIN_EXE_vpost"));
+    let mut child = Command::new("script")
+        .args(["-q", "-e", "-c", &command, "/dev/null"])
+        .current_dir(folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("script is there");
+    child.stdin.take().expect("piped").write_all(answers.as_bytes()).expect("answered");
+    let ran = child.wait_with_output().expect("ended");
+    let seen = String::from_utf8_lossy(&ran.stdout);
+    assert!(ran.status.success(), "{seen}");
+    for said in [
+        "1. What is the machine called?",
+        "one of these: ",
+        "two numbers, the lesser first",
+        "5. To which file?",
+    ] {
+        assert!(seen.contains(said), "{said} in {seen}");
+    }
+    let profile = std::fs::read_to_string(folder.path().join("mill_5.toml")).expect("written");
+    for line in ["\"Mill 5\"", "\"fanuc\"", "[w b X Y Z t]", "[0, 500]", "[-400, 0]", "[-300, 0]"] {
+        assert!(profile.contains(line), "{line} in {profile}");
+    }
 }

@@ -36,9 +36,34 @@ fn what_is_written_is_a_good_profile_of_that_machine() {
     assert!(messages(&again).contains("is there already"));
 }
 
+/// What the control says of itself counts where nothing else is given; what it leaves open is asked for.
+#[test]
+fn a_control_says_what_its_machine_is() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let ini = folder.path().join("mill.ini");
+    let limits = |letter: char| format!("[AXIS_{letter}]\nMIN_LIMIT = -10\nMAX_LIMIT = 0\n");
+    let text = "[EMC]\nMACHINE = Mill 5\n[TRAJ]\nCOORDINATES = XYZ\nLINEAR_UNITS = inch\n";
+    let text = text.to_owned() + &limits('X') + &limits('Y') + &limits('Z');
+    std::fs::write(&ini, &text).expect("written");
+    let path = ini.to_str().expect("plain");
+    let from = |more: &[&str]| run(&[&["profile", "new", "--from", path], more].concat());
+    let written = from(&["--travel", "Z=-100..0"]);
+    assert!(written.status.success(), "{}", messages(&written));
+    let profile = String::from_utf8(written.stdout).expect("text");
+    for line in ["\"Mill 5\"", "\"linuxcnc\"", "[-254, 0]", "[-100, 0]"] {
+        assert!(profile.contains(line), "{line} in {profile}");
+    }
+    std::fs::write(&ini, text.replace("= XYZ", "= XYZA")).expect("written");
+    let turning = from(&[]);
+    assert_eq!(turning.status.code(), Some(2));
+    assert!(messages(&turning).contains("which of them carry the workpiece no file says"));
+    assert!(from(&["--chain", "[w X Y b Z t]"]).status.success());
+}
+
 #[test]
 fn what_is_missing_or_wrong_is_said() {
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 9] = [
+        (&[&TRAVELS[..], &["--device", "VF-2"]].concat(), "--from"),
         (&[&TRAVELS[..], &["--centre", "A=0,0,0"]].concat(), "is of no axis of [w X Y b Z t]"),
         (&[&TRAVELS[..], &["--chain", "[w C X Y b Z t]"]].concat(), "--centre of C is not given once"),
         (&TRAVELS[..4], "--travel of Z is not given once"),

@@ -3,7 +3,7 @@
 use diagnostic::both;
 use measurement_files::{Piece, Refusal, decoded};
 
-use crate::refusals::{BEYOND, UNREADABLE, refuse, refuse_whole};
+use crate::refusals::{BEYOND, File, UNREADABLE, refuse, refuse_whole};
 
 /// What an INI file says of a machine's lengths.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,36 +24,10 @@ impl Ini {
     pub fn read(name: &str, bytes: &[u8]) -> Result<Self, Box<Refusal>> {
         let text = decoded(bytes);
         let file = (name, text.as_ref());
-        let mut section = "";
         let (mut unit, mut tool_table, mut parameters) = (None, None, None);
-        for line in Piece::lines(&text).map(Piece::trimmed) {
-            if line.text.starts_with("#INCLUDE") {
-                let help = both!(
-                    "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name",
-                    "дайте полный, который LinuxCNC при запуске пишет рядом: с `.expanded` после имени"
-                );
-                return Err(refuse(
-                    file,
-                    line,
-                    UNREADABLE,
-                    both!("this INI file takes in others", "этот INI-файл включает другие"),
-                    both!("what they say would be missed", "сказанное в них пропало бы"),
-                    help,
-                ));
-            }
-            if line.text.is_empty() || line.text.starts_with(['#', ';']) {
-                continue;
-            }
-            if let Some(rest) = line.text.strip_prefix('[') {
-                section = rest.split(']').next().unwrap_or_default().trim();
-                continue;
-            }
-            let Some(equals) = line.text.find('=') else { continue };
-            let key = line.before(&['=']).trimmed().text;
-            let value = line.behind(equals + 1).trimmed();
-            let is = |of: &str, name: &str| {
-                section.eq_ignore_ascii_case(of) && key.eq_ignore_ascii_case(name) && !value.text.is_empty()
-            };
+        for entry in entries(file)? {
+            let value = entry.value;
+            let is = |of: &str, name: &str| entry.is(of, name);
             if is("EMCIO", "DB_PROGRAM") {
                 return Err(refuse(
                     file,
@@ -73,7 +47,6 @@ impl Ini {
                     ),
                 ));
             }
-            // Of a key that stands twice LinuxCNC takes the first.
             if is("TRAJ", "LINEAR_UNITS") {
                 unit.get_or_insert(value);
             } else if is("EMCIO", "TOOL_TABLE") {
@@ -82,34 +55,85 @@ impl Ini {
                 parameters.get_or_insert(value.text);
             }
         }
-        let Some(unit) = unit else {
-            return Err(refuse_whole(
-                file,
-                UNREADABLE,
-                both!(
-                    "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
-                    "в [TRAJ] нет LINEAR_UNITS: это не INI-файл станка с LinuxCNC"
-                ),
-                both!(
-                    "give the file that LinuxCNC is started with",
-                    "дайте файл, с которым запускают LinuxCNC"
-                ),
-            ));
-        };
-        let unit_mm = match unit.text.to_ascii_lowercase().as_str() {
-            "mm" | "metric" => 1.0,
-            "in" | "inch" | "imperial" => 25.4,
-            _ => {
-                let label = both!("expected mm or inch", "ожидалось mm или inch");
-                let help = both!(
-                    "write what the machine's axes count in: LINEAR_UNITS = mm, or inch",
-                    "напишите, в чём считают оси станка: LINEAR_UNITS = mm или inch"
-                );
-                let message = both!("LINEAR_UNITS is `{}`", "LINEAR_UNITS — `{}`", unit.text);
-                return Err(refuse(file, unit, UNREADABLE, message, label, help));
-            }
-        };
+        let unit_mm = unit_mm(file, unit)?;
         let owned = |value: Option<&str>| value.map(str::to_owned);
         Ok(Self { unit_mm, tool_table: owned(tool_table), parameters: owned(parameters) })
+    }
+}
+
+/// A key of an INI file with its value.
+pub(crate) struct Entry<'t> {
+    section: &'t str,
+    key: &'t str,
+    pub(crate) value: Piece<'t>,
+}
+
+impl Entry<'_> {
+    /// True where this key of that section has a value.
+    pub(crate) fn is(&self, section: &str, key: &str) -> bool {
+        self.section.eq_ignore_ascii_case(section)
+            && self.key.eq_ignore_ascii_case(key)
+            && !self.value.text.is_empty()
+    }
+}
+
+/// The keys of an INI file in their order; of one that stands twice LinuxCNC takes the first.
+pub(crate) fn entries(file: File<'_>) -> Result<Vec<Entry<'_>>, Box<Refusal>> {
+    let mut section = "";
+    let mut found = Vec::new();
+    for line in Piece::lines(file.1).map(Piece::trimmed) {
+        if line.text.starts_with("#INCLUDE") {
+            let help = both!(
+                "give the whole one that LinuxCNC writes beside it when it starts, with `.expanded` behind its name",
+                "дайте полный, который LinuxCNC при запуске пишет рядом: с `.expanded` после имени"
+            );
+            return Err(refuse(
+                file,
+                line,
+                UNREADABLE,
+                both!("this INI file takes in others", "этот INI-файл включает другие"),
+                both!("what they say would be missed", "сказанное в них пропало бы"),
+                help,
+            ));
+        }
+        if line.text.is_empty() || line.text.starts_with(['#', ';']) {
+            continue;
+        }
+        if let Some(rest) = line.text.strip_prefix('[') {
+            section = rest.split(']').next().unwrap_or_default().trim();
+            continue;
+        }
+        let Some(equals) = line.text.find('=') else { continue };
+        let key = line.before(&['=']).trimmed().text;
+        found.push(Entry { section, key, value: line.behind(equals + 1).trimmed() });
+    }
+    Ok(found)
+}
+
+/// What `[TRAJ] LINEAR_UNITS` says, mm.
+pub(crate) fn unit_mm(file: File<'_>, unit: Option<Piece<'_>>) -> Result<f64, Box<Refusal>> {
+    let Some(unit) = unit else {
+        return Err(refuse_whole(
+            file,
+            UNREADABLE,
+            both!(
+                "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine",
+                "в [TRAJ] нет LINEAR_UNITS: это не INI-файл станка с LinuxCNC"
+            ),
+            both!("give the file that LinuxCNC is started with", "дайте файл, с которым запускают LinuxCNC"),
+        ));
+    };
+    match unit.text.to_ascii_lowercase().as_str() {
+        "mm" | "metric" => Ok(1.0),
+        "in" | "inch" | "imperial" => Ok(25.4),
+        _ => {
+            let label = both!("expected mm or inch", "ожидалось mm или inch");
+            let help = both!(
+                "write what the machine's axes count in: LINEAR_UNITS = mm, or inch",
+                "напишите, в чём считают оси станка: LINEAR_UNITS = mm или inch"
+            );
+            let message = both!("LINEAR_UNITS is `{}`", "LINEAR_UNITS — `{}`", unit.text);
+            Err(refuse(file, unit, UNREADABLE, message, label, help))
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! What controls keep in files: tool lengths and work offsets, bytes in, millimetres out.
 //!
-//! Three writers are known: LinuxCNC (its INI, which names a tool table and a file of parameters), controls whose offsets
+//! For lengths three writers are known: LinuxCNC (its INI, which names a tool table and a file of parameters), controls whose offsets
 //! come out as a program (G10 L10 and L11), and people with a spreadsheet. What the file leaves open (a unit, an offset
 //! that vpost cannot follow) is refused: these numbers move axes.
+//!
+//! What a machine is begins in such files, too: LinuxCNC's INI, and the answer of an MTConnect agent to `probe`.
 //!
 //! No files are opened here; a [`Refusal`] knows its place and what to write instead.
 //!
@@ -17,6 +19,8 @@
 //! ```
 
 mod ini;
+mod machine;
+mod mtconnect;
 mod offset_dump;
 mod parameters;
 mod refusals;
@@ -24,6 +28,7 @@ mod tool_list;
 mod tool_table;
 
 pub use ini::Ini;
+pub use machine::Machine;
 pub use measurement_files::Refusal;
 pub use parameters::work_offsets;
 

@@ -1,5 +1,7 @@
 //! Why a file is not read.
 
+use std::ops::Range;
+
 use diagnostic::{Code, Diagnostic, Text};
 use measurement_files::{Piece, Refusal};
 
@@ -13,15 +15,27 @@ pub(crate) type File<'f> = (&'f str, &'f str);
 
 /// What is wrong at a place, what is found there, what to do.
 pub(crate) fn refuse(
-    (name, text): File<'_>,
+    file: File<'_>,
     at: Piece<'_>,
     code: Code,
     message: Text,
     label: Text,
     help: Text,
 ) -> Box<Refusal> {
-    let start = at.span().start as u64;
-    let end = start + at.text.len().max(1) as u64;
+    refuse_at(file, at.span(), code, message, label, help)
+}
+
+/// The same where the place is known by its bytes.
+pub(crate) fn refuse_at(
+    (name, text): File<'_>,
+    at: Range<usize>,
+    code: Code,
+    message: Text,
+    label: Text,
+    help: Text,
+) -> Box<Refusal> {
+    let start = at.start as u64;
+    let end = at.end.max(at.start + 1) as u64;
     Refusal::of(name, text, Diagnostic::error(code, message).at(start..end, label).help(help))
 }
 

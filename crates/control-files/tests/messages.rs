@@ -1,6 +1,6 @@
 //! What files of controls are refused for: the message, the place, what to do.
 
-use control_files::{Ini, Refusal, tool_lengths, work_offsets};
+use control_files::{Ini, Machine, Refusal, tool_lengths, work_offsets};
 
 /// Number, message and what stands at the place.
 fn said<T: std::fmt::Debug>(read: Result<T, Box<Refusal>>) -> (u16, String, String) {
@@ -126,4 +126,70 @@ fn files_of_parameters() {
     assert_eq!(with("offset 3"), owned(920, "this line is no parameter of LinuxCNC", "offset 3"));
     assert_eq!(said(read("5161 0\n")), owned(920, "the file holds no work offset: #5221 is missing", ""));
     assert_eq!(said(read("T1 Z5\n")).0, 920);
+}
+
+#[test]
+fn machines_of_ini_files() {
+    let owned = |code: u16, message: &str, at: &str| (code, message.to_owned(), at.to_owned());
+    let read = |text: &str| said(Machine::read("m.ini", text.as_bytes(), None));
+    assert_eq!(
+        read("[TRAJ]\nCOORDINATES = X Y Z\n"),
+        owned(920, "no LINEAR_UNITS under [TRAJ]: this is no INI file of a LinuxCNC machine", "")
+    );
+    assert_eq!(read("[TRAJ]\nLINEAR_UNITS = mm\n"), owned(920, "no axis of this INI file has limits", ""));
+    assert_eq!(read("[DISPLAY]\nLATHE = 1\n[TRAJ]\nLINEAR_UNITS = mm\n"), owned(921, "this is a lathe", "1"));
+    assert_eq!(
+        read("[KINS]\nKINEMATICS = pentakins\n[TRAJ]\nLINEAR_UNITS = mm\n"),
+        owned(921, "this machine has no axes X, Y and Z of its own", "pentakins")
+    );
+    assert_eq!(
+        read("[TRAJ]\nLINEAR_UNITS = mm\n[AXIS_X]\nMIN_LIMIT = low\nMAX_LIMIT = 5\n"),
+        owned(920, "`low` is no limit of X", "low")
+    );
+}
+
+#[test]
+fn machines_of_agents() {
+    let owned = |code: u16, message: &str, at: &str| (code, message.to_owned(), at.to_owned());
+    let read = |text: &str| said(Machine::read("probe.xml", text.as_bytes(), None));
+    let (code, message, _) = read("<MTConnectDevices>\n<Devices></MTConnectDevices>");
+    assert!(code == 920 && message.starts_with("line 2: "), "{message}");
+    assert_eq!(
+        read("<MTConnectStreams/>"),
+        owned(920, "`MTConnectStreams` describes no machine", "MTConnectStreams")
+    );
+    let device = |name: &str, axes: &str| format!("<Device name='{name}'><Axes>{axes}</Axes></Device>");
+    let of = |devices: &str| format!("<MTConnectDevices><Devices>{devices}</Devices></MTConnectDevices>");
+    let axis = |limits: &str| {
+        format!(
+            "<Linear name='X'><DataItem type='POSITION' units='MILLIMETER'><Constraints>{limits}</Constraints></DataItem></Linear>"
+        )
+    };
+    let plain = axis("");
+    assert_eq!(read(&of("<Agent/>")), owned(921, "no device of this file has linear axes", ""));
+    let two = of(&(device("VF-2", &plain) + &device("ST-10", &plain)));
+    assert_eq!(read(&two), owned(921, "the file describes several machines: VF-2, ST-10", ""));
+    assert_eq!(
+        said(Machine::read("probe.xml", two.as_bytes(), Some("VF-3"))).1,
+        "there is no device `VF-3` with axes"
+    );
+    assert!(Machine::read("probe.xml", two.as_bytes(), Some("VF-2")).is_ok());
+    assert_eq!(
+        read(&of(&device("m", &(plain.clone() + &plain)))),
+        owned(921, "two axes are called X", "Linear")
+    );
+    assert_eq!(
+        read(&of(&device("m", &axis("<Minimum>0</Minimum><Maximum>NaN</Maximum>")))),
+        owned(920, "`NaN` is no limit of X", "Maximum")
+    );
+    let inch = axis("<Minimum>0</Minimum><Maximum>20</Maximum>").replace("MILLIMETER", "INCH");
+    assert_eq!(read(&of(&device("m", &inch))), owned(920, "the position of X is in `INCH`", "DataItem"));
+    let twice = axis("<Minimum>0</Minimum><Maximum>500</Maximum>").replace(
+        "</Linear>",
+        "<Specification type='POSITION'><Minimum>0</Minimum><Maximum>508</Maximum></Specification></Linear>",
+    );
+    assert_eq!(
+        read(&of(&device("m", &twice))),
+        owned(920, "X has limits twice, and they differ", "Specification")
+    );
 }

@@ -4,30 +4,40 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use diagnostic::{Speaks, both};
-use machine_model::{Axis, Chain};
+use control_files::Machine;
+use diagnostic::both;
+use machine_model::Axis;
 
 use crate::message::{Failure, Messages};
 use crate::number::short;
-use crate::settings::load_dialect;
+use crate::profile_new::answers::Answers;
 use crate::values::{AxisTable, Centre, Given, Travel};
 use crate::{file, profile};
+
+mod answers;
+mod questions;
 
 /// `vpost profile new`
 #[derive(Debug, Args)]
 pub struct New {
-    /// Name of the machine.
+    /// Name of the machine; at a terminal vpost asks for what is not given.
     #[arg(long)]
-    pub name: String,
+    pub name: Option<String>,
     /// Dialect of the control, see `vpost grammar list`.
     #[arg(long, value_name = "DIALECT")]
-    pub control: String,
+    pub control: Option<String>,
     /// Travel of a linear axis, mm; one for each.
-    #[arg(long, value_name = "X=LOW..HIGH", required = true, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X=LOW..HIGH", allow_hyphen_values = true)]
     pub travel: Vec<Given<Travel>>,
-    /// Axes from workpiece to tool, b the bed.
-    #[arg(long, default_value = "[w X Y b Z t]")]
-    pub chain: String,
+    /// What the control says of itself: LinuxCNC's INI, or an MTConnect `probe`.
+    #[arg(long, value_name = "FILE")]
+    pub from: Option<PathBuf>,
+    /// Which device of the `probe`, where it has several.
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pub device: Option<String>,
+    /// Axes from workpiece to tool, b the bed; `[w X Y b Z t]` if not given.
+    #[arg(long)]
+    pub chain: Option<String>,
     /// Step of the coordinates that the control takes, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.001)]
     pub resolution: f64,
@@ -44,18 +54,16 @@ pub struct New {
 
 /// `vpost profile new`
 pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
-    load_dialect(&arguments.control)?;
-    let chain = Chain::parse(&arguments.chain).map_err(|error| {
-        let help =
-            both!("like `--chain '[w X Y b Z t]'`; of a lathe begin with machine-profiles/generic_lathe.toml", "например `--chain '[w X Y b Z t]'`; для токарного станка начните с machine-profiles/generic_lathe.toml");
-        let error = error.text();
-        Failure::option(both!("--chain: {error}", "--chain: {error:#}"), help)
-    })?;
-    let text = text(arguments, &chain)?;
+    let said = match &arguments.from {
+        None => Machine::default(),
+        Some(path) => Machine::read(&file::name(path), &file::read(path)?, arguments.device.as_deref())?,
+    };
+    let machine = answers::complete(arguments, said, messages)?;
+    let text = text(arguments, &machine)?;
     // What is wrong is said of the lines as they would stand there.
-    let path = arguments.output.as_deref().unwrap_or(Path::new("profile.toml"));
+    let path = machine.output.as_deref().unwrap_or(Path::new("profile.toml"));
     profile::loaded(path, text.as_bytes())?;
-    let Some(path) = &arguments.output else { return file::print(text.as_bytes()) };
+    let Some(path) = &machine.output else { return file::print(text.as_bytes()) };
     if path.exists() {
         return Err(Failure::option(
             both!("{} is there already", "{} уже есть", file::name(path)),
@@ -67,13 +75,14 @@ pub(crate) fn run(arguments: &New, messages: &Messages) -> Result<(), Failure> {
         "{}: a profile of {}; fill in what is measured",
         "{}: профиль станка {}; впишите в него измеренное",
         file::name(path),
-        arguments.name
+        machine.name
     ));
     Ok(())
 }
 
 /// The profile with an example for each section that it has not.
-fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
+fn text(arguments: &New, machine: &Answers) -> Result<String, Failure> {
+    let chain = &machine.chain;
     let string = |value: &str| toml_edit::Value::from(value).to_string();
     let mut text = format!(
         "# Every key: docs/reference.md, or `vpost profile schema`. Check with `vpost profile check`.\n\
@@ -83,21 +92,12 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
          # From workpiece to tool, b the bed: what stands before it carries the workpiece.\n\
          chain   = {}\n\
          # calibrated = {{ date = \"2026-01-31\", temperature_c = 20.0, instrument = \"interferometer\" }}\n",
-        string(&arguments.name),
-        string(&arguments.control),
+        string(&machine.name),
+        string(&machine.control),
         string(&chain.to_string()),
     );
-    for axis in [Axis::X, Axis::Y, Axis::Z] {
+    for (axis, range_mm) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(machine.travels_mm) {
         let letter = axis.letter();
-        let Some(Travel { range_mm, .. }) = only(&arguments.travel, |travel| travel.axis == axis) else {
-            return Err(Failure::option(
-                both!("--travel of {letter} is not given once", "--travel для {letter} задан не один раз"),
-                both!(
-                    "`--travel {letter}=0..500` with the ends of its travel in machine coordinates",
-                    "`--travel {letter}=0..500` — концы её хода в координатах станка"
-                ),
-            ));
-        };
         let [low, high, step] = [range_mm.low, range_mm.high, arguments.resolution].map(|mm| short(mm, 6));
         let _ = writeln!(text, "\n[axis.{letter}]\ntravel_mm     = [{low}, {high}]\nresolution_mm = {step}");
         let _ = match arguments.table.iter().filter(|table| table.axis == axis).collect::<Vec<_>>()[..] {
@@ -120,32 +120,8 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
         };
         text.push_str("# backlash_um = 0.0\n");
     }
-    let rotary = || chain.table().iter().chain(chain.head());
-    if let Some(centre) = arguments.centre.iter().find(|centre| rotary().all(|axis| *axis != centre.axis)) {
-        let help = both!(
-            "put {} into `--chain`, or leave the option out",
-            "впишите {} в `--chain` или уберите ключ",
-            centre.axis.letter()
-        );
-        return Err(Failure::option(
-            both!(
-                "--centre {centre} is of no axis of {chain}",
-                "--centre {centre} не относится ни к одной оси цепи {chain}"
-            ),
-            help,
-        ));
-    }
-    for axis in rotary() {
+    for (axis, point_mm) in &machine.centres_mm {
         let letter = axis.letter();
-        let Some(Centre { point_mm, .. }) = only(&arguments.centre, |centre| centre.axis == *axis) else {
-            return Err(Failure::option(
-                both!("--centre of {letter} is not given once", "--centre для {letter} задан не один раз"),
-                both!(
-                    "`--centre {letter}=X,Y,Z` with the machine coordinates of a point of its line",
-                    "`--centre {letter}=X,Y,Z` — координаты станка одной точки её оси"
-                ),
-            ));
-        };
         let [x, y, z] = point_mm.map(|value| short(value, 6));
         let _ = writeln!(
             text,
@@ -172,10 +148,4 @@ fn text(arguments: &New, chain: &Chain) -> Result<String, Failure> {
          # tolerance_um = 1.0\n",
     );
     Ok(text)
-}
-
-/// The only one that is wanted; `None` where there is none or are several.
-fn only<T>(given: &[Given<T>], is_wanted: impl Fn(&T) -> bool) -> Option<&T> {
-    let mut found = given.iter().map(|one| &**one).filter(|one| is_wanted(one));
-    found.next().filter(|_| found.next().is_none())
 }
