@@ -247,6 +247,12 @@ impl Rules {
                 return arithmetic(both!("{a} to the power of {b}", "{a} в степени {b}"));
             }
             Operator::Power => return Ok((math::powf(a, b), true)),
+            Operator::Atan2 if self.flow.one_value_atan => {
+                return arithmetic(both!(
+                    "ATAN of two values: this control would divide the angle of the first",
+                    "ATAN от двух значений: эта стойка разделила бы угол первого"
+                ));
+            }
             Operator::Atan2 => {
                 // Where the angle jumps by a turn, the sign of a zero decides.
                 let jumps = a != 0.0 || rounded;

@@ -500,7 +500,7 @@ impl<'a> Run<'a, '_> {
         }
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
-        Expanded { text: Cow::Owned(text), files, flow: Some(segments), shorthand: None, warnings }
+        Expanded { text: Cow::Owned(text), files, flow: Some(segments), shorthand: Vec::new(), warnings }
     }
 
     fn refusal(&self, stop: &Stop) -> Refusal {

@@ -15,6 +15,7 @@ pub(crate) struct Lexer<'d> {
     skip: Option<u8>,
     colon: Colon,
     equals_words: bool,
+    labels: bool,
     pub(crate) spaces_inside: bool,
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
     pub(crate) letters: u32,
@@ -63,6 +64,7 @@ impl<'d> Lexer<'d> {
             skip: dialect.skip,
             colon: dialect.colon,
             equals_words: dialect.equals_words,
+            labels: dialect.labels,
             spaces_inside: dialect.numbers.spaces_inside,
             letters,
             long_words: &dialect.long_words,
@@ -155,6 +157,11 @@ impl<'d> Lexer<'d> {
             return found;
         }
         if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
+            // `OMAIN` and `NEND`, where nothing else begins so.
+            let known = || self.commands.iter().any(|command| names(command, &line[at..]));
+            if self.labels && matches!(letter, b'O' | b'N') && !known() {
+                return (ItemKind::Name, at + identifier(&line[at..]));
+            }
             if let Some(found) = self.letters(line, at) {
                 return found;
             }

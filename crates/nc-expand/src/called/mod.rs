@@ -1,16 +1,20 @@
 //! Names of Siemens written out as plain blocks: cycles (CYCLE81 and its like, MCALL, HOLES1, HOLES2), `X=AC()` and
-//! `X=IC()`, `TURN=`.
+//! `X=IC()`, `TURN=`, `AR=`. Corners (`RND=`, `CHF=`, `CHR=`) are left to [`crate::shorthand`].
 //!
 //! * A cycle drills where the axes of the plane stand, along the axis upright on it: its moves as G0 and G1, in G90, the
 //!   motion code in force behind them as before (G functions outlive a cycle's call).
 //! * MCALL calls its cycle behind every block that moves, until MCALL alone.
 //! * HOLES1 and HOLES2 are the points of a row or a circle, each followed by the cycle of MCALL.
 //! * `AC(v)` is the place v, `IC(v)` the place v away from where the axis stands; of I, J, K from the arc's start.
+//! * CYCLE85 ends with a feed of its own and CYCLE86 with a spindle that stands; what holds behind them the manual does
+//!   not say, so that the program must.
+//! * `AR=a`: an arc of a degrees, by its end or by its centre.
 //! * `TURN=n`: n full circles, then the arc that the words say, the way along the axis shared by angle.
 //!
 //! Source: SINUMERIK 840D Programming Guide Cycles, chapter 2; Programming Manual Fundamentals, sections on AC, IC and
 //! helices. The numbers written have 6 decimals.
 
+mod angle;
 mod arguments;
 mod hole;
 
@@ -24,6 +28,7 @@ use crate::output::{Output, Segment};
 use crate::shorthand::{AXES, Motion, State, Words, from, number, rounded, shown};
 use crate::siemens;
 use arguments::Arguments;
+pub(crate) use arguments::number as plain_number;
 use hole::{Hole, Move};
 
 type Fault = Box<Diagnostic>;
@@ -45,8 +50,20 @@ pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
         })
 }
 
+fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
+    words.fault(
+        codes::CALLED_CYCLE,
+        span,
+        both!("an arc by its angle that cannot be written out", "дуга по углу, которую нельзя расписать"),
+        label,
+        both!("write the arc with I, J, K", "напишите дугу словами I, J, K"),
+    )
+}
+
 fn called(block: &Block<'_>, dialect: &Dialect, item: &Item) -> Option<Called> {
     match dialect.command(block.text(item.span))?.action {
+        // Corners are shorthand of drawings, whatever they are called.
+        Some(Action::Called(Called::Corner(_))) => None,
         Some(Action::Called(called)) if item.kind == ItemKind::BracketCommand => Some(called),
         _ => None,
     }
@@ -65,8 +82,8 @@ fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
 
 /// The program with its names written out, and where each stretch of it comes from.
 pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
-    let mut writer =
-        Writer { dialect, out: Output::new(dialect, text), state: State::initial(dialect), modal: None };
+    let (out, state) = (Output::new(dialect, text), State::initial(dialect));
+    let mut writer = Writer { dialect, out, state, modal: None, unsaid: Unsaid::default() };
     let mut reader = Reader::new(text, dialect);
     let mut block = Block::default();
     while reader.next(&mut block) {
@@ -81,11 +98,20 @@ struct Writer<'d> {
     state: State,
     /// The cycle of MCALL.
     modal: Option<Hole>,
+    unsaid: Unsaid,
+}
+
+/// What a cycle left in force that its manual does not say.
+#[derive(Clone, Copy, Default)]
+struct Unsaid {
+    feed: bool,
+    spindle: bool,
 }
 
 impl Writer<'_> {
     fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
         let words = Words { block, dialect: self.dialect };
+        self.said(&words)?;
         if !needed(block, self.dialect) {
             let before = self.state.at;
             let moves = self.state.step(&words) && names_axes(&words);
@@ -108,7 +134,7 @@ impl Writer<'_> {
             .items
             .iter()
             .filter_map(|item| Some((called(block, self.dialect, item)?, item.span)))
-            .filter(|(called, _)| *called != Called::Turns)
+            .filter(|(called, _)| !matches!(called, Called::Turns | Called::ArcAngle))
             .collect();
         if calls.is_empty() {
             return self.dimensions(&words);
@@ -132,8 +158,8 @@ impl Writer<'_> {
                             "модальный вызов чего-то неизвестного"
                         ),
                         both!(
-                            "CYCLE81, CYCLE82 or CYCLE83 was expected behind MCALL",
-                            "после MCALL ожидался CYCLE81, CYCLE82 или CYCLE83"
+                            "a cycle from CYCLE81 to CYCLE83, CYCLE85 or CYCLE86 was expected behind MCALL",
+                            "после MCALL ожидался цикл от CYCLE81 до CYCLE83, CYCLE85 или CYCLE86"
                         ),
                         both!(
                             "let the CAM write the holes as G0 and G1",
@@ -198,7 +224,54 @@ impl Writer<'_> {
     }
 
     fn drills(&self, cycle: Called) -> bool {
-        matches!(cycle, Called::Drill | Called::DrillDwell | Called::DrillPecks)
+        matches!(
+            cycle,
+            Called::Drill
+                | Called::DrillDwell
+                | Called::DrillPecks
+                | Called::BoreFeeds
+                | Called::BoreOriented
+        )
+    }
+
+    /// Feed and spindle behind a cycle that leaves them open: what the block says of them, or that it had to.
+    fn said(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let dwells = words.actions().any(|(action, _)| *action == Action::Dwell);
+        self.unsaid.feed &= dwells || words.number(b'F').is_none();
+        self.unsaid.spindle &= !words.block.words().any(|word| {
+            let code = word.number().filter(|_| word.letter == b'M').and_then(|number| number.integer());
+            matches!(code, Some(3..=5))
+        });
+        let mut here = self.state.clone();
+        let moves = here.codes(words) && names_axes(words);
+        if moves && matches!(here.motion, Motion::Line | Motion::Arc) {
+            self.needs(words, true, true)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a cut at a feed or with a spindle that a cycle left open.
+    fn needs(&self, words: &Words<'_, '_>, feed: bool, spindle: bool) -> Result<(), Fault> {
+        let (message, help) = if self.unsaid.feed && feed {
+            (
+                both!("which feed holds behind CYCLE85", "какая подача действует после CYCLE85"),
+                both!("write F in this block", "напишите в этом кадре F"),
+            )
+        } else if self.unsaid.spindle && spindle {
+            (
+                both!("whether the spindle turns behind CYCLE86", "вращается ли шпиндель после CYCLE86"),
+                both!("write M3 or M4 before this block", "напишите M3 или M4 до этого кадра"),
+            )
+        } else {
+            return Ok(());
+        };
+        Err(words.fault(
+            codes::CALLED_CYCLE,
+            words.whole(),
+            both!("{message} is not known", "неизвестно, {message:#}"),
+            both!("the cycle's manual does not say", "в руководстве цикла этого нет"),
+            help,
+        ))
     }
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {
@@ -237,9 +310,14 @@ impl Writer<'_> {
                 both!("write G90 before it", "напишите перед ним G90"),
             ));
         }
-        let axis = self.state.plane[2];
+        self.needs(words, hole.takes_feed, !hole.leaves_spindle)?;
+        self.unsaid.feed |= hole.leaves_feed;
+        self.unsaid.spindle |= hole.leaves_spindle;
+        let plane = self.state.plane;
+        let axis = plane[2];
         let (source, letter) = (from(words.block), AXES[axis]);
-        for step in &hole.0 {
+        let hole_at = self.state.at;
+        for step in &hole.moves {
             let mut line = Vec::new();
             match *step {
                 Move::Rapid(to) => {
@@ -250,17 +328,60 @@ impl Writer<'_> {
                     line.extend_from_slice(b"G1 ");
                     number(&mut line, letter, to);
                 }
+                Move::FeedAt(to, feed) => {
+                    line.extend_from_slice(b"G1 ");
+                    number(&mut line, letter, to);
+                    line.push(b' ');
+                    number(&mut line, b'F', feed);
+                }
+                Move::Spindle(code) => line.extend_from_slice(format!("M{code}").as_bytes()),
+                Move::Orient(angle) => {
+                    number(&mut line, b'=', angle);
+                    line.splice(0..0, *b"SPOS");
+                }
+                Move::Aside(by) => {
+                    line.extend_from_slice(b"G0");
+                    for (axis, by) in plane.into_iter().zip(by).filter(|(_, by)| *by != 0.0) {
+                        let at = self.place(words, axis)? + by;
+                        line.push(b' ');
+                        number(&mut line, AXES[axis], at);
+                        self.state.at[axis] = Some(rounded(at));
+                    }
+                }
+                Move::Over(to) => {
+                    line.extend_from_slice(b"G0");
+                    for axis in plane[..2].iter().filter(|axis| self.state.at[**axis] != hole_at[**axis]) {
+                        line.push(b' ');
+                        number(&mut line, AXES[*axis], hole_at[*axis].unwrap_or(f64::NAN));
+                    }
+                    line.push(b' ');
+                    number(&mut line, letter, to);
+                    (self.state.at, self.state.at[axis]) = (hole_at, None);
+                }
                 Move::Dwell(time) => {
                     line.extend_from_slice(b"G4 ");
                     number(&mut line, if time < 0.0 { b'S' } else { b'F' }, time.abs());
                 }
             }
             self.out.line(&line, source);
-            if let Move::Rapid(to) | Move::Feed(to) = *step {
+            if let Move::Rapid(to) | Move::Feed(to) | Move::FeedAt(to, _) | Move::Over(to) = *step {
                 self.state.at[axis] = Some(rounded(to));
             }
         }
         Ok(())
+    }
+
+    /// Where an axis stands.
+    fn place(&self, words: &Words<'_, '_>, axis: usize) -> Result<f64, Fault> {
+        self.state.at[axis].ok_or_else(|| {
+            words.fault(
+                codes::CALLED_CYCLE,
+                words.whole(),
+                both!("where {} stands is not known", "неизвестно, где стоит {}", AXES[axis] as char),
+                both!("the cycle moves by increments from there", "цикл отходит оттуда на приращения"),
+                both!("name it before the cycle, in G90", "назовите её до цикла, при G90"),
+            )
+        })
     }
 
     /// The motion code that was in force before a cycle.
@@ -347,6 +468,7 @@ impl Writer<'_> {
         let mut text: Vec<u8> = Vec::new();
         let mut done = 0;
         let mut turns = None;
+        let mut angle = None;
         for item in &block.items {
             let (letter, place) = match item.kind {
                 ItemKind::Word { letter, value: Value::Expression } => {
@@ -377,6 +499,24 @@ impl Writer<'_> {
                         return Err(refuse(item.span, label));
                     };
                     (letter, place)
+                }
+                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::ArcAngle) => {
+                    let written = block.text(item.span);
+                    let value = written.iter().position(|byte| *byte == b'=').map(|at| &written[at + 1..]);
+                    let value = value.and_then(|value| std::str::from_utf8(value).ok());
+                    let Some(value) = value.and_then(|value| arguments::number(value.trim())) else {
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a plain number of degrees was expected",
+                                "ожидалось простое число градусов"
+                            ),
+                        ));
+                    };
+                    angle = Some((value, item.span));
+                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
+                    done = item.span.end as usize;
+                    continue;
                 }
                 ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
                     let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
@@ -410,12 +550,42 @@ impl Writer<'_> {
             return Ok(());
         }
         let plain_words = Words { block: &plain_block, dialect: self.dialect };
+        if let Some((degrees, span)) = angle {
+            if turns.is_some() {
+                return Err(refuse(span, both!("beside TURN", "рядом с TURN")));
+            }
+            let line = angle::words(&self.state, &plain_words, degrees)
+                .map_err(|label| refuse_angle(words, span, label))?;
+            return self.arc_by_angle(words, &text, &line, start);
+        }
         let moves = self.state.step(&plain_words) && names_axes(&plain_words);
         match turns {
             Some((count, span)) if count > 0 => self.helix(words, &plain_words, start, count, span)?,
             _ => self.out.write(&text, from(block)),
         }
         self.behind(words, moves, start)
+    }
+
+    /// An arc by its angle: the block without `AR=`, and the words that it stands for.
+    fn arc_by_angle(
+        &mut self,
+        words: &Words<'_, '_>,
+        text: &[u8],
+        more: &[u8],
+        start: [Option<f64>; 3],
+    ) -> Result<(), Fault> {
+        // Behind the last word, before what ends the block or comments on it.
+        let stop = text.iter().position(|byte| *byte == b';').unwrap_or(text.len());
+        let end = text[..stop].trim_ascii_end().len();
+        let text = [&text[..end], more, &text[end..]].concat();
+        self.out.comment(shown(words.block), from(words.block));
+        let mut reader = Reader::new(&text, self.dialect);
+        let mut block = Block::default();
+        if reader.next(&mut block) {
+            self.state.step(&Words { block: &block, dialect: self.dialect });
+        }
+        self.out.write(&text, from(words.block));
+        self.behind(words, true, start)
     }
 
     /// Full circles and the rest of a helix.
