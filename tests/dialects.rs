@@ -20,7 +20,8 @@ const DOCUMENT: &str = "docs/dialects.md";
 /// What stands above the list.
 const MARK: &str = "<!-- tables -->\n";
 /// In these every row has its proof.
-const PROVEN: [&str; 6] = ["centroid", "fanuc", "haas", "linuxcnc", "perspektiva", "sinumerik"];
+const PROVEN: [&str; 9] =
+    ["centroid", "fanuc", "haas", "linuxcnc", "mach", "mitsubishi", "okuma", "perspektiva", "sinumerik"];
 const PROFILE: &str = "tests/profiles/corpus.toml";
 /// The work offset that this profile lacks.
 const GIVEN: &str = "G57";
