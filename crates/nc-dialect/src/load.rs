@@ -211,6 +211,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
                 MacroLanguage::Fanuc => Macros::Fanuc,
                 MacroLanguage::Linuxcnc => Macros::LinuxCnc,
                 MacroLanguage::Siemens => Macros::Siemens,
+                MacroLanguage::Okuma => Macros::Okuma,
             },
             packed_repeats: flow.packed_repeats,
             full_circle_atan: flow.full_circle_atan,

@@ -201,6 +201,7 @@ pub(crate) enum MacroLanguage {
     Fanuc,
     Linuxcnc,
     Siemens,
+    Okuma,
 }
 
 /// Drilling cycles.

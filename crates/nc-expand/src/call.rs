@@ -194,7 +194,7 @@ impl<'a> Run<'a, '_> {
                 format!("{number:04}"),
                 format!("{number}"),
             ] {
-                for ending in ["", ".nc", ".NC", ".tap", ".txt", ".cnc"] {
+                for ending in ["", ".nc", ".NC", ".tap", ".txt", ".cnc", ".SUB", ".MIN"] {
                     names.push(format!("{stem}{ending}"));
                 }
             }

@@ -52,7 +52,7 @@ pub(crate) struct Rules {
 impl Rules {
     /// Whole numbers are taken bit by bit and equal is equal; Siemens' arithmetic is taken as Fanuc's.
     const fn fanuc(self) -> bool {
-        matches!(self.flow.macros, Macros::Fanuc | Macros::Siemens)
+        matches!(self.flow.macros, Macros::Fanuc | Macros::Siemens | Macros::Okuma)
     }
 
     /// The value of an expression.

@@ -39,6 +39,7 @@ mod faults;
 mod flow;
 mod jump;
 mod o_word;
+mod okuma;
 mod output;
 mod program;
 mod returns;

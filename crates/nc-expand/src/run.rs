@@ -71,7 +71,7 @@ pub(crate) fn run<'a>(
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
     let mut names = Names::default();
-    names.bare = dialect.flow.macros == Macros::Siemens;
+    names.bare = dialect.flow.macros.bare_names();
     let main = Source::read(String::new(), Cow::Borrowed(text), dialect, &mut names)
         .map_err(|(diagnostic, _)| Refusal { diagnostics: vec![*diagnostic], file: None })?;
     let mut store = Store::new(dialect.flow.macros, &mut names, environment.variables);

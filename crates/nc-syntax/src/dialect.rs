@@ -822,6 +822,16 @@ pub enum Macros {
     LinuxCnc,
     /// Siemens' R parameters, variables of DEF, IF and loops, jumps to labels.
     Siemens,
+    /// Okuma's VC variables, IF and GOTO to sequence names, CALL O and RTS.
+    Okuma,
+}
+
+impl Macros {
+    /// True where variables stand without a mark before their names, and calls are no M codes.
+    #[must_use]
+    pub const fn bare_names(self) -> bool {
+        matches!(self, Self::Siemens | Self::Okuma)
+    }
 }
 
 /// Variables, program flow and subprograms.
@@ -860,7 +870,7 @@ impl Flow {
     #[must_use]
     pub fn calls(self, m_code: i64) -> bool {
         match m_code {
-            98 | 99 => self.macros != Macros::None,
+            98 | 99 => !matches!(self.macros, Macros::None | Macros::Okuma),
             97 => self.local_calls && self.macros != Macros::None,
             _ => false,
         }

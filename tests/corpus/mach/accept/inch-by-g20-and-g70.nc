@@ -1,4 +1,4 @@
-(G70 is G20, G71 is G21 (Mach3))
+(G70 is G20, G71 is G21, of Mach3)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
 G20

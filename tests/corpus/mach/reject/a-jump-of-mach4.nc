@@ -1,4 +1,4 @@
-(expect VP0105)
+(expect VP0120)
 G17 G21 G40 G49 G54 G80 G90
 G0 X10. Y10. Z60.
 #100=1
