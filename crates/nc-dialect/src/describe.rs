@@ -98,7 +98,13 @@ pub fn rows(dialect: &Dialect) -> Rows {
             } else {
                 note(&entry.action)
             };
-            (treatment(&entry.action), note)
+            let written_out =
+                dialect.flow.return_by_m && matches!(entry.action, Action::Cycle(_) | Action::CycleCancel);
+            if written_out {
+                (Treatment::Executed, "written out as moves".to_owned())
+            } else {
+                (treatment(&entry.action), note)
+            }
         };
         Row { code: entry.code.to_string(), group: entry.group, treatment, note }
     });

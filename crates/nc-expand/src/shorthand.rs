@@ -1,4 +1,4 @@
-//! Shorthand of drawings: polar words (G16) and corners (`,R5.`, `,C2.`; `RND=5`, `CHR=2`, `CHF=2`) written out as plain
+//! Shorthand of drawings: polar words (G16), a rotation about the tool (`G68 R30.`) and corners (`,R5.`, `,C2.`; `RND=5`, `CHR=2`, `CHF=2`) written out as plain
 //! blocks.
 //!
 //! Both say where the tool goes by something that only the control works out. What they mean is told by the
@@ -39,11 +39,19 @@ pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
     block.items.iter().any(|item| match item.kind {
         ItemKind::CommaWord { .. } => dialect.flow.corner_words,
         ItemKind::BracketCommand => corner_form(block.text(item.span), dialect).is_some(),
-        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
-            action(number, dialect) == Some(&Action::PolarOn)
-        }
+        ItemKind::Word { letter: b'G', value: Value::Number(number) } => match action(number, dialect) {
+            Some(Action::PolarOn) => true,
+            Some(Action::RotationOn) => turns_about_the_tool(block, dialect),
+            _ => false,
+        },
         _ => false,
     })
+}
+
+/// `G68 R30.`: the rotation's centre is where the tool stands.
+fn turns_about_the_tool(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.frames.rotation_about_tool
+        && !block.words().any(|word| AXES.contains(&word.letter) || b"IJK".contains(&word.letter))
 }
 
 /// The form of a corner that a command names.
@@ -312,6 +320,10 @@ impl<'d> Writer<'d> {
             let before = self.state.at;
             return self.corner(block, before).map(Some);
         }
+        let rotates = words.actions().find(|(action, _)| **action == Action::RotationOn);
+        if let Some((_, span)) = rotates.filter(|_| turns_about_the_tool(block, self.dialect)) {
+            return self.rotation(&words, span).map(|()| None);
+        }
         let turns_on = words.actions().find(|(action, _)| **action == Action::PolarOn);
         if self.state.polar.is_some() || turns_on.is_some() {
             self.polar(&words, turns_on.map(|(_, span)| span))?;
@@ -320,6 +332,31 @@ impl<'d> Writer<'d> {
         self.state.step(&words);
         self.out.copy(block.bytes, from(block));
         Ok(None)
+    }
+
+    /// A rotation about where the tool stands: the control would take the corrected place for it.
+    fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane;
+        let [Some(u), Some(v)] = [self.state.at[first], self.state.at[second]] else {
+            return Err(words.refuse(
+                span,
+                both!("a rotation without its centre", "поворот без центра"),
+                both!(
+                    "it turns about where the tool stands, which is not known: name both axes of the plane before it, in G90",
+                    "он идёт вокруг места, где стоит инструмент, а оно неизвестно: назовите до него обе оси плоскости при G90"
+                ),
+                both!("write the centre beside it", "напишите рядом центр"),
+            ));
+        };
+        let block = words.block;
+        self.state.step(words);
+        let mut centre = b" ".to_vec();
+        self.point(&mut centre, [u, v]);
+        let end = span.end as usize;
+        let text = [&block.bytes[..end], &centre, &block.bytes[end..]].concat();
+        self.out.comment(shown(block), from(block));
+        self.out.write(&text, from(block));
+        Ok(())
     }
 
     /// A line with a corner from a place that is known, to be written once the next one is known.

@@ -760,19 +760,7 @@ fn transform(
                     )
                     .help(both!("select the plane with G17, G18 or G19; post tilted planes as plain axes", "выберите плоскость функцией G17, G18 или G19; наклонные плоскости выводите обычными осями")));
             }
-            let neither = !words.has(Letters::of(&[LINEAR[u], LINEAR[v]]));
-            let centre = if neither && env.dialect.frames.rotation_about_tool {
-                // Where the tool stands, in the words of the frame that it is programmed in.
-                let zero_mm = require_frame(env, words, state)?.to_machine([0.0; 3]);
-                let here = |axis: usize| {
-                    let at_mm = increment_base(words, state.axes.linear[axis], axis)?;
-                    Outcome::Ok(Some(at_mm - zero_mm[axis]))
-                };
-                [here(u)?, here(v)?]
-            } else {
-                [at(LINEAR[u]), at(LINEAR[v])]
-            };
-            let [Some(first), Some(second)] = centre else {
+            let (Some(first), Some(second)) = (at(LINEAR[u]), at(LINEAR[v])) else {
                 let names = Letters::of(&[LINEAR[u], LINEAR[v]]).names();
                 let message = both!("a rotation without {names}", "поворот без {names}");
                 return Err(words

@@ -294,19 +294,6 @@ fn g15_of_okuma_chooses_by_h_and_takes_no_length() {
 }
 
 #[test]
-fn g68_without_its_centre_turns_about_the_tool() {
-    // About (10, 0): 10 to the right of it goes 10 up.
-    let at = format!("{START}G0 X10.\n");
-    for name in ["fanuc", "mitsubishi"] {
-        near(end(name, &format!("{at}G68 R90.\nG0 X20. Y0\n")), [10.0, 10.0, 10.0]);
-        near(end(name, &format!("G55\n{START}G0 X10.\nG68 R90.\nX20. Y0\n")), [110.0, 20.0, 11.0]);
-    }
-    assert_eq!(refusal("haas", &format!("{at}G68 R90.\n")), (227, 3));
-    assert_eq!(refusal("fanuc", &format!("{at}G68 X0 R90.\n")), (227, 3));
-    assert_eq!(refusal("fanuc", "G90 G0 Z10.\nG68 R90.\n").1, 2);
-}
-
-#[test]
 fn g10_writes_lengths_in_two_parts() {
     let both = "G10 L10 P7 R120.\nG10 L11 P7 R-0.5\n";
     for name in ["fanuc", "haas", "mitsubishi"] {
