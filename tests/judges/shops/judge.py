@@ -260,7 +260,7 @@ class Part:
         self.tool()
         for _ in range(rng.randint(4, 10)):
             rng.choice([self.lines, self.arc, self.holes, self.holes, self.increments, self.offset, self.tool, self.inch,
-                        self.dwell, self.modes, self.subprogram, self.plane])()
+                        self.dwell, self.modes, self.subprogram, self.plane, self.variables])()
         self.both("G0 Z60.")
         self.own.append("M30")
         self.other.append("M2")
@@ -380,16 +380,33 @@ class Part:
             self.both("G80")
         self.both("G0 Z60.")
 
-    def subprogram(self):
-        if self.control == "okuma":
+    def variables(self):
+        """A loop by a variable, or by GOTO."""
+        if self.control == "mach":
+            first, by = self.rng.randint(1, 20), self.num(0.5, 3)
+            self.own += [f"#101={first}", f"#102=[#101*2+{by}]", "G1 X#102 Z[#101/2] F200.", "G0 Z60."]
+            self.other += [f"G1 X{first * 2 + float(by):.4f} Z{first / 2:.4f} F200.", "G0 Z60."]
             return
-        number = {"mach": 100, "mitsubishi": 31000}[self.control] + len(self.subprograms)
+        times, step = self.rng.randint(1, 4), self.rng.randint(2, 9)
+        name = {"okuma": "VC1", "mitsubishi": "#101"}[self.control]
+        label = 7000 + len(self.own)
+        self.both("G1 X20. Y20. Z20. F200.")
+        word = f"X={name}*{step}+1" if self.control == "okuma" else f"X[{name}*{step}+1]"
+        self.own += [f"{name}=0", f"N{label} {name}={name}+1", word, "Y30."]
+        self.own.append(f"IF [{name} LT {times}] {'N' if self.control == 'okuma' else 'GOTO '}{label}")
+        for k in range(1, times + 1):
+            self.other += [f"X{k * step + 1}.", "Y30."]
+        self.both("G0 Z60.")
+
+    def subprogram(self):
+        number = {"okuma": 500, "mach": 100, "mitsubishi": 31000}[self.control] + len(self.subprograms)
         times = self.rng.randint(1, 3)
         self.both("G1 X20. Y20. Z20. F200.")
         body = ["G91", f"G1 X{self.num(2, 6)}", f"Y{self.num(-3, 3)}", "G90"]
-        self.own.append(f"M98 P{number} L{times}")
+        okuma = self.control == "okuma"
+        self.own.append(f"CALL O{number} Q{times}" if okuma else f"M98 P{number} L{times}")
         self.other += body * times
-        self.subprograms.append([f"O{number}", *body, "M99"])
+        self.subprograms.append([f"O{number}", *body, "RTS" if okuma else "M99"])
         self.both("G0 Z60.")
 
 
