@@ -94,7 +94,7 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
                 })?;
             let repeats = if parser.take(b'Q') { Some(parser.operand()?) } else { None };
             let number = Expression::Number(f64::from(number));
-            let call = Call { number, local: false, repeats, arguments: None };
+            let call = Call { number, program: None, local: false, repeats, arguments: None };
             Said::Control(Control::Call(Box::new(call)))
         }
         _ => {

@@ -152,6 +152,8 @@ pub(crate) enum Direction {
 pub(crate) struct Call {
     /// Number of a program, or of a block.
     pub(crate) number: Expression,
+    /// Siemens: its name instead.
+    pub(crate) program: Option<NameId>,
     /// M97: the number is that of a block of this program.
     pub(crate) local: bool,
     pub(crate) repeats: Option<Expression>,
@@ -289,6 +291,16 @@ impl Compiler<'_, '_> {
                 ),
             ));
         }
+        let named = matches!(&complex.control, Some(Control::Call(call)) if call.program.is_some());
+        if named && complex.has_words {
+            let message =
+                both!("words beside the call of a subprogram", "слова рядом с вызовом подпрограммы");
+            return Err(Box::new(
+                Diagnostic::error(codes::COMBINATION, message)
+                    .at(block.file_span(whole(block)), both!("which comes first?", "что из них первое?"))
+                    .help(both!("write them in two blocks", "напишите их двумя кадрами")),
+            ));
+        }
         let apart = self.dialect.flow.macros != Macros::LinuxCnc;
         if apart && complex.has_words && !complex.assignments.is_empty() {
             let message =
@@ -386,6 +398,10 @@ impl Compiler<'_, '_> {
         block: &Block<'_>,
         complex: &mut Complex,
     ) -> Result<Option<Taken>, Fault> {
+        if self.dialect.flow.macros == Macros::Siemens && ends_subprogram(rest) {
+            complex.control = Some(Control::Return { to: None });
+            return Ok(Some(Taken::End));
+        }
         let calls = !self.dialect.flow.macros.bare_names();
         let Some(kind) = call_of(rest, self.dialect.flow).filter(|_| calls) else {
             return Ok(None);
@@ -519,6 +535,7 @@ impl Compiler<'_, '_> {
                 let arguments = (kind == Taken::Macro).then_some(arguments);
                 Control::Call(Box::new(Call {
                     number: program,
+                    program: None,
                     local: kind == Taken::Local,
                     repeats,
                     arguments,
@@ -611,7 +628,7 @@ pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
             ItemKind::Flow => true,
             ItemKind::Word { value: WordValue::Expression, .. } => !siemens::is_plain(block.text(item.span)),
             _ => false,
-        });
+        }) || (dialect.flow.macros == Macros::Siemens && ends_subprogram(block));
     }
     block.items.iter().any(|item| match item.kind {
         ItemKind::Flow => true,
@@ -625,6 +642,13 @@ pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
         }
         _ => false,
     })
+}
+
+/// M17
+fn ends_subprogram(block: &Block<'_>) -> bool {
+    block
+        .words()
+        .any(|word| word.letter == b'M' && word.number().and_then(|number| number.integer()) == Some(17))
 }
 
 /// All of the block but its end.

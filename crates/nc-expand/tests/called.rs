@@ -59,7 +59,7 @@ fn mcall_drills_behind_each_motion_until_it_stands_alone() {
     assert_eq!(lines, wanted);
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nTRANS X5\nX20\n"), 146);
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\n/X20\n"), 134);
-    assert_eq!(refused("MCALL L100\n"), 146);
+    assert_eq!(refused("MCALL L100\n"), 136);
     // A rotary axis moves too; words that are arguments move nothing.
     let turned = flat("MCALL CYCLE81(15,0,2,-10)\nA90\nG25 X5\nMCALL\n");
     assert_eq!(turned, ["A90", "G0 Z2.", "G1 Z-10.", "G0 Z15.", "G25 X5"]);

@@ -206,7 +206,12 @@ impl<'d> Lexer<'d> {
     fn statement(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
         let length = identifier(&line[at..]);
         let name = &line[at..at + length];
-        if is_siemens_word(name) {
+        // `L100 P2` calls a subprogram.
+        let call = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'L'))
+            && length > 1
+            && name[1..].iter().all(u8::is_ascii_digit)
+            && line.get(at + length) != Some(&b'=');
+        if is_siemens_word(name) || call {
             return Some(self.flow(line, at, at + length));
         }
         let number = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'R'))

@@ -198,7 +198,7 @@ def okuma(line):
     line = re.sub(r"\bG56\b", "G43", re.sub(r"\bG53\b", "G49", line))
     line = re.sub(r"\bM5[34]\b|\bG13[01]\b[^(]*|\bG10\b", "", line)
     line = re.sub(r"\bG30\s*P1\b", "G30", line)
-    return re.sub(r"\bG4\s*F", "G4 P", line)
+    return re.sub(r"\bG4\s*F", "G4 P", line).replace("=", "")
 
 
 def mach(line):
