@@ -3,7 +3,18 @@
 
 use crate::common::{files, have_interpreter, messages, referee, root, run};
 
-const DIALECTS: [&str; 6] = ["fanuc", "perspektiva", "linuxcnc", "balt-system", "sinumerik", "centroid"];
+const DIALECTS: [&str; 10] = [
+    "fanuc",
+    "haas",
+    "mitsubishi",
+    "okuma",
+    "mach",
+    "perspektiva",
+    "linuxcnc",
+    "balt-system",
+    "sinumerik",
+    "centroid",
+];
 /// Crooked in everything a 3-axis machine can be, with offsets and tools for every program of the corpus.
 const PROFILE: &str = "tests/profiles/corpus.toml";
 const ENDINGS: [&str; 2] = ["nc", "ngc"];

@@ -20,10 +20,16 @@ const DOCUMENT: &str = "docs/dialects.md";
 /// What stands above the list.
 const MARK: &str = "<!-- tables -->\n";
 /// In these every row has its proof.
-const PROVEN: [&str; 6] = ["centroid", "fanuc", "haas", "linuxcnc", "perspektiva", "sinumerik"];
+const PROVEN: [&str; 9] =
+    ["centroid", "fanuc", "haas", "linuxcnc", "mach", "mitsubishi", "okuma", "perspektiva", "sinumerik"];
 const PROFILE: &str = "tests/profiles/corpus.toml";
 /// The work offset that this profile lacks.
 const GIVEN: &str = "G57";
+
+/// A work offset of the corpus' profile, chosen.
+fn offset(dialect: &Dialect) -> &'static str {
+    if dialect.name == "okuma" { "G15 H1" } else { "G54" }
+}
 
 /// The dialects of mills; of lathes there are no programs in the corpus as yet.
 fn mills() -> impl Iterator<Item = &'static Dialect> {
@@ -381,7 +387,7 @@ fn what_a_table_refuses_is_refused() {
                 continue;
             }
             tried += 1;
-            let begin = "G54 G90\nG0 X10. Y10. Z60.\n";
+            let begin = format!("{} G90\nG0 X10. Y10. Z60.\n", offset(dialect));
             let bracketed = commands.contains(row) && dialect.paren == Paren::Command;
             let code = if bracketed { format!("({})", row.code) } else { row.code.clone() };
             let run = interpret(format!("{begin}{code}\nG1 Z50. F200.\n").as_bytes(), dialect, &setup);
@@ -410,8 +416,9 @@ fn stops_stay_behind_the_motion() {
             let stop = format!("M{}", row.number);
             let inch_free =
                 if dialect.name == "balt-system" || dialect.name == "sinumerik" { "G71" } else { "G21" };
+            let offset = offset(dialect);
             let text = format!(
-                "G17 {inch_free} G40 G54 G90\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX900. Y700. {stop}\n"
+                "G17 {inch_free} G40 {offset} G90\nG0 X10. Y10. Z60.\nG1 Z50. F200.\nX900. Y700. {stop}\n"
             );
             std::fs::write(program, text).expect("writable");
             let ran = run(&[program, "-m", PROFILE, "-d", &dialect.name]);
@@ -451,5 +458,8 @@ fn an_offset_given_on_the_command_line_is_followed() {
         };
         assert_ne!(corrected("100,80,40"), corrected("300,250,90"), "{}", dialect.name);
     }
-    assert_eq!(tried, 6, "all but balt-system, which chooses origins by commands");
+    assert_eq!(
+        tried, 8,
+        "all but balt-system, which chooses origins by commands, and okuma, which does by H"
+    );
 }

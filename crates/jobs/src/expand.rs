@@ -103,10 +103,29 @@ pub fn correct(
     if let (Some(diagnostic), false) = (rewrite::corrected_before(text), force) {
         return Err(Failure::refused(name, text, vec![diagnostic]));
     }
-    match correct_plain(text, name, settings, force, &mut progress)? {
-        Some(done) => Ok(done),
-        None => correct_expanded(text, name, settings, force, progress),
+    let done = match correct_plain(text, name, settings, force, &mut progress) {
+        Ok(None) => correct_expanded(text, name, settings, force, progress),
+        Ok(Some(done)) => Ok(done),
+        Err(failure) => Err(failure),
+    };
+    done.map_err(|failure| with_control(failure, text, name, settings))
+}
+
+/// A refusal, and where the program looks written for another control than its dialect's, that.
+fn with_control(failure: Failure, text: &[u8], name: &str, settings: &Settings) -> Failure {
+    let Failure::Refused(mut reports) = failure else { return failure };
+    let said = |report: &Report| {
+        report.diagnostics.iter().any(|diagnostic| diagnostic.code == nc_program::codes::LOOKS_LIKE)
+    };
+    if !reports.iter().any(said)
+        && let Some(diagnostic) = nc_program::looks_like(text, &settings.dialect)
+    {
+        // Its line alone is shown: of a large program no copy is made for it.
+        let end = diagnostic.span.as_ref().map_or(0, |span| span.end as usize);
+        let source = Some(Source::whole(name, &text[..end.min(text.len())]));
+        reports.push(Report { source, diagnostics: vec![diagnostic] });
     }
+    Failure::Refused(reports)
 }
 
 fn correct_expanded(

@@ -1,11 +1,11 @@
 //! What the words of a grammar's `does` mean.
 
 use nc_syntax::dialect::{
-    Action, Called, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
+    Action, Called, CornerForm, CycleCode, FramePart, GCode, PlaneCode, Side, TipSwitch, TurningCycle,
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 92] = [
+pub const ACTION_NAMES: [&str; 100] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -40,6 +40,7 @@ pub const ACTION_NAMES: [&str; 92] = [
     "cycle-cancel",
     "return-initial",
     "return-r",
+    "return-level",
     "absolute",
     "incremental",
     "arc-centres-absolute",
@@ -48,6 +49,7 @@ pub const ACTION_NAMES: [&str; 92] = [
     "feed-per-minute",
     "feed-per-revolution",
     "work-offset-numbered",
+    "work-offset-by-h",
     "write-offset",
     "local-shift",
     "preset",
@@ -92,10 +94,16 @@ pub const ACTION_NAMES: [&str; 92] = [
     "call-drill",
     "call-drill-dwell",
     "call-drill-pecks",
+    "call-bore-feeds",
+    "call-bore-oriented",
     "call-modal",
     "call-holes-row",
     "call-holes-circle",
     "arc-turns",
+    "arc-angle",
+    "corner-round",
+    "corner-chamfer",
+    "corner-chamfer-length",
     "pass",
     "pass-with-words",
 ];
@@ -138,6 +146,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "cycle-cancel" => Action::CycleCancel,
         "return-initial" => Action::ReturnInitial,
         "return-r" => Action::ReturnR,
+        "return-level" => Action::ReturnLevel,
         "absolute" => Action::Absolute,
         "incremental" => Action::Incremental,
         "arc-centres-absolute" => Action::ArcCentresAbsolute,
@@ -146,6 +155,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "feed-per-minute" => Action::FeedPerMinute,
         "feed-per-revolution" => Action::FeedPerRevolution,
         "work-offset-numbered" => Action::WorkOffsetNumbered,
+        "work-offset-by-h" => Action::WorkOffsetByH,
         "write-offset" => Action::WriteOffset,
         "local-shift" => Action::LocalShift,
         "preset" => Action::Preset,
@@ -190,10 +200,16 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "call-drill" => Action::Called(Called::Drill),
         "call-drill-dwell" => Action::Called(Called::DrillDwell),
         "call-drill-pecks" => Action::Called(Called::DrillPecks),
+        "call-bore-feeds" => Action::Called(Called::BoreFeeds),
+        "call-bore-oriented" => Action::Called(Called::BoreOriented),
         "call-modal" => Action::Called(Called::Modal),
         "call-holes-row" => Action::Called(Called::HolesRow),
         "call-holes-circle" => Action::Called(Called::HolesCircle),
         "arc-turns" => Action::Called(Called::Turns),
+        "arc-angle" => Action::Called(Called::ArcAngle),
+        "corner-round" => Action::Called(Called::Corner(CornerForm::Round)),
+        "corner-chamfer" => Action::Called(Called::Corner(CornerForm::Chamfer)),
+        "corner-chamfer-length" => Action::Called(Called::Corner(CornerForm::ChamferLength)),
         "pass" => Action::Pass { takes_words: false },
         "pass-with-words" => Action::Pass { takes_words: true },
         _ => return None,

@@ -98,7 +98,13 @@ pub fn rows(dialect: &Dialect) -> Rows {
             } else {
                 note(&entry.action)
             };
-            (treatment(&entry.action), note)
+            let written_out =
+                dialect.flow.return_by_m && matches!(entry.action, Action::Cycle(_) | Action::CycleCancel);
+            if written_out {
+                (Treatment::Executed, "written out as moves".to_owned())
+            } else {
+                (treatment(&entry.action), note)
+            }
         };
         Row { code: entry.code.to_string(), group: entry.group, treatment, note }
     });
@@ -181,6 +187,7 @@ fn note(action: &Action) -> String {
         Action::DwellBySetting => "no word is a time, none beside it may be a position".to_owned(),
         Action::DwellP => "P is a time; axis words belong to the motion".to_owned(),
         Action::WorkOffsetNumbered => "the work offset that P numbers: `G54.1P1` in the profile".to_owned(),
+        Action::WorkOffsetByH => "the work offset that H numbers: `G15H1` in the profile".to_owned(),
         Action::WriteOffset => {
             "L2 and L20: the program's value holds from here on; every other L and R refused".to_owned()
         }

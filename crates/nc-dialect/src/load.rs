@@ -186,6 +186,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             ColonRule::Comment => Colon::Comment,
         },
         long_words,
+        labels: text.labels,
         equals_words: text.equals_words,
         letters,
         numbers: Numbers {
@@ -210,11 +211,14 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
                 MacroLanguage::Fanuc => Macros::Fanuc,
                 MacroLanguage::Linuxcnc => Macros::LinuxCnc,
                 MacroLanguage::Siemens => Macros::Siemens,
+                MacroLanguage::Okuma => Macros::Okuma,
             },
             packed_repeats: flow.packed_repeats,
             full_circle_atan: flow.full_circle_atan,
             corner_words: flow.corner_words,
             local_calls: flow.local_calls,
+            one_value_atan: flow.one_value_atan,
+            return_by_m: flow.return_by_m,
             polar_words,
             called,
         },
@@ -236,6 +240,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             UnderG49::Unstated => LengthAfter::Unstated,
         },
         t_may_change_tool: tool_length.t_word == TWord::MayChange,
+        writes_lengths: tool_length.writes_lengths,
         edge_in_d: tool_length.edge_in_d,
         frames: FrameRules {
             p_selects_numbered: frames.p_selects_numbered,
@@ -246,6 +251,7 @@ fn dialect(name: &str, grammar: Grammar, rows: Rows, initial: Vec<GCode>) -> Dia
             local_is_preset: frames.local_is_preset,
             scaling_step: frames.scaling_step.into_inner(),
             arc_turns: frames.arc_turns,
+            rotation_about_tool: frames.rotation_about_tool,
             machine_words_stand_alone: frames.machine_words_stand_alone,
         },
         output: Output {

@@ -7,7 +7,7 @@ use nc_syntax::Dialect;
 use crate::load;
 
 /// Names and texts, in alphabetical order.
-pub(crate) const TEXTS: [(&str, &str); 10] = [
+pub(crate) const TEXTS: [(&str, &str); 13] = [
     ("balt-system", include_str!(concat!(env!("GRAMMARS"), "/balt-system.toml"))),
     ("centroid", include_str!(concat!(env!("GRAMMARS"), "/centroid.toml"))),
     ("fanuc", include_str!(concat!(env!("GRAMMARS"), "/fanuc.toml"))),
@@ -15,6 +15,9 @@ pub(crate) const TEXTS: [(&str, &str); 10] = [
     ("haas", include_str!(concat!(env!("GRAMMARS"), "/haas.toml"))),
     ("linuxcnc", include_str!(concat!(env!("GRAMMARS"), "/linuxcnc.toml"))),
     ("linuxcnc-lathe", include_str!(concat!(env!("GRAMMARS"), "/linuxcnc-lathe.toml"))),
+    ("mach", include_str!(concat!(env!("GRAMMARS"), "/mach.toml"))),
+    ("mitsubishi", include_str!(concat!(env!("GRAMMARS"), "/mitsubishi.toml"))),
+    ("okuma", include_str!(concat!(env!("GRAMMARS"), "/okuma.toml"))),
     ("perspektiva", include_str!(concat!(env!("GRAMMARS"), "/perspektiva.toml"))),
     ("sinumerik", include_str!(concat!(env!("GRAMMARS"), "/sinumerik.toml"))),
     ("sinumerik-turn", include_str!(concat!(env!("GRAMMARS"), "/sinumerik-turn.toml"))),

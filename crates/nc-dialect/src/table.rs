@@ -45,6 +45,8 @@ pub(crate) struct Text {
     pub(crate) colon: ColonRule,
     #[serde(default)]
     pub(crate) equals_words: bool,
+    #[serde(default)]
+    pub(crate) labels: bool,
     /// Names of several letters, and the letter that they stand for.
     #[serde(default)]
     pub(crate) long_words: BTreeMap<String, Spanned<char>>,
@@ -183,6 +185,12 @@ pub(crate) struct FlowRules {
     /// M97 P1000 calls the blocks from N1000 on, M99 returns.
     #[serde(default)]
     pub(crate) local_calls: bool,
+    /// ATAN takes one value.
+    #[serde(default)]
+    pub(crate) one_value_atan: bool,
+    /// Cycles return where M53 and M54 say.
+    #[serde(default)]
+    pub(crate) return_by_m: bool,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -193,6 +201,7 @@ pub(crate) enum MacroLanguage {
     Fanuc,
     Linuxcnc,
     Siemens,
+    Okuma,
 }
 
 /// Drilling cycles.
@@ -236,6 +245,8 @@ pub(crate) struct ToolLength {
     pub(crate) under_g49: UnderG49,
     #[serde(default)]
     pub(crate) t_word: TWord,
+    #[serde(default)]
+    pub(crate) writes_lengths: bool,
     #[serde(default)]
     pub(crate) edge_in_d: bool,
 }
@@ -283,6 +294,7 @@ pub(crate) struct Frames {
     pub(crate) local_is_preset: bool,
     pub(crate) scaling_step: Spanned<f64>,
     pub(crate) arc_turns: bool,
+    pub(crate) rotation_about_tool: bool,
     pub(crate) machine_words_stand_alone: bool,
 }
 
@@ -294,6 +306,7 @@ impl Default for Frames {
             local_is_preset: false,
             scaling_step: Spanned::new(0..0, 0.001),
             arc_turns: false,
+            rotation_about_tool: false,
             machine_words_stand_alone: false,
         }
     }

@@ -25,6 +25,20 @@ impl<'a> Run<'a, '_> {
         call: &Call,
         place: Place,
     ) -> Result<(), Stop> {
+        if let Some(program) = call.program {
+            let passes = match &call.repeats {
+                Some(repeats) => whole(
+                    &Text::pair("the count of a call", "число повторений вызова"),
+                    self.known(repeats)?,
+                )?,
+                None => 1,
+            };
+            if passes == 0 {
+                return Ok(());
+            }
+            let start = self.find_named(program)?;
+            return self.enter(start, CallKind::Program(program), passes, None, statement.section, place);
+        }
         let what = if call.local {
             Text::pair("a block number", "номер кадра")
         } else {
@@ -173,6 +187,24 @@ impl<'a> Run<'a, '_> {
         }
     }
 
+    /// Where a subprogram of Siemens starts: in a file of its name, which its header may say again.
+    fn find_named(&mut self, program: NameId) -> Result<Place, Stop> {
+        let name = self.names.name(program).to_ascii_uppercase();
+        let lower = name.to_ascii_lowercase();
+        let names = [
+            format!("{name}.SPF"),
+            format!("{lower}.spf"),
+            format!("{name}.spf"),
+            format!("_N_{name}_SPF"),
+            format!("{name}.MPF"),
+            name.clone(),
+        ];
+        let file = self.external(&names, &name)?;
+        let source = Rc::clone(&self.sources[file]);
+        let first = source.statements.iter().position(|statement| !matches!(statement.kind, Kind::Percent));
+        Ok(Place { file, statement: first.unwrap_or(0) as u32 })
+    }
+
     /// Where a program with an O number starts.
     fn find_program(&mut self, source: &Source<'a>, file: usize, number: u32) -> Result<Place, Stop> {
         let behind = |file: usize, statement: u32| Place { file, statement: statement + 1 };
@@ -188,13 +220,17 @@ impl<'a> Run<'a, '_> {
             vec![format!("{number}.ngc")]
         } else {
             let mut names = Vec::new();
+            let endings: &[&str] = match self.dialect.flow.macros {
+                Macros::Okuma => &["", ".SUB", ".MIN", ".sub", ".min"],
+                _ => &["", ".nc", ".NC", ".tap", ".txt", ".cnc"],
+            };
             for stem in [
                 format!("O{number:04}"),
                 format!("o{number:04}"),
                 format!("{number:04}"),
                 format!("{number}"),
             ] {
-                for ending in ["", ".nc", ".NC", ".tap", ".txt", ".cnc"] {
+                for ending in endings {
                     names.push(format!("{stem}{ending}"));
                 }
             }

@@ -52,7 +52,7 @@ pub(crate) struct Rules {
 impl Rules {
     /// Whole numbers are taken bit by bit and equal is equal; Siemens' arithmetic is taken as Fanuc's.
     const fn fanuc(self) -> bool {
-        matches!(self.flow.macros, Macros::Fanuc | Macros::Siemens)
+        matches!(self.flow.macros, Macros::Fanuc | Macros::Siemens | Macros::Okuma)
     }
 
     /// The value of an expression.
@@ -247,6 +247,12 @@ impl Rules {
                 return arithmetic(both!("{a} to the power of {b}", "{a} в степени {b}"));
             }
             Operator::Power => return Ok((math::powf(a, b), true)),
+            Operator::Atan2 if self.flow.one_value_atan => {
+                return arithmetic(both!(
+                    "ATAN of two values: this control would divide the angle of the first",
+                    "ATAN от двух значений: эта стойка разделила бы угол первого"
+                ));
+            }
             Operator::Atan2 => {
                 // Where the angle jumps by a turn, the sign of a zero decides.
                 let jumps = a != 0.0 || rounded;

@@ -3,6 +3,7 @@
 use diagnostic::{Text, both};
 use nc_syntax::dialect::Macros;
 
+use crate::okuma;
 use crate::siemens;
 use crate::value::{NameId, Names, Variable};
 
@@ -238,7 +239,11 @@ impl<'t, 'n> Parser<'t, 'n> {
         let (name, operator) = OPERATORS
             .iter()
             .find(|(name, _)| rest.get(..name.len()).is_some_and(|text| text.eq_ignore_ascii_case(name)))?;
-        (*operator != Operator::Power || self.macros == Macros::LinuxCnc).then_some((*operator, name.len()))
+        // Of Okuma's logic between comparisons the rank is not told.
+        let okuma = self.macros == Macros::Okuma
+            && matches!(operator, Operator::And | Operator::Or | Operator::Xor | Operator::Modulo);
+        let power = *operator == Operator::Power && self.macros != Macros::LinuxCnc;
+        (!okuma && !power).then_some((*operator, name.len()))
     }
 
     /// A number, a variable, a function, a bracket; with a sign.
@@ -267,6 +272,7 @@ impl<'t, 'n> Parser<'t, 'n> {
             Some(b'(' | b'A'..=b'Z' | b'_' | b'$') if self.macros == Macros::Siemens => {
                 siemens::operand(self)
             }
+            Some(b'A'..=b'Z') if self.macros == Macros::Okuma => okuma::operand(self),
             Some(b'[') => self.bracketed(),
             Some(b'#') => self.variable(),
             Some(b'0'..=b'9' | b'.') => self.number().map(Expression::Number),
@@ -342,7 +348,7 @@ impl<'t, 'n> Parser<'t, 'n> {
             .ok_or_else(|| both!("`{digits}` is not a number", "`{digits}` — не число"))
     }
 
-    fn function(&mut self) -> Result<Expression, Fault> {
+    pub(crate) fn function(&mut self) -> Result<Expression, Fault> {
         let length = self.text[self.at..].iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let name = self.text[self.at..self.at + length].to_ascii_uppercase();
         let shown = String::from_utf8_lossy(&name).into_owned();

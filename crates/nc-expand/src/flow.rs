@@ -89,6 +89,8 @@ pub(crate) enum Taken {
     Return,
     /// G65: everything.
     Macro,
+    /// M17: itself.
+    End,
 }
 
 impl Taken {
@@ -102,6 +104,8 @@ impl Taken {
             _ if comma => false,
             (_, b'N') => false,
             (Self::Macro, _) => true,
+            (Self::End, b'M') => code(b"17"),
+            (Self::End, _) => false,
             (_, b'P' | b'L') => true,
             (Self::Sub, b'M') => code(b"98"),
             (Self::Local, b'M') => code(b"97"),

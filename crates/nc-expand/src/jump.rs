@@ -33,6 +33,8 @@ pub(crate) struct Frame {
 pub(crate) enum CallKind {
     /// M98, G65: M99 returns.
     Number(u32),
+    /// `L100`: M17 and RET return.
+    Program(NameId),
     /// M97: the same, to a block of the caller's program.
     Block(u64),
     /// `o<name> call`: `endsub` and `return` return.
@@ -101,6 +103,9 @@ impl<'a> Run<'a, '_> {
         if self.frames.is_empty() {
             return match to {
                 Some(label) => self.goto(source, statement.section, label),
+                None if self.dialect.flow.macros.bare_names() => {
+                    Err(faults::no_call(&both!("a return outside a subprogram", "возврат вне подпрограммы")))
+                }
                 None => Err(faults::endless()),
             };
         }
@@ -156,7 +161,10 @@ impl<'a> Run<'a, '_> {
         caller: Place,
     ) -> Result<(), Stop> {
         let limit = self.environment.limits.depth;
-        if self.frames.len() >= limit {
+        // Its own variables would be the caller's.
+        let again =
+            matches!(kind, CallKind::Program(_)) && self.frames.iter().any(|frame| frame.start == start);
+        if again || self.frames.len() >= limit {
             return Err(faults::too_deep(limit));
         }
         let back = self.at;
@@ -165,7 +173,7 @@ impl<'a> Run<'a, '_> {
         let count = self.calls.entry((start.file, start.statement)).or_insert(0);
         *count += 1;
         let (number, of) = match kind {
-            CallKind::Number(_) | CallKind::Block(_) => (1, Some(passes)),
+            CallKind::Number(_) | CallKind::Program(_) | CallKind::Block(_) => (1, Some(passes)),
             CallKind::Name(_) => (*count, None),
         };
         self.announce(kind, number, of, caller);
@@ -179,6 +187,7 @@ impl<'a> Run<'a, '_> {
         let name = match kind {
             CallKind::Number(program) => format!("O{program:04}"),
             CallKind::Block(number) => format!("N{number}"),
+            CallKind::Program(id) => self.names.name(id).to_ascii_uppercase(),
             CallKind::Name(id) => format!("O<{}>", self.names.name(id)),
         };
         let text = match of {

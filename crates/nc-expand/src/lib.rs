@@ -39,8 +39,10 @@ mod faults;
 mod flow;
 mod jump;
 mod o_word;
+mod okuma;
 mod output;
 mod program;
+mod returns;
 mod run;
 mod shorthand;
 mod siemens;
@@ -105,8 +107,8 @@ pub struct Expanded<'a> {
     files: Vec<(String, Vec<u8>)>,
     /// From the source to the program without flow; `None` where it has none.
     flow: Option<Vec<Segment>>,
-    /// From there to the program without corners, polar words and cycles of lathes.
-    shorthand: Option<Vec<Segment>>,
+    /// From there to the program without corners, polar words and called cycles, step by step.
+    shorthand: Vec<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -147,7 +149,7 @@ impl Expanded<'_> {
     /// What was done, for the comment in the output.
     #[must_use]
     pub const fn what(&self) -> &'static str {
-        match (self.flow.is_some(), self.shorthand.is_some()) {
+        match (self.flow.is_some(), !self.shorthand.is_empty()) {
             (false, false) => "",
             (true, false) => "PROGRAM FLOW EXPANDED",
             (false, true) => "SHORTHAND WRITTEN OUT",
@@ -160,7 +162,7 @@ impl Expanded<'_> {
     #[must_use]
     pub fn origin(&self, span: &Range<u64>) -> Origin {
         let mut origin = Origin { file: 0, span: span.clone() };
-        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+        for segments in self.shorthand.iter().rev().chain(&self.flow) {
             origin = output::origin(segments, &origin.span);
         }
         origin
@@ -170,7 +172,7 @@ impl Expanded<'_> {
     #[must_use]
     pub fn source_line(&self, line: u64) -> (usize, u64) {
         let mut place = (0, line);
-        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+        for segments in self.shorthand.iter().rev().chain(&self.flow) {
             place = output::source_line(segments, place.1);
         }
         place
@@ -207,28 +209,36 @@ pub fn expand<'a>(
         text: Cow::Borrowed(text),
         files: Vec::new(),
         flow: None,
-        shorthand: None,
+        shorthand: Vec::new(),
         warnings: Vec::new(),
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let write_out = if dialect.turning.is_some() {
-            turning::write_out
+        let steps: &[WriteOut] = if dialect.turning.is_some() {
+            &[turning::write_out]
         } else if dialect.flow.called {
-            called::write_out
+            &[called::write_out, shorthand::write_out]
+        } else if dialect.flow.return_by_m {
+            &[returns::write_out]
         } else {
-            shorthand::write_out
+            &[shorthand::write_out]
         };
-        let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
-            let settled = expanded.settle(vec![*fault]);
-            let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
-            let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
-            Refusal { diagnostics, file }
-        })?;
-        (expanded.text, expanded.shorthand) = (Cow::Owned(text), Some(segments));
+        for write_out in steps {
+            let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
+                let settled = expanded.settle(vec![*fault]);
+                let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
+                let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
+                Refusal { diagnostics, file }
+            })?;
+            expanded.text = Cow::Owned(text);
+            expanded.shorthand.push(segments);
+        }
     }
     Ok(expanded)
 }
+
+/// Writes some kind of shorthand out: the plain text, and where each stretch of it comes from.
+type WriteOut = fn(&[u8], &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Box<Diagnostic>>;
 
 /// True where a block computes, jumps, calls, or has shorthand to be written out: a program that has one is not plain.
 #[must_use]
@@ -238,7 +248,10 @@ pub fn computes(block: &Block<'_>, dialect: &Dialect) -> bool {
 
 /// True where a block has shorthand: of drawings, or a cycle of a lathe.
 fn short(block: &Block<'_>, dialect: &Dialect) -> bool {
-    shorthand::needed(block, dialect) || turning::needed(block, dialect) || called::needed(block, dialect)
+    shorthand::needed(block, dialect)
+        || turning::needed(block, dialect)
+        || called::needed(block, dialect)
+        || returns::needed(block, dialect)
 }
 
 /// What a program asks for.
@@ -257,6 +270,7 @@ impl Work {
         let may_be_short = dialect.flow.corner_words
             || dialect.flow.polar_words
             || dialect.flow.called
+            || dialect.flow.return_by_m
             || dialect.turning.is_some();
         if !may_flow && !may_be_short {
             return work;

@@ -91,8 +91,8 @@ impl<'a> Source<'a> {
                 {
                     labels.push((section, u64::try_from(number).unwrap_or(u64::MAX), at));
                 }
-                if dialect.flow.macros == Macros::Siemens {
-                    named.extend(label(&block, compiler.names).map(|name| (name, at)));
+                if dialect.flow.macros.bare_names() {
+                    named.extend(label(&block, dialect, compiler.names).map(|name| (name, at)));
                     if let Some(number) = block.word(b'N').and_then(|word| word.number()?.integer()) {
                         named.push((compiler.names.id(format!("n{number}").as_bytes()), at));
                     }
@@ -154,6 +154,11 @@ impl<'a> Source<'a> {
         match direction {
             Direction::Forward => pick(true),
             Direction::Back => pick(false),
+            Direction::Only => match &self.names[start..end] {
+                [] => Found::Missing,
+                [(_, at)] => Found::Statement(*at),
+                _ => Found::Twice,
+            },
             Direction::Either => match pick(true) {
                 Found::Missing => pick(false),
                 found => found,
@@ -351,9 +356,12 @@ impl<'a> Source<'a> {
 }
 
 /// The name of a block's label.
-fn label(block: &Block<'_>, names: &mut Names) -> Option<NameId> {
+fn label(block: &Block<'_>, dialect: &Dialect, names: &mut Names) -> Option<NameId> {
     block.items.iter().filter(|item| item.kind == ItemKind::Name).find_map(|item| {
-        let name = block.text(item.span).strip_suffix(b":")?;
+        let name = match block.text(item.span) {
+            name if dialect.labels => Some(name).filter(|name| name[0].eq_ignore_ascii_case(&b'N')),
+            name => name.strip_suffix(b":"),
+        }?;
         Some(names.id(name))
     })
 }

@@ -10,7 +10,7 @@ use nc_syntax::dialect::{Action, Dialect, Macros};
 use crate::evaluate::{Rules, Variables, number};
 use crate::expression::Expression;
 use crate::faults::{self, Stop};
-use crate::jump::Frame;
+use crate::jump::{CallKind, Frame};
 use crate::output::{From, Output};
 use crate::program::Source;
 use crate::statement::{Complex, Control, Kind, Statement};
@@ -71,7 +71,7 @@ pub(crate) fn run<'a>(
     environment: &Environment<'_>,
 ) -> Result<Expanded<'a>, Refusal> {
     let mut names = Names::default();
-    names.bare = dialect.flow.macros == Macros::Siemens;
+    names.bare = dialect.flow.macros.bare_names();
     let main = Source::read(String::new(), Cow::Borrowed(text), dialect, &mut names)
         .map_err(|(diagnostic, _)| Refusal { diagnostics: vec![*diagnostic], file: None })?;
     let mut store = Store::new(dialect.flow.macros, &mut names, environment.variables);
@@ -139,6 +139,12 @@ impl<'a> Run<'a, '_> {
         let again = self.visit(place);
         self.at.statement += 1;
         match &statement.kind {
+            _ if statement.flags.ends && self.called_by_name() => {
+                return Err(faults::no_call(&both!(
+                    "M2 or M30 in a subprogram: it ends the subprogram, or all of the program",
+                    "M2 или M30 в подпрограмме: конец подпрограммы или всей программы"
+                )));
+            }
             Kind::Copy => {
                 self.copy(source, statement, place, again);
                 self.note(statement);
@@ -184,6 +190,11 @@ impl<'a> Run<'a, '_> {
             Kind::Broken(diagnostic) => return Err(Stop::Diagnostic(diagnostic.clone())),
         }
         Ok(Next::On)
+    }
+
+    /// A subprogram of Siemens runs.
+    fn called_by_name(&self) -> bool {
+        matches!(self.frames.last().map(|frame| frame.kind), Some(CallKind::Program(_)))
     }
 
     /// The first subroutine that the main program defines.
@@ -500,7 +511,7 @@ impl<'a> Run<'a, '_> {
         }
         let files = self.sources[1..].iter().map(|s| (s.name.clone(), s.text.to_vec())).collect();
         let Output { text, segments, .. } = self.out;
-        Expanded { text: Cow::Owned(text), files, flow: Some(segments), shorthand: None, warnings }
+        Expanded { text: Cow::Owned(text), files, flow: Some(segments), shorthand: Vec::new(), warnings }
     }
 
     fn refusal(&self, stop: &Stop) -> Refusal {

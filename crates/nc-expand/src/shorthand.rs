@@ -1,4 +1,5 @@
-//! Shorthand of drawings: polar words (G16) and corners (`,R5.`, `,C2.`) written out as plain blocks.
+//! Shorthand of drawings: polar words (G16), a rotation about the tool (`G68 R30.`) and corners (`,R5.`, `,C2.`; `RND=5`, `CHR=2`, `CHF=2`) written out as plain
+//! blocks.
 //!
 //! Both say where the tool goes by something that only the control works out. What they mean is told by the
 //! manuals for the plain case, and only that is written out; the rest is refused:
@@ -7,12 +8,13 @@
 //!   first axis = radius · cos angle, second = radius · sin angle.
 //! * Corner between two lines of the plane, in G90, the next line in the next block. With u and v the unit
 //!   vectors from the corner along the two lines and θ the angle between them, a chamfer of c goes from c·u to
-//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside.
+//!   c·v, and a rounding of r from t·u to t·v with t = r / tan(θ/2), about the tangent point's r to the inside. A chamfer
+//!   of length l has c = l / (2 sin(θ/2)).
 //!
 //! The numbers written have 6 decimals; what that neglects is half a nanometre.
 
 use diagnostic::{Code, Diagnostic, Text, both};
-use nc_syntax::dialect::{Action, GCode, PlaneCode};
+use nc_syntax::dialect::{Action, Called, CornerForm, GCode, PlaneCode};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Number, Reader, Span, Value};
 use units::math;
 
@@ -27,20 +29,37 @@ const STRAIGHT_RAD: f64 = 0.0175;
 /// By so much a tangent point may lie behind the start of its line, in units of the program: rounded ends.
 const BEHIND: f64 = 1e-6;
 
-type Fault = Box<Diagnostic>;
+pub(crate) type Fault = Box<Diagnostic>;
 
 /// True where the block has shorthand that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
-    if !(dialect.flow.corner_words || dialect.flow.polar_words) {
+    if !(dialect.flow.corner_words || dialect.flow.polar_words || dialect.flow.called) {
         return false;
     }
     block.items.iter().any(|item| match item.kind {
         ItemKind::CommaWord { .. } => dialect.flow.corner_words,
-        ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
-            action(number, dialect) == Some(&Action::PolarOn)
-        }
+        ItemKind::BracketCommand => corner_form(block.text(item.span), dialect).is_some(),
+        ItemKind::Word { letter: b'G', value: Value::Number(number) } => match action(number, dialect) {
+            Some(Action::PolarOn) => true,
+            Some(Action::RotationOn) => turns_about_the_tool(block, dialect),
+            _ => false,
+        },
         _ => false,
     })
+}
+
+/// `G68 R30.`: the rotation's centre is where the tool stands.
+fn turns_about_the_tool(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.frames.rotation_about_tool
+        && !block.words().any(|word| AXES.contains(&word.letter) || b"IJK".contains(&word.letter))
+}
+
+/// The form of a corner that a command names.
+fn corner_form(command: &[u8], dialect: &Dialect) -> Option<CornerForm> {
+    match dialect.command(command)?.action {
+        Some(Action::Called(Called::Corner(form))) => Some(form),
+        _ => None,
+    }
 }
 
 fn action(number: Number, dialect: &Dialect) -> Option<&Action> {
@@ -75,9 +94,9 @@ struct Corner<'a> {
     block: Block<'a>,
     from: [f64; 2],
     to: [f64; 2],
-    round: bool,
+    form: CornerForm,
     size: f64,
-    comma: Span,
+    place: Span,
     /// The arc of an earlier corner stands before it, so that it must say that it is a line.
     behind_corner: bool,
 }
@@ -117,8 +136,36 @@ impl Words<'_, '_> {
                 .is_none_or(|action| action.keeps_places() || matches!(action, Action::Called(_)))
         })
     }
-    fn comma(&self) -> Option<&Item> {
-        self.block.items.iter().find(|item| matches!(item.kind, ItemKind::CommaWord { .. }))
+    /// `,R5.`, `RND=5`
+    fn corner(&self) -> Option<&Item> {
+        self.block.items.iter().find(|item| self.is_corner(item))
+    }
+    fn is_corner(&self, item: &Item) -> bool {
+        match item.kind {
+            ItemKind::CommaWord { .. } => self.dialect.flow.corner_words,
+            ItemKind::BracketCommand => corner_form(self.block.text(item.span), self.dialect).is_some(),
+            _ => false,
+        }
+    }
+    /// Its form and size, in units of the program, where they are plain.
+    fn corner_size(&self, item: &Item, inch: bool) -> Option<(CornerForm, f64)> {
+        match item.kind {
+            ItemKind::CommaWord { letter, value: Value::Number(size) } => {
+                let form = match letter {
+                    b'R' => CornerForm::Round,
+                    b'C' => CornerForm::Chamfer,
+                    _ => return None,
+                };
+                Some((form, self.dialect.numbers.length(size, inch).to_f64()))
+            }
+            ItemKind::BracketCommand => {
+                let text = self.block.text(item.span);
+                let value = &text[text.iter().position(|byte| *byte == b'=')? + 1..];
+                let value = crate::called::plain_number(std::str::from_utf8(value).ok()?.trim())?;
+                Some((corner_form(text, self.dialect)?, value))
+            }
+            _ => None,
+        }
     }
     pub(crate) fn skipped(&self) -> bool {
         self.block.items.iter().any(|item| item.kind == ItemKind::Skip)
@@ -250,7 +297,7 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<
         None => Ok((writer.out.text, writer.out.segments)),
         Some(corner) => {
             let words = Words { block: &corner.block, dialect };
-            Err(words.refuse(corner.comma, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
+            Err(words.refuse(corner.place, NO_NEXT, both!("nothing follows", "дальше ничего нет"), POST_IT))
         }
     }
 }
@@ -269,9 +316,13 @@ impl<'d> Writer<'d> {
     /// A block that follows no corner.
     fn block<'a>(&mut self, block: &Block<'a>) -> Result<Option<Corner<'a>>, Fault> {
         let words = Words { block, dialect: self.dialect };
-        if words.comma().is_some() && self.dialect.flow.corner_words {
+        if words.corner().is_some() {
             let before = self.state.at;
             return self.corner(block, before).map(Some);
+        }
+        let rotates = words.actions().find(|(action, _)| **action == Action::RotationOn);
+        if let Some((_, span)) = rotates.filter(|_| turns_about_the_tool(block, self.dialect)) {
+            return self.rotation(&words, span).map(|()| None);
         }
         let turns_on = words.actions().find(|(action, _)| **action == Action::PolarOn);
         if self.state.polar.is_some() || turns_on.is_some() {
@@ -283,12 +334,38 @@ impl<'d> Writer<'d> {
         Ok(None)
     }
 
-    /// A line with `,R` or `,C` from a place that is known, to be written once the next one is known.
+    /// A rotation about where the tool stands: the control would take the corrected place for it.
+    fn rotation(&mut self, words: &Words<'_, '_>, span: Span) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane;
+        let [Some(u), Some(v)] = [self.state.at[first], self.state.at[second]] else {
+            return Err(words.refuse(
+                span,
+                both!("a rotation without its centre", "поворот без центра"),
+                both!(
+                    "it turns about where the tool stands, which is not known: name both axes of the plane before it, in G90",
+                    "он идёт вокруг места, где стоит инструмент, а оно неизвестно: назовите до него обе оси плоскости при G90"
+                ),
+                both!("write the centre beside it", "напишите рядом центр"),
+            ));
+        };
+        let block = words.block;
+        self.state.step(words);
+        let mut centre = b" ".to_vec();
+        self.point(&mut centre, [u, v]);
+        let end = span.end as usize;
+        let text = [&block.bytes[..end], &centre, &block.bytes[end..]].concat();
+        self.out.comment(shown(block), from(block));
+        self.out.write(&text, from(block));
+        Ok(())
+    }
+
+    /// A line with a corner from a place that is known, to be written once the next one is known.
     fn corner<'a>(&mut self, block: &Block<'a>, before: [Option<f64>; 3]) -> Result<Corner<'a>, Fault> {
         let words = Words { block, dialect: self.dialect };
-        let Some(&Item { kind: ItemKind::CommaWord { letter, value }, span }) = words.comma() else {
+        let Some(item) = words.corner() else {
             return Err(words.refuse(Span { start: 0, end: 0 }, NO_NEXT, Text::EMPTY, POST_IT));
         };
+        let span = item.span;
         let refuse = |label: Text| {
             words.refuse(
                 span,
@@ -297,12 +374,15 @@ impl<'d> Writer<'d> {
                 POST_IT,
             )
         };
-        let (b'R' | b'C', Value::Number(size)) = (letter, value) else {
+        let Some((form, size)) = words.corner_size(item, self.state.inch) else {
             return Err(refuse(both!(
-                "only a rounding `,R` or a chamfer `,C` with a number can",
-                "развернуть можно только скругление `,R` или фаску `,C` с числом"
+                "only a rounding or a chamfer with a number can, one in a block",
+                "развернуть можно только скругление или фаску с числом, одно в кадре"
             )));
         };
+        if block.items.iter().filter(|item| words.is_corner(item)).count() > 1 {
+            return Err(refuse(both!("two corners in one block", "два сопряжения в одном кадре")));
+        }
         let [first, second, _] = self.state.plane;
         self.state.step(&words);
         self.plain_line(&words, span)?;
@@ -313,19 +393,10 @@ impl<'d> Writer<'d> {
             )));
         };
         let to = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
-        let size = self.dialect.numbers.length(size, self.state.inch).to_f64();
         if size <= 0.0 {
             return Err(refuse(both!("its size must be above zero", "размер должен быть больше нуля")));
         }
-        Ok(Corner {
-            block: block.clone(),
-            from: [u, v],
-            to,
-            round: letter == b'R',
-            size,
-            comma: span,
-            behind_corner: false,
-        })
+        Ok(Corner { block: block.clone(), from: [u, v], to, form, size, place: span, behind_corner: false })
     }
 
     /// Refuses what is no line of the plane in G90; `span` says where.
@@ -371,10 +442,10 @@ impl<'d> Writer<'d> {
         let words = Words { block, dialect: self.dialect };
         let at = Words { block: &corner.block, dialect: self.dialect };
         let before = self.state.at;
-        let further = words.comma().is_some();
+        let further = words.corner().is_some();
         self.state.step(&words);
         let whole = block.items.first().map_or(Span { start: 0, end: 0 }, |item| item.span);
-        self.plain_line(&words, words.comma().map_or(whole, |item| item.span))?;
+        self.plain_line(&words, words.corner().map_or(whole, |item| item.span))?;
         let [first, second, _] = self.state.plane;
         let next = [first, second].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
         let Some(shape) = Shape::of(corner, next) else {
@@ -383,7 +454,7 @@ impl<'d> Writer<'d> {
                 "прямые для него слишком коротки или идут прямо вперёд или назад"
             );
             return Err(at.refuse(
-                corner.comma,
+                corner.place,
                 both!("a corner that cannot be written out", "сопряжение, которое нельзя развернуть"),
                 label,
                 POST_IT,
@@ -395,12 +466,14 @@ impl<'d> Writer<'d> {
         for block in between.drain(..) {
             self.out.copy(block.bytes, from(&block));
         }
-        let mut line: Vec<u8> = if corner.round && shape.left { b"G3 ".to_vec() } else { b"G2 ".to_vec() };
-        if !corner.round {
-            line = b"G1 ".to_vec();
-        }
+        let round = corner.form == CornerForm::Round;
+        let mut line: Vec<u8> = match (round, shape.left) {
+            (true, true) => b"G3 ".to_vec(),
+            (true, false) => b"G2 ".to_vec(),
+            (false, _) => b"G1 ".to_vec(),
+        };
         self.point(&mut line, shape.to);
-        if corner.round {
+        if round {
             for (axis, k) in [(first, 0), (second, 1)] {
                 line.push(b' ');
                 number(&mut line, b"IJK"[axis], shape.centre[k] - rounded(shape.from[k]));
@@ -561,8 +634,10 @@ impl<'d> Writer<'d> {
         self.out.comment(shown(block), from(block));
         let [first, second, _] = self.state.plane;
         let replaces_motion = words.starts_with(b"G");
+        let of_block = Words { block, dialect: self.dialect };
         let taken = |item: &Item| match item.kind {
             ItemKind::CommaWord { .. } => true,
+            ItemKind::BracketCommand => of_block.is_corner(item),
             ItemKind::Word { letter, .. } if letter == AXES[first] || letter == AXES[second] => true,
             ItemKind::Word { letter: b'G', value: Value::Number(number) } => {
                 replaces_motion && action(number, self.dialect) == Some(&Action::Line)
@@ -613,7 +688,11 @@ impl Shape {
         if !(inside > STRAIGHT_RAD && inside < std::f64::consts::PI - STRAIGHT_RAD) {
             return None;
         }
-        let cut = if corner.round { corner.size / math::tan(0.5 * inside) } else { corner.size };
+        let cut = match corner.form {
+            CornerForm::Round => corner.size / math::tan(0.5 * inside),
+            CornerForm::Chamfer => corner.size,
+            CornerForm::ChamferLength => 0.5 * corner.size / math::sin(0.5 * inside),
+        };
         if cut > before + BEHIND || cut > after + BEHIND {
             return None;
         }

@@ -10,7 +10,7 @@ use diagnostic::{Text, both};
 
 use crate::expression::{Expression, Function, Operator, Parser};
 use crate::o_word::{Label, OStatement, OWord};
-use crate::statement::{Control, Direction};
+use crate::statement::{Call, Control, Direction};
 use crate::value::{NameId, Variable};
 
 const FUNCTIONS: [(&[u8], Function); 10] = [
@@ -191,6 +191,28 @@ pub(crate) fn statement(parser: &mut Parser<'_, '_>) -> Result<Said, Text> {
             let to = parser.expression()?;
             Said::Control(Control::For { variable, from, to, end: 0 })
         }
+        b"RET" => Said::Control(Control::Return { to: None }),
+        // What is behind it says how the control shows the program, or keeps its caller's state.
+        b"PROC" => {
+            keyword(parser);
+            while parser.peek().is_some() {
+                let word = keyword(parser);
+                if !matches!(&word[..], b"ACTBLOCNO" | b"DISPLOF" | b"SBLOF") {
+                    return Err(both!(
+                        "PROC with arguments, SAVE or what else is not known",
+                        "PROC с аргументами, SAVE или чем-то неизвестным"
+                    ));
+                }
+            }
+            Said::Assignments(Vec::new())
+        }
+        word if is_numbered_call(word) => {
+            let program = Some(parser.names.id(word));
+            let repeats = if parser.take(b'P') { Some(parser.operand()?) } else { None };
+            let number = Expression::Number(0.0);
+            let call = Call { number, program, local: false, repeats, arguments: None };
+            Said::Control(Control::Call(Box::new(call)))
+        }
         b"ENDFOR" => Said::Control(Control::EndFor { start: 0 }),
         word => match direction(word) {
             Some(direction) => {
@@ -254,6 +276,11 @@ fn reads(expression: &Expression, variable: &Expression) -> bool {
     }
 }
 
+/// L and digits.
+fn is_numbered_call(name: &[u8]) -> bool {
+    name.len() > 1 && name[0] == b'L' && name[1..].iter().all(u8::is_ascii_digit)
+}
+
 /// R and digits.
 pub(crate) fn is_parameter(name: &[u8]) -> bool {
     name.len() > 1 && name[0].eq_ignore_ascii_case(&b'R') && name[1..].iter().all(u8::is_ascii_digit)
@@ -278,6 +305,13 @@ fn definition(parser: &mut Parser<'_, '_>) -> Result<Vec<(Expression, Expression
             ));
         }
         let id = parser.names.id(&target);
+        if parser.names.is_declared(id) {
+            let shown = String::from_utf8_lossy(&target).to_ascii_uppercase();
+            return Err(both!(
+                "{shown} is declared twice, here and in a program that calls or is called: whose is it?",
+                "{shown} объявлена дважды, здесь и в вызывающей или вызванной программе: чья она?"
+            ));
+        }
         parser.names.declare(id, whole);
         let value = if parser.take(b'=') { parser.expression()? } else { Expression::Number(0.0) };
         found.push((Expression::Variable(Variable::Named(id)), value));

@@ -8,6 +8,7 @@ use crate::codes;
 use crate::expression::{Expression, Parser};
 use crate::flow::{Taken, assignment, call_of, fanuc_flow, skip_word};
 use crate::o_word::{self, OStatement};
+use crate::okuma;
 use crate::siemens::{self, Said};
 use crate::value::{NameId, Names, Variable};
 
@@ -142,6 +143,8 @@ pub(crate) enum Direction {
     Back,
     /// Forward, then from the start.
     Either,
+    /// Wherever the one is.
+    Only,
 }
 
 /// M97, M98 and G65.
@@ -149,6 +152,8 @@ pub(crate) enum Direction {
 pub(crate) struct Call {
     /// Number of a program, or of a block.
     pub(crate) number: Expression,
+    /// Siemens: its name instead.
+    pub(crate) program: Option<NameId>,
     /// M97: the number is that of a block of this program.
     pub(crate) local: bool,
     pub(crate) repeats: Option<Expression>,
@@ -212,6 +217,10 @@ impl Compiler<'_, '_> {
             );
             match item.kind {
                 ItemKind::Skip => flags.skip = true,
+                // `NEND` is a number too where it repeats.
+                ItemKind::Name if self.dialect.labels && bytes[item.span.start as usize] != b'O' => {
+                    flags.number = Some(item.span);
+                }
                 ItemKind::Word { letter: b'N', .. } => {
                     let behind = &bytes[item.span.end as usize..];
                     let blanks = behind.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count() as u32;
@@ -282,7 +291,17 @@ impl Compiler<'_, '_> {
                 ),
             ));
         }
-        let apart = matches!(self.dialect.flow.macros, Macros::Fanuc | Macros::Siemens);
+        let named = matches!(&complex.control, Some(Control::Call(call)) if call.program.is_some());
+        if named && complex.has_words {
+            let message =
+                both!("words beside the call of a subprogram", "слова рядом с вызовом подпрограммы");
+            return Err(Box::new(
+                Diagnostic::error(codes::COMBINATION, message)
+                    .at(block.file_span(whole(block)), both!("which comes first?", "что из них первое?"))
+                    .help(both!("write them in two blocks", "напишите их двумя кадрами")),
+            ));
+        }
+        let apart = self.dialect.flow.macros != Macros::LinuxCnc;
         if apart && complex.has_words && !complex.assignments.is_empty() {
             let message =
                 both!("an assignment and words stand in one block", "в одном кадре присваивание и слова");
@@ -344,10 +363,10 @@ impl Compiler<'_, '_> {
 
     /// The expression of a word, behind its letter.
     fn word_value(&mut self, text: &[u8], comma: bool, complex: &mut Complex) -> Result<Expression, Text> {
-        if self.dialect.flow.macros == Macros::Siemens {
+        if self.dialect.flow.macros.bare_names() {
             let value =
                 siemens::value_of(text).ok_or_else(|| both!("a value was expected", "ожидалось значение"))?;
-            let mut parser = Parser::new(&text[value], Macros::Siemens, self.names);
+            let mut parser = Parser::new(&text[value], self.dialect.flow.macros, self.names);
             let value = parser.expression()?;
             parser.end()?;
             complex.cost += parser.cost;
@@ -364,12 +383,12 @@ impl Compiler<'_, '_> {
 
     /// What stands around the number of a word of Siemens.
     fn around(&self, text: &[u8]) -> Option<Around> {
-        let value = siemens::value_of(text).filter(|_| self.dialect.flow.macros == Macros::Siemens)?;
+        let value = siemens::value_of(text).filter(|_| self.dialect.flow.macros.bare_names())?;
         Some((text[..value.start].into(), text[value.end..].into()))
     }
 
     fn is_plain(&self, text: &[u8]) -> bool {
-        self.dialect.flow.macros == Macros::Siemens && siemens::is_plain(text)
+        self.dialect.flow.macros.bare_names() && siemens::is_plain(text)
     }
 
     /// M98, M99, G65: notes the call, and says which words are its own.
@@ -379,7 +398,11 @@ impl Compiler<'_, '_> {
         block: &Block<'_>,
         complex: &mut Complex,
     ) -> Result<Option<Taken>, Fault> {
-        let calls = self.dialect.flow.macros != Macros::Siemens;
+        if self.dialect.flow.macros == Macros::Siemens && ends_subprogram(rest) {
+            complex.control = Some(Control::Return { to: None });
+            return Ok(Some(Taken::End));
+        }
+        let calls = !self.dialect.flow.macros.bare_names();
         let Some(kind) = call_of(rest, self.dialect.flow).filter(|_| calls) else {
             return Ok(None);
         };
@@ -512,6 +535,7 @@ impl Compiler<'_, '_> {
                 let arguments = (kind == Taken::Macro).then_some(arguments);
                 Control::Call(Box::new(Call {
                     number: program,
+                    program: None,
                     local: kind == Taken::Local,
                     repeats,
                     arguments,
@@ -533,9 +557,13 @@ impl Compiler<'_, '_> {
         let fanuc = self.dialect.flow.macros == Macros::Fanuc;
         let mut parser = Parser::new(text, self.dialect.flow.macros, self.names);
         let mut read = || -> Result<Option<Control>, Text> {
-            if parser.macros == Macros::Siemens {
+            if parser.macros.bare_names() {
                 cut.push(span);
-                return Ok(match siemens::statement(&mut parser)? {
+                let said = match parser.macros {
+                    Macros::Okuma => okuma::statement(&mut parser)?,
+                    _ => siemens::statement(&mut parser)?,
+                };
+                return Ok(match said {
                     Said::Assignments(found) => {
                         complex.assignments.extend(found);
                         None
@@ -595,12 +623,12 @@ impl Compiler<'_, '_> {
 /// True where a block is more than bytes to copy.
 pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
     let linuxcnc = dialect.flow.macros == Macros::LinuxCnc;
-    if dialect.flow.macros == Macros::Siemens {
+    if dialect.flow.macros.bare_names() {
         return block.items.iter().any(|item| match item.kind {
             ItemKind::Flow => true,
             ItemKind::Word { value: WordValue::Expression, .. } => !siemens::is_plain(block.text(item.span)),
             _ => false,
-        });
+        }) || (dialect.flow.macros == Macros::Siemens && ends_subprogram(block));
     }
     block.items.iter().any(|item| match item.kind {
         ItemKind::Flow => true,
@@ -614,6 +642,13 @@ pub(crate) fn needs_work(block: &Block<'_>, dialect: &Dialect) -> bool {
         }
         _ => false,
     })
+}
+
+/// M17
+fn ends_subprogram(block: &Block<'_>) -> bool {
+    block
+        .words()
+        .any(|word| word.letter == b'M' && word.number().and_then(|number| number.integer()) == Some(17))
 }
 
 /// All of the block but its end.

@@ -89,7 +89,7 @@ impl Run<'_, '_> {
             b'K' if cycle && near => Style::Whole,
             b'P' | b'S' if near && value.round() == value => Style::Whole,
             b'P' | b'S' if fanuc => return Err(faults::no_code(letter, value)),
-            _ => Style::Decimals(if fanuc { 6 } else { 9 }),
+            _ => Style::Decimals(if fanuc || self.dialect.labels { 6 } else { 9 }),
         };
         let length = text.len();
         let styles: &[Style] = if let Style::Decimals(2..) = style {

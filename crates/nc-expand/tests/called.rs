@@ -59,7 +59,7 @@ fn mcall_drills_behind_each_motion_until_it_stands_alone() {
     assert_eq!(lines, wanted);
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\nTRANS X5\nX20\n"), 146);
     assert_eq!(refused("MCALL CYCLE81(15,0,2,-10)\n/X20\n"), 134);
-    assert_eq!(refused("MCALL L100\n"), 146);
+    assert_eq!(refused("MCALL L100\n"), 136);
     // A rotary axis moves too; words that are arguments move nothing.
     let turned = flat("MCALL CYCLE81(15,0,2,-10)\nA90\nG25 X5\nMCALL\n");
     assert_eq!(turned, ["A90", "G0 Z2.", "G1 Z-10.", "G0 Z15.", "G25 X5"]);
@@ -144,4 +144,101 @@ fn arguments_that_choose_how_others_are_read_are_refused() {
     }
     assert_eq!(refused("G91\nCYCLE81(15,0,2,-10)\n"), 146);
     assert_eq!(refused("G2 X30 I10\nCYCLE81(15,0,2,-10)\n"), 146);
+}
+
+#[test]
+fn cycle85_bores_at_feeds_of_its_own_and_leaves_none() {
+    let lines = flat("G1 Z50 F200\nCYCLE85(15,0,2,-10,,0.3,80,300)\nX20 F200\nX30\n");
+    let hole = ["G0 Z2.", "G1 Z-10. F80.", "G4 F0.3", "G1 Z2. F300.", "G0 Z15.", "G1"];
+    let wanted: Vec<&str> =
+        [&["G1 Z50 F200"][..], &hole, &["X20 F200", "X30"]].into_iter().flatten().copied().collect();
+    assert_eq!(lines, wanted);
+    // Which feed holds behind it no manual says; a rapid needs none, a dwell's F is none.
+    assert_eq!(flat("CYCLE85(15,0,2,-10,,,80,300)\nG0 X20\nG1 Z40 F90\n").last().unwrap(), "G1 Z40 F90");
+    assert_eq!(refused("F200\nCYCLE85(15,0,2,-10,,,80,300)\nG1 X20\n"), 146);
+    assert_eq!(refused("F200\nCYCLE85(15,0,2,-10,,,80,300)\nG4 F1\nG1 X20\n"), 146);
+    assert_eq!(refused("F200\nCYCLE85(15,0,2,-10,,,80,300)\nG0 X20\nCYCLE81(15,0,2,-10)\n"), 146);
+    assert_eq!(flat("MCALL CYCLE85(15,0,2,-10,,,80,300)\nX20\nX30\nMCALL\n").len(), 10);
+    assert_eq!(refused("CYCLE85(15,0,2,-10,,,,300)\n"), 146);
+    assert_eq!(refused("CYCLE85(15,0,2,-10,,,80,0)\n"), 146);
+    assert_eq!(refused("CYCLE85(15,0,2,-10,,,80,300,1)\n"), 146);
+}
+
+#[test]
+fn cycle86_leaves_the_bore_aside_and_the_spindle_standing() {
+    let lines = flat("F200\nCYCLE86(15,0,2,-10,,0.3,3,-1,-0.5,0.2,45)\nG0 X20\n");
+    assert_eq!(
+        lines[1..],
+        [
+            "M3",
+            "G0 Z2.",
+            "G1 Z-10.",
+            "G4 F0.3",
+            "SPOS=45.",
+            "G0 X9. Y9.5 Z-9.8",
+            "G0 Z2.",
+            "G0 X10. Y10. Z15.",
+            "G0 X20"
+        ]
+    );
+    // Without a way aside it stays over the hole.
+    let lines = flat("CYCLE86(15,0,2,-10,,,4)\n");
+    assert_eq!(lines, ["M4", "G0 Z2.", "G1 Z-10.", "SPOS=0.", "G0 Z2.", "G0 Z15."]);
+    let after = |more: &str| format!("F200\nCYCLE86(15,0,2,-10,,,3)\n{more}");
+    assert_eq!(refused(&after("G1 X20\n")), 146);
+    assert_eq!(refused(&after("CYCLE81(15,0,2,-10)\n")), 146);
+    assert_eq!(flat(&after("M3\nG1 X20\n")).last().unwrap(), "G1 X20");
+    assert_eq!(flat(&after("M5\nG0 X20\n")).last().unwrap(), "G0 X20");
+    assert_eq!(refused("CYCLE86(15,0,2,-10,,,5)\n"), 146);
+    assert_eq!(refused("CYCLE86(15,0,2,-10)\n"), 146);
+    assert_eq!(refused("TRANS X5\nCYCLE86(15,0,2,-10,,,3,1)\n"), 146);
+}
+
+#[test]
+fn arcs_by_their_angle() {
+    // A quarter to the left from (10, 10) to (20, 20): about (10, 20); the same to the right about (20, 10).
+    assert_eq!(flat("G3 X20 Y20 AR=90 F200\n"), ["G3 X20 Y20 F200 I0. J10."]);
+    assert_eq!(flat("G2 X20 Y20 AR=90 F200\n"), ["G2 X20 Y20 F200 I10. J0."]);
+    // Three quarters: about the other point.
+    assert_eq!(flat("G3 X20 Y20 AR=270\nX30\n"), ["G3 X20 Y20 I10. J0.", "X30"]);
+    assert_eq!(flat("G3 X20 Y10 AR=180\n"), ["G3 X20 Y10 I5. J0."]);
+    // By the centre: the end is turned about it.
+    assert_eq!(flat("G3 I-5 J0 AR=90\n"), ["G3 I-5 J0 X5. Y15."]);
+    assert_eq!(flat("G2 I-5 Z40 AR=90 ;C\n"), ["G2 I-5 Z40 X5. Y5. ;C"]);
+    assert_eq!(flat("G91\nG3 I-5 J0 AR=90\n"), ["G91", "G3 I-5 J0 X-5. Y5."]);
+    assert_eq!(flat("G18\nG2 Z70 X20 AR=90\n"), ["G18", "G2 Z70 X20 K10. I0."]);
+    for program in [
+        "G3 X20 Y20 AR=360\n",
+        "G3 X20 Y20 AR=0\n",
+        "G3 X10 Y10 AR=90\n",
+        "G3 X20 Y20 I5 AR=90\n",
+        "G1 X20 Y20 AR=90\n",
+        "G3 AR=90\n",
+        "TRANS X5\nG3 X20 Y20 AR=90\n",
+        "G3 X20 Y20 AR=90 TURN=1\n",
+    ] {
+        assert_eq!(refused(program), 146, "{program}");
+    }
+}
+
+#[test]
+fn corners_by_name() {
+    // A square corner: the same as `,R` and `,C` on other controls.
+    let lines = flat("G1 X30 F200 RND=4\nY40\nX50\n");
+    assert_eq!(lines, ["G1 X26. Y10. F200", "G3 X30. Y14. I0. J4.", "G1 X30. Y40.", "X50"]);
+    let lines = flat("G1 X30 F200 CHR=4\nY40\n");
+    assert_eq!(lines, ["G1 X26. Y10. F200", "G1 X30. Y14.", "G1 X30. Y40."]);
+    // A chamfer 4 long cuts 4/√2 off either side.
+    let lines = flat("G1 X30 F200 CHF=4\nX=IC(0) Y40\n");
+    assert_eq!(lines, ["G1 X27.171573 Y10. F200", "G1 X30. Y12.828427", "G1 X30. Y40."]);
+    for program in [
+        "G1 X30 RND=4\nG2 X40 Y20 CR=20\n",
+        "G1 X30 RND=4\n",
+        "G0 X30 RND=4\nY40\n",
+        "G1 X30 RND=30\nY40\n",
+        "G1 X30 RND=4 CHR=2\nY40\n",
+        "G1 X30 RND=0\nY40\n",
+    ] {
+        assert_eq!(refused(program), 142, "{program}");
+    }
 }

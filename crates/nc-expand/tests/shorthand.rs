@@ -99,3 +99,20 @@ fn what_is_not_certain_is_refused() {
         assert_eq!(refusal.diagnostics[0].code.0, 142, "{program}");
     }
 }
+
+#[test]
+fn a_rotation_without_its_centre_is_given_the_tools_place() {
+    // The control would take the corrected place for it.
+    assert_eq!(flat("G68 R30.\nX20. Y5.\nG69\n")[0], "G68 X10. Y10. R30.");
+    assert_eq!(flat("G18\nG68 R30.\n")[1], "G68 X10. Z60. R30.");
+    assert_eq!(flat("G91 X5.\nG90 G68R30.\n")[1], "G90 G68 X15. Y10.R30.");
+    // With a centre it stays as it is, and so it does where the control's own setting decides.
+    assert_eq!(flat("G68 X1. Y2. R30.\n"), ["G68 X1. Y2. R30."]);
+    let haas = common::flat("haas", &format!("{START}G68 R30.\n"), &[], &[]);
+    assert!(haas.ends_with("G68 R30.\n"), "{haas}");
+    for program in ["G55\nG68 R30.\n", "M6 T2\nG68 R30.\n", "G43 H1\nG68 R30.\n"] {
+        let text = format!("{START}{program}");
+        let refusal = common::expanded("fanuc", &text, &[], &[]).expect_err("refused");
+        assert_eq!(refusal.diagnostics[0].code.0, 142, "{program}");
+    }
+}

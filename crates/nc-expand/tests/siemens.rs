@@ -101,3 +101,31 @@ fn what_is_not_certain_is_refused() {
     // Text is no variable.
     assert_eq!(flat("R1=1\nMSG(\"R1 NOW\")\nX=R1\n"), ["MSG(\"R1 NOW\")", "X=1."]);
 }
+
+#[test]
+fn numbered_subprograms_are_files_of_their_name() {
+    let called = "%_N_L100_SPF\n;$PATH=/_N_SPF_DIR\nPROC L100 DISPLOF\nG91 G1 X=R1\nY2\nG90\nM17\n";
+    let flat = |program: &str, files: &[(&str, &str)]| -> Vec<String> {
+        let text = common::flat("sinumerik", program, &[], files);
+        text.lines().filter(|line| !line.starts_with(';')).map(str::to_owned).collect()
+    };
+    let lines = flat("R1=5\nL100 P2\nX0\nM30\n", &[("L100.SPF", called)]);
+    assert_eq!(lines, ["G91 G1 X=5.", "Y2", "G90", "G91 G1 X=5.", "Y2", "G90", "X0", "M30"]);
+    // M17 beside the last move, RET, a call in a call, leading zeros that are another name.
+    let files = [("L1.SPF", "G1 X1 M17\n"), ("L01.SPF", "L1\nX2\nRET\n")];
+    assert_eq!(flat("L01\nM30\n", &files), ["G1 X1 ", "X2", "M30"]);
+    let refused = |program: &str, files: &[(&str, &str)]| {
+        let refusal = common::expanded("sinumerik", program, &[], files).expect_err("refused");
+        refusal.diagnostics[0].code.0
+    };
+    assert_eq!(refused("L100\nM30\n", &[]), 127);
+    assert_eq!(refused("G0 X5 L1\nM30\n", &files), 136);
+    assert_eq!(refused("L5\nM30\n", &[("L5.SPF", "X1\nM30\n")]), 135);
+    assert_eq!(refused("L5\nM30\n", &[("L5.SPF", "X1\n")]), 135);
+    assert_eq!(refused("L5\nM30\n", &[("L5.SPF", "PROC L5 SAVE\nX1\nM17\n")]), 120);
+    assert_eq!(refused("L5\nM30\n", &[("L5.SPF", "PROC L5(REAL A)\nX1\nM17\n")]), 120);
+    assert_eq!(refused("DEF REAL AA\nL5\nM30\n", &[("L5.SPF", "DEF REAL AA\nM17\n")]), 120);
+    assert_eq!(refused("L5\nM30\n", &[("L5.SPF", "L5\nM17\n")]), 129);
+    assert_eq!(refused("X1\nM17\n", &[]), 135);
+    assert_eq!(refused("L5(3)\nM30\n", &[]), 120);
+}

@@ -92,6 +92,8 @@ pub const UNKNOWN_M_CODE: Code = Code(243);
 pub const UNIT_UNSTATED: Code = Code(244);
 /// Doubt: the program may have been cut off. Remedy: the whole one.
 pub const CUT_OFF: Code = Code(245);
+/// The program looks written for another control than its dialect's. Remedy: `--dialect`.
+pub const LOOKS_LIKE: Code = Code(246);
 /// Whether X words of a lathe's program are diameters or radii is not said. Remedy: `[program] x` in the profile, or G7
 /// and G8.
 pub const X_UNSTATED: Code = Code(250);

@@ -13,11 +13,14 @@ use nc_syntax::dialect::{Action, GCode, LatheSign, PointFree};
 use nc_syntax::{Block, Dialect, ItemKind, Number, PlainLine, Reader, Value, Word};
 use smallvec::SmallVec;
 
+use crate::alike;
 use crate::codes;
 use crate::setup::Setup;
 use crate::words::is_motion;
 use nc_syntax::Letters;
 
+/// G15
+const POLAR_OFF: GCode = GCode(150);
 /// No more codes are named in one message.
 const MOST_NAMED: usize = 8;
 
@@ -84,6 +87,8 @@ pub struct Evidence {
     ends: bool,
     /// The number with which the text ends, without a line end.
     cut_number: Option<Place>,
+    /// `G15 H1`, where G15 is another code: Okuma's work offset.
+    other_control: Option<Place>,
 }
 
 impl Evidence {
@@ -127,6 +132,9 @@ impl Evidence {
             }
         }
         self.states_unit |= seen.unit;
+        if seen.polar_off && letters.any(Letters::of(b"H")) && self.other_control.is_none() {
+            self.other_control = Some(place(block, block.file_range()));
+        }
         self.acts |= !letters.without(Letters::of(b"NO")).is_empty();
         if !letters.is_empty() || !questions.dialect.commands.is_empty() {
             self.lathe(block, &seen, letters, questions.dialect);
@@ -182,6 +190,7 @@ impl Evidence {
             opened,
             ends,
             cut_number,
+            other_control,
         } = later;
         for (sign, place) in lathe {
             self.sign(*sign, || place.clone());
@@ -201,6 +210,7 @@ impl Evidence {
             (&mut self.first_length, first_length),
             (&mut self.first_unknown, first_unknown),
             (&mut self.opened, opened),
+            (&mut self.other_control, other_control),
         ] {
             if first.is_none() {
                 first.clone_from(later);
@@ -269,8 +279,11 @@ impl Evidence {
     /// What must refuse the program.
     ///
     /// # Errors
-    /// VP0240 for a program of a lathe, VP0241 for one that mixes lengths with and without a point.
+    /// VP0246 for a program of another control, VP0240 for one of a lathe, VP0241 for one that mixes lengths with and without a point.
     pub fn refusal(&self, questions: &Questions<'_>) -> Result<(), Box<Finding>> {
+        if let Some(at) = &self.other_control {
+            return Err(Box::new((alike::sure(questions.dialect, at.span.clone()), at.line)));
+        }
         if let Some(finding) = self.of_a_lathe(questions.dialect) {
             return Err(Box::new(finding));
         }
@@ -441,6 +454,8 @@ struct Seen {
     /// The words are no positions.
     arguments: bool,
     scales: bool,
+    /// G15, or nothing where the dialect has no polar words.
+    polar_off: bool,
     /// G0 to G3.
     moves: bool,
 }
@@ -451,6 +466,7 @@ impl Seen {
         self.codes.push(code);
         let Some(row) = dialect.code(code) else { return };
         self.unit |= matches!(row.action, Action::Inch | Action::Millimetre);
+        self.polar_off |= code == POLAR_OFF && matches!(row.action, Action::PolarOff | Action::Pass { .. });
         self.scales |= row.action == Action::ScalingOn;
         self.moves |= is_motion(&row.action);
         self.arguments |= matches!(

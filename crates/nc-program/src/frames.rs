@@ -5,7 +5,7 @@
 
 use diagnostic::{Text, both};
 use nc_syntax::Span;
-use nc_syntax::dialect::{Action, FramePart, OffsetL20};
+use nc_syntax::dialect::{Action, FramePart, GCode, OffsetL20};
 use toolpath::{Frame, Kinematics};
 
 use crate::codes;
@@ -13,6 +13,7 @@ use crate::modal::{Compensation, Distance, Modal, Units, WorkOffset};
 use crate::position::{increment_base, require_frame};
 use crate::settings::{BASE_FRAME, Demand, Environment};
 use crate::tilted;
+use crate::tool_length;
 use crate::transform::Transform;
 use crate::words::{
     ARC_LETTERS, AXIS_LETTERS, CENTRE_LETTERS, LINEAR, LINEAR_LETTERS, Outcome, ROTARY_LETTERS, Refusal,
@@ -41,6 +42,11 @@ pub(crate) fn refresh(state: &mut Modal) {
 /// The name of a numbered work offset.
 pub(crate) fn numbered(number: u32) -> String {
     format!("G54.1P{number}")
+}
+
+/// The name of a work offset that H numbers.
+pub(crate) fn by_h(code: GCode, number: u32) -> String {
+    format!("{code}H{number}")
 }
 
 /// Executes a code whose words move the frame; says whether they state where the axes stand.
@@ -408,6 +414,10 @@ fn write_offset(
     state: &mut Modal,
 ) -> Outcome<bool> {
     let l = words.whole(b'L')?;
+    if let (Some(l @ 10..=13), true) = (l, env.dialect.writes_lengths) {
+        tool_length::write(words, span, l, state)?;
+        return Ok(false);
+    }
     if !matches!(l, Some(2 | 20)) {
         let at = if words.has(L) { words.span(L) } else { span };
         return Err(words
@@ -542,6 +552,7 @@ pub(crate) fn offset(env: &Environment<'_>, state: &Modal, name: &str) -> Option
 pub(crate) fn active_name(env: &Environment<'_>, state: &Modal) -> Option<String> {
     let WorkOffset { code, number, .. } = state.work_offset;
     match (number, env.dialect.code(code?).map(|entry| &entry.action)) {
+        (Some(number), Some(Action::WorkOffsetByH)) => Some(by_h(code?, number)),
         (Some(number), _) => Some(numbered(number)),
         (None, Some(Action::WorkOffset(name))) => Some(name.clone()),
         (None, Some(Action::BaseFrame)) => Some(BASE_FRAME.to_owned()),

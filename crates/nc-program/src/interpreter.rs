@@ -133,6 +133,7 @@ impl<'d> Interpreter<'d> {
             transform: Transform::None,
             unsettled: [false; 3],
             written: Vec::new(),
+            written_lengths: Vec::new(),
             frame: None,
             axes: Axes {
                 linear: setup.start_mm.map(|start| start.map_or(unknown, Axis::At)),

@@ -35,6 +35,7 @@
 //!   commands are refused.
 //! * The first `%` opens the program, the next one, M2 or M30 ends it; nothing after that is looked at.
 
+mod alike;
 mod arc;
 mod circular;
 pub mod codes;
@@ -58,6 +59,7 @@ mod transform;
 mod turning;
 mod words;
 
+pub use alike::looks_like;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};

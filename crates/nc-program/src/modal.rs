@@ -298,6 +298,15 @@ pub struct Stated {
     pub units: bool,
 }
 
+/// A tool length that the program wrote with G10: a part that it did not is what nobody said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenLength {
+    /// 1 of H1.
+    pub number: u32,
+    /// Geometry (L10) and wear (L11), mm.
+    pub parts_mm: [Option<f64>; 2],
+}
+
 /// One axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
@@ -443,6 +452,8 @@ pub struct Modal {
     pub unsettled: [bool; 3],
     /// Work offsets that the program itself wrote, by name, mm.
     pub written: Vec<(String, [f64; 3])>,
+    /// Tool lengths that the program itself wrote, part by part.
+    pub written_lengths: Vec<WrittenLength>,
     /// What all of these make of program coordinates; `None` where the work offset is not known.
     pub frame: Option<Frame>,
     /// Where the axes are.

@@ -98,7 +98,7 @@ fn disturbed_by(
             let shifted = before.shifts.local_mm.map(|mm| mm != 0.0);
             if *part == FramePart::Shift { either(written(words), shifted) } else { shifted }
         }
-        Action::WorkOffset(_) | Action::WorkOffsetNumbered | Action::BaseFrame => {
+        Action::WorkOffset(_) | Action::WorkOffsetNumbered | Action::WorkOffsetByH | Action::BaseFrame => {
             let again = std::mem::replace(&mut stated.work_offset, true)
                 && before.work_offset == state.work_offset
                 && before.shifts == Shifts::default();

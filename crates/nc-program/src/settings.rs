@@ -95,6 +95,9 @@ struct Wanted<'d> {
 /// The base frame's name in the profile.
 pub(crate) const BASE_FRAME: &str = "G500";
 
+/// Stands for the name of a work offset that H numbers.
+const BY_H: &str = "H";
+
 /// Applies the codes of a block to the state.
 ///
 /// `state` comes in equal to `before`.
@@ -206,10 +209,17 @@ pub(crate) fn apply<'d>(
     }
     tool_length::tool(env, words, state)?;
     if let Some(offset) = wanted.offset {
-        let other = takes_p(env, words, state, &demand, &wanted);
-        work_offset(env, words, state, offset, other)?;
+        if let (code, Some(BY_H), span) = offset {
+            offset_by_h(env, words, state, (code, span), wanted.length.is_some())?;
+        } else {
+            let other = takes_p(env, words, state, &demand, &wanted);
+            work_offset(env, words, state, offset, other)?;
+        }
     }
-    tool_length::length(env, words, state, wanted.length)?;
+    // H has chosen the work offset, and no length.
+    if !matches!(wanted.offset, Some((_, Some(BY_H), _))) {
+        tool_length::length(env, words, state, wanted.length)?;
+    }
     tip::switch(env, words, before, state)?;
     tilted::end(words, before, state);
     if let Some(span) = wanted.compensation_off {
@@ -242,6 +252,44 @@ fn takes_p(
         || cycle
         || !words.m_codes.is_empty()
         || (arc && env.dialect.frames.arc_turns)
+}
+
+/// G15 of Okuma; `length`: a tool length is chosen by H too.
+fn offset_by_h(
+    env: &Environment<'_>,
+    words: &Words<'_, '_, '_>,
+    state: &mut Modal,
+    (code, span): (GCode, Span),
+    length: bool,
+) -> Outcome<()> {
+    const H: Letters = Letters::of(b"H");
+    if length {
+        let message = both!("{} beside a tool length", "{} рядом с коррекцией на длину", words.text(span));
+        let help = both!("write them in two blocks", "напишите их двумя кадрами");
+        return Err(words
+            .refuse(codes::WORDS_OF_TWO, message, words.span(H), both!("whose is H?", "чьё это H?"))
+            .help(help));
+    }
+    let number = match words.whole(b'H')? {
+        Some(number) if number > 0 => number,
+        given => {
+            let message = match given {
+                None => both!("{} without H", "{} без H", words.text(span)),
+                Some(_) => both!("{} with H0", "{} с H0", words.text(span)),
+            };
+            let label = both!("a number from 1 was expected", "ожидался номер от 1");
+            let help =
+                both!("write the number of the work offset as H", "напишите номер смещения нуля словом H");
+            return Err(words.refuse(codes::WORK_OFFSET, message, span, label).help(help));
+        }
+    };
+    let name = frames::by_h(code, number);
+    let zero_mm = frames::offset(env, state, &name);
+    if zero_mm.is_none() {
+        return Err(missing_offset(words, &name, span));
+    }
+    state.work_offset = WorkOffset { code: Some(code), number: Some(number), zero_mm, rewritten: false };
+    Ok(())
 }
 
 /// G54 and its like; `other`: a P may be another code's.
@@ -474,6 +522,7 @@ fn set<'d>(
         Action::LengthOff => wanted.length = Some((Length::Off, span)),
         Action::WorkOffset(name) => wanted.offset = Some((code, Some(name), span)),
         Action::WorkOffsetNumbered => wanted.offset = Some((code, None, span)),
+        Action::WorkOffsetByH => wanted.offset = Some((code, Some(BY_H), span)),
         Action::BaseFrame => wanted.offset = Some((code, Some(BASE_FRAME), span)),
         Action::RotationOff | Action::ScalingOff => {
             // Several may stand together; the one that ends what is in force counts.
@@ -522,7 +571,9 @@ fn set<'d>(
         Action::PolarOn | Action::Turning(_) | Action::Called(_) => {}
         // Read before, since X words of the same block are of the new kind.
         Action::DiameterOn | Action::DiameterOff | Action::DiameterOfAbsolute | Action::SpeedLimit => {}
-        Action::LimitOrPreset | Action::Pass { takes_words: true } => return Owner::Arguments,
+        Action::LimitOrPreset | Action::ReturnLevel | Action::Pass { takes_words: true } => {
+            return Owner::Arguments;
+        }
         Action::Dwell => return Owner::Dwell,
         Action::DwellBySetting => return Owner::DwellBySetting,
         Action::Reference => return Owner::Reference,

@@ -6,7 +6,7 @@ use nc_syntax::dialect::LengthAfter;
 
 use crate::codes;
 use crate::frames;
-use crate::modal::{Modal, ToolLength, Units};
+use crate::modal::{Distance, Modal, ToolLength, Units, WrittenLength};
 use crate::motion::compensated;
 use crate::settings::{Demand, Environment};
 use crate::words::{
@@ -379,7 +379,7 @@ pub(crate) fn length(
                 )));
         }
     };
-    let Some(vector) = env.setup.tool(number) else {
+    let Some(vector) = written(words, span, number, state)?.or_else(|| env.setup.tool(number)) else {
         let message = both!("tool length H{number} is not given", "длина инструмента H{number} не задана");
         let at = if words.has(H) { words.span(H) } else { span };
         return Err(words.refuse(codes::TOOL_LENGTH, message, at, both!("given by no profile, file or option", "его нет ни в профиле, ни в файлах, ни в ключах")).help(
@@ -389,6 +389,74 @@ pub(crate) fn length(
     let applied_mm = if negative { vector.map(|v| -v) } else { vector };
     let length = ToolLength::On { number, negative, applied_mm };
     bring_in(env, words, span, &Text::same(format!("H{number}")), length, state)
+}
+
+/// The length that the program wrote of an H number, mm; `None` where it wrote none.
+fn written(words: &Words<'_, '_, '_>, span: Span, number: u32, state: &Modal) -> Outcome<Option<[f64; 3]>> {
+    let Some(written) = state.written_lengths.iter().find(|written| written.number == number) else {
+        return Ok(None);
+    };
+    match written.parts_mm {
+        [Some(geometry), Some(wear)] => Ok(Some([0.0, 0.0, geometry + wear])),
+        [geometry, _] => {
+            let (has, lacks) = if geometry.is_some() { ("L10", "L11") } else { ("L11", "L10") };
+            let message = both!(
+                "the program writes H{number} by {has} alone",
+                "программа записывает H{number} одним {has}"
+            );
+            let label = both!(
+                "the other part keeps what nobody said",
+                "во второй части остаётся то, чего никто не сказал"
+            );
+            let help = both!(
+                "write G10 {lacks} P{number} R0 too where there is no other part",
+                "напишите и G10 {lacks} P{number} R0, если другой части нет"
+            );
+            Err(words.refuse(codes::TOOL_LENGTH, message, span, label).help(help))
+        }
+    }
+}
+
+/// G10 L10 to L13: a length's geometry or wear; those of a radius (L12, L13) concern no length.
+pub(crate) fn write(words: &Words<'_, '_, '_>, span: Span, l: u32, state: &mut Modal) -> Outcome<()> {
+    let unit_mm = state.units.mm();
+    let value = words.coordinate(b'R', state.units == Units::Inch).map(|value| value * unit_mm);
+    let (Some(number @ 1..), Some(value_mm)) = (words.whole(b'P')?, value) else {
+        let message = both!("{} L{l} without P and R", "{} L{l} без P и R", words.text(span));
+        let label = both!("which length, and how long?", "какая длина и сколько?");
+        return Err(words
+            .refuse(codes::TOOL_LENGTH, message, span, label)
+            .help(both!("write P1 for H1, and its length as R", "напишите P1 для H1 и длину словом R")));
+    };
+    if state.distance == Distance::Incremental {
+        let message = both!("{} L{l} under G91", "{} L{l} при G91", words.text(span));
+        let label = both!("adds to what the control has", "прибавляет к тому, что есть в стойке");
+        return Err(words
+            .refuse(codes::TOOL_LENGTH, message, span, label)
+            .help(both!("write the whole value in G90", "напишите всё значение при G90")));
+    }
+    if matches!(state.tool_length, ToolLength::On { number: in_force, .. } if in_force == number) && l <= 11 {
+        let message = both!("H{number} is in force and is rewritten", "H{number} действует и переписывается");
+        let label = both!("from which block on? controls differ", "с какого кадра? у стоек по-разному");
+        return Err(words.refuse(codes::TOOL_LENGTH, message, span, label).help(both!(
+            "write it before G43, or end the length with G49",
+            "запишите её до G43 или отмените длину функцией G49"
+        )));
+    }
+    let part = match l {
+        10 => 0,
+        11 => 1,
+        _ => return Ok(()),
+    };
+    match state.written_lengths.iter_mut().find(|written| written.number == number) {
+        Some(written) => written.parts_mm[part] = Some(value_mm),
+        None => {
+            let mut parts_mm = [None; 2];
+            parts_mm[part] = Some(value_mm);
+            state.written_lengths.push(WrittenLength { number, parts_mm });
+        }
+    }
+    Ok(())
 }
 
 /// G43.1: the words are the length; axes left out keep what they had.

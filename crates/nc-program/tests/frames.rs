@@ -110,7 +110,7 @@ fn offsets_written_by_the_program_replace_the_profile_s() {
         ("fanuc", "G10 L2 P1 X10.\nG0 X1. Y1. Z1.\n", 227, 2),
         ("fanuc", "G10 L2 P0 X10.\n", 227, 1),
         ("fanuc", "G10 L2 P7 X10.\n", 227, 1),
-        ("fanuc", "G10 L12 P1 R5.\n", 227, 1),
+        ("fanuc", "G10 L1 P1 R5.\n", 227, 1),
         ("fanuc", "G10 L2 P3 X10.\n", 214, 1),
         ("fanuc", "G10 P1 X10.\n", 227, 1),
         ("linuxcnc", "G10 L1 P1 Z10\n", 227, 1),
@@ -261,4 +261,53 @@ fn a_dwell_beside_a_motion_where_only_p_is_its_time() {
     assert!(matches!(motions("linuxcnc", "G0 X0 Y0 Z0\nG4 P1 X5\n")[1], Motion::Rapid { .. }));
     assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG4 P1 G2 X5 I2.5\n"), (223, 2));
     assert_eq!(refusal("linuxcnc", "G0 X0 Y0 Z0\nG4 P1 G81 X5 Z-1 R1\n"), (223, 2));
+}
+
+#[test]
+fn g15_of_okuma_chooses_by_h_and_takes_no_length() {
+    let mut setup = setup();
+    setup.work_offsets.push(("G15H1".to_owned(), [7.0, 8.0, 9.0]));
+    setup.work_offsets.push(("G15H2".to_owned(), [70.0, 80.0, 90.0]));
+    let dialect = common::dialect("okuma");
+    let end = |text: &str| {
+        let run = run_with(dialect, &setup, text);
+        assert!(run.refused.is_none(), "{text:?}: {:?}", run.refused);
+        run.modal.axes.partial().linear_mm
+    };
+    near(end("G15 H1\nG0 X1. Y1. Z1.\n"), [8.0, 9.0, 10.0]);
+    near(end("G15 H2 G0 X1. Y1. Z1.\n"), [71.0, 81.0, 91.0]);
+    // H of G56 is a length, H of a later G15 is none.
+    near(end("G15 H1\nG56 H1 G0 X1. Y1. Z1.\nG15 H2\nG0 X0 Y0 Z0\n"), [70.0, 80.0, 210.0]);
+    near(end("G15 H1\nG56 H1 G0 X1. Y1. Z1.\nG53\nG0 X0 Y0 Z0\n"), [7.0, 8.0, 9.0]);
+    let refusal =
+        |text: &str| run_with(dialect, &setup, text).refused.map(|(line, why)| (why[0].code.0, line));
+    for (text, code) in [
+        ("G15\n", 214),
+        ("G15 H0\n", 214),
+        ("G15 H3\n", 214),
+        ("G15 H1 G56\n", 223),
+        ("G16 H1\n", 208),
+        ("G54 H1\n", 208),
+    ] {
+        assert_eq!(refusal(text), Some((code, 1)), "{text}");
+    }
+}
+
+#[test]
+fn g10_writes_lengths_in_two_parts() {
+    let both = "G10 L10 P7 R120.\nG10 L11 P7 R-0.5\n";
+    for name in ["fanuc", "haas", "mitsubishi"] {
+        near(end(name, &format!("{both}G43 H7\n{START}")), [0.0, 0.0, 129.5]);
+        near(
+            end(name, &format!("G20\nG10 L10 P7 R1.\nG10 L11 P7 R0\nG21\nG43 H7\n{START}")),
+            [0.0, 0.0, 35.4],
+        );
+        // The profile's own where the program writes another one's.
+        near(end(name, &format!("{both}G43 H1\n{START}")), [0.0, 0.0, 130.0]);
+        assert_eq!(refusal(name, &format!("G10 L10 P1 R120.\nG43 H1\n{START}")), (215, 2));
+        assert_eq!(refusal(name, &format!("G10 L11 P1 R120.\nG43 H1\n{START}")), (215, 2));
+        assert_eq!(refusal(name, &format!("G43 H1\n{START}{both}G10 L10 P1 R5.\n")), (215, 5));
+    }
+    // There L10 measures from where the tool stands.
+    assert_eq!(refusal("linuxcnc", "G10 L10 P1 R5.\n"), (227, 1));
 }

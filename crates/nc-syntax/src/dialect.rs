@@ -202,6 +202,8 @@ pub enum Action {
     WorkOffset(String),
     /// G54.1, G154: the work offset that P numbers, `G54.1P1` in the profile.
     WorkOffsetNumbered,
+    /// G15 of Okuma: the work offset that H numbers, `G15H1` in the profile.
+    WorkOffsetByH,
     /// G10: work offsets written by the program (L2, L20); see [`FrameRules::l20`].
     WriteOffset,
     /// G52: shift of every work offset by the words.
@@ -242,6 +244,8 @@ pub enum Action {
     ReturnInitial,
     /// G99
     ReturnR,
+    /// G71 of Okuma: the level that cycles with M53 return to.
+    ReturnLevel,
     /// G90
     Absolute,
     /// G91
@@ -359,6 +363,10 @@ pub enum Called {
     DrillDwell,
     /// CYCLE83
     DrillPecks,
+    /// CYCLE85: in and out at feeds of its own.
+    BoreFeeds,
+    /// CYCLE86: out with the spindle stopped at an angle.
+    BoreOriented,
     /// MCALL: the cycle behind it at the end of each motion that follows.
     Modal,
     /// HOLES1
@@ -367,6 +375,29 @@ pub enum Called {
     HolesCircle,
     /// TURN=: turns of a helix beside the one that its words say.
     Turns,
+    /// AR=: the angle of an arc.
+    ArcAngle,
+    /// RND=, CHR=, CHF=: the corner between this line and the next one.
+    Corner(CornerForm),
+}
+
+/// How a corner between two lines is cut.
+///
+/// ```
+/// use nc_syntax::dialect::{Action, Called, CornerForm};
+///
+/// let sinumerik = nc_dialect::builtin("sinumerik").unwrap();
+/// let action = sinumerik.command(b"CHF=2").unwrap().action.clone();
+/// assert_eq!(action, Some(Action::Called(Called::Corner(CornerForm::ChamferLength))));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CornerForm {
+    /// By an arc of the radius given.
+    Round,
+    /// By a line that begins and ends so far from the corner.
+    Chamfer,
+    /// By a line of this length.
+    ChamferLength,
 }
 
 /// On which side of its way a tool is led whose radius the control compensates.
@@ -534,6 +565,8 @@ pub struct FrameRules {
     pub local_is_preset: bool,
     /// The factor of G51 that a P without a point counts.
     pub scaling_step: f64,
+    /// G68 without its centre turns about where the tool stands; where false it is refused.
+    pub rotation_about_tool: bool,
     /// Machine coordinates are those of the axes whatever rotation, scaling or mirror is in force.
     pub machine_words_stand_alone: bool,
     /// P of an arc counts its turns (LinuxCNC).
@@ -789,6 +822,16 @@ pub enum Macros {
     LinuxCnc,
     /// Siemens' R parameters, variables of DEF, IF and loops, jumps to labels.
     Siemens,
+    /// Okuma's VC variables, IF and GOTO to sequence names, CALL O and RTS.
+    Okuma,
+}
+
+impl Macros {
+    /// True where variables stand without a mark before their names, and calls are no M codes.
+    #[must_use]
+    pub const fn bare_names(self) -> bool {
+        matches!(self, Self::Siemens | Self::Okuma)
+    }
 }
 
 /// Variables, program flow and subprograms.
@@ -811,6 +854,10 @@ pub struct Flow {
     pub corner_words: bool,
     /// M97 P1000 calls the blocks from N1000 on, in the same program; M99 returns.
     pub local_calls: bool,
+    /// ATAN takes one value: `ATAN[y]/[x]` divides an angle, and is refused.
+    pub one_value_atan: bool,
+    /// Drilling cycles return where M53 and M54 say (Okuma), and are written out.
+    pub return_by_m: bool,
     /// Some code is [`Action::PolarOn`].
     pub polar_words: bool,
     /// Some command is an [`Action::Called`], and `X=AC(5)`, `X=IC(5)` say a place or an increment.
@@ -823,7 +870,7 @@ impl Flow {
     #[must_use]
     pub fn calls(self, m_code: i64) -> bool {
         match m_code {
-            98 | 99 => self.macros != Macros::None,
+            98 | 99 => !matches!(self.macros, Macros::None | Macros::Okuma),
             97 => self.local_calls && self.macros != Macros::None,
             _ => false,
         }
@@ -959,6 +1006,8 @@ pub struct Dialect {
     pub colon: Colon,
     /// Names of several letters that are a word's, as `CR=` is R; upper case, sorted.
     pub long_words: Vec<(String, u8)>,
+    /// `OMAIN` and `NEND` are names.
+    pub labels: bool,
     /// `X=10.5` and `X=R1+2` are words too; a value other than a number runs to the next white space.
     pub equals_words: bool,
     /// Letters of words, upper case; others are invalid.
@@ -996,6 +1045,8 @@ pub struct Dialect {
     pub length_under_g49: LengthAfter,
     /// A T word may bring in the tool, and its length, at once.
     pub t_may_change_tool: bool,
+    /// G10 L10 and L11 write the two parts of a tool length, L12 and L13 those of a radius (Fanuc).
+    pub writes_lengths: bool,
     /// D1 is the offset of the tool that M6 brought in, D0 none (Sinumerik).
     pub edge_in_d: bool,
     /// Codes that move the frame.

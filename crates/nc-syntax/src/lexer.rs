@@ -1,6 +1,6 @@
 //! Items inside one block.
 
-use crate::dialect::{Colon, Command, Macros, Paren, Semicolon};
+use crate::dialect::{Colon, Command, MCode, Macros, Paren, Semicolon};
 use crate::number::{common_number, end_of_garbage, number, skip_spaces};
 use crate::value::{
     angle_name, assigned, brackets, expression, flat_comment, is_flow_word, is_function, is_siemens_word,
@@ -15,13 +15,17 @@ pub(crate) struct Lexer<'d> {
     skip: Option<u8>,
     colon: Colon,
     equals_words: bool,
+    labels: bool,
     pub(crate) spaces_inside: bool,
     /// Bit n is set where the n-th letter of the alphabet is a word's letter.
     pub(crate) letters: u32,
     long_words: &'d [(String, u8)],
     commands: &'d [Command],
+    m_codes: &'d [MCode],
     /// Statements and labels are Siemens'.
     siemens: bool,
+    /// Statements are Okuma's.
+    okuma: bool,
 }
 
 /// What may stand between items: white space, and what punches, serial lines and DOS left in files.
@@ -63,11 +67,14 @@ impl<'d> Lexer<'d> {
             skip: dialect.skip,
             colon: dialect.colon,
             equals_words: dialect.equals_words,
+            labels: dialect.labels,
             spaces_inside: dialect.numbers.spaces_inside,
             letters,
             long_words: &dialect.long_words,
             commands: &dialect.commands,
+            m_codes: &dialect.m_codes,
             siemens: dialect.flow.macros == Macros::Siemens,
+            okuma: dialect.flow.macros == Macros::Okuma,
         }
     }
 
@@ -155,6 +162,16 @@ impl<'d> Lexer<'d> {
             return found;
         }
         if line.get(at + 1).is_some_and(u8::is_ascii_alphabetic) {
+            if self.okuma
+                && let Some(end) = self.okuma_statement(line, at)
+            {
+                return self.flow(line, at, end);
+            }
+            // `OMAIN` and `NEND`, where nothing else begins so.
+            let known = || self.commands.iter().any(|command| names(command, &line[at..]));
+            if self.labels && matches!(letter, b'O' | b'N') && !known() {
+                return (ItemKind::Name, at + identifier(&line[at..]));
+            }
             if let Some(found) = self.letters(line, at) {
                 return found;
             }
@@ -189,7 +206,12 @@ impl<'d> Lexer<'d> {
     fn statement(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
         let length = identifier(&line[at..]);
         let name = &line[at..at + length];
-        if is_siemens_word(name) {
+        // `L100 P2` calls a subprogram.
+        let call = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'L'))
+            && length > 1
+            && name[1..].iter().all(u8::is_ascii_digit)
+            && line.get(at + length) != Some(&b'=');
+        if is_siemens_word(name) || call {
             return Some(self.flow(line, at, at + length));
         }
         let number = name.first().is_some_and(|first| first.eq_ignore_ascii_case(&b'R'))
@@ -213,6 +235,19 @@ impl<'d> Lexer<'d> {
             (Some(b'='), next) if next != Some(&b'=') => Some(self.flow(line, at, at + length)),
             _ => None,
         }
+    }
+
+    /// Okuma: `CALL O10`, `RTS`, or a variable and `=`: where its name ends.
+    fn okuma_statement(&self, line: &[u8], at: usize) -> Option<usize> {
+        let length = identifier(&line[at..]);
+        let name = &line[at..at + length];
+        if [&b"CALL"[..], b"RTS"].iter().any(|word| word.eq_ignore_ascii_case(name)) {
+            return Some(at + length);
+        }
+        let behind = skip_spaces(line, at + length);
+        let assigns = line.get(behind) == Some(&b'=') && line.get(behind + 1) != Some(&b'=');
+        let known = self.commands.iter().any(|command| names(command, &line[at..]));
+        (assigns && !known).then_some(at + length)
     }
 
     /// Several letters in a row: a statement, a command, a function as value, or nothing a control reads.
@@ -311,6 +346,11 @@ impl<'d> Lexer<'d> {
     /// An item that does not start with a letter.
     fn other(&self, line: &[u8], at: usize) -> (ItemKind, usize) {
         let byte = line[at];
+        if self.skip == Some(byte)
+            && let Some(end) = self.switches_only(line, at)
+        {
+            return (ItemKind::Comment, end);
+        }
         match byte {
             b'(' => self.round_bracket(line, at),
             b';' if self.semicolon == Semicolon::Comment => (ItemKind::Comment, line.len()),
@@ -341,6 +381,46 @@ impl<'d> Lexer<'d> {
             }
             _ => (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at)),
         }
+    }
+
+    /// `X10. /M8`: a mark in mid-block skips what follows it. Where that is M codes alone which move nothing, and which
+    /// stand on the first piece of a split block as on the block, the motion is the same skipped or not: text, to where it
+    /// ends.
+    fn switches_only(&self, line: &[u8], at: usize) -> Option<usize> {
+        let before = line[..at].trim_ascii();
+        let number = before.first().is_some_and(|byte| byte.eq_ignore_ascii_case(&b'N'))
+            && before[1..].iter().all(u8::is_ascii_digit);
+        if before.is_empty() || number {
+            return None;
+        }
+        let mut end = at + 1 + usize::from(line.get(at + 1).is_some_and(u8::is_ascii_digit));
+        let mut any = false;
+        loop {
+            let next = skip_blanks(line, end);
+            match line.get(next) {
+                Some(b'M' | b'm') => {}
+                // What ends the block, or comments on it.
+                None | Some(b';') => break,
+                Some(byte) if self.starts_comment(*byte) => break,
+                Some(_) => return None,
+            }
+            let digits = line[next + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+            let number = std::str::from_utf8(&line[next + 1..next + 1 + digits]).ok()?.parse().ok()?;
+            let row = self.m_codes.binary_search_by_key(&number, |row| row.number).ok()?;
+            let row = &self.m_codes[row];
+            let moves = row.after_motion
+                || row.ends_program
+                || row.changes_tool
+                || row.switches.is_some()
+                || row.tip.is_some()
+                || row.refuse.is_some()
+                || row.loses_position != [false; 3];
+            if moves || line.get(next + 1 + digits) == Some(&b'=') {
+                return None;
+            }
+            (end, any) = (next + 1 + digits, true);
+        }
+        any.then_some(end)
     }
 
     fn round_bracket(&self, line: &[u8], at: usize) -> (ItemKind, usize) {

@@ -94,9 +94,9 @@ pub(crate) fn is_flow_word(name: &[u8]) -> bool {
 }
 
 /// Words that start a statement of Siemens' language.
-const SIEMENS: [&str; 15] = [
+const SIEMENS: [&str; 17] = [
     "DEF", "ELSE", "ENDFOR", "ENDIF", "ENDLOOP", "ENDWHILE", "FOR", "GOTO", "GOTOB", "GOTOF", "IF", "LOOP",
-    "REPEAT", "UNTIL", "WHILE",
+    "PROC", "REPEAT", "RET", "UNTIL", "WHILE",
 ];
 
 /// True where a name starts a statement of Siemens' language.

@@ -393,3 +393,32 @@ proptest! {
         prop_assert_eq!(found, expected);
     }
 }
+
+/// `X10. /M8`: the motion is the same skipped or not, where M codes alone stand behind the mark that move nothing.
+#[test]
+fn m_codes_behind_a_mark_in_mid_block_are_text() {
+    let fanuc = nc_dialect::builtin("fanuc").expect("shipped");
+    let kinds = |text: &str| -> Vec<ItemKind> {
+        let (mut reader, mut block) = (Reader::new(text.as_bytes(), fanuc), Block::default());
+        assert!(reader.next(&mut block));
+        block.items.iter().map(|item| item.kind).collect()
+    };
+    for text in ["X10. /M8\n", "X10./M8 M03\n", "N5 X10. /2 M8;\n", "X10. /M8 (COOLANT)\n"] {
+        assert!(kinds(text).contains(&ItemKind::Comment), "{text}");
+        assert!(!kinds(text).contains(&ItemKind::Skip), "{text}");
+    }
+    // The whole block, motion, what moves or ends, what is done behind the motion, what no table knows.
+    for text in [
+        "/M8\n",
+        "N5 /M8\n",
+        "X10. /Y5.\n",
+        "X10. /M6\n",
+        "X10. /M30\n",
+        "X10. /M9\n",
+        "X10. /M8 X5.\n",
+        "X10. /M777\n",
+        "X10. /\n",
+    ] {
+        assert!(kinds(text).contains(&ItemKind::Skip), "{text}");
+    }
+}

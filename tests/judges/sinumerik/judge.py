@@ -194,7 +194,7 @@ class Frame:
 # ---- the interpreter -----------------------------------------------------------------------------------------------
 
 ITEM = re.compile(
-    r"\s*(?:(CYCLE\d+|HOLES[12]|MSG|GROUP_BEGIN|GROUP_END|SPOS|ADIS|TURN|CR|RPL|AR)\s*(=|\()?"
+    r"\s*(?:(CYCLE\d+|HOLES[12]|MSG|GROUP_BEGIN|GROUP_END|SPOS|ADIS|TURN|CR|RPL|AR(?=\s*=)|RND|CHF|CHR)\s*(=|\()?"
     r"|([A-Z])(\d*)\s*=\s*|([A-Z])([-+]?(?:\d+\.?\d*|\.\d+))|([A-Z]{2,}\w*))", re.I)
 
 
@@ -244,7 +244,10 @@ class Machine:
         self.plane, self.absolute, self.inch = 17, True, False
         self.motion, self.tool, self.loaded, self.length = 0, None, None, 0.0
         self.modal, self.ended, self.steps = None, False, 0
-        self.said, self.feed = [], None
+        # Feeds in the order in which moves took them.
+        self.said, self.feed, self.feeds = [], None, []
+        # A corner that waits for the next line: kind, size, both as words.
+        self.corner = None
 
     def run(self):
         ends = self.structure()
@@ -294,7 +297,7 @@ class Machine:
                 self.vars[name] += 1
                 if self.vars[name] <= last:
                     follow = ends[at] + 1
-            elif re.match(r"(R\d+|[A-Za-z_]\w+)\s*=[^=]", line) and not re.match(r"(CR|RPL|SPOS|ADIS|TURN|[MS]\d+)\s*=", line, re.I):
+            elif re.match(r"(R\d+|[A-Za-z_]\w+)\s*=[^=]", line) and not re.match(r"(CR|RPL|AR|SPOS|ADIS|TURN|RND|CHF|CHR|[MS]\d+)\s*=", line, re.I):
                 self.assign(line)
             else:
                 self.block(line)
@@ -418,11 +421,13 @@ class Machine:
             elif code not in (40, 60, 64, 94, 9, 601, 602, 641, 642):
                 raise Unreadable(f"G{code}")
         unit = 25.4 if self.inch else 1.0
+        if "F" in words:
+            self.feed = words["F"][1]
         if "T" in words:
             self.tool = int(words["T"][1])
         if "D" in words:
             self.length = LENGTHS[self.loaded] if words["D"][1] else 0.0
-        turns = 0
+        turns, corner = 0, None
         for name, inside in names:
             if name in ("TRANS", "ATRANS", "ROT", "AROT", "MIRROR", "AMIRROR"):
                 rpl = [v for k, v in names if k == "RPL"]
@@ -432,6 +437,12 @@ class Machine:
                 machine = True
             elif name == "TURN":
                 turns = int(float(inside))
+            elif name in ("RND", "CHF", "CHR"):
+                corner = (name, Expr(inside, self.vars).value() * unit)
+            elif name == "AR":
+                words["AR"] = ("", Expr(inside, self.vars).value())
+            elif name == "SPOS":
+                self.said.append(f"spos {float(inside):g}")
             elif name == "CR":
                 words["CR"] = ("", Expr(inside, self.vars).value())
             elif name == "MCALL":
@@ -467,7 +478,10 @@ class Machine:
                     raise Unreadable("increment from nowhere")
                 word[i] = (start[i] if by else 0.0) + value * unit
         if self.motion in (0, 1):
+            if self.corner:
+                self.cut_corner(start, word)
             self.line(self.frame_to(word), self.motion)
+            self.corner = corner and (corner, start, word)
         else:
             self.arc(start, word, words, unit, turns)
         if self.modal:
@@ -519,6 +533,8 @@ class Machine:
     def line(self, to, motion):
         to = [self.at[i] if to[i] is None else to[i] for i in range(3)]
         self.path.append(("rapid" if motion == 0 else "feed", to))
+        if motion and self.feeds[-1:] != [self.feed]:
+            self.feeds.append(self.feed)
         self.at = to
 
     def arc(self, start, end, words, unit, turns):
@@ -527,7 +543,20 @@ class Machine:
             raise Unreadable("arc from nowhere")
         a, b = (start[u], start[v]), (end[u], end[v])
         clockwise = self.motion == 2
-        if "CR" in words:
+        if "AR" in words:
+            swept = math.radians(words["AR"][1]) * (-1 if clockwise else 1)
+            if "X" not in words and "Y" not in words and "Z" not in words or not any("XYZ"[k] in words for k in (u, v)):
+                # By the centre: the end is start turned about it.
+                c = [a[k] + words.get("IJK"[axis], ("", 0.0))[1] * unit for k, axis in ((0, u), (1, v))]
+                spoke = complex(a[0] - c[0], a[1] - c[1]) * complex(math.cos(swept), math.sin(swept))
+                b = (c[0] + spoke.real, c[1] + spoke.imag)
+                end[u], end[v] = b
+            else:
+                # b - c = e^{i swept} (a - c)
+                turn = complex(math.cos(swept), math.sin(swept))
+                centre = (complex(*b) - turn * complex(*a)) / (1 - turn)
+                c = (centre.real, centre.imag)
+        elif "CR" in words:
             r = words["CR"][1] * unit
             dx, dy = b[0] - a[0], b[1] - a[1]
             chord = math.hypot(dx, dy)
@@ -557,6 +586,33 @@ class Machine:
                 word = list(end)
             self.line(self.frame_to(word), 1)
 
+    def cut_corner(self, corner, after):
+        """The last line's end is put back, and an arc or a chamfer drawn to where the next line takes over."""
+        (kind, size), before, corner = self.corner
+        u, v, _ = PLANES[self.plane]
+        flat = lambda w: complex(w[u], w[v])
+        p, at, q = flat(before), flat(corner), flat(after)
+        back, on = (p - at) / abs(p - at), (q - at) / abs(q - at)
+        half = math.acos(max(-1.0, min(1.0, (back * on.conjugate()).real))) / 2
+        cut = {"RND": size / math.tan(half), "CHR": size, "CHF": size / 2 / math.sin(half)}[kind]
+
+        def go(z):
+            word = list(corner)
+            word[u], word[v] = z.real, z.imag
+            self.line(self.frame_to(word), 1)
+
+        self.path.pop()
+        go(at + cut * back)
+        if kind == "RND":
+            middle = at + (back + on) / abs(back + on) * size / math.sin(half)
+            first, last = at + cut * back - middle, at + cut * on - middle
+            ratio = last / first
+            turned = math.atan2(ratio.imag, ratio.real)
+            for k in range(1, 40):
+                go(middle + first * complex(math.cos(turned * k / 40), math.sin(turned * k / 40)))
+        go(at + cut * on)
+        self.corner = None
+
     def arguments(self, inside):
         return [Expr(part, self.vars).value() if part.strip() else None for part in inside.split(",")]
 
@@ -578,8 +634,30 @@ class Machine:
             if time:
                 self.said.append(f"dwell {'F' if time > 0 else 'S'}{abs(time):g}")
 
+        if name == "CYCLE86":
+            self.said.append(f"M{int(a[6])}")
         go(near, 0)
-        if name in ("CYCLE81", "CYCLE82"):
+        if name == "CYCLE85":
+            self.feed = a[6]
+            go(depth, 1)
+            dwell(z(a[5]))
+            self.feed = a[7]
+            go(near, 1)
+        elif name == "CYCLE86":
+            go(depth, 1)
+            dwell(z(a[5]))
+            self.said.append(f"spos {z(a[10]):g}")
+            hole, u, v = self.here(), *PLANES[self.plane][:2]
+            if any(a[7:10]):
+                word = self.here()
+                for axis, by in zip((u, v, n), a[7:10]):
+                    word[axis] += z(by) * unit
+                self.line(self.frame_to(word), 0)
+            go(near, 0)
+            hole[n] = rtp * unit
+            self.line(self.frame_to(hole), 0)
+            return
+        elif name in ("CYCLE81", "CYCLE82"):
             go(depth, 1)
             dwell(z(a[5]))
         elif name == "CYCLE83":
@@ -693,6 +771,8 @@ def compare(program, output):
         problems.append(f"path {far:.3f} mm")
     if ends > NEAR_MM:
         problems.append(f"end {ends:.3f} mm")
+    if a.feeds != b.feeds:
+        problems.append(f"feeds {a.feeds} {b.feeds}")
     if a.said != b.said:
         problems.append(f"said {[x for x in zip(a.said, b.said) if x[0] != x[1]][:3]} {len(a.said)} {len(b.said)}")
     return problems
@@ -737,7 +817,7 @@ def generate(rng):
 
     def move(depth=0):
         nonlocal frame
-        kind = rng.choice(["line", "line", "rapid", "ic", "ac", "cr", "ij", "ijac", "turn", "cycle", "mcall", "holes", "frame",
+        kind = rng.choice(["line", "line", "rapid", "ic", "ac", "cr", "ij", "ijac", "turn", "cycle", "mcall", "holes", "frame", "angle", "corner", "bore",
                            "g91", "flow", "dwell", "words", "plane", "tool", "inch", "across", "preset"])
         if kind == "line":
             add(f"G1 X{value(5, 70)} Y{value(5, 70)} Z{num(-6, 6)}")
@@ -766,6 +846,29 @@ def generate(rng):
         elif kind == "cycle":
             add(f"G0 X{num(5, 70)} Y{num(5, 70)} Z20")
             add(cycle())
+        elif kind == "angle":
+            add("G1 X40 Y20 Z1")
+            z = f" Z{num(-4, 4)}" if rng.random() < 0.4 else ""
+            where = rng.choice([f"X{num(45, 60)} Y{num(5, 18)}", f"I{num(-12, -6)} J{num(-3, 3)}", f"J{num(5, 9)}"])
+            add(f"G{rng.choice([2, 3])} {where}{z} AR={num(15, 340)}")
+        elif kind == "corner":
+            add(f"G1 X20 Y20 Z{num(-3, 3)}")
+            corner = lambda: f"{rng.choice(['RND', 'CHF', 'CHR'])}={num(0.5, 3)}"
+            add(f"G1 X{num(40, 60)} Y{num(15, 25)} {corner()}")
+            if rng.random() < 0.5:
+                add(f"X=IC({num(-6, 6)}) Y{num(45, 55)} {corner()}")
+                add(f"X{num(5, 25)} Y{num(35, 60)}")
+            else:
+                add(f"X{num(5, 60)} Y{num(45, 55)}")
+        elif kind == "bore":
+            add(f"G0 X{num(5, 70)} Y{num(5, 70)} Z20")
+            if rng.random() < 0.5:
+                add(f"CYCLE85(15,{num(-1, 2)},1.5,,{num(4, 14)},{rng.choice(['', '0.4'])},{num(40, 90)},{num(100, 300)})")
+                add(f"G1 X{num(5, 70)} Y{num(5, 70)} F500")
+            else:
+                aside = ",".join(rng.choice(["", num(-1, 1)]) for _ in range(3))
+                add(f"CYCLE86(15,{num(-1, 2)},1.5,,{num(4, 14)},{rng.choice(['', '0.4'])},{rng.choice('34')},{aside},{num(0, 180)})")
+                add("M3")
         elif kind == "mcall":
             add("G0 Z20")
             add("MCALL " + cycle())
@@ -923,6 +1026,12 @@ def self_test():
         ("R1=30\nG1 X=SIN(R1)*20", "G1 X10", "G1 X-19.76"),
         ("R1=0\nREPEAT\nR1=R1+1\nG1 X=R1*10\nY=R1\nUNTIL R1>=3", "G1 X10\nY1\nX20\nY2\nX30\nY3", "G1 X10\nY1\nX20\nY2"),
         ("G3 X-10 Y10 Z0 I-10 J0 TURN=1", "G3 X10 Y10 Z6.666667 I-10 J0\nG3 X-10 Y10 Z0 I-10 J0", "G3 X-10 Y10 Z0 I-10 J0"),
+        ("G3 X20 Y20 AR=90", "G3 X20 Y20 I0 J10", "G3 X20 Y20 I10 J0"),
+        ("G2 I5 AR=90", "G2 X15 Y15 I5 J0", "G2 X15 Y5 I5 J0"),
+        ("G1 X30 RND=4\nY30", "G1 X26\nG3 X30 Y14 I0 J4\nG1 Y30", "G1 X30\nY30"),
+        ("G1 X30 CHF=4\nY30", "G1 X27.1716\nX30 Y12.8284\nY30", "G1 X26\nX30 Y14\nY30"),
+        ("CYCLE85(15,0,2,-8,,,50,300)", "G0 Z2\nG1 Z-8 F50\nG1 Z2 F300\nG0 Z15", "G0 Z2\nG1 Z-8 F50\nG1 Z2\nG0 Z15"),
+        ("CYCLE86(15,0,2,-8,,,3,-1,0,0,90)", "M3\nG0 Z2\nG1 Z-8\nSPOS=90\nG0 X9\nZ2\nX10 Z15", "M3\nG0 Z2\nG1 Z-8\nSPOS=90\nG0 Z2\nZ15"),
         ("CYCLE82(15,0,2,-8,,0.5)", "G0 Z2\nG1 Z-8\nG4 F0.5\nG0 Z15", "G0 Z2\nG1 Z-8\nG0 Z15"),
     ]
     bad = 0

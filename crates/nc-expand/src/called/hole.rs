@@ -1,9 +1,10 @@
 //! One hole of a called cycle as moves along the axis of drilling.
 //!
-//! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82) and 2.1.4
-//! (CYCLE83). Lengths in units of the program, along the axis that stands upright on the plane.
+//! Source: SINUMERIK 840D/840Di/810D Programming Guide Cycles, sections 2.1.2 (CYCLE81), 2.1.3 (CYCLE82), 2.1.4
+//! (CYCLE83), 2.1.7 (CYCLE85) and 2.1.8 (CYCLE86). Lengths in units of the program, along the axis that stands upright on
+//! the plane.
 
-use diagnostic::both;
+use diagnostic::{Text, both};
 use nc_syntax::dialect::Called;
 
 use super::Fault;
@@ -28,13 +29,31 @@ const NOTHING: f64 = 1e-9;
 pub(super) enum Move {
     Rapid(f64),
     Feed(f64),
+    /// To a height at a feed of its own.
+    FeedAt(f64, f64),
     /// Above zero seconds, below it turns of the spindle.
     Dwell(f64),
+    /// M3 or M4.
+    Spindle(u8),
+    /// The spindle stops at an angle, degrees.
+    Orient(f64),
+    /// A rapid by so much along the axes of the plane and the axis drilled along.
+    Aside([f64; 3]),
+    /// A rapid back over the hole, to a height.
+    Over(f64),
 }
 
 /// A hole, wherever it stands.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Hole(pub(super) Vec<Move>);
+pub(super) struct Hole {
+    pub(super) moves: Vec<Move>,
+    /// Some move is at the feed in force.
+    pub(super) takes_feed: bool,
+    /// It leaves a feed of its own in force, which the manual does not say: the next feed move must name one.
+    pub(super) leaves_feed: bool,
+    /// It leaves the spindle stopped at an angle, or turning: the manual does not say.
+    pub(super) leaves_spindle: bool,
+}
 
 /// Planes of a hole.
 struct Planes {
@@ -113,14 +132,85 @@ impl Hole {
                 dwell(call.or_zero(5), &mut moves);
                 call.nothing_behind(words, 6)?;
             }
+            Called::BoreFeeds => bore(words, call, &planes, &mut moves)?,
+            Called::BoreOriented => {
+                oriented(words, call, &planes, &mut moves)?;
+                return Ok(Self { moves, takes_feed: true, leaves_feed: false, leaves_spindle: true });
+            }
             _ => {
                 moves.push(Move::Feed(bottom));
                 call.nothing_behind(words, 5)?;
             }
         }
         moves.push(Move::Rapid(out));
-        Ok(Self(moves))
+        let own_feed = cycle == Called::BoreFeeds;
+        Ok(Self { moves, takes_feed: !own_feed, leaves_feed: own_feed, leaves_spindle: false })
     }
+}
+
+/// CYCLE85: behind RTP, RFP, SDIS, DP, DPR stand DTB, FFR, RFF.
+fn bore(
+    words: &Words<'_, '_>,
+    call: &Arguments,
+    planes: &Planes,
+    moves: &mut Vec<Move>,
+) -> Result<(), Fault> {
+    let Planes { near, bottom, .. } = *planes;
+    let feed = |place: usize, what: Text| {
+        let feed = call.needed(words, place, &what)?;
+        if feed > 0.0 {
+            return Ok(feed);
+        }
+        Err(call.fault(
+            words,
+            both!("{} with a feed of {feed}", "{} с подачей {feed}", call.name),
+            both!("argument {}: above zero was expected", "аргумент {}: ожидалось больше нуля", place + 1),
+        ))
+    };
+    let inwards = feed(6, both!("the feed inwards", "подачи внутрь"))?;
+    let outwards = feed(7, both!("the feed outwards", "подачи наружу"))?;
+    call.nothing_behind(words, 8)?;
+    moves.push(Move::FeedAt(bottom, inwards));
+    dwell(call.or_zero(5), moves);
+    moves.push(Move::FeedAt(near, outwards));
+    Ok(())
+}
+
+/// CYCLE86: behind RTP, RFP, SDIS, DP, DPR stand DTB, SDIR, RPA, RPO, RPAP, POSS.
+fn oriented(
+    words: &Words<'_, '_>,
+    call: &Arguments,
+    planes: &Planes,
+    moves: &mut Vec<Move>,
+) -> Result<(), Fault> {
+    let Planes { out, near, bottom, .. } = *planes;
+    let turns = match call.needed(words, 6, &both!("a direction of the spindle", "направления шпинделя"))?
+    {
+        3.0 => 3,
+        4.0 => 4,
+        other => {
+            return Err(call.fault(
+                words,
+                both!(
+                    "{} with a spindle direction of {other}",
+                    "{} с направлением шпинделя {other}",
+                    call.name
+                ),
+                both!("argument 7: 3 or 4 was expected", "аргумент 7: ожидалось 3 или 4"),
+            ));
+        }
+    };
+    call.nothing_behind(words, 11)?;
+    moves.insert(0, Move::Spindle(turns));
+    moves.push(Move::Feed(bottom));
+    dwell(call.or_zero(5), moves);
+    moves.push(Move::Orient(call.or_zero(10)));
+    let aside = [7, 8, 9].map(|place| call.or_zero(place));
+    if aside != [0.0; 3] {
+        moves.push(Move::Aside(aside));
+    }
+    moves.extend([Move::Rapid(near), Move::Over(out)]);
+    Ok(())
 }
 
 fn dwell(time: f64, moves: &mut Vec<Move>) {

@@ -1,37 +1,39 @@
 //! Names of Siemens written out as plain blocks: cycles (CYCLE81 and its like, MCALL, HOLES1, HOLES2), `X=AC()` and
-//! `X=IC()`, `TURN=`.
+//! `X=IC()`, `TURN=`, `AR=`. Corners (`RND=`, `CHF=`, `CHR=`) are left to [`crate::shorthand`].
 //!
 //! * A cycle drills where the axes of the plane stand, along the axis upright on it: its moves as G0 and G1, in G90, the
 //!   motion code in force behind them as before (G functions outlive a cycle's call).
 //! * MCALL calls its cycle behind every block that moves, until MCALL alone.
 //! * HOLES1 and HOLES2 are the points of a row or a circle, each followed by the cycle of MCALL.
 //! * `AC(v)` is the place v, `IC(v)` the place v away from where the axis stands; of I, J, K from the arc's start.
+//! * CYCLE85 ends with a feed of its own and CYCLE86 with a spindle that stands; what holds behind them the manual does
+//!   not say, so that the program must.
+//! * `AR=a`: an arc of a degrees, by its end or by its centre.
 //! * `TURN=n`: n full circles, then the arc that the words say, the way along the axis shared by angle.
 //!
 //! Source: SINUMERIK 840D Programming Guide Cycles, chapter 2; Programming Manual Fundamentals, sections on AC, IC and
 //! helices. The numbers written have 6 decimals.
 
+mod angle;
 mod arguments;
+mod dimensions;
+mod drill;
 mod hole;
+mod pattern;
 
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, both};
 use nc_syntax::dialect::{Action, Called};
 use nc_syntax::{Block, Dialect, Item, ItemKind, Reader, Span, Value};
-use units::math;
 
 use crate::codes;
 use crate::output::{Output, Segment};
-use crate::shorthand::{AXES, Motion, State, Words, from, number, rounded, shown};
+use crate::shorthand::{AXES, State, Words, from, number, rounded, shown};
 use crate::siemens;
 use arguments::Arguments;
-use hole::{Hole, Move};
+pub(crate) use arguments::number as plain_number;
+use hole::Hole;
 
 type Fault = Box<Diagnostic>;
-
-/// Holes of one pattern; more are a wrong count.
-const MOST_HOLES: f64 = 10_000.0;
-/// Where HOLES1 may begin at either end, in units of the program.
-const SAME: f64 = 1e-6;
 
 /// True where the block has a name that this dialect writes out.
 pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
@@ -47,6 +49,8 @@ pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
 
 fn called(block: &Block<'_>, dialect: &Dialect, item: &Item) -> Option<Called> {
     match dialect.command(block.text(item.span))?.action {
+        // Corners are shorthand of drawings, whatever they are called.
+        Some(Action::Called(Called::Corner(_))) => None,
         Some(Action::Called(called)) if item.kind == ItemKind::BracketCommand => Some(called),
         _ => None,
     }
@@ -65,8 +69,8 @@ fn dimension(letter: u8, text: &[u8]) -> Option<(&str, bool)> {
 
 /// The program with its names written out, and where each stretch of it comes from.
 pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
-    let mut writer =
-        Writer { dialect, out: Output::new(dialect, text), state: State::initial(dialect), modal: None };
+    let (out, state) = (Output::new(dialect, text), State::initial(dialect));
+    let mut writer = Writer { dialect, out, state, modal: None, unsaid: Unsaid::default() };
     let mut reader = Reader::new(text, dialect);
     let mut block = Block::default();
     while reader.next(&mut block) {
@@ -81,11 +85,20 @@ struct Writer<'d> {
     state: State,
     /// The cycle of MCALL.
     modal: Option<Hole>,
+    unsaid: Unsaid,
+}
+
+/// What a cycle left in force that its manual does not say.
+#[derive(Clone, Copy, Default)]
+struct Unsaid {
+    feed: bool,
+    spindle: bool,
 }
 
 impl Writer<'_> {
     fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
         let words = Words { block, dialect: self.dialect };
+        self.said(&words)?;
         if !needed(block, self.dialect) {
             let before = self.state.at;
             let moves = self.state.step(&words) && names_axes(&words);
@@ -108,7 +121,7 @@ impl Writer<'_> {
             .items
             .iter()
             .filter_map(|item| Some((called(block, self.dialect, item)?, item.span)))
-            .filter(|(called, _)| *called != Called::Turns)
+            .filter(|(called, _)| !matches!(called, Called::Turns | Called::ArcAngle))
             .collect();
         if calls.is_empty() {
             return self.dimensions(&words);
@@ -132,8 +145,8 @@ impl Writer<'_> {
                             "модальный вызов чего-то неизвестного"
                         ),
                         both!(
-                            "CYCLE81, CYCLE82 or CYCLE83 was expected behind MCALL",
-                            "после MCALL ожидался CYCLE81, CYCLE82 или CYCLE83"
+                            "a cycle from CYCLE81 to CYCLE83, CYCLE85 or CYCLE86 was expected behind MCALL",
+                            "после MCALL ожидался цикл от CYCLE81 до CYCLE83, CYCLE85 или CYCLE86"
                         ),
                         both!(
                             "let the CAM write the holes as G0 and G1",
@@ -163,7 +176,7 @@ impl Writer<'_> {
                 let places = if calls[0].0 == Called::HolesRow {
                     self.row(&words, &call)?
                 } else {
-                    circle(&words, &call)?
+                    pattern::circle(&words, &call)?
                 };
                 self.out.comment(&comment, from(block));
                 for place in places {
@@ -198,7 +211,14 @@ impl Writer<'_> {
     }
 
     fn drills(&self, cycle: Called) -> bool {
-        matches!(cycle, Called::Drill | Called::DrillDwell | Called::DrillPecks)
+        matches!(
+            cycle,
+            Called::Drill
+                | Called::DrillDwell
+                | Called::DrillPecks
+                | Called::BoreFeeds
+                | Called::BoreOriented
+        )
     }
 
     fn hole(&self, words: &Words<'_, '_>, cycle: Called, span: Span) -> Result<Hole, Fault> {
@@ -222,64 +242,6 @@ impl Writer<'_> {
                 both!("something beside the call of a cycle", "что-то рядом с вызовом цикла"),
                 both!("before or behind the cycle?", "до цикла или после?"),
                 both!("write it in a block of its own", "напишите отдельным кадром"),
-            )),
-        }
-    }
-
-    /// The moves of a hole where the axes stand.
-    fn drill(&mut self, words: &Words<'_, '_>, hole: &Hole) -> Result<(), Fault> {
-        if !self.state.absolute {
-            return Err(words.fault(
-                codes::CALLED_CYCLE,
-                words.whole(),
-                both!("a cycle under G91", "цикл при G91"),
-                both!("its moves are places", "его ходы заданы местами"),
-                both!("write G90 before it", "напишите перед ним G90"),
-            ));
-        }
-        let axis = self.state.plane[2];
-        let (source, letter) = (from(words.block), AXES[axis]);
-        for step in &hole.0 {
-            let mut line = Vec::new();
-            match *step {
-                Move::Rapid(to) => {
-                    line.extend_from_slice(b"G0 ");
-                    number(&mut line, letter, to);
-                }
-                Move::Feed(to) => {
-                    line.extend_from_slice(b"G1 ");
-                    number(&mut line, letter, to);
-                }
-                Move::Dwell(time) => {
-                    line.extend_from_slice(b"G4 ");
-                    number(&mut line, if time < 0.0 { b'S' } else { b'F' }, time.abs());
-                }
-            }
-            self.out.line(&line, source);
-            if let Move::Rapid(to) | Move::Feed(to) = *step {
-                self.state.at[axis] = Some(rounded(to));
-            }
-        }
-        Ok(())
-    }
-
-    /// The motion code that was in force before a cycle.
-    fn restore(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        match self.state.motion {
-            Motion::Rapid | Motion::None => Ok(()),
-            Motion::Line => {
-                self.out.line(b"G1", from(words.block));
-                Ok(())
-            }
-            Motion::Arc | Motion::Cycle => Err(words.fault(
-                codes::CALLED_CYCLE,
-                words.whole(),
-                both!("a cycle while an arc is in force", "цикл, пока действует дуга"),
-                both!(
-                    "the words behind it would be an arc's again",
-                    "слова после него снова относились бы к дуге"
-                ),
-                both!("write G0 before the cycle", "напишите G0 до цикла"),
             )),
         }
     }
@@ -326,296 +288,12 @@ impl Writer<'_> {
         self.state.plane[..2].iter().all(|axis| self.state.at[*axis].is_some())
     }
 
-    /// `X=AC()`, `X=IC()` and `TURN=` in a block.
-    fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
-        let block = words.block;
-        let start = self.state.at;
-        let mut here = self.state.clone();
-        let owned = here.codes(words);
-        let refuse = |span: Span, label: Text| {
-            words.fault(
-                codes::CALLED_CYCLE,
-                span,
-                both!("a dimension that cannot be written out", "размер, который нельзя расписать"),
-                label,
-                both!(
-                    "write the word without AC or IC, in G90 or G91",
-                    "напишите слово без AC и IC, при G90 или G91"
-                ),
-            )
-        };
-        let mut text: Vec<u8> = Vec::new();
-        let mut done = 0;
-        let mut turns = None;
-        for item in &block.items {
-            let (letter, place) = match item.kind {
-                ItemKind::Word { letter, value: Value::Expression } => {
-                    let Some((inside, by)) = dimension(letter, block.text(item.span)) else { continue };
-                    let Some(value) = arguments::number(inside) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
-                                "a plain number was expected in the brackets",
-                                "в скобках ожидалось простое число"
-                            ),
-                        ));
-                    };
-                    if !owned {
-                        return Err(refuse(
-                            item.span,
-                            both!(
-                                "beside a code that owns the words of its block",
-                                "рядом с функцией, которой принадлежат слова кадра"
-                            ),
-                        ));
-                    }
-                    let Some(place) = place(&here, letter, value, by) else {
-                        let label = both!(
-                            "where the axis stands is not known: name it before, in G90",
-                            "где стоит ось, неизвестно: назовите её раньше, при G90"
-                        );
-                        return Err(refuse(item.span, label));
-                    };
-                    (letter, place)
-                }
-                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
-                    let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
-                    let count =
-                        written.split_once('=').and_then(|(_, count)| count.trim().parse::<u32>().ok());
-                    let Some(count) = count.filter(|count| *count <= 999) else {
-                        return Err(refuse(
-                            item.span,
-                            both!(
-                                "a whole number of turns up to 999 was expected",
-                                "ожидалось целое число оборотов до 999"
-                            ),
-                        ));
-                    };
-                    turns = Some((count, item.span));
-                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
-                    done = item.span.end as usize;
-                    continue;
-                }
-                _ => continue,
-            };
-            text.extend_from_slice(&block.bytes[done..item.span.start as usize]);
-            number(&mut text, letter, place);
-            done = item.span.end as usize;
-        }
-        text.extend_from_slice(&block.bytes[done..]);
-        // As it reads now.
-        let mut reader = Reader::new(&text, self.dialect);
-        let mut plain_block = Block::default();
-        if !reader.next(&mut plain_block) {
-            return Ok(());
-        }
-        let plain_words = Words { block: &plain_block, dialect: self.dialect };
-        let moves = self.state.step(&plain_words) && names_axes(&plain_words);
-        match turns {
-            Some((count, span)) if count > 0 => self.helix(words, &plain_words, start, count, span)?,
-            _ => self.out.write(&text, from(block)),
-        }
-        self.behind(words, moves, start)
-    }
-
-    /// Full circles and the rest of a helix.
-    fn helix(
-        &mut self,
-        words: &Words<'_, '_>,
-        plain: &Words<'_, '_>,
-        start: [Option<f64>; 3],
-        count: u32,
-        span: Span,
-    ) -> Result<(), Fault> {
-        let refuse = |label: Text| {
-            words.fault(
-                codes::CALLED_CYCLE,
-                span,
-                both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
-                label,
-                both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
-            )
-        };
-        if self.state.motion != Motion::Arc {
-            return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
-        }
-        if !self.state.absolute {
-            return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
-        }
-        if plain.number(b'M').is_some()
-            || plain.number(b'R').is_some()
-            || !plain
-                .block
-                .items
-                .iter()
-                .all(|item| matches!(item.kind, ItemKind::Word { .. } | ItemKind::Comment))
-        {
-            return Err(refuse(both!(
-                "beside M codes, a radius or commands",
-                "рядом с функциями M, радиусом или командами"
-            )));
-        }
-        let [u, v, n] = self.state.plane;
-        let centre_letters = [b"IJK"[u], b"IJK"[v]];
-        let (Some(a), Some(b), Some(h)) = (start[u], start[v], start[n]) else {
-            return Err(refuse(both!(
-                "where the helix starts is not known: name X, Y and Z before it, in G90",
-                "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
-            )));
-        };
-        let end = [u, v, n].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
-        let centre = centre_letters
-            .map(|letter| plain.number(letter).map_or(0.0, |(value, _)| value.decimal.to_f64()));
-        let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);
-        let counter = words.actions().any(|(action, _)| *action == Action::ArcCounterClockwise);
-        if clockwise == counter {
-            return Err(refuse(both!(
-                "G2 or G3 was expected in the same block",
-                "в том же кадре ожидалось G2 или G3"
-            )));
-        }
-        let angle = |p: [f64; 2]| math::atan2(p[1] - (b + centre[1]), p[0] - (a + centre[0]));
-        let (from_angle, to_angle) = (angle([a, b]), angle([end[0], end[1]]));
-        let full = std::f64::consts::TAU;
-        let turned = if clockwise { from_angle - to_angle } else { to_angle - from_angle };
-        let rest = turned.rem_euclid(full);
-        if rest < 1e-6 || full - rest < 1e-6 {
-            return Err(refuse(both!(
-                "the arc that is left ends where it starts: a turn more, or none?",
-                "оставшаяся дуга кончается там, где начинается: ещё оборот или ни одного?"
-            )));
-        }
-        let all = f64::from(count) * full + rest;
-        let code: &[u8] = if clockwise { b"G2 " } else { b"G3 " };
-        for turn in 1..=count {
-            let mut line = if turn == 1 {
-                kept(plain, [AXES[u], AXES[v], AXES[n], centre_letters[0], centre_letters[1]])
-            } else {
-                code.to_vec()
-            };
-            let level = h + (end[2] - h) * (f64::from(turn) * full / all);
-            number(&mut line, AXES[u], a);
-            line.push(b' ');
-            number(&mut line, AXES[v], b);
-            line.push(b' ');
-            number(&mut line, AXES[n], level);
-            for (letter, offset) in centre_letters.into_iter().zip(centre) {
-                line.push(b' ');
-                number(&mut line, letter, offset);
-            }
-            self.out.line(&line, from(words.block));
-        }
-        let mut line = code.to_vec();
-        for (k, axis) in [u, v, n].into_iter().enumerate() {
-            number(&mut line, AXES[axis], end[k]);
-            line.push(b' ');
-        }
-        number(&mut line, centre_letters[0], centre[0]);
-        line.push(b' ');
-        number(&mut line, centre_letters[1], centre[1]);
-        self.out.line(&line, from(words.block));
-        Ok(())
-    }
-
     fn point(&self, line: &mut Vec<u8>, place: [f64; 2]) {
         let [u, v, _] = self.state.plane;
         number(line, AXES[u], place[0]);
         line.push(b' ');
         number(line, AXES[v], place[1]);
     }
-
-    /// HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM): a row, begun at the end that is nearer to where the axes stand.
-    fn row(&self, words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Fault> {
-        let count = count(words, call, 5)?;
-        call.nothing_behind(words, 6)?;
-        let (sin, cos) = math::sin_cos_deg(call.or_zero(2));
-        let at = |k: usize| {
-            let along = call.or_zero(3) + k as f64 * call.or_zero(4);
-            [call.or_zero(0) + along * cos, call.or_zero(1) + along * sin]
-        };
-        let mut places: Vec<[f64; 2]> = (0..count).map(at).collect();
-        let [u, v, _] = self.state.plane;
-        let (Some(a), Some(b)) = (self.state.at[u], self.state.at[v]) else {
-            return Err(call.fault(
-                words,
-                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного места"),
-                both!(
-                    "it begins at the nearer end: name both axes of the plane before it",
-                    "он начинается с ближнего конца: назовите до него обе оси плоскости"
-                ),
-            ));
-        };
-        let far = |p: &[f64; 2]| math::hypot(p[0] - a, p[1] - b);
-        if let [first, .., last] = places.as_slice() {
-            let (to_first, to_last) = (far(first), far(last));
-            if (to_first - to_last).abs() < SAME {
-                return Err(call.fault(
-                    words,
-                    both!("HOLES1 whose ends are equally near", "HOLES1, концы которого одинаково близки"),
-                    both!("it begins at the nearer one", "он начинается с ближнего"),
-                ));
-            }
-            if to_last < to_first {
-                places.reverse();
-            }
-        }
-        Ok(places)
-    }
-}
-
-/// HOLES2(CPA, CPO, RAD, STA1, INDA, NUM): a circle, from its first angle on; without INDA all around.
-fn circle(words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Fault> {
-    let count = count(words, call, 5)?;
-    call.nothing_behind(words, 6)?;
-    let radius = call.or_zero(2).abs();
-    let step = match call.or_zero(4) {
-        0.0 => 360.0 / count as f64,
-        step => step,
-    };
-    let at = |k: usize| {
-        let (sin, cos) = math::sin_cos_deg(call.or_zero(3) + k as f64 * step);
-        [call.or_zero(0) + radius * cos, call.or_zero(1) + radius * sin]
-    };
-    Ok((0..count).map(at).collect())
-}
-
-fn count(words: &Words<'_, '_>, call: &Arguments, place: usize) -> Result<usize, Fault> {
-    let count = call.needed(words, place, &both!("a number of holes", "числа отверстий"))?;
-    if !(1.0..=MOST_HOLES).contains(&count) || count.fract() != 0.0 {
-        return Err(call.fault(
-            words,
-            both!("{} of {count} holes", "{}: отверстий {count}", call.name),
-            both!("a whole number from 1 was expected", "ожидалось целое число от 1"),
-        ));
-    }
-    Ok(count as usize)
-}
-
-/// The words of a block but for some letters, each with a blank behind it.
-fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
-    let mut line = Vec::new();
-    for item in &words.block.items {
-        if let ItemKind::Word { letter, .. } = item.kind
-            && !without.contains(&letter)
-        {
-            line.extend_from_slice(words.block.text(item.span));
-            line.push(b' ');
-        }
-    }
-    line
-}
-
-/// The number that a word without AC and IC needs.
-fn place(state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
-    if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
-        return match (by, state.absolute) {
-            (false, true) | (true, false) => Some(value),
-            (true, true) => Some(state.at[axis]? + value),
-            (false, false) => Some(value - state.at[axis]?),
-        };
-    }
-    let axis = usize::from(letter - b'I');
-    if by { Some(value) } else { Some(value - state.at[axis]?) }
 }
 
 /// The block has words that a motion takes: rotary axes move too, and a full circle names its centre alone.

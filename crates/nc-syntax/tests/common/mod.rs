@@ -17,6 +17,7 @@ pub(crate) fn dialect() -> Dialect {
         skip: Some(b'/'),
         colon: Colon::Number,
         long_words: Vec::new(),
+        labels: false,
         equals_words: false,
         letters: (b'A'..=b'Z').collect(),
         numbers: Numbers {
@@ -37,6 +38,7 @@ pub(crate) fn dialect() -> Dialect {
         length_under_g40: LengthAfter::Stays,
         length_under_g49: LengthAfter::Ends,
         t_may_change_tool: false,
+        writes_lengths: false,
         edge_in_d: false,
         cycle_levels: CycleLevels::Unstated,
         flow: nc_syntax::dialect::Flow::default(),
@@ -47,6 +49,7 @@ pub(crate) fn dialect() -> Dialect {
             local_is_preset: false,
             scaling_step: 0.001,
             arc_turns: false,
+            rotation_about_tool: false,
             machine_words_stand_alone: false,
         },
         output: Output {

@@ -1,5 +1,5 @@
 %_N_PART_MPF
-;expect VP0105: L100 is a call
+;expect VP0127: L100 is a call, and no folder holds L100.SPF
 G17 G40 G54 G71 G90
 G0 X10 Y10 Z60
 G1 Z50 F200

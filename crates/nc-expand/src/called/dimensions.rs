@@ -1,0 +1,289 @@
+//! `X=AC()`, `X=IC()`, `TURN=` and `AR=` in a block, written out.
+
+use diagnostic::{Text, both};
+use nc_syntax::dialect::{Action, Called};
+use nc_syntax::{Block, ItemKind, Reader, Span, Value};
+use units::math;
+
+use super::{Fault, Writer, angle, arguments, called, dimension, names_axes};
+use crate::codes;
+use crate::shorthand::{AXES, Motion, State, Words, from, number, shown};
+
+impl Writer<'_> {
+    /// `X=AC()`, `X=IC()` and `TURN=` in a block.
+    pub(super) fn dimensions(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let block = words.block;
+        let start = self.state.at;
+        let mut here = self.state.clone();
+        let owned = here.codes(words);
+        let refuse = |span: Span, label: Text| {
+            words.fault(
+                codes::CALLED_CYCLE,
+                span,
+                both!("a dimension that cannot be written out", "размер, который нельзя расписать"),
+                label,
+                both!(
+                    "write the word without AC or IC, in G90 or G91",
+                    "напишите слово без AC и IC, при G90 или G91"
+                ),
+            )
+        };
+        let mut text: Vec<u8> = Vec::new();
+        let mut done = 0;
+        let mut turns = None;
+        let mut angle = None;
+        for item in &block.items {
+            let (letter, place) = match item.kind {
+                ItemKind::Word { letter, value: Value::Expression } => {
+                    let Some((inside, by)) = dimension(letter, block.text(item.span)) else { continue };
+                    let Some(value) = arguments::number(inside) else {
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a plain number was expected in the brackets",
+                                "в скобках ожидалось простое число"
+                            ),
+                        ));
+                    };
+                    if !owned {
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "beside a code that owns the words of its block",
+                                "рядом с функцией, которой принадлежат слова кадра"
+                            ),
+                        ));
+                    }
+                    let Some(place) = place(&here, letter, value, by) else {
+                        let label = both!(
+                            "where the axis stands is not known: name it before, in G90",
+                            "где стоит ось, неизвестно: назовите её раньше, при G90"
+                        );
+                        return Err(refuse(item.span, label));
+                    };
+                    (letter, place)
+                }
+                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::ArcAngle) => {
+                    let written = block.text(item.span);
+                    let value = written.iter().position(|byte| *byte == b'=').map(|at| &written[at + 1..]);
+                    let value = value.and_then(|value| std::str::from_utf8(value).ok());
+                    let Some(value) = value.and_then(|value| arguments::number(value.trim())) else {
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a plain number of degrees was expected",
+                                "ожидалось простое число градусов"
+                            ),
+                        ));
+                    };
+                    angle = Some((value, item.span));
+                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
+                    done = item.span.end as usize;
+                    continue;
+                }
+                ItemKind::BracketCommand if called(block, self.dialect, item) == Some(Called::Turns) => {
+                    let written = String::from_utf8_lossy(block.text(item.span)).into_owned();
+                    let count =
+                        written.split_once('=').and_then(|(_, count)| count.trim().parse::<u32>().ok());
+                    let Some(count) = count.filter(|count| *count <= 999) else {
+                        return Err(refuse(
+                            item.span,
+                            both!(
+                                "a whole number of turns up to 999 was expected",
+                                "ожидалось целое число оборотов до 999"
+                            ),
+                        ));
+                    };
+                    turns = Some((count, item.span));
+                    text.extend_from_slice(block.bytes[done..item.span.start as usize].trim_ascii_end());
+                    done = item.span.end as usize;
+                    continue;
+                }
+                _ => continue,
+            };
+            text.extend_from_slice(&block.bytes[done..item.span.start as usize]);
+            number(&mut text, letter, place);
+            done = item.span.end as usize;
+        }
+        text.extend_from_slice(&block.bytes[done..]);
+        // As it reads now.
+        let mut reader = Reader::new(&text, self.dialect);
+        let mut plain_block = Block::default();
+        if !reader.next(&mut plain_block) {
+            return Ok(());
+        }
+        let plain_words = Words { block: &plain_block, dialect: self.dialect };
+        if let Some((degrees, span)) = angle {
+            if turns.is_some() {
+                return Err(refuse(span, both!("beside TURN", "рядом с TURN")));
+            }
+            let line = angle::words(&self.state, &plain_words, degrees)
+                .map_err(|label| refuse_angle(words, span, label))?;
+            return self.arc_by_angle(words, &text, &line, start);
+        }
+        let moves = self.state.step(&plain_words) && names_axes(&plain_words);
+        match turns {
+            Some((count, span)) if count > 0 => self.helix(words, &plain_words, start, count, span)?,
+            _ => self.out.write(&text, from(block)),
+        }
+        self.behind(words, moves, start)
+    }
+
+    /// An arc by its angle: the block without `AR=`, and the words that it stands for.
+    fn arc_by_angle(
+        &mut self,
+        words: &Words<'_, '_>,
+        text: &[u8],
+        more: &[u8],
+        start: [Option<f64>; 3],
+    ) -> Result<(), Fault> {
+        // Behind the last word, before what ends the block or comments on it.
+        let stop = text.iter().position(|byte| *byte == b';').unwrap_or(text.len());
+        let end = text[..stop].trim_ascii_end().len();
+        let text = [&text[..end], more, &text[end..]].concat();
+        self.out.comment(shown(words.block), from(words.block));
+        let mut reader = Reader::new(&text, self.dialect);
+        let mut block = Block::default();
+        if reader.next(&mut block) {
+            self.state.step(&Words { block: &block, dialect: self.dialect });
+        }
+        self.out.write(&text, from(words.block));
+        self.behind(words, true, start)
+    }
+
+    /// Full circles and the rest of a helix.
+    fn helix(
+        &mut self,
+        words: &Words<'_, '_>,
+        plain: &Words<'_, '_>,
+        start: [Option<f64>; 3],
+        count: u32,
+        span: Span,
+    ) -> Result<(), Fault> {
+        let refuse = |label: Text| {
+            words.fault(
+                codes::CALLED_CYCLE,
+                span,
+                both!("turns that cannot be written out", "обороты, которые нельзя расписать"),
+                label,
+                both!("let the CAM write each turn", "выводите из CAM каждый оборот"),
+            )
+        };
+        if self.state.motion != Motion::Arc {
+            return Err(refuse(both!("G2 or G3 was expected", "ожидалось G2 или G3")));
+        }
+        if !self.state.absolute {
+            return Err(refuse(both!("under G91; write G90", "при G91; напишите G90")));
+        }
+        if plain.number(b'M').is_some()
+            || plain.number(b'R').is_some()
+            || !plain
+                .block
+                .items
+                .iter()
+                .all(|item| matches!(item.kind, ItemKind::Word { .. } | ItemKind::Comment))
+        {
+            return Err(refuse(both!(
+                "beside M codes, a radius or commands",
+                "рядом с функциями M, радиусом или командами"
+            )));
+        }
+        let [u, v, n] = self.state.plane;
+        let centre_letters = [b"IJK"[u], b"IJK"[v]];
+        let (Some(a), Some(b), Some(h)) = (start[u], start[v], start[n]) else {
+            return Err(refuse(both!(
+                "where the helix starts is not known: name X, Y and Z before it, in G90",
+                "неизвестно, откуда начинается винтовая линия: назовите до неё X, Y и Z при G90"
+            )));
+        };
+        let end = [u, v, n].map(|axis| self.state.at[axis].unwrap_or(f64::NAN));
+        let centre = centre_letters
+            .map(|letter| plain.number(letter).map_or(0.0, |(value, _)| value.decimal.to_f64()));
+        let clockwise = words.actions().any(|(action, _)| *action == Action::ArcClockwise);
+        let counter = words.actions().any(|(action, _)| *action == Action::ArcCounterClockwise);
+        if clockwise == counter {
+            return Err(refuse(both!(
+                "G2 or G3 was expected in the same block",
+                "в том же кадре ожидалось G2 или G3"
+            )));
+        }
+        let angle = |p: [f64; 2]| math::atan2(p[1] - (b + centre[1]), p[0] - (a + centre[0]));
+        let (from_angle, to_angle) = (angle([a, b]), angle([end[0], end[1]]));
+        let full = std::f64::consts::TAU;
+        let turned = if clockwise { from_angle - to_angle } else { to_angle - from_angle };
+        let rest = turned.rem_euclid(full);
+        if rest < 1e-6 || full - rest < 1e-6 {
+            return Err(refuse(both!(
+                "the arc that is left ends where it starts: a turn more, or none?",
+                "оставшаяся дуга кончается там, где начинается: ещё оборот или ни одного?"
+            )));
+        }
+        let all = f64::from(count) * full + rest;
+        let code: &[u8] = if clockwise { b"G2 " } else { b"G3 " };
+        for turn in 1..=count {
+            let mut line = if turn == 1 {
+                kept(plain, [AXES[u], AXES[v], AXES[n], centre_letters[0], centre_letters[1]])
+            } else {
+                code.to_vec()
+            };
+            let level = h + (end[2] - h) * (f64::from(turn) * full / all);
+            number(&mut line, AXES[u], a);
+            line.push(b' ');
+            number(&mut line, AXES[v], b);
+            line.push(b' ');
+            number(&mut line, AXES[n], level);
+            for (letter, offset) in centre_letters.into_iter().zip(centre) {
+                line.push(b' ');
+                number(&mut line, letter, offset);
+            }
+            self.out.line(&line, from(words.block));
+        }
+        let mut line = code.to_vec();
+        for (k, axis) in [u, v, n].into_iter().enumerate() {
+            number(&mut line, AXES[axis], end[k]);
+            line.push(b' ');
+        }
+        number(&mut line, centre_letters[0], centre[0]);
+        line.push(b' ');
+        number(&mut line, centre_letters[1], centre[1]);
+        self.out.line(&line, from(words.block));
+        Ok(())
+    }
+}
+
+fn refuse_angle(words: &Words<'_, '_>, span: Span, label: Text) -> Fault {
+    words.fault(
+        codes::CALLED_CYCLE,
+        span,
+        both!("an arc by its angle that cannot be written out", "дуга по углу, которую нельзя расписать"),
+        label,
+        both!("write the arc with I, J, K", "напишите дугу словами I, J, K"),
+    )
+}
+
+/// The words of a block but for some letters, each with a blank behind it.
+fn kept(words: &Words<'_, '_>, without: [u8; 5]) -> Vec<u8> {
+    let mut line = Vec::new();
+    for item in &words.block.items {
+        if let ItemKind::Word { letter, .. } = item.kind
+            && !without.contains(&letter)
+        {
+            line.extend_from_slice(words.block.text(item.span));
+            line.push(b' ');
+        }
+    }
+    line
+}
+
+/// The number that a word without AC and IC needs.
+fn place(state: &State, letter: u8, value: f64, by: bool) -> Option<f64> {
+    if let Some(axis) = AXES.iter().position(|axis| *axis == letter) {
+        return match (by, state.absolute) {
+            (false, true) | (true, false) => Some(value),
+            (true, true) => Some(state.at[axis]? + value),
+            (false, false) => Some(value - state.at[axis]?),
+        };
+    }
+    let axis = usize::from(letter - b'I');
+    if by { Some(value) } else { Some(value - state.at[axis]?) }
+}

@@ -1,0 +1,81 @@
+//! HOLES1 and HOLES2: where the holes of a pattern stand.
+
+use diagnostic::both;
+use units::math;
+
+use super::arguments::Arguments;
+use super::{Fault, Writer};
+use crate::shorthand::Words;
+
+/// Holes of one pattern; more are a wrong count.
+const MOST_HOLES: f64 = 10_000.0;
+/// Where HOLES1 may begin at either end, in units of the program.
+const SAME: f64 = 1e-6;
+
+impl Writer<'_> {
+    /// HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM): a row, begun at the end that is nearer to where the axes stand.
+    pub(super) fn row(&self, words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Fault> {
+        let count = count(words, call, 5)?;
+        call.nothing_behind(words, 6)?;
+        let (sin, cos) = math::sin_cos_deg(call.or_zero(2));
+        let at = |k: usize| {
+            let along = call.or_zero(3) + k as f64 * call.or_zero(4);
+            [call.or_zero(0) + along * cos, call.or_zero(1) + along * sin]
+        };
+        let mut places: Vec<[f64; 2]> = (0..count).map(at).collect();
+        let [u, v, _] = self.state.plane;
+        let (Some(a), Some(b)) = (self.state.at[u], self.state.at[v]) else {
+            return Err(call.fault(
+                words,
+                both!("HOLES1 from a place that is not known", "HOLES1 из неизвестного места"),
+                both!(
+                    "it begins at the nearer end: name both axes of the plane before it",
+                    "он начинается с ближнего конца: назовите до него обе оси плоскости"
+                ),
+            ));
+        };
+        let far = |p: &[f64; 2]| math::hypot(p[0] - a, p[1] - b);
+        if let [first, .., last] = places.as_slice() {
+            let (to_first, to_last) = (far(first), far(last));
+            if (to_first - to_last).abs() < SAME {
+                return Err(call.fault(
+                    words,
+                    both!("HOLES1 whose ends are equally near", "HOLES1, концы которого одинаково близки"),
+                    both!("it begins at the nearer one", "он начинается с ближнего"),
+                ));
+            }
+            if to_last < to_first {
+                places.reverse();
+            }
+        }
+        Ok(places)
+    }
+}
+
+/// HOLES2(CPA, CPO, RAD, STA1, INDA, NUM): a circle, from its first angle on; without INDA all around.
+pub(super) fn circle(words: &Words<'_, '_>, call: &Arguments) -> Result<Vec<[f64; 2]>, Fault> {
+    let count = count(words, call, 5)?;
+    call.nothing_behind(words, 6)?;
+    let radius = call.or_zero(2).abs();
+    let step = match call.or_zero(4) {
+        0.0 => 360.0 / count as f64,
+        step => step,
+    };
+    let at = |k: usize| {
+        let (sin, cos) = math::sin_cos_deg(call.or_zero(3) + k as f64 * step);
+        [call.or_zero(0) + radius * cos, call.or_zero(1) + radius * sin]
+    };
+    Ok((0..count).map(at).collect())
+}
+
+fn count(words: &Words<'_, '_>, call: &Arguments, place: usize) -> Result<usize, Fault> {
+    let count = call.needed(words, place, &both!("a number of holes", "числа отверстий"))?;
+    if !(1.0..=MOST_HOLES).contains(&count) || count.fract() != 0.0 {
+        return Err(call.fault(
+            words,
+            both!("{} of {count} holes", "{}: отверстий {count}", call.name),
+            both!("a whole number from 1 was expected", "ожидалось целое число от 1"),
+        ));
+    }
+    Ok(count as usize)
+}

@@ -1,0 +1,397 @@
+//! Drilling cycles whose way back an M code says (Okuma), written out as plain moves.
+//!
+//! `G71 Z50.` says a level, `G81 X Y Z R F M53` drills and returns to it, with M54 to R; every block behind it that names
+//! X or Y drills again, until G80 or a motion code. A control keeps the level in mind, and no word of the cycle's block
+//! names it: so the moves are written, each with its height.
+//!
+//! Source: Okuma OSP-P200M/P20M Programming Manual, fixed cycles: G81, G82 and G83, the return level command. With R the
+//! level where the feed begins, Z the bottom, Q a peck: rapid across, rapid to R, feed to Z (G83: by Q, rapid to R and
+//! back to what is drilled less a clearance), rapid to the level. The numbers written have 6 decimals.
+
+use diagnostic::{Text, both};
+use nc_syntax::dialect::{Action, CycleCode};
+use nc_syntax::{Block, Dialect, ItemKind, Letters, Reader, Span, Value};
+
+use crate::codes;
+use crate::output::{Output, Segment};
+use crate::shorthand::{AXES, Fault, Motion, State, Words, from, number, rounded, shown};
+
+/// Pecks of one hole; more are a wrong depth.
+const MOST_PECKS: f64 = 2_000.0;
+/// A peck below this is none: the last bits of a sum, in units of the program.
+const NOTHING: f64 = 1e-9;
+/// Words that a block of a cycle may have.
+const TAKEN: Letters = Letters::of(b"FGMNPQRXYZ");
+
+/// True where the block has a cycle that this dialect writes out.
+pub(crate) fn needed(block: &Block<'_>, dialect: &Dialect) -> bool {
+    dialect.flow.return_by_m
+        && (Words { block, dialect }).actions().any(|(action, _)| matches!(action, Action::Cycle(_)))
+}
+
+/// The program with its cycles written out, and where each stretch of it comes from.
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+    let (out, state) = (Output::new(dialect, text), State::initial(dialect));
+    let mut writer = Writer { dialect, out, state, level: None, cycle: None, open: false };
+    let mut reader = Reader::new(text, dialect);
+    let mut block = Block::default();
+    while reader.next(&mut block) {
+        writer.block(&block)?;
+    }
+    Ok((writer.out.text, writer.out.segments))
+}
+
+/// A cycle in force.
+#[derive(Clone, Copy)]
+struct Cycle {
+    bottom: f64,
+    near: f64,
+    /// Depth of a peck.
+    peck: Option<f64>,
+    /// Where it returns to.
+    back: f64,
+}
+
+struct Writer<'d> {
+    dialect: &'d Dialect,
+    out: Output,
+    state: State,
+    /// G71.
+    level: Option<f64>,
+    cycle: Option<Cycle>,
+    /// G80 ended a cycle, and no motion code was written since: the control's is not certain.
+    open: bool,
+}
+
+impl Writer<'_> {
+    fn block(&mut self, block: &Block<'_>) -> Result<(), Fault> {
+        let words = Words { block, dialect: self.dialect };
+        let begins = words.actions().any(|(action, _)| matches!(action, Action::Cycle(_)));
+        let moves = self.names(&words, b"XYZ");
+        let ends = words.actions().any(|(action, _)| {
+            matches!(
+                action,
+                Action::CycleCancel
+                    | Action::Rapid
+                    | Action::Line
+                    | Action::ArcClockwise
+                    | Action::ArcCounterClockwise
+            )
+        });
+        if begins {
+            return self.begin(&words);
+        }
+        if self.cycle.is_some() && !ends && moves {
+            return self.again(&words);
+        }
+        let cancels = words.actions().any(|(action, _)| *action == Action::CycleCancel);
+        let codes = words.actions().any(|(action, _)| {
+            matches!(
+                action,
+                Action::Rapid | Action::Line | Action::ArcClockwise | Action::ArcCounterClockwise
+            )
+        });
+        self.open = (self.open || (cancels && self.cycle.is_some())) && !codes;
+        if ends {
+            self.cycle = None;
+        }
+        if self.open && moves && words.actions().all(|(action, _)| !owns(action)) {
+            return Err(self.refuse(
+                &words,
+                words.whole(),
+                both!("a move behind a cycle without its code", "ход после цикла без своей функции"),
+                both!("a rapid or a feed?", "ускоренный или рабочий?"),
+                both!("write G0 or G1 in this block", "напишите в этом кадре G0 или G1"),
+            ));
+        }
+        if let Some((_, span)) = words.actions().find(|(action, _)| **action == Action::ReturnLevel) {
+            self.level = Some(self.level_of(&words, span)?);
+        } else {
+            self.state.step(&words);
+            if self.state.motion == Motion::Cycle {
+                self.state.motion = Motion::None;
+            }
+        }
+        self.out.copy(block.bytes, from(block));
+        Ok(())
+    }
+
+    fn names(&self, words: &Words<'_, '_>, letters: &[u8]) -> bool {
+        letters.iter().any(|letter| words.number(*letter).is_some())
+    }
+
+    fn length(&self, words: &Words<'_, '_>, letter: u8) -> Option<f64> {
+        words.number(letter).map(|(number, _)| self.dialect.numbers.length(number, self.state.inch).to_f64())
+    }
+
+    /// G71 Z.
+    fn level_of(&self, words: &Words<'_, '_>, span: Span) -> Result<f64, Fault> {
+        let alone = words.block.words().all(|word| matches!(word.letter, b'G' | b'N' | b'Z'))
+            && words.actions().count() == 1
+            && self.state.absolute
+            && !words.skipped();
+        match self.length(words, b'Z').filter(|_| alone) {
+            Some(level) => Ok(level),
+            None => Err(self.refuse(
+                words,
+                span,
+                both!("a return level that is not certain", "неоднозначная плоскость отвода"),
+                both!("G71 and Z alone were expected, in G90", "ожидались одни G71 и Z, при G90"),
+                both!(
+                    "write G71 with Z in a block of its own, G90 in force",
+                    "напишите G71 и Z отдельным кадром при G90"
+                ),
+            )),
+        }
+    }
+
+    /// A block with the code of a cycle.
+    fn begin(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let block = words.block;
+        let refuse = |span: Span, message: Text, label: Text, help: Text| {
+            Err(self.refuse(words, span, message, label, help))
+        };
+        let mut kind = None;
+        for (action, span) in words.actions() {
+            match action {
+                Action::Cycle(cycle) => kind = Some((*cycle, span)),
+                Action::Absolute | Action::Plane(_) => {}
+                _ => {
+                    return refuse(
+                        span,
+                        both!("a cycle beside another code", "цикл рядом с другой функцией"),
+                        both!("which comes first?", "что из них первое?"),
+                        both!("write them in two blocks", "напишите их двумя кадрами"),
+                    );
+                }
+            }
+        }
+        let mut here = self.state.clone();
+        here.codes(words);
+        let Some((kind, span)) = kind else { return Ok(()) };
+        if !here.absolute || here.plane != [0, 1, 2] || words.skipped() {
+            return refuse(
+                span,
+                both!("a cycle that cannot be written out", "цикл, который нельзя расписать"),
+                both!(
+                    "G90 and G17 were expected, and no block delete",
+                    "ожидались G90 и G17 без пропуска кадра"
+                ),
+                both!(
+                    "write it in G90 and G17, or let the CAM write the moves",
+                    "напишите его при G90 и G17 или выводите из CAM ходы"
+                ),
+            );
+        }
+        let back = self.back(words, span)?;
+        let (bottom, near) = match (self.length(words, b'Z'), self.length(words, b'R')) {
+            (Some(bottom), Some(near)) if bottom < near => (bottom, near),
+            _ => {
+                return refuse(
+                    span,
+                    both!("a cycle without its levels", "цикл без своих уровней"),
+                    both!("Z below R was expected in this block", "в этом кадре ожидалось Z ниже R"),
+                    both!("write Z and R beside the cycle", "напишите рядом с циклом Z и R"),
+                );
+            }
+        };
+        let peck = match (kind, self.length(words, b'Q')) {
+            (CycleCode::PeckFull, Some(peck)) if peck > 0.0 && (near - bottom) / peck <= MOST_PECKS => {
+                Some(peck)
+            }
+            (CycleCode::PeckFull, _) => {
+                return refuse(
+                    span,
+                    both!("pecks without their depth", "проходы без своей глубины"),
+                    both!("Q above zero was expected", "ожидалось Q больше нуля"),
+                    both!("write the depth of a peck as Q", "напишите глубину прохода словом Q"),
+                );
+            }
+            (_, None) => None,
+            (_, Some(_)) => {
+                return refuse(
+                    span,
+                    both!("Q beside a cycle without pecks", "Q рядом с циклом без проходов"),
+                    both!("what does it say?", "что оно значит?"),
+                    both!("write G83, or remove Q", "напишите G83 или уберите Q"),
+                );
+            }
+        };
+        let back = match back {
+            Back::R => near,
+            Back::Level(level) if level >= near => level,
+            Back::Level(_) => {
+                return refuse(
+                    span,
+                    both!("a return level below R", "плоскость отвода ниже R"),
+                    both!("the level of G71", "уровень из G71"),
+                    both!("write G71 with a level above R", "напишите G71 с уровнем выше R"),
+                );
+            }
+        };
+        self.only_known(words)?;
+        self.open = false;
+        self.cycle = Some(Cycle { bottom, near, peck, back });
+        self.out.comment(shown(block), from(block));
+        let mut head = b"G0".to_vec();
+        for (_, span) in
+            words.actions().filter(|(action, _)| matches!(action, Action::Absolute | Action::Plane(_)))
+        {
+            head.push(b' ');
+            head.extend_from_slice(block.text(span));
+        }
+        self.state = here;
+        self.hole(words, head)
+    }
+
+    /// A block that drills again.
+    fn again(&mut self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        let plain = words.actions().next().is_none()
+            && words.block.words().all(|word| matches!(word.letter, b'N' | b'X' | b'Y'))
+            && !words.skipped();
+        if !plain {
+            return Err(self.refuse(
+                words,
+                words.whole(),
+                both!(
+                    "a block under a cycle that is not certain",
+                    "неоднозначный кадр при действующем цикле"
+                ),
+                both!("X and Y alone were expected", "ожидались одни X и Y"),
+                both!(
+                    "write the cycle anew, with all of its words",
+                    "напишите цикл заново, со всеми его словами"
+                ),
+            ));
+        }
+        self.out.comment(shown(words.block), from(words.block));
+        self.hole(words, b"G0".to_vec())
+    }
+
+    /// The moves of a hole; `head` begins the first of them.
+    fn hole(&mut self, words: &Words<'_, '_>, head: Vec<u8>) -> Result<(), Fault> {
+        let Some(Cycle { bottom, near, peck, back }) = self.cycle else { return Ok(()) };
+        let source = from(words.block);
+        let mut line = head;
+        for (axis, letter) in AXES.into_iter().enumerate().take(2) {
+            if let Some(value) = self.length(words, letter) {
+                line.push(b' ');
+                number(&mut line, letter, value);
+                self.state.at[axis] = Some(rounded(value));
+            }
+        }
+        if line.len() > 2 {
+            self.out.line(&line, source);
+        }
+        let feed = words.number(b'F').map(|(_, span)| words.block.text(span).to_vec());
+        let mut line = |code: &[u8], level: f64, feed: Option<&Vec<u8>>| {
+            let mut text = code.to_vec();
+            number(&mut text, b'Z', level);
+            if let Some(feed) = feed {
+                text.push(b' ');
+                text.extend_from_slice(feed);
+            }
+            self.out.line(&text, source);
+        };
+        line(b"G0 ", near, None);
+        let mut reached = near;
+        loop {
+            let next = peck.map_or(bottom, |peck| (reached - peck).max(bottom));
+            line(b"G1 ", next, feed.as_ref());
+            reached = next;
+            if reached - bottom <= NOTHING {
+                break;
+            }
+            line(b"G0 ", near, None);
+            let clearance = self.dialect.output.peck_clearance_mm / if self.state.inch { 25.4 } else { 1.0 };
+            line(b"G0 ", (reached + clearance).min(near), None);
+        }
+        line(b"G0 ", back, None);
+        self.state.at[2] = Some(rounded(back));
+        self.state.motion = Motion::Rapid;
+        Ok(())
+    }
+
+    /// M53 or M54.
+    fn back(&self, words: &Words<'_, '_>, span: Span) -> Result<Back, Fault> {
+        let code = |wanted: i64| {
+            words.block.words().any(|word| {
+                word.letter == b'M' && word.number().and_then(|number| number.integer()) == Some(wanted)
+            })
+        };
+        match (code(53), code(54), self.level) {
+            (true, false, Some(level)) => Ok(Back::Level(level)),
+            (false, true, _) => Ok(Back::R),
+            (true, false, None) => Err(self.refuse(
+                words,
+                span,
+                both!("M53 without a level", "M53 без уровня"),
+                both!("no G71 stands before it", "перед ним нет G71"),
+                both!("write G71 with the level before the cycle", "напишите перед циклом G71 с уровнем"),
+            )),
+            _ => Err(self.refuse(
+                words,
+                span,
+                both!("a cycle that does not say where it returns", "цикл не говорит, куда отводится"),
+                both!(
+                    "M53 (the level of G71) or M54 (R) was expected in this block",
+                    "в этом кадре ожидалось M53 (уровень из G71) или M54 (R)"
+                ),
+                both!(
+                    "write G71 with the level before the cycle and M53 beside it",
+                    "напишите перед циклом G71 с уровнем, а рядом с ним M53"
+                ),
+            )),
+        }
+    }
+
+    /// Refuses words whose meaning in a cycle is not certain.
+    fn only_known(&self, words: &Words<'_, '_>) -> Result<(), Fault> {
+        for item in &words.block.items {
+            let known = match item.kind {
+                ItemKind::Word { letter: b'M', value: Value::Number(number) } => {
+                    matches!(number.integer(), Some(53 | 54))
+                }
+                ItemKind::Word { letter: b'P', value: Value::Number(number) } => number.decimal.mantissa == 0,
+                ItemKind::Word { letter, value: Value::Number(_) } => TAKEN.any(Letters::of(&[letter])),
+                ItemKind::Comment | ItemKind::Name => true,
+                _ => false,
+            };
+            if !known {
+                return Err(self.refuse(
+                    words,
+                    item.span,
+                    both!("a word beside a cycle that is not certain", "неоднозначное слово рядом с циклом"),
+                    both!(
+                        "before the hole or behind it, and in which unit?",
+                        "до отверстия или после, и в каких единицах?"
+                    ),
+                    both!(
+                        "write it in a block of its own, a dwell as moves and G4",
+                        "напишите его отдельным кадром, выдержку — ходами и G4"
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse(&self, words: &Words<'_, '_>, span: Span, message: Text, label: Text, help: Text) -> Fault {
+        words.fault(codes::CALLED_CYCLE, span, message, label, help)
+    }
+}
+
+/// Where a cycle returns to.
+#[derive(Clone, Copy)]
+enum Back {
+    Level(f64),
+    R,
+}
+
+/// The words of the block are this code's.
+fn owns(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::ReturnLevel | Action::Dwell | Action::Pass { takes_words: true } | Action::Reference
+    )
+}

@@ -1,0 +1,12 @@
+%
+:0100 (ISO program number)
+G17 G21 G40 G49 G54 G80 G90
+/M8
+G0 X10. Y10. Z60.
+G61.1
+G1 Z50. F200.
+X900. /M8
+G64
+G0 Z60.
+M30
+%

@@ -1,0 +1,12 @@
+%
+O0301 (G68 R30. turns about where the tool stands)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G68 R30.
+G0 X20. Y10. Z60.
+G1 Z50. F200.
+X60. Y12.
+G69
+G0 X10. Y10. Z60.
+M30
+%

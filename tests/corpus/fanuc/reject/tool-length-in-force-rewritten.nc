@@ -1,0 +1,10 @@
+%
+O0001
+(expect VP0215: from which block on?)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G43 H1 Z60.
+G10 L10 P1 R120.
+G1 Z50. F200.
+M30
+%

@@ -1,9 +1,0 @@
-%
-O0001
-(expect VP0227: G10 L12 writes tool offsets)
-G17 G21 G40 G49 G54 G80 G90
-G0 X10. Y10. Z60.
-G10 L12 P1 R5.
-G0 Z60.
-M30
-%

@@ -1,0 +1,22 @@
+(what a wizard and a CAM post of Mach3 write: G70 or G71, M6 with T and G43 with H in one block)
+N10 G0 G71 G40 G17 G80 G50 G90
+N20 G54 G94
+M6 T1 G43 H1
+S12000 M3
+G0 X20. Y15. Z60.
+G1 Z50. F300.
+X80. Y15.
+G3 X90. Y25. I0. J10.
+G1 Y60.
+G0 Z60.
+M5
+M6 T2
+G43 H2
+G0 X10. Y10. Z60.
+M3
+G1 Z51. F300.
+X60.
+G0 Z60.
+G28 Z60.
+M5 M9
+M30

@@ -1,0 +1,32 @@
+(exact stop, blending, macros off, outputs)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G4 P0.5
+G9
+G11
+G15
+G50
+G61
+G64
+G67
+G69
+G96 S120
+G97 S1500
+M3 S1000
+M4
+M7
+M8
+M10
+M11
+M19
+M48
+M49
+M62
+M63
+M64
+M65
+M888 (a macro of the machine)
+X40. Y40.
+G0 Z60.
+M30

@@ -1,0 +1,6 @@
+(expect VP0205: IJ Mode Abs without G90.1)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G1 Z50. F200.
+G2 X30. Y10. I20. J10.
+M30

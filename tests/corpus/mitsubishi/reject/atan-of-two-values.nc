@@ -1,0 +1,8 @@
+%
+O0202 (expect VP0122: ATAN takes one)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+#1=ATAN[1.]/[2.]
+G1 Z50. X#1 F200.
+M30
+%

@@ -1,0 +1,9 @@
+%
+O0201 (expect VP0217: K counts nothing here)
+G17 G21 G40 G49 G54 G80 G90
+G0 X10. Y10. Z60.
+G99 G81 X20. Y20. Z30. R55. F150.
+G91 X15. K4
+G90 G80
+M30
+%

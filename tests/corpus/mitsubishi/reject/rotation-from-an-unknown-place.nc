@@ -1,0 +1,8 @@
+%
+O0204 (expect VP0142: G68 without a centre)
+G17 G21 G40 G49 G54 G80 G90
+G0 Z60.
+G68 R30.
+G0 X20. Y10. Z60.
+M30
+%

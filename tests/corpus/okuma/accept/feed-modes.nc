@@ -1,0 +1,13 @@
+OFEED (per minute, per turn, inverse time)
+G15 H1
+G0 G17 G21 G40 G53 G80 G90 X10. Y10. Z60.
+M3 S800
+G1 Z50. F200.
+G95 F0.2
+X200. Y150.
+G94 F200.
+X20. Y20.
+G93 X30. F4.
+G94 X40. F200.
+G0 Z60.
+M30

@@ -1,0 +1,9 @@
+ONAME (programs and blocks have names)
+G15 H1
+G0 G17 G21 G40 G53 G80 G90 X10. Y10. Z60.
+NMILL
+G1 Z50. F200.
+NA1 X40.
+N20 Y30.
+G0 Z60.
+NEND M2

@@ -1,0 +1,17 @@
+OPALL (behind them the axes stand anywhere until they are named)
+G15 H1
+G0 G17 G21 G40 G53 G80 G90 X10. Y10. Z60.
+G1 Z50. F200.
+G0 Z60.
+M60
+G0 X20. Y20. Z60.
+G1 Z50.
+G0 Z60.
+T5 M6
+G0 X25. Y20. Z60.
+G1 Z50.
+G31 Z40. F100.
+G0 Z60.
+G30 P1
+G0 X10. Y10. Z60.
+M2

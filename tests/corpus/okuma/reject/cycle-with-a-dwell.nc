@@ -1,0 +1,7 @@
+OCYCL (expect VP0146: P500 is seconds or thousandths)
+G15 H1
+G0 G17 G21 G40 G53 G80 G90 X10. Y10. Z60.
+G71 Z60.
+G82 X20. Y20. Z40. R52. P500 F100. M53
+G80
+M2

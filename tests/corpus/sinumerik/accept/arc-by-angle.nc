@@ -1,0 +1,10 @@
+%_N_PART_MPF
+;by the end, by the centre, more than half a turn
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+G3 X40 Y40 AR=90
+G2 I15 J-10 Z45 AR=120
+G1 X60 Y20
+G3 X70 Y30 AR=270
+M30

@@ -1,0 +1,10 @@
+%_N_PART_MPF
+;round and cut corners of a pocket
+G17 G40 G54 G71 G90
+G0 X10 Y10 Z60
+G1 Z50 F200
+X80 RND=6
+Y60 CHR=4
+X10 CHF=5
+Y10
+M30
