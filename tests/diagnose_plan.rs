@@ -49,6 +49,7 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
                 rotary_rad: Vector::zeros(),
                 tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
                 direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
+                rotary_play: Default::default(),
             },
             conditions: Conditions {
                 time_s: value("time_s"),

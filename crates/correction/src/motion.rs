@@ -27,10 +27,20 @@ impl Corrector<'_> {
             self.remembered = None;
         }
         match motion {
-            Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
-            Motion::Feed(feed) => self.heed(block, feed.end.rotary_deg),
-            Motion::Hole(hole) => self.heed(block, hole.at_r.rotary_deg),
-            Motion::Uncorrected { .. } => {}
+            Motion::Rapid { start, end } => {
+                self.swung_to(start.rotary_deg);
+                self.swung_to(end.rotary_deg);
+                self.heed(block, end.rotary_deg);
+            }
+            Motion::Feed(feed) => {
+                self.swung_to(feed.start.rotary_deg);
+                self.heed(block, feed.end.rotary_deg);
+            }
+            Motion::Hole(hole) => {
+                self.swung_to(hole.at_r.rotary_deg);
+                self.heed(block, hole.at_r.rotary_deg);
+            }
+            Motion::Uncorrected { end } => self.swung_anyhow(end.rotary_deg),
         }
         self.approached = None;
         self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
@@ -61,6 +71,7 @@ impl Corrector<'_> {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
             Motion::Feed(feed) => {
                 let before_mm = self.unknown_side_mm(block, &feed.start);
+                self.set_out(feed.end.rotary_deg);
                 let mut corrected = self.feed(feed, block)?;
                 corrected.correction.unknown_side_mm = before_mm.max(self.unknown_side_mm(block, &feed.end));
                 Ok(corrected)
@@ -238,6 +249,7 @@ impl Corrector<'_> {
             let state = follow.machine.state;
             self.settle(&state, block);
         }
+        self.swung_to(feed.end.rotary_deg);
         if corrected.pieces.is_empty() && !own_words {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
             corrected.pieces.push(self.standstill(block)?);

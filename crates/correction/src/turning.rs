@@ -138,7 +138,11 @@ impl Corrector<'_> {
                 acceleration_mm: extent.acceleration,
                 passes: 1,
                 state: *state,
-                turn: Some(Turn { programmed_rad: ends, commanded_rad: ends }),
+                turn: Some(Turn {
+                    programmed_rad: ends,
+                    commanded_rad: ends,
+                    lag_rad: [state.rotary_play.lag_rad; 2],
+                }),
             });
             let own = error(s0).max(error(s1)) + if between.is_finite() { between } else { 0.0 };
             worst = worst.max(own);

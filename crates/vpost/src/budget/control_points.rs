@@ -70,6 +70,7 @@ fn over_the_volume(
         rotary_rad,
         tool_mm,
         direction: *direction,
+        rotary_play: Default::default(),
     };
     let commands: Vec<Command> =
         (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();

@@ -140,6 +140,7 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                     rotary_rad: Vector::zeros(),
                     tool_mm: line.tool_mm,
                     direction: stop.direction,
+                    rotary_play: Default::default(),
                 },
                 conditions: Conditions {
                     time_s: Some(time),
