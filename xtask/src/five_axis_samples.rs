@@ -202,6 +202,10 @@ fn post(part: &Part, dialect: Dialect, tcp: bool) -> String {
         let (Some(first), Some(last)) = (cut.first(), cut.last()) else { continue };
         let above = words(first, LIFT_MM, c);
         c = above[4];
+        if !is_on {
+            // From below, so that it is known on which side of their play the axes stand.
+            writer.block("G0", [None, None, None, Some(above[3] - 1.0), Some(c - 1.0)], "");
+        }
         if !(is_on && tcp) {
             // Under tip control the tip would go round with them.
             writer.block("G0", [None, None, None, Some(above[3]), Some(c)], "");

@@ -28,19 +28,19 @@ impl Corrector<'_> {
         }
         match motion {
             Motion::Rapid { start, end } => {
-                self.swung_to(start.rotary_deg);
-                self.swung_to(end.rotary_deg);
+                self.swung_to(start);
+                self.swung_to(end);
                 self.heed(block, end.rotary_deg);
             }
             Motion::Feed(feed) => {
-                self.swung_to(feed.start.rotary_deg);
+                self.swung_to(&feed.start.into());
                 self.heed(block, feed.end.rotary_deg);
             }
             Motion::Hole(hole) => {
-                self.swung_to(hole.at_r.rotary_deg);
+                self.swung_to(&hole.at_r.into());
                 self.heed(block, hole.at_r.rotary_deg);
             }
-            Motion::Uncorrected { end } => self.swung_anyhow(end.rotary_deg),
+            Motion::Uncorrected { end } => self.swung_to(end),
         }
         self.approached = None;
         self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
@@ -71,7 +71,6 @@ impl Corrector<'_> {
             Motion::Rapid { start, end } => self.rapid(start, end, block),
             Motion::Feed(feed) => {
                 let before_mm = self.unknown_side_mm(block, &feed.start);
-                self.set_out(feed.end.rotary_deg);
                 let mut corrected = self.feed(feed, block)?;
                 corrected.correction.unknown_side_mm = before_mm.max(self.unknown_side_mm(block, &feed.end));
                 Ok(corrected)
@@ -249,7 +248,7 @@ impl Corrector<'_> {
             let state = follow.machine.state;
             self.settle(&state, block);
         }
-        self.swung_to(feed.end.rotary_deg);
+        self.swung_to(&feed.end.into());
         if corrected.pieces.is_empty() && !own_words {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
             corrected.pieces.push(self.standstill(block)?);

@@ -6,6 +6,7 @@
 //! bound. Equation (25), with the angle for the place.
 
 use machine_model::{Command, Play, RotaryPlay, Vector};
+use toolpath::Partial;
 
 use crate::corrector::Corrector;
 use crate::curve::Curve;
@@ -32,24 +33,11 @@ pub(crate) struct Corner {
 }
 
 impl<'m> Corrector<'m> {
-    /// The rotary axes have turned to A, B and C, degrees, each one way only.
-    pub(crate) fn swung_to(&mut self, rotary_deg: [f64; 3]) {
+    /// The rotary axes have turned to a place, each one way only; of some it may not be known.
+    pub(crate) fn swung_to(&mut self, place: &Partial) {
         if self.model.has_rotary_play() {
-            self.play.turn(self.model, &standing(rotary_deg.map(f64::to_radians).into()));
-        }
-    }
-
-    /// They are about to.
-    pub(crate) fn set_out(&mut self, rotary_deg: [f64; 3]) {
-        if self.model.has_rotary_play() {
-            self.play.set_out(self.model, &standing(rotary_deg.map(f64::to_radians).into()));
-        }
-    }
-
-    /// The rotary axes have turned by a way that nobody knows.
-    pub(crate) fn swung_anyhow(&mut self, rotary_deg: [f64; 3]) {
-        if self.model.has_rotary_play() {
-            self.play.forget_rotary(&rotary_deg.map(f64::to_radians).into());
+            let to = standing(place.rotary_deg.map(f64::to_radians).into());
+            self.play.turn(self.model, &to, place.rotary_known);
         }
     }
 
@@ -68,14 +56,14 @@ impl<'m> Corrector<'m> {
         }
         let (model, to) = (self.model, Command { rotary_rad: to_rad, ..*from });
         let mut play = self.play;
-        play.turn(model, &to);
+        play.turn(model, &to, [true; 3]);
         let way = to_rad - from.rotary_rad;
         let heading = [0, 1, 2].map(|axis| i8::from(way[axis] > 0.0) - i8::from(way[axis] < 0.0));
         let to_go = self.play.rotary_lag_rad(model, from, heading);
         let (mut direction, mut corners) = (self.play.rotary_side(), [None; 3]);
         for axis in (0..3).filter(|axis| heading[*axis] != 0) {
             let corner = to_go[axis] / way[axis].abs();
-            if corner < 1.0 - AT_AN_END || direction[axis] == 0 {
+            if corner < 1.0 - AT_AN_END {
                 direction[axis] = heading[axis];
                 corners[axis] = Some(corner).filter(|s| (AT_AN_END..1.0).contains(s));
             }
@@ -98,9 +86,15 @@ impl<'m> Corrector<'m> {
         }
         let between = |axis: usize| {
             let s = swing.corners[axis]?;
-            let there = follow.rotary_words(&part.part(0.0, s))?.end_rad[axis];
-            let apart = there != follow.machine.state.rotary_rad[axis] && there != end.end_rad[axis];
-            apart.then_some(s)
+            let stands = follow.machine.state.rotary_rad[axis];
+            let word = |s: f64| Some(follow.rotary_words(&part.part(0.0, s))?.end_rad[axis]);
+            let apart = |there: f64| there != stands && there != end.end_rad[axis];
+            if apart(word(s)?) {
+                return Some(s);
+            }
+            // Less than half a step from here: alone in a piece of one step it is least off.
+            let one_step = follow.block.rotary_step_rad(axis) / (end.end_rad[axis] - stands).abs();
+            (s < one_step && one_step < 1.0 && apart(word(one_step)?)).then_some(one_step)
         };
         let s = (0..3).filter_map(between).min_by(f64::total_cmp)?;
         Some(Corner { s, distance_mm: self.beside_corners_mm(follow, part, swing, end.end_rad) })
@@ -127,7 +121,7 @@ impl<'m> Corrector<'m> {
             let mut even = taken_up;
             even.lag_rad[axis] = swing.ends[0].lag_rad[axis] * (1.0 - s) + swing.ends[1].lag_rad[axis] * s;
             let mut before = taken_up;
-            let side = if sides[axis] == 0 { taken_up.direction[axis] } else { sides[axis] };
+            let side = sides[axis];
             before.direction[axis] = side;
             let at = Command { linear_mm: part.at(s), rotary_rad, ..*from };
             let width = self.model.rotary_reversal_rad(axis, &at).max(0.0);

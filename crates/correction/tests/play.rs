@@ -219,7 +219,7 @@ fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
     let mut at = place(random);
     let mut control = Control { at };
     let rapid = Motion::Rapid {
-        start: Partial { linear_mm: [Some(1.0); 3], rotary_deg: [0.0; 3] },
+        start: Partial { linear_mm: [Some(1.0); 3], rotary_deg: [0.0; 3], rotary_known: [true; 3] },
         end: position(at).into(),
     };
     let first = corrector.correct(&rapid, &block).expect("a rapid");

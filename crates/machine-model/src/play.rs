@@ -69,18 +69,15 @@ impl Carriage {
         Self { at, ..Self::UNKNOWN }
     }
 
+    /// At a command, in the middle of its play as far as anybody knows.
+    const fn in_the_middle(at: f64) -> Self {
+        Self { at: Some(at), stands: Some(at), ..Self::UNKNOWN }
+    }
+
     /// Taken for one that has come to where it stands in a direction, its play taken up.
     fn rest(at: f64, direction: i8, half: f64) -> Self {
         let behind = at - f64::from(direction) * half;
         Self { at: Some(at), stands: Some(behind), certain: [behind; 2], side: direction }
-    }
-
-    /// Is about to go in a direction: of an unknown side it counts as lying against that to which it goes.
-    fn set_out(&mut self, heading: i8, half: impl Fn(f64) -> f64) {
-        let Some(at) = self.at.filter(|_| self.side == 0 && heading != 0) else { return };
-        let half = half(at);
-        self.certain = [at - half, at + half];
-        (self.stands, self.side) = (Some(at - f64::from(heading) * half), heading);
     }
 
     /// Goes to a command, one way only.
@@ -139,6 +136,7 @@ impl Carriage {
     fn unsure(&self, half: f64, same: f64) -> f64 {
         match self.stands {
             None => half,
+            Some(_) if self.certain == ANYWHERE => half,
             Some(carriage) => {
                 let [low, high] = self.certain;
                 let far = (carriage - low).abs().max((high - carriage).abs());
@@ -175,15 +173,6 @@ impl Play {
         self.linear[axis] = Carriage::brought(at_mm);
     }
 
-    /// The rotary axes are brought to A, B and C, rad, by a way that nobody knows; one that stands there already stays.
-    pub fn forget_rotary(&mut self, at_rad: &Vector) {
-        for (carriage, at) in self.rotary.iter_mut().zip(at_rad.iter()) {
-            if carriage.at.is_none_or(|before| (before - at).abs() > SAME_PLACE_RAD) {
-                *carriage = Carriage::brought(Some(*at));
-            }
-        }
-    }
-
     /// An axis is taken for one that has come to where it stands (`at`) in a direction, its play taken up.
     pub fn rest(&mut self, model: &dyn PathModel, at: &Command, axis: usize, direction: i8) {
         self.linear[axis] = Carriage::rest(at.linear_mm[axis], direction, half_play_mm(model, axis, at));
@@ -205,21 +194,19 @@ impl Play {
         }
     }
 
-    /// The rotary axes turn to a command, each of them one way only; as [`Play::go`].
-    pub fn turn(&mut self, model: &dyn PathModel, to: &Command) {
+    /// The rotary axes turn to a command, each of them one way only; as [`Play::go`], but that one whose side is not known
+    /// counts as standing in the middle of its play: what it carries is led from there, and there is no leap.
+    ///
+    /// * `known` – of which axes the command is known; nobody knows where the others are
+    pub fn turn(&mut self, model: &dyn PathModel, to: &Command, known: [bool; 3]) {
         for (axis, carriage) in self.rotary.iter_mut().enumerate() {
+            let at = to.rotary_rad[axis];
             let half = |at: f64| half_play_rad(model, axis, &turned_to(to, axis, at));
-            carriage.go(to.rotary_rad[axis], half, SAME_PLACE_RAD);
-        }
-    }
-
-    /// The rotary axes are about to turn to a command: one whose side is not known counts as lying against that to which it
-    /// goes, where it stands already.
-    pub fn set_out(&mut self, model: &dyn PathModel, to: &Command) {
-        for (axis, carriage) in self.rotary.iter_mut().enumerate() {
-            let way = carriage.at.map_or(0.0, |at| to.rotary_rad[axis] - at);
-            let heading = if way.abs() > SAME_PLACE_RAD { way.signum() as i8 } else { 0 };
-            carriage.set_out(heading, |at| half_play_rad(model, axis, &turned_to(to, axis, at)));
+            match (known[axis], carriage.at) {
+                (false, _) => *carriage = Carriage::UNKNOWN,
+                (true, None) => *carriage = Carriage::in_the_middle(at),
+                (true, Some(_)) => carriage.go(at, half, SAME_PLACE_RAD),
+            }
         }
     }
 
@@ -235,7 +222,7 @@ impl Play {
     #[must_use]
     pub fn rotary_on(&self, model: &dyn PathModel, at: &Command, direction: [i8; 3]) -> RotaryPlay {
         let lag_rad = Vector::from_fn(|axis, _| {
-            let Some(stands) = self.rotary[axis].stands.filter(|_| direction[axis] != 0) else { return 0.0 };
+            let Some(stands) = self.rotary[axis].stands else { return 0.0 };
             let half = half_play_rad(model, axis, at);
             let lag = stands - (at.rotary_rad[axis] - f64::from(direction[axis]) * half);
             if lag.abs() > SAME_PLACE_RAD { lag } else { 0.0 }
@@ -486,14 +473,16 @@ mod tests {
         let mut play = Play::unknown();
         // The tool at X 100 as the workpiece sees it, µm: where the table stands further, it lies behind in Y, but for a hundredth.
         let mut seen_um = |c: f64| {
-            play.turn(&model, &at(c));
+            play.turn(&model, &at(c), [true; 3]);
             let tip = model.tip_mm(&(at(c).linear_mm + play.error_mm(&model, &at(c))), &at(c));
             let turned = at(c).rotary_rad.z;
             [tip.x - 100.0 * units::math::cos(turned), tip.y + 100.0 * units::math::sin(turned)]
                 .map(|mm| (mm * 1e5).round() * 1e-2)
         };
         let near = |seen: [f64; 2], wanted: [f64; 2]| (0..2).all(|i| (seen[i] - wanted[i]).abs() < 0.08);
-        seen_um(0.0);
+        // From the middle of its play: off by half of it, until that is taken up.
+        assert!(near(seen_um(0.0), [-2.0, -3.0]), "{:?}", seen_um(0.0));
+        assert!(near(seen_um(20e-6), [-2.0, -1.0]), "{:?}", seen_um(20e-6));
         assert!(near(seen_um(0.010), [0.0, 0.0]));
         // Back by 20 and 59 µrad: it has not moved, and is off by that at an arm of 100 mm.
         assert!(near(seen_um(0.010 - 20e-6), [0.0, -2.0]), "{:?}", seen_um(0.010 - 20e-6));

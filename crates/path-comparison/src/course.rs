@@ -98,7 +98,7 @@ impl<'m> Others<'m> {
             None => other.model.error_mm(here),
             Some(play) => {
                 play.go(other.model, here);
-                play.turn(other.model, here);
+                play.turn(other.model, here, [true; 3]);
                 play.error_mm(other.model, here)
             }
         })

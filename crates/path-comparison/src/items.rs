@@ -420,11 +420,8 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             for place in [start, end] {
                 let known = Vector::from(place.linear_mm.map(|at| at.unwrap_or(0.0)));
                 let turned = Vector::from(place.rotary_deg.map(f64::to_radians));
-                if kind == Kind::Uncorrected {
-                    play.forget_rotary(&turned);
-                }
                 play.go(model, &common.command(known, rotary_rad));
-                play.turn(model, &common.command(known, turned));
+                play.turn(model, &common.command(known, turned), place.rotary_known);
             }
             for axis in 0..3 {
                 let [from, to] = [start.linear_mm[axis], end.linear_mm[axis]];
@@ -534,6 +531,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         self.at = Partial {
             linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),
             rotary_deg: way.end_rotary_deg(),
+            rotary_known: [true; 3],
         };
         self.place = stretches.last().map(|stretch| stretch.at(1.0));
         self.ready.push_back(Item::Feed(Box::new(Feeding {
@@ -589,8 +587,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
         let mut at = command(0.0);
         play.go(self.model, &at);
-        play.turn(self.model, &at);
-        play.set_out(self.model, &command(1.0));
+        play.turn(self.model, &at, [true; 3]);
         let mut found: SmallVec<[(f64, Vector); 4]> = SmallVec::new();
         found.push((0.0, play.error_mm(self.model, &at)));
         let mut from = 0.0;
@@ -625,7 +622,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             for s in taken_up.into_iter().chain([cut]) {
                 let here = command(s);
                 play.go(self.model, &here);
-                play.turn(self.model, &here);
+                play.turn(self.model, &here, [true; 3]);
                 found.push((s, play.error_mm(self.model, &here)));
             }
             (from, at) = (cut, to);

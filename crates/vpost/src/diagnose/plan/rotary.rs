@@ -134,26 +134,26 @@ fn line(profile: &Profile, swing: &Swing, tool_mm: Vector) -> Option<Line> {
         };
         model.same_tip_mm(target, &state, &Vector::zeros())
     };
+    let all_deg: Vec<[f64; 3]> = swing
+        .stops_deg
+        .windows(2)
+        .flat_map(|pair| steps(pair[0], pair[1]))
+        .chain(swing.stops_deg.last().copied())
+        .collect();
     let target = targets(profile.volume())
         .filter_map(|target| {
             let way = |deg: &[f64; 3]| {
                 let at = follow(&target, *deg);
-                profile.volume().contains(&at).then(|| (at - target).norm())
+                profile.volume().contains(&rounded(at)).then(|| (at - target).norm())
             };
-            let ways = swing.stops_deg.iter().map(way).collect::<Option<Vec<f64>>>()?;
+            let ways = all_deg.iter().map(way).collect::<Option<Vec<f64>>>()?;
             Some((target, ways.into_iter().fold(0.0, f64::max)))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?
         .0;
     let spot = |rotary_deg: [f64; 3]| Spot { at_mm: rounded(follow(&target, rotary_deg)), rotary_deg };
-    // From place to place in steps, without the first and the last.
-    let between = |from: [f64; 3], to: [f64; 3]| -> Vec<Spot> {
-        let turn = (0..3).map(|k| (to[k] - from[k]).abs()).fold(0.0, f64::max);
-        let steps = (turn / STEP_DEG).ceil().max(1.0);
-        (1..steps as u32)
-            .map(|k| spot([0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * f64::from(k) / steps)))
-            .collect()
-    };
+    // Without the first and the last.
+    let between = |from: [f64; 3], to: [f64; 3]| steps(from, to).into_iter().skip(1).map(spot);
     let inner = swing.stops_deg.len() - 2;
     let order: Vec<usize> = (0..inner + 2).chain((1..=inner).rev()).collect();
     let (mut stops, mut passed) = (Vec::new(), Vec::new());
@@ -189,6 +189,14 @@ fn line(profile: &Profile, swing: &Swing, tool_mm: Vector) -> Option<Line> {
         stops,
         swing: Some((before, passed)),
     })
+}
+
+/// From place to place in steps that thousandths can say, without the last.
+fn steps(from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 3]> {
+    let turn = (0..3).map(|k| (to[k] - from[k]).abs()).fold(0.0, f64::max);
+    let count = (turn / STEP_DEG).ceil().max(1.0);
+    let place = |k: u32, i: usize| from[i] + (to[i] - from[i]) * f64::from(k) / count;
+    (0..count as u32).map(|k| [0, 1, 2].map(|i| (place(k, i) * 1000.0).round() / 1000.0)).collect()
 }
 
 /// Where the target may stand, said by the linear axes with all rotary axes at 0.
