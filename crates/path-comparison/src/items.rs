@@ -36,6 +36,15 @@ pub(crate) fn has_play(model: &dyn PathModel) -> bool {
     model.depends_on_direction() || model.has_rotary_play()
 }
 
+/// Where the axes stand in their play behind a switch: a rotary axis is what it was, of a linear one nothing is known.
+pub(crate) fn behind_a_switch(model: &dyn PathModel, before: Option<Play>) -> Option<Play> {
+    has_play(model).then(|| {
+        let mut play = before.unwrap_or(Play::unknown());
+        (0..3).for_each(|axis| play.forget(axis, None));
+        play
+    })
+}
+
 /// What must be the same for two motions to go on together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Process {
@@ -405,7 +414,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn switch(&mut self, kinematics: Kinematics) {
         self.kinematics = kinematics;
         self.model = self.models.of(kinematics).unwrap_or(self.models.axes);
-        self.play = has_play(self.model).then(Play::unknown);
+        self.play = behind_a_switch(self.model, self.play);
         self.at.linear_mm = [None; 3];
         self.place = None;
         if let Some(others) = &mut self.others {
