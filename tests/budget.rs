@@ -287,6 +287,51 @@ fn deviations_act_one_to_one_or_by_an_arm() {
     }
 }
 
+/// `--ball` makes Serkov's 60 points; whichever axis leads, the figures of a machine without play are the same.
+#[test]
+fn a_ball_is_the_points_of_its_file() {
+    let machine = ["-m", "samples/budget/ms300_like.toml"];
+    let of = |name: &str, more: &[&str]| budget(name, &[&machine[..], more].concat()).json;
+    let file = of("ball-file", &["--points", "samples/budget/ball_points.csv"]);
+    for lead in ["R=120,H=50,lead=B", "R=120,H=50,lead=C"] {
+        let ball = of("ball", &["--ball", lead]);
+        assert_eq!(ball["control_points"], 60);
+        for deviation in list(&file["deviations"]) {
+            let name = deviation["name"].as_str().expect("a name");
+            let there = self::deviation(&ball, name);
+            for key in ["M_um", "rms_um"] {
+                // The file has a nanometre's millionth of decimals.
+                let [one, other] = [&deviation["alone"][key], &there["alone"][key]].map(number);
+                assert!((one - other).abs() < 1e-4, "{lead}: {name} {key}: {one} and {other}");
+            }
+        }
+    }
+    for (ball, says) in
+        [("R=120,H=500,lead=B", "outside the calibrated volume"), ("R=120,H=50,lead=A", "no rotary axis A")]
+    {
+        let output = run(&["budget", "-m", "samples/budget/ms300_like.toml", "--ball", ball]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(messages(&output).contains(says), "{}", messages(&output));
+    }
+    let output = run(&["budget", "-m", "samples/budget/ms300_like.toml", "--ball", "R=-1,H=50,lead=B"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+/// Play of a table acts at the arm of the ball, by half the reversal value on either side.
+#[test]
+fn play_of_a_rotary_axis_is_in_the_budget() {
+    let text = std::fs::read_to_string(crate::common::root().join("samples/budget/ms300_like.toml"))
+        .expect("readable");
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let path = place.path().join("loose.toml");
+    std::fs::write(&path, text.replace("EB0C_urad   = 20", "EB0C_urad   = 20\nbacklash_urad = 40"))
+        .expect("writable");
+    let path = path.to_str().expect("a plain path");
+    let found = budget("loose", &["-m", path, "--ball", "R=120,H=50,lead=B"]);
+    let alone = number(&deviation(&found.json, "B(C)")["alone"]["M_um"]);
+    assert!((alone - 0.5 * 40e-3 * 120.0).abs() < 1e-3, "{alone}");
+}
+
 #[test]
 fn what_it_takes_to_reach_a_target() {
     let found = budget("target", &["-m", STAN, "--target", "100"]);

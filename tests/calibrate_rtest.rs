@@ -375,6 +375,14 @@ fn each_bad_input_has_its_own_message() {
         .collect();
     let wrong = file(at, "wrong.csv", &wrong.join("\n"));
     says(&refused("good.csv", &text, &base, &["--holdout", &wrong]), "VP1103", "held-out readings get worse");
+    // A base that knows from which side its table came, which the rows do not say.
+    let loose = profile(at, "loose", Some(LOCATIONS));
+    let own = "errors = \"loose_tables/c.csv\"";
+    let both = std::fs::read_to_string(&loose)
+        .expect("written")
+        .replace(own, &format!("{own}\nerrors_negative = \"loose_tables/c.csv\""));
+    std::fs::write(&loose, both).expect("written");
+    says(&refused("good.csv", &text, &loose, &[]), "VP1101", "`errors_negative`");
     // No profile.
     let output = run(&["calibrate", "rtest", &good, "-o", &made]);
     says(&messages(&output), "VP1106", "which machine?");

@@ -49,6 +49,7 @@ fn design(csv: &str, profile: &str, kept: &dyn Fn(&str) -> bool) -> Measurements
                 rotary_rad: Vector::zeros(),
                 tool_mm: three(["tool_x_mm", "tool_y_mm", "tool_z_mm"]),
                 direction: ["dir_x", "dir_y", "dir_z"].map(|n| value(n).expect("filled in") as i8),
+                rotary_play: Default::default(),
             },
             conditions: Conditions {
                 time_s: value("time_s"),
@@ -183,6 +184,122 @@ fn the_program_is_one_that_vpost_accepts() {
         let (program, _) = plan("program", "machine-profiles/perfect.toml", &["-d", dialect]);
         std::fs::write(&path, &program).expect("writable");
         let ran = run(&[name, "-m", "machine-profiles/perfect.toml", "-d", dialect]);
+        assert!(ran.status.success(), "{dialect}: {}", messages(&ran));
+        assert!(ran.stdout == program.as_bytes(), "{dialect}: the program was changed");
+    }
+}
+
+/// A tilting rotary table, its axes through these points.
+const TILTING: &str = "samples/profiles/tilting_table.toml";
+const CENTRE: [f64; 3] = [200.0, 200.0, 100.0];
+
+/// Where the table sees the tool's end of a machine [w C A X Y b Z t], and which way it sees the tool point: `Rz(-C) Rx(-A)`.
+fn seen(q: [f64; 3], tool_mm: f64, a: f64, c: f64) -> [[f64; 3]; 2] {
+    let back = |v: [f64; 3]| {
+        let (sin, cos) = units::math::sin_cos(a.to_radians());
+        let [x, y, z] = [v[0], cos * v[1] + sin * v[2], cos * v[2] - sin * v[1]];
+        let (sin, cos) = units::math::sin_cos(c.to_radians());
+        [cos * x + sin * y, cos * y - sin * x, z]
+    };
+    let arm = [q[0] - CENTRE[0], q[1] - CENTRE[1], q[2] + tool_mm - CENTRE[2]];
+    [back(arm), back([0.0, 0.0, 1.0])]
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn linear_axes_follow_a_target_while_rotary_ones_turn() {
+    let (csv, said) = plan("points", TILTING, &[]);
+    assert!(!said.contains("except everything of"), "{said}");
+    let header: Vec<&str> = csv.lines().next().expect("a header").split(',').collect();
+    let column = |name: &str| header.iter().position(|known| *known == name).expect("the column");
+    let mut runs: Vec<(String, Vec<[f64; 6]>)> = Vec::new();
+    for line in csv.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields.len(), header.len());
+        let value = |name: &str| fields[column(name)].parse::<f64>().expect("a number");
+        let row = ["x_mm", "y_mm", "z_mm", "tool_z_mm", "a_deg", "c_deg"].map(value);
+        if runs.last().is_none_or(|(run, _)| run != fields[0]) {
+            runs.push((fields[0].to_owned(), Vec::new()));
+        }
+        runs.last_mut().expect("just added").1.push(row);
+    }
+    let turning: Vec<&(String, Vec<[f64; 6]>)> = runs.iter().filter(|(run, _)| run.contains("BK")).collect();
+    let names: Vec<&str> = turning.iter().map(|(run, _)| &run[3..]).collect();
+    let each = ["BK1 C", "BK2 A", "BK4 C A"];
+    let longer = each.map(|name| format!("{name} longer tool"));
+    assert_eq!(names, each.into_iter().chain(longer.iter().map(String::as_str)).collect::<Vec<_>>());
+    for (run, rows) in &turning {
+        let places: Vec<_> = rows.iter().map(|[x, y, z, t, a, c]| seen([*x, *y, *z], *t, *a, *c)).collect();
+        // Places are rounded to hundredths.
+        assert!(places.iter().all(|[tip, _]| apart(*tip, places[0][0]) < 0.02), "{run}: {places:?}");
+        let way =
+            rows.iter().map(|row| apart([row[0], row[1], row[2]], [rows[0][0], rows[0][1], rows[0][2]]));
+        assert!(way.fold(0.0, f64::max) > 100.0, "{run}: a short arm shows little");
+        if run.contains("BK4") {
+            let (sin, cos) = units::math::sin_cos(10f64.to_radians());
+            for [_, towards] in &places {
+                let angle = units::math::acos(sin * towards[0] + cos * towards[2]).to_degrees();
+                assert!((angle - 15.0).abs() < 0.02, "{run}: {towards:?}");
+            }
+        }
+    }
+    // The program passes all of them, and leaves the target nowhere on the way.
+    let (program, _) = plan("program", TILTING, &[]);
+    let zero = [200.0, 200.0, 150.0];
+    let (mut target, mut at, mut tool_mm) = (None, [0.0; 5], 0.0);
+    let mut wanted = turning.iter().flat_map(|(_, rows)| rows).peekable();
+    for line in program.lines() {
+        if let Some(rest) = line.split("TARGET AT ").nth(1).or_else(|| line.split("target at ").nth(1)) {
+            tool_mm = rest.split(' ').nth(2).expect("three numbers").parse().expect("a number");
+        }
+        if !(line.starts_with("G1 X") && line.contains('C')) {
+            target = None;
+            continue;
+        }
+        let mut to = at;
+        for word in line.split(' ').skip(1) {
+            let k = ['X', 'Y', 'Z', 'A', 'C']
+                .iter()
+                .position(|letter| word.starts_with(*letter))
+                .expect("an axis");
+            to[k] = word[1..].parse::<f64>().expect("a number") + if k < 3 { zero[k] } else { 0.0 };
+        }
+        let place = |v: [f64; 5]| seen([v[0], v[1], v[2]], tool_mm, v[3], v[4])[0];
+        let target = target.get_or_insert_with(|| place(to));
+        let from = if apart(place(at), *target) < 0.05 { at } else { to };
+        for s in [0.25, 0.5, 0.75, 1.0] {
+            let off = apart(place([0, 1, 2, 3, 4].map(|i| from[i] + (to[i] - from[i]) * s)), *target);
+            assert!(off < 0.04, "{off} mm off the target at {line}");
+        }
+        at = to;
+        if wanted.peek().is_some_and(|row| apart([row[0], row[1], row[2]], [at[0], at[1], at[2]]) < 1e-6) {
+            wanted.next();
+        }
+    }
+    assert_eq!(wanted.next(), None, "the program does not come there");
+}
+
+/// A perfect table leaves the program as it is.
+#[test]
+fn vpost_accepts_the_program_with_rotary_axes() {
+    let text = std::fs::read_to_string(crate::common::root().join(TILTING)).expect("readable");
+    let perfect: String = text
+        .lines()
+        .filter(|line| !line.contains("_um ") && !line.contains("_urad "))
+        .map(|line| line.to_owned() + "\n")
+        .collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [machine, path] = ["machine.toml", "plan.nc"].map(|name| folder.path().join(name));
+    std::fs::write(&machine, perfect).expect("writable");
+    let [machine, name] = [&machine, &path].map(|path| path.to_str().expect("a plain path"));
+    for dialect in ["fanuc", "linuxcnc", "sinumerik"] {
+        let (program, _) = plan("program", machine, &["-d", dialect]);
+        assert!(program.contains(if dialect == "sinumerik" { "C=" } else { " C" }), "{dialect}");
+        std::fs::write(&path, &program).expect("writable");
+        let ran = run(&[name, "-m", machine, "-d", dialect]);
         assert!(ran.status.success(), "{dialect}: {}", messages(&ran));
         assert!(ran.stdout == program.as_bytes(), "{dialect}: the program was changed");
     }

@@ -152,6 +152,37 @@ fn without_correction_it_does_not() {
     assert_eq!(check.status.code(), Some(1), "{}", String::from_utf8_lossy(&check.stdout));
 }
 
+/// A and C with play: led at their arms where they turn back. What was corrected for a machine without play is off there.
+#[test]
+fn play_of_rotary_axes_is_led_at_its_arm() {
+    let tables = crate::common::root().join("tests/profiles");
+    let tables = tables.to_str().expect("a plain path");
+    let without = std::fs::read_to_string(crate::common::root().join(PROFILE)).expect("readable");
+    let without = without.replace("\"wavy_", &format!("\"{tables}/wavy_"));
+    let with = without
+        .replace("EC0A_urad = -40.0", "EC0A_urad = -40.0\nbacklash_urad = 60.0")
+        .replace("EB0C_urad = -50.0", "EB0C_urad = -50.0\nbacklash_urad = 80.0");
+    for dialect in ["fanuc", "sinumerik"] {
+        // C turns back in the middle of the cut.
+        let place = Place::new(&program(dialect).replace("160.5", "101.5"));
+        let [from, to, loose, tight] =
+            ["in.nc", "out.nc", "loose.toml", "tight.toml"].map(|name| place.path(name));
+        std::fs::write(&loose, &with).expect("writable");
+        std::fs::write(&tight, &without).expect("writable");
+        let corrected = |profile: &str| {
+            let ran = run(&[&from, "-m", profile, "-d", dialect, "-o", &to, "--force"]);
+            assert!(ran.status.success(), "{dialect}: {}", messages(&ran));
+            let check = run(&["check", &from, &to, "-m", &loose, "-d", dialect]);
+            (check.status.code(), String::from_utf8_lossy(&check.stdout).into_owned())
+        };
+        let (status, said) = corrected(&loose);
+        assert_eq!(status, Some(0), "{dialect}: {said}");
+        let (status, said) = corrected(&tight);
+        assert_eq!(status, Some(1), "{dialect}: {said}");
+        assert!(said.contains("off its path"), "{said}");
+    }
+}
+
 /// The same cut with axis words, made by the formulas with the machine's own centres: `check` compares tips.
 #[test]
 fn the_same_tip_by_axis_words_is_the_same_path() {

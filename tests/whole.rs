@@ -3,6 +3,8 @@
 //! `cargo test -p vpost --test whole closed_loop::` runs one file's.
 
 mod common;
+#[path = "../xtask/src/five_axis_samples.rs"]
+mod five_axis_parts;
 #[path = "common/folders.rs"]
 mod folders;
 #[path = "../xtask/src/wrap.rs"]
@@ -36,6 +38,7 @@ mod export;
 mod field;
 mod files;
 mod five_axis;
+mod five_axis_samples;
 mod flow;
 mod gap_smoke;
 mod guard;

@@ -121,6 +121,7 @@ fn hot_path(c: &mut Criterion) {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
+            rotary_play: Default::default(),
         })
         .collect();
     let everywhere = model.everywhere(&commands[0]).expect("three linear axes");

@@ -67,7 +67,13 @@ pub(crate) struct Inverse {
 }
 
 pub(crate) fn at(linear_mm: Vector) -> Command {
-    Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+    Command {
+        linear_mm,
+        rotary_rad: Vector::zeros(),
+        tool_mm: Vector::zeros(),
+        direction: [0; 3],
+        rotary_play: Default::default(),
+    }
 }
 
 /// The same random targets for everybody, a millimetre inside the volume that all engines share.

@@ -5,6 +5,7 @@ mod calibration_samples;
 mod corpus;
 mod dist;
 mod engines;
+mod five_axis_samples;
 mod gap_bench;
 mod house;
 mod map_speed;
@@ -15,8 +16,9 @@ mod reproduction;
 mod stan_s500;
 mod wrap;
 
+use std::fmt::Write as _;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Parser, Subcommand};
@@ -46,6 +48,12 @@ enum Task {
     Dist(dist::Options),
     /// Print docs/engines.md: the engines against one another.
     Engines,
+    /// Write the five-axis sample programs into a folder.
+    FiveAxisSamples {
+        /// Where they go.
+        #[arg(default_value = "samples/five_axis")]
+        folder: PathBuf,
+    },
     /// Diagnose machines with withheld effects and write docs/diagnosis-benchmark.md.
     GapBench(gap_bench::Options),
     /// Write the sample measurements into a folder.
@@ -78,6 +86,7 @@ fn main() -> anyhow::Result<()> {
         Task::Corpus(options) => corpus::run(&options)?,
         Task::Dist(options) => dist::run(&options)?,
         Task::Engines => engines::page(),
+        Task::FiveAxisSamples { folder } => five_axis_programs(&folder)?,
         Task::GapBench(options) => gap_bench::run(&options)?,
         Task::GapSamples { folder } => gap_bench::write_samples(&folder)?,
         Task::House(options) => house::run(&options)?,
@@ -88,6 +97,16 @@ fn main() -> anyhow::Result<()> {
     };
     std::io::stdout().write_all(text.as_bytes())?;
     Ok(())
+}
+
+/// Writes the five-axis programs, and says for which chain each is.
+fn five_axis_programs(folder: &Path) -> anyhow::Result<String> {
+    let mut said = String::new();
+    for (name, text) in five_axis_samples::files() {
+        std::fs::write(folder.join(&name), text)?;
+        writeln!(said, "{name}: {}", five_axis_samples::chain_of(&name))?;
+    }
+    Ok(said)
 }
 
 /// Breaks the long lines of files; says which had some.

@@ -206,6 +206,7 @@ fn stroke(feed: &Feed, context: &nc_program::Context, model: &dyn PathModel, ste
             rotary_rad: Vector::zeros(),
             tool_mm: context.tool_mm.into(),
             direction: [0; 3],
+            rotary_play: Default::default(),
         };
         let real = commanded + model.error_mm(&command);
         stroke.commanded.push(context.frame.to_program(commanded.into()));

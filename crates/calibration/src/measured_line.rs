@@ -39,7 +39,13 @@ impl MeasuredLine {
         let mut sides = [0; 3];
         sides[self.axis] = direction.signum();
         let error = |tool_mm: Vector| {
-            let command = Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm, direction: sides };
+            let command = Command {
+                linear_mm,
+                rotary_rad: Vector::zeros(),
+                tool_mm,
+                direction: sides,
+                rotary_play: Default::default(),
+            };
             machine.predict(&command).error_mm
         };
         let here = error(self.optics_mm);

@@ -55,7 +55,13 @@ fn model(description: &Description) -> WithEffects {
 }
 
 fn at(linear_mm: Vector) -> Command {
-    Command { linear_mm, rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+    Command {
+        linear_mm,
+        rotary_rad: Vector::zeros(),
+        tool_mm: Vector::zeros(),
+        direction: [0; 3],
+        rotary_play: Default::default(),
+    }
 }
 
 /// Counts how often each parameter's interval holds the truth.

@@ -126,17 +126,20 @@ impl<'m> Corrector<'m> {
             state: self.state(block, rotary_deg),
             everywhere: self.everywhere.as_ref().and_then(|known| known.2.clone()),
             turns: false,
+            lag_rad: None,
         }
     }
 
     /// What the error depends on besides the place.
     #[inline]
     pub(crate) fn state(&self, block: &Block, rotary_deg: [f64; 3]) -> Command {
+        let rotary_rad = Vector::from(rotary_deg.map(f64::to_radians));
         Command {
             linear_mm: Vector::zeros(),
-            rotary_rad: Vector::from(rotary_deg.map(f64::to_radians)),
+            rotary_rad,
             tool_mm: block.tool_mm.into(),
             direction: self.direction,
+            rotary_play: self.rotary_play(rotary_rad),
         }
     }
 
@@ -157,6 +160,7 @@ impl<'m> Corrector<'m> {
         // Place apart, where the same is asked for.
         let alike = |state: &Command| {
             (state.tool_mm, state.rotary_rad) == (target.tool_mm, target.rotary_rad)
+                && state.rotary_play == target.rotary_play
                 && (state.direction == target.direction || !self.model.depends_on_direction())
         };
         if let Some((same, answer)) = &self.last

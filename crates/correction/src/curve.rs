@@ -525,7 +525,7 @@ fn turned_on<const N: usize>(mut next: (f64, f64), step: (f64, f64)) -> [(f64, f
 }
 
 /// At s on the way between two ends, which are reached to the bit.
-fn between([a, b]: &[Vector; 2], s: f64) -> Vector {
+pub(crate) fn between([a, b]: &[Vector; 2], s: f64) -> Vector {
     if s >= 1.0 { *b } else { a + (b - a) * s }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use machine_model::{Command, Everywhere, LANES, Move, PathModel, Turn, Vector};
 use smallvec::SmallVec;
 
-use crate::curve::{Curve, Extent};
+use crate::curve::{Curve, Extent, between};
 
 /// How often a stretch may be halved before it counts as not provable: 2^-20 of any motion is below
 /// every machine's resolution.
@@ -30,6 +30,8 @@ pub(crate) struct Machine<'m> {
     pub(crate) everywhere: Option<Arc<Everywhere>>,
     /// Rotary axes turn on the motion's way; those of the state stand where the next piece begins.
     pub(crate) turns: bool,
+    /// By how much further than commanded they stand at the ends of such a piece, where they have play.
+    pub(crate) lag_rad: Option<[Vector; 2]>,
 }
 
 impl Machine<'_> {
@@ -120,6 +122,17 @@ pub(crate) enum Verdict {
         /// How far.
         distance_mm: f64,
     },
+}
+
+impl Verdict {
+    /// The same of a path that is so many mm further away.
+    pub(crate) fn further_by(self, mm: f64, limit_mm: f64) -> Self {
+        match self {
+            Self::Within(bound_mm) if bound_mm + mm <= limit_mm => Self::Within(bound_mm + mm),
+            Self::Within(bound_mm) => Self::Beyond { s: 0.5, distance_mm: bound_mm + mm },
+            beyond @ Self::Beyond { .. } => beyond,
+        }
+    }
 }
 
 /// Commands that bring the tool to a programmed motion.
@@ -248,7 +261,10 @@ impl Pair<'_> {
         let commanded = self.commanded.at(s);
         let error = match (self.commanded.rotary_rad(s), self.wanted.rotary_rad(s)) {
             (Some(rotary_rad), Some(programmed_rad)) => {
-                let command = Command { linear_mm: commanded, rotary_rad, ..machine.state };
+                let mut command = Command { linear_mm: commanded, rotary_rad, ..machine.state };
+                if let Some(ends) = &machine.lag_rad {
+                    command.rotary_play.lag_rad = between(ends, s);
+                }
                 machine.model.error_from_mm(&command, &programmed_rad)
             }
             _ => machine.error(commanded),
@@ -257,9 +273,15 @@ impl Pair<'_> {
     }
 
     /// How rotary axes turn on the part from s0 to s1.
-    pub(crate) fn turn(&self, s0: f64, s1: f64) -> Option<Turn> {
+    pub(crate) fn turn(&self, machine: &Machine<'_>, s0: f64, s1: f64) -> Option<Turn> {
         let ends = |curve: &Curve| Some([curve.rotary_rad(s0)?, curve.rotary_rad(s1)?]);
-        Some(Turn { programmed_rad: ends(self.wanted)?, commanded_rad: ends(self.commanded)? })
+        Some(Turn {
+            programmed_rad: ends(self.wanted)?,
+            commanded_rad: ends(self.commanded)?,
+            lag_rad: machine.lag_rad.map_or([machine.state.rotary_play.lag_rad; 2], |lag_rad| {
+                [between(&lag_rad, s0), between(&lag_rad, s1)]
+            }),
+        })
     }
 
     /// Being early or late by so many mm is no deviation: (P2) looks along a tangent, which says nothing of the path where that turns
@@ -307,7 +329,7 @@ impl Pair<'_> {
             }
         }
         let extent = self.commanded.extent(a.s, b.s);
-        let turn = self.turn(a.s, b.s);
+        let turn = self.turn(machine, a.s, b.s);
         self.between(a, b, machine.leaves_chord_turning_mm(&extent, self.passes(), turn))
     }
 
@@ -332,7 +354,7 @@ impl Pair<'_> {
             return f64::INFINITY;
         }
         let extent = self.commanded.extent(0.0, s);
-        let of_model = machine.leaves_chord_turning_mm(&extent, self.passes(), self.turn(0.0, s));
+        let of_model = machine.leaves_chord_turning_mm(&extent, self.passes(), self.turn(machine, 0.0, s));
         of_model + self.commanded.difference_bound(self.wanted, 0.0, s)
     }
 
@@ -578,8 +600,15 @@ mod tests {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::new(3.0, -5.0, -120.0),
             direction: [0; 3],
+            rotary_play: Default::default(),
         };
-        Machine { model, state, everywhere: model.everywhere(&state).map(Arc::new), turns: false }
+        Machine {
+            model,
+            state,
+            everywhere: model.everywhere(&state).map(Arc::new),
+            turns: false,
+            lag_rad: None,
+        }
     }
 
     /// The largest distance found at many places.

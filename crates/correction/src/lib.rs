@@ -27,6 +27,7 @@ mod motion;
 mod options;
 mod play;
 mod remembered;
+mod rotary_play;
 mod short_line;
 #[cfg(test)]
 mod testing;

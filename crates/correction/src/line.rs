@@ -7,7 +7,7 @@ use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
 use crate::error::CorrectionError;
 use crate::follow::Follow;
-use crate::grid::Goal;
+use crate::grid::{Block, Goal};
 use crate::play::{Creep, Tried};
 use crate::{Centre, Piece, PieceKind};
 
@@ -21,8 +21,10 @@ impl<'m> Corrector<'m> {
         follow: &mut Follow<'_, 'm>,
         part: &Curve,
     ) -> Result<(), CorrectionError> {
-        let Tried::Beyond { distance_mm, s } = self.with_play(follow, part, Self::one_line)? else {
-            return Ok(());
+        let (distance_mm, s, exactly) = match self.with_play(follow, part, Self::one_line)? {
+            Tried::Beyond { distance_mm, s } => (distance_mm, s, false),
+            Tried::Corner(corner) => (corner.distance_mm, corner.s, true),
+            Tried::Done | Tried::Against(_) => return Ok(()),
         };
         let step = (0..3).map(|i| follow.block.step_mm(i)).fold(0.0, f64::max);
         let length = part.length_mm();
@@ -32,7 +34,7 @@ impl<'m> Corrector<'m> {
             self.require_named(follow, part, 0.5 * step)?;
             return Err(self.not_to_be_split(follow, distance_mm));
         }
-        if length < SHORTEST_STEPS * step || length < 2.0 * self.options.minimum_segment_mm {
+        if self.is_too_short(follow.block, part) {
             self.require_named(follow, part, 0.5 * step)?;
             return Err(CorrectionError::NotWithinTolerance {
                 distance_um: distance_mm * 1e3,
@@ -41,9 +43,16 @@ impl<'m> Corrector<'m> {
         }
         follow.alone = false;
         let shortest = (self.options.minimum_segment_mm / length).clamp(0.05, 0.5);
-        let s = s.clamp(shortest, 1.0 - shortest);
+        let s = if exactly { s } else { s.clamp(shortest, 1.0 - shortest) };
         self.follow_line(follow, &part.part(0.0, s))?;
         self.follow_line(follow, &part.part(s, 1.0))
+    }
+
+    /// A part that cannot be split to any use.
+    pub(crate) fn is_too_short(&self, block: &Block, part: &Curve) -> bool {
+        let step = (0..3).map(|i| block.step_mm(i)).fold(0.0, f64::max);
+        let length = part.length_mm();
+        length < SHORTEST_STEPS * step || length < 2.0 * self.options.minimum_segment_mm
     }
 
     /// Tries one line to the end of `part`; the axes stand where they stood unless it is done.
@@ -57,6 +66,15 @@ impl<'m> Corrector<'m> {
         let mut at_end = follow.machine.clone();
         if let Some(rotary) = &rotary {
             at_end.state.rotary_rad = rotary.end_rad;
+        }
+        let swing = rotary.as_ref().and_then(|rotary| self.swing(&follow.machine.state, rotary.end_rad));
+        let mut machine = follow.machine.clone();
+        if let Some((swing, rotary)) = swing.as_ref().zip(rotary.as_ref()) {
+            if let Some(corner) = self.corner(follow, part, swing, rotary) {
+                return Ok(Tried::Corner(corner));
+            }
+            [machine.state.rotary_play, at_end.state.rotary_play] = swing.ends;
+            machine.lag_rad = Some(swing.ends.map(|end| end.lag_rad));
         }
         let nominal_end = at_end.target(part, 1.0);
         let wanted = self.solve(&at_end.state, nominal_end)?;
@@ -84,14 +102,18 @@ impl<'m> Corrector<'m> {
             in_step: follow.whole.in_step,
             begun: self.begun(follow, part),
         };
-        if let Some(turn) = pair.turn(0.0, 1.0) {
+        if let Some(turn) = pair.turn(&machine, 0.0, 1.0) {
             self.require_direction(&turn)?;
         }
         let solved =
             if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
         let limit_mm = self.limit_mm(follow.block);
-        let verdict = pair.line_verdict_by(&follow.machine, solved.as_ref(), limit_mm);
-        match self.verdict_with_play(&follow.machine, &pair, verdict, limit_mm) {
+        let verdict = pair.line_verdict_by(&machine, solved.as_ref(), limit_mm);
+        let verdict = self.verdict_with_play(&machine, &pair, verdict, limit_mm);
+        let corners_mm = swing
+            .as_ref()
+            .map_or(0.0, |swing| self.beside_corners_mm(follow, part, swing, at_end.state.rotary_rad));
+        match verdict.further_by(corners_mm, limit_mm) {
             Verdict::Within(bound) => {
                 let words = rotary.as_ref().map(|rotary| rotary.words);
                 follow.finish(
@@ -101,16 +123,20 @@ impl<'m> Corrector<'m> {
                 );
                 self.gone_along(&at_end.state, &commanded);
                 self.note_end(&at_end.state, nominal_end, wanted);
+                if let Some(swing) = swing {
+                    self.play = swing.play;
+                }
                 if let Some(rotary) = rotary {
                     follow.turning = Some(rotary.turning);
                     follow.machine.state.rotary_rad = rotary.end_rad;
+                    follow.machine.state.rotary_play = self.rotary_play(rotary.end_rad);
                     follow.commanded_mm += commanded.linear_mm();
                 }
                 Ok(Tried::Done)
             }
             Verdict::Beyond { distance_mm, .. } => {
                 self.standing = before;
-                Ok(Tried::Beyond { distance_mm, s: pair.worst_place(&follow.machine) })
+                Ok(Tried::Beyond { distance_mm, s: pair.worst_place(&machine) })
             }
         }
     }

@@ -27,10 +27,20 @@ impl Corrector<'_> {
             self.remembered = None;
         }
         match motion {
-            Motion::Rapid { end, .. } => self.heed(block, end.rotary_deg),
-            Motion::Feed(feed) => self.heed(block, feed.end.rotary_deg),
-            Motion::Hole(hole) => self.heed(block, hole.at_r.rotary_deg),
-            Motion::Uncorrected { .. } => {}
+            Motion::Rapid { start, end } => {
+                self.swung_to(start);
+                self.swung_to(end);
+                self.heed(block, end.rotary_deg);
+            }
+            Motion::Feed(feed) => {
+                self.swung_to(&feed.start.into());
+                self.heed(block, feed.end.rotary_deg);
+            }
+            Motion::Hole(hole) => {
+                self.swung_to(&hole.at_r.into());
+                self.heed(block, hole.at_r.rotary_deg);
+            }
+            Motion::Uncorrected { end } => self.swung_to(end),
         }
         self.approached = None;
         self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
@@ -238,6 +248,7 @@ impl Corrector<'_> {
             let state = follow.machine.state;
             self.settle(&state, block);
         }
+        self.swung_to(&feed.end.into());
         if corrected.pieces.is_empty() && !own_words {
             // Too little to move an axis a step: the block's own words would lead elsewhere, or be another arc.
             corrected.pieces.push(self.standstill(block)?);

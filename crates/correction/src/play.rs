@@ -17,6 +17,7 @@ use crate::direction::moved;
 use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::grid::Block;
+use crate::rotary_play::Corner;
 
 /// Axes that are on another side of their play than was computed for.
 #[derive(Clone, Copy)]
@@ -59,6 +60,8 @@ pub(crate) enum Tried {
         /// Where to split.
         s: f64,
     },
+    /// The play of a rotary axis is taken up on the way: to be split there, and nowhere near.
+    Corner(Corner),
 }
 
 /// Follows a curve with one block.
@@ -165,14 +168,19 @@ impl<'m> Corrector<'m> {
     ///
     /// Such an axis takes the middle of its play until it moves, and may then have taken up less than it seems.
     pub(crate) fn unknown_side_mm(&self, block: &Block, place: &toolpath::Position) -> f64 {
+        let at = Command { linear_mm: place.linear_mm.into(), ..self.state(block, place.rotary_deg) };
+        self.unknown_swing_mm(&at) + self.unknown_sides_mm(&at)
+    }
+
+    /// The same for the linear axes.
+    fn unknown_sides_mm(&self, at: &Command) -> f64 {
         if !self.model.depends_on_direction() {
             return 0.0;
         }
-        let at = Command { linear_mm: place.linear_mm.into(), ..self.state(block, place.rotary_deg) };
-        let unsure_mm = self.play.unsure_mm(self.model, &at);
+        let unsure_mm = self.play.unsure_mm(self.model, at);
         let side = self.play.side();
         let off = |axis: usize| {
-            let turns_by = turned_by_mm(self.model, &at, axis);
+            let turns_by = turned_by_mm(self.model, at, axis);
             match side[axis] {
                 0 => 0.5 * turns_by.norm(),
                 _ if unsure_mm[axis] > 0.0 => {
@@ -229,7 +237,7 @@ impl<'m> Corrector<'m> {
         match attempt(self, follow, part, Creep::Counted)? {
             Tried::Done => return Ok(Tried::Done),
             Tried::Against(_) => {}
-            beyond @ Tried::Beyond { .. } => nearest = beyond,
+            other => nearest = other,
         }
         // The caller splits, and each part decides anew.
         Ok(match nearest {
@@ -299,7 +307,7 @@ impl<'m> Corrector<'m> {
 
     /// What lies across the axes is computed for where a block begins: so much it changes by while rotary axes turn, mm.
     fn across_turns_mm(&self, machine: &Machine<'_>, pair: &Pair<'_>) -> f64 {
-        let Some(turn) = pair.turn(0.0, 1.0) else { return 0.0 };
+        let Some(turn) = pair.turn(machine, 0.0, 1.0) else { return 0.0 };
         let at = |axis: usize, end: usize| {
             let (linear_mm, rotary_rad) = (pair.commanded.at(end as f64), turn.commanded_rad[end]);
             turned_by_mm(self.model, &Command { linear_mm, rotary_rad, ..machine.state }, axis)

@@ -30,6 +30,11 @@ impl Block {
         f64::from(10u32.pow(u32::from(self.rotary_decimals[axis].min(9))))
     }
 
+    /// The step of an axis' words, rad.
+    pub(crate) fn rotary_step_rad(&self, axis: usize) -> f64 {
+        (self.rotary_step[axis].max(1) as f64 / self.per_degree(axis)).to_radians()
+    }
+
     /// True under G91.
     fn rotary_increments(&self) -> bool {
         self.incremental == [true; 3]
@@ -138,7 +143,11 @@ impl Corrector<'_> {
                 acceleration_mm: extent.acceleration,
                 passes: 1,
                 state: *state,
-                turn: Some(Turn { programmed_rad: ends, commanded_rad: ends }),
+                turn: Some(Turn {
+                    programmed_rad: ends,
+                    commanded_rad: ends,
+                    lag_rad: [state.rotary_play.lag_rad; 2],
+                }),
             });
             let own = error(s0).max(error(s1)) + if between.is_finite() { between } else { 0.0 };
             worst = worst.max(own);

@@ -142,6 +142,7 @@ impl Hysteresis {
                 rotary_rad: Vector::zeros(),
                 tool_mm: Vector::zeros(),
                 direction,
+                rotary_play: Default::default(),
             })
         };
         let mean = error([0; 3]);
@@ -218,7 +219,7 @@ fn run(judged: &Judged, random: &mut Random, turned: Option<f64>) -> Found {
     let mut at = place(random);
     let mut control = Control { at };
     let rapid = Motion::Rapid {
-        start: Partial { linear_mm: [Some(1.0); 3], rotary_deg: [0.0; 3] },
+        start: Partial { linear_mm: [Some(1.0); 3], rotary_deg: [0.0; 3], rotary_known: [true; 3] },
         end: position(at).into(),
     };
     let first = corrector.correct(&rapid, &block).expect("a rapid");

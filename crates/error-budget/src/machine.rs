@@ -1,7 +1,7 @@
 //! A machine with a coefficient for each of its deviations.
 
 use machine_model::effects::EffectTerm;
-use machine_model::{Axis, AxisTables, Range, RigidBody, WithEffects};
+use machine_model::{Axis, AxisTables, RigidBody, WithEffects};
 
 /// What the size of a deviation is counted in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +75,7 @@ impl Deviation {
             Place::Function(axis, 3..) => Family::Angular(Axis::ALL[axis]),
             Place::Function(axis, component) if component == axis => Family::Positioning(Axis::ALL[axis]),
             Place::Function(axis, _) => Family::Straightness(Axis::ALL[axis]),
+            Place::Reversal(axis @ 3..) => Family::Rotary(Axis::ALL[axis]),
             Place::Reversal(axis) => Family::Reversal(Axis::ALL[axis]),
             Place::Squareness(_) => Family::Squareness,
             Place::Location(axis, _) => Family::Location(Axis::ALL[axis + 3]),
@@ -88,6 +89,7 @@ impl Deviation {
 enum Place {
     /// Error function: axis as in [`Axis::ALL`], component as in [`machine_model::Six`].
     Function(usize, usize),
+    /// Of an axis as in [`Axis::ALL`].
     Reversal(usize),
     /// EC0Y, EB0Z, EA0Z.
     Squareness(usize),
@@ -139,6 +141,7 @@ impl Machine {
         for (deviation, &by) in self.deviations.iter().zip(coefficients) {
             match deviation.place {
                 Place::Function(axis, component) => functions[axis][component] = by,
+                Place::Reversal(axis @ 3..) => description.rotary[axis - 3].backlash_rad *= by,
                 Place::Reversal(axis) => description.linear[axis].backlash_mm *= by,
                 Place::Squareness(0) => description.squareness.ec0y_rad *= by,
                 Place::Squareness(1) => description.squareness.eb0z_rad *= by,
@@ -155,6 +158,7 @@ impl Machine {
                 scale(&mut description.linear[axis].errors_negative);
             } else {
                 scale(&mut description.rotary[axis - 3].errors);
+                scale(&mut description.rotary[axis - 3].errors_negative);
             }
         }
         self.with(description, terms)
@@ -181,6 +185,7 @@ impl Machine {
         }
         for (axis, data) in description.rotary.iter_mut().enumerate() {
             data.errors = data.errors.take().map(|t| AxisTables::constant(t.range(), sizes(axis + 3)));
+            data.errors_negative = None;
         }
         Self {
             model: self.with(description, self.model.terms().to_vec()),
@@ -212,7 +217,8 @@ fn deviations(model: &WithEffects) -> Vec<Deviation> {
             all.map(|tables| tables.largest(data.calibrated_mm())).reduce(larger)
         } else {
             let data = &description.rotary[axis - 3];
-            data.errors.as_ref().map(|tables| tables.largest(usable(data.travel_rad, tables.range())))
+            let all = [&data.errors, &data.errors_negative].into_iter().flatten();
+            all.map(|tables| tables.largest(data.calibrated_rad())).reduce(larger)
         };
         for (component, size) in largest.unwrap_or_default().into_iter().enumerate() {
             let name = format!("E{}{letter}", COMPONENTS[component]);
@@ -221,6 +227,9 @@ fn deviations(model: &WithEffects) -> Vec<Deviation> {
     }
     for (axis, data) in description.linear.iter().enumerate() {
         add(format!("B({})", LETTERS[axis]), data.backlash_mm, Unit::Length, Place::Reversal(axis));
+    }
+    for (axis, data) in (3..).zip(&description.rotary) {
+        add(format!("B({})", COMPONENTS[axis]), data.backlash_rad, Unit::Angle, Place::Reversal(axis));
     }
     let square = &description.squareness;
     let square = [("EC0Y", square.ec0y_rad), ("EB0Z", square.eb0z_rad), ("EA0Z", square.ea0z_rad)];
@@ -252,9 +261,4 @@ fn deviations(model: &WithEffects) -> Vec<Deviation> {
 
 fn larger(a: machine_model::Six, b: machine_model::Six) -> machine_model::Six {
     std::array::from_fn(|component| a[component].max(b[component]))
-}
-
-/// Where a table holds and the axis goes.
-fn usable(travel: Range, table: Range) -> Range {
-    Range { low: travel.low.max(table.low), high: travel.high.min(table.high) }
 }

@@ -37,7 +37,13 @@ pub fn model(engine: &dyn Engine) -> Result<&dyn PathModel, Failure> {
 /// Which it knows.
 pub fn require_tool(model: &dyn PathModel, tool_mm: Vector) -> Result<(), Failure> {
     let rotary_rad = Vector::zeros();
-    match model.knows(&Command { linear_mm: rotary_rad, rotary_rad, tool_mm, direction: [0; 3] }) {
+    match model.knows(&Command {
+        linear_mm: rotary_rad,
+        rotary_rad,
+        tool_mm,
+        direction: [0; 3],
+        rotary_play: Default::default(),
+    }) {
         Err(error @ SolveError::OtherTool { .. }) => {
             let help = both!(
                 "give the tool vector of the measured vectors with `--tool-vector X,Y,Z`, or write it as default_mm",
@@ -171,8 +177,13 @@ pub fn rotary(given: Option<&Given<Rotary>>, profile: &Profile) -> Result<Vector
         }
     }
     let rotary_rad = Vector::from(given.0.map(|angle| angle.unwrap_or(0.0).to_radians()));
-    let turned =
-        Command { linear_mm: Vector::zeros(), rotary_rad, tool_mm: Vector::zeros(), direction: [0; 3] };
+    let turned = Command {
+        linear_mm: Vector::zeros(),
+        rotary_rad,
+        tool_mm: Vector::zeros(),
+        direction: [0; 3],
+        rotary_play: Default::default(),
+    };
     profile.rigid_body_without_effects().rotary_inside(&turned).map_err(|error| {
         let error = error.text();
         Failure::option(

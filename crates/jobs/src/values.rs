@@ -407,6 +407,39 @@ impl Value for Rotary {
     }
 }
 
+/// `R=120,H=50,lead=B`: radius and height, mm, and a rotary axis by its letter.
+#[derive(Debug, Clone, Copy)]
+pub struct Ball {
+    /// From the axis of the table, mm.
+    pub radius_mm: f64,
+    /// Above its centre, mm.
+    pub height_mm: f64,
+    /// The axis that turns slowest.
+    pub lead: char,
+}
+
+impl Value for Ball {
+    const WHAT: Text = Text::pair("millimetres and an axis", "миллиметры и ось");
+    const EXAMPLES: &'static [&'static str] = &["R=120,H=50,lead=B"];
+
+    fn read(text: &str) -> Result<Self, Option<Text>> {
+        let (mut radius_mm, mut height_mm, mut lead) = (None, None, None);
+        for part in text.split(',') {
+            let (name, value) = assignment(part).ok_or(None)?;
+            match name {
+                "R" => radius_mm = finite(value).filter(|mm| *mm > 0.0),
+                "H" => height_mm = finite(value),
+                "lead" => lead = ['A', 'B', 'C'].into_iter().find(|axis| value == axis.to_string()),
+                _ => return Err(None),
+            }
+        }
+        match (radius_mm, height_mm, lead) {
+            (Some(radius_mm), Some(height_mm), Some(lead)) => Ok(Self { radius_mm, height_mm, lead }),
+            _ => Err(None),
+        }
+    }
+}
+
 /// `XY=12,ZX=-3,YZ=5`, µrad; planes that are not named are `None`.
 #[derive(Debug, Clone, Copy)]
 pub struct SquarenessReadings(pub [Option<f64>; 3]);

@@ -18,6 +18,7 @@ pub type Matrix = nalgebra::Matrix3<f64>;
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::new(0.0, 0.0, -80.0),
 ///     direction: [-1, 0, 0],
+///     rotary_play: Default::default(),
 /// };
 /// // A perfect machine without rotary axes has its tip here.
 /// assert_eq!(command.linear_mm + command.tool_mm, Vector::new(100.0, 50.0, -60.0));
@@ -32,6 +33,25 @@ pub struct Command {
     pub tool_mm: Vector,
     /// Direction in which each linear axis last moved: -1, +1, or 0 where unknown (mean of both).
     pub direction: [i8; 3],
+    /// Where the rotary axes stand in their play; by default in its middle.
+    pub rotary_play: RotaryPlay,
+}
+
+/// Where rotary axes stand in their play.
+///
+/// ```
+/// use machine_model::{RotaryPlay, Vector};
+///
+/// // C came from below and has turned back by 10 of its 50 µrad: what it carries has not moved yet.
+/// let within = RotaryPlay { direction: [0, 0, 1], lag_rad: Vector::new(0.0, 0.0, 10e-6) };
+/// assert_ne!(within, RotaryPlay::default());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RotaryPlay {
+    /// Direction in which what each axis carries last moved: -1, +1, or 0 where unknown (mean of both).
+    pub direction: [i8; 3],
+    /// How much further each stands than commanded in that direction, rad about its own line; 0 where all play is taken up.
+    pub lag_rad: Vector,
 }
 
 /// Closed interval of an axis command, mm.
@@ -100,7 +120,7 @@ impl Volume {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// // A line from X10 to X40. Here the error grows evenly, so that it does not leave its chord at all.
 /// let stretch = Move {
@@ -139,6 +159,7 @@ pub struct Move {
 /// let turn = Turn {
 ///     programmed_rad: [Vector::new(0.0, 0.0, 0.1), Vector::new(0.0, 0.0, 0.3)],
 ///     commanded_rad: [Vector::new(0.0, 0.0, 0.1), Vector::new(0.0, 0.0, 0.300_001)],
+///     lag_rad: [Vector::zeros(); 2],
 /// };
 /// assert!((turn.slip_rad() - 1e-6).abs() < 1e-12);
 /// ```
@@ -148,6 +169,8 @@ pub struct Turn {
     pub programmed_rad: [Vector; 2],
     /// The same as commanded.
     pub commanded_rad: [Vector; 2],
+    /// How much further they stand there, [`RotaryPlay::lag_rad`].
+    pub lag_rad: [Vector; 2],
 }
 
 impl Turn {

@@ -96,8 +96,13 @@ pub struct RotaryAxis {
     pub tilt: Tilt,
     /// Unit vector of the axis of rotation; `None` for that of its letter.
     pub direction: Option<Vector>,
-    /// Error motions of what turns against what carries it, mm and rad, over the angle in rad.
+    /// Error motions of what turns against what carries it, mm and rad, over the angle in rad. With `errors_negative`: for
+    /// motion in the positive direction only. With `backlash_rad`: the mean of both directions.
     pub errors: Option<AxisTables>,
+    /// The same for motion in the negative direction.
+    pub errors_negative: Option<AxisTables>,
+    /// Reversal value, rad, where the error functions are a mean of both directions.
+    pub backlash_rad: f64,
 }
 
 impl RotaryAxis {
@@ -112,12 +117,28 @@ impl RotaryAxis {
             tilt: Tilt::Body,
             direction: None,
             errors: None,
+            errors_negative: None,
+            backlash_rad: 0.0,
         }
+    }
+    /// True where its error depends on the side from which it came.
+    #[must_use]
+    pub fn has_play(&self) -> bool {
+        self.errors_negative.is_some() || self.backlash_rad != 0.0
+    }
+    /// The angles that every table covers, and its travel; rad.
+    #[must_use]
+    pub fn calibrated_rad(&self) -> Range {
+        [&self.errors, &self.errors_negative].into_iter().flatten().fold(self.travel_rad, |range, tables| {
+            let own = tables.range();
+            Range { low: range.low.max(own.low), high: range.high.min(own.high) }
+        })
     }
     /// True where it moves exactly as an ideal axis does.
     #[must_use]
     pub fn is_perfect(&self) -> bool {
-        self.shift_mm == Vector::zeros() && self.tilt_rad == Vector::zeros() && self.errors.is_none()
+        let stands_right = self.shift_mm == Vector::zeros() && self.tilt_rad == Vector::zeros();
+        stands_right && self.errors.is_none() && !self.has_play()
     }
 }
 

@@ -22,7 +22,7 @@ pub const LANES: usize = 4;
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// let told = machine().solve(&at(50.0, 0.0, 0.0)).unwrap();
 /// assert!(told.residual_mm <= TOLERANCE_MM && told.iterations < 10);
@@ -51,7 +51,7 @@ pub struct Solution {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// let error = machine().solve(&at(130.0, 0.0, 0.0)).unwrap_err();
 /// assert!(matches!(error, SolveError::OutsideVolume { axis: 'X', value_mm: 130.0, .. }));
@@ -176,7 +176,7 @@ pub enum EngineId {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// // Those who correct points need not know which engine they have.
 /// let machine = machine();
@@ -262,7 +262,7 @@ impl<'m> Models<'m> {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// let machine = machine();
 /// assert!((machine.error_mm(&at(25.0, 0.0, 0.0)).x - 0.005).abs() < 1e-12);
@@ -366,6 +366,16 @@ pub trait PathModel: Engine {
     ///
     /// The command's direction is not used. Zero for an axis that is the same from both sides; a negative one is no play.
     fn reversal_mm(&self, _axis: usize, _command: &Command) -> f64 {
+        0.0
+    }
+
+    /// True where the error depends on the side from which rotary axes came.
+    fn has_rotary_play(&self) -> bool {
+        false
+    }
+
+    /// Reversal value of a rotary axis (0..=2: A, B, C) at a command, rad about its line, as [`PathModel::reversal_mm`].
+    fn rotary_reversal_rad(&self, _axis: usize, _command: &Command) -> f64 {
         0.0
     }
 }

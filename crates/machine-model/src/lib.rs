@@ -33,12 +33,12 @@ mod with_effects;
 
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
-pub use command::{Command, Matrix, Move, Range, Turn, Vector, Volume};
+pub use command::{Command, Matrix, Move, Range, RotaryPlay, Turn, Vector, Volume};
 pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
-pub use play::{Play, SAME_PLACE_MM, turned_by_mm};
+pub use play::{Play, SAME_PLACE_MM, SAME_PLACE_RAD, turned_by_mm};
 pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};
 pub use table::{Bounds, Interpolation, Table, TableError};

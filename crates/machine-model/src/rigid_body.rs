@@ -14,9 +14,9 @@ use crate::everywhere::CLASSES;
 use crate::lanes::OfAxis;
 use crate::link::{Link, by_direction};
 use crate::real::Triple;
-use crate::rotary::{Machine, moved};
+use crate::rotary::{Machine, Swivel};
 use crate::rotation::{small, turned};
-use crate::{Axis, Command, Description, Everywhere, Range, SolveError, Vector, Volume};
+use crate::{Axis, Command, Description, Everywhere, SolveError, Vector, Volume};
 
 /// Why a description is no machine.
 ///
@@ -50,7 +50,7 @@ pub struct Unusable {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// // Told to go to X50, this machine stands 10 µm farther.
 /// let there = machine().predict(&at(50.0, 20.0, 10.0));
@@ -79,7 +79,7 @@ pub struct Prediction {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// // X is too long by 0.02 %. What the inverse commands, the forward model leads to the target.
 /// let machine = machine();
@@ -93,12 +93,15 @@ pub struct RigidBody {
     pub(crate) description: Description,
     /// Workpiece to tool.
     pub(crate) links: [Link; 3],
+    /// Of A, B, C.
+    pub(crate) swivels: [Swivel; 3],
     /// Of X, Y, Z: its place in `links`.
     place_of: [usize; 3],
     pub(crate) volume: Volume,
     /// A rotary axis at the workpiece has errors.
     table_has_errors: bool,
     depends_on_direction: bool,
+    has_rotary_play: bool,
     /// Per axis and class of length, for all directions: made when first asked for.
     worst_bounds: OnceLock<WorstBounds>,
     /// By tool vector, the last ones asked for: every program of a job asks for the same again, with its first tool.
@@ -146,14 +149,22 @@ impl RigidBody {
             description.chain.table().iter().any(|axis| !description.rotary[axis.direction()].is_perfect());
         let depends_on_direction =
             description.linear.iter().any(|axis| axis.errors_negative.is_some() || axis.backlash_mm != 0.0);
+        let has_rotary_play = description
+            .chain
+            .axes()
+            .any(|axis| !axis.is_linear() && description.rotary[axis.direction()].has_play());
+        let swivels =
+            [Axis::A, Axis::B, Axis::C].map(|axis| Swivel::new(&description.rotary[axis.direction()], axis));
         let place_of = from_fn(|axis| links.iter().position(|link: &Link| link.axis == axis).unwrap_or(axis));
         Ok(Self {
+            swivels,
             description,
             links,
             place_of,
             volume,
             table_has_errors,
             depends_on_direction,
+            has_rotary_play,
             worst_bounds: OnceLock::new(),
             everywhere: Arc::default(),
         })
@@ -203,8 +214,7 @@ impl RigidBody {
     /// Tool vector turned by the rotary axes that carry the tool.
     fn head(&self, command: &Command, machine: Machine) -> Vector {
         self.description.chain.head().iter().rev().fold(command.tool_mm, |tool, axis| {
-            let (turn, shift) =
-                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, machine);
+            let (turn, shift) = self.swivels[axis.direction()].moved(command, machine);
             turn * tool + shift
         })
     }
@@ -214,8 +224,7 @@ impl RigidBody {
         self.description.chain.table().iter().rev().fold(
             (Matrix3::identity(), Vector::zeros()),
             |(turn, shift), axis| {
-                let rotary = &self.description.rotary[axis.direction()];
-                let (own, offset) = moved(rotary, *axis, &command.rotary_rad, machine);
+                let (own, offset) = self.swivels[axis.direction()].moved(command, machine);
                 let back = own.transpose();
                 (back * turn, back * (shift - offset))
             },
@@ -350,8 +359,7 @@ impl RigidBody {
     pub fn directions(&self, command: &Command) -> [Vector; 2] {
         let turned_by_head = |machine| {
             self.description.chain.head().iter().rev().fold(Vector::z(), |tool, axis| {
-                moved(&self.description.rotary[axis.direction()], *axis, &command.rotary_rad, machine).0
-                    * tool
+                self.swivels[axis.direction()].moved(command, machine).0 * tool
             })
         };
         let q = self.volume.nearest(&command.linear_mm);
@@ -375,11 +383,7 @@ impl RigidBody {
     pub fn rotary_inside(&self, command: &Command) -> Result<(), SolveError> {
         for axis in self.description.chain.axes().filter(|axis| !axis.is_linear()) {
             let data = &self.description.rotary[axis.direction()];
-            let mut range = data.travel_rad;
-            if let Some(tables) = &data.errors {
-                let own = tables.range();
-                range = Range { low: range.low.max(own.low), high: range.high.min(own.high) };
-            }
+            let range = data.calibrated_rad();
             let value = command.rotary_rad[axis.direction()];
             // Angles come from degrees and cannot be exact.
             let slack = 1e-9;

@@ -37,6 +37,7 @@ use crate::{
 ///     rotary_rad: Vector::new(0.0, 0.0, c),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
+///     rotary_play: Default::default(),
 /// };
 /// assert_eq!(tip.error_mm(&at(0.0)), Vector::zeros());
 /// assert!((tip.error_mm(&at(std::f64::consts::PI)).x + 0.020).abs() < 1e-12);
@@ -271,7 +272,7 @@ impl PathModel for TipControl {
             return self.core.machine.chord_bound_mm(&self.standing(stretch));
         };
         // The tip asked for is the same wherever the rotary axes stand.
-        let turn = Turn { programmed_rad: turn.commanded_rad, commanded_rad: turn.commanded_rad };
+        let turn = Turn { programmed_rad: turn.commanded_rad, ..*turn };
         let Some(axes) = self.turning(stretch, &turn) else { return f64::INFINITY };
         if !lies_inside(&self.core.machine, &axes) {
             return f64::INFINITY;
@@ -284,6 +285,14 @@ impl PathModel for TipControl {
 
     fn follows_turns(&self) -> bool {
         true
+    }
+
+    fn has_rotary_play(&self) -> bool {
+        self.core.machine.has_rotary_play()
+    }
+
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.core.machine.rotary_reversal_rad(axis, command)
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {
@@ -373,6 +382,14 @@ impl PathModel for PlaneControl {
         let turn = core.control.table_turn(&stretch.state).tr_mul(&self.turn);
         let turn = turn.map(|share| if share.abs() < NOTHING { 0.0 } else { share });
         core.machine.chord_bound_mm(&TipControl::led(stretch, &turn, |at| self.axis_command(at).linear_mm))
+    }
+
+    fn has_rotary_play(&self) -> bool {
+        self.tip.core.machine.has_rotary_play()
+    }
+
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.tip.core.machine.rotary_reversal_rad(axis, command)
     }
 
     fn tip_mm(&self, linear_mm: &Vector, state: &Command) -> Vector {

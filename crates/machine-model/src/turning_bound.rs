@@ -7,8 +7,8 @@
 use crate::axis_tables::SixBounds;
 use crate::chord_bound::linear_error;
 use crate::length::{Carried, Length};
-use crate::rotary::ideally_turned;
-use crate::{Axis, Command, Move, Range, RigidBody, RotaryAxis, Tilt, Turn, Vector};
+use crate::rotary::{Swivel, ideally_turned};
+use crate::{Axis, Command, Move, Range, RigidBody, RotaryPlay, Tilt, Turn, Vector};
 
 /// What a rotary axis does besides turning ideally by its programmed angle.
 struct Wobble {
@@ -21,17 +21,21 @@ struct Wobble {
 }
 
 impl Wobble {
-    fn of(rotary: &RotaryAxis, axis: Axis, turn: &Turn) -> Self {
+    fn of(swivel: &Swivel, axis: Axis, turn: &Turn, play: &RotaryPlay) -> Self {
+        let rotary = &swivel.data;
+        let direction = play.direction[axis.direction()];
         let of_axis = |ends: &[Vector; 2]| [ends[0][axis.direction()], ends[1][axis.direction()]];
         let (programmed, commanded) = (of_axis(&turn.programmed_rad), of_axis(&turn.commanded_rad));
-        let slip = [0, 1].map(|end| commanded[end] - programmed[end]);
+        let lag = of_axis(&turn.lag_rad);
+        let behind = swivel.behind_rad(direction);
+        let slip = [0, 1].map(|end| commanded[end] + lag[end] - programmed[end] + behind);
         let slip = Length {
             value: slip[0].abs().max(slip[1].abs()),
             first: (slip[1] - slip[0]).abs(),
             ..Length::default()
         };
         let (mut shift, mut small) = (Length::default(), Length::default());
-        if let Some(tables) = &rotary.errors {
+        if let Some(tables) = swivel.tables(direction) {
             let range = Range { low: commanded[0].min(commanded[1]), high: commanded[0].max(commanded[1]) };
             let bounds = tables.bounds(range);
             let speed = range.high - range.low;
@@ -63,12 +67,12 @@ fn of_three(bounds: &SixBounds, from: usize, speed: f64) -> Length {
 }
 
 /// The ideal tool vector, from the centre of the head's outermost axis, and its error, as the head turns them.
-fn tool_in_turn(model: &RigidBody, tool_mm: &Vector, turn: &Turn) -> (Length, Length) {
-    let (mut nominal, mut error) = (Length::constant(tool_mm.norm()), Length::default());
+fn tool_in_turn(model: &RigidBody, state: &Command, turn: &Turn) -> (Length, Length) {
+    let (mut nominal, mut error) = (Length::constant(state.tool_mm.norm()), Length::default());
     let mut centre = Vector::zeros();
     for axis in model.description.chain.head().iter().rev() {
-        let data = &model.description.rotary[axis.direction()];
-        let wobble = Wobble::of(data, *axis, turn);
+        let swivel = &model.swivels[axis.direction()];
+        let (data, wobble) = (&swivel.data, Wobble::of(swivel, *axis, turn, &state.rotary_play));
         nominal.value += (data.centre_mm - centre).norm();
         centre = data.centre_mm;
         let real = nominal.plus(error).turned(wobble.speed);
@@ -86,7 +90,7 @@ pub(crate) fn error_in_turn(model: &RigidBody, stretch: &Move, turn: &Turn) -> (
         rotary_rad: 0.5 * (turn.programmed_rad[0] + turn.programmed_rad[1]),
         ..stretch.state
     };
-    let (nominal, error) = tool_in_turn(model, &stretch.state.tool_mm, turn);
+    let (nominal, error) = tool_in_turn(model, &stretch.state, turn);
     let at_middle = model.nominal_tool(&middle);
     // From its place in the middle it goes half of its way at most.
     let reach = Vector::repeat(0.5 * nominal.first);
@@ -109,8 +113,8 @@ pub(crate) fn error_in_turn(model: &RigidBody, stretch: &Move, turn: &Turn) -> (
         Length { first: speed + carried.first, second: acceleration + carried.second, ..Length::default() };
     let (mut total, mut turned) = (error, 0.0);
     for axis in chain.table().iter().rev() {
-        let data = &model.description.rotary[axis.direction()];
-        let wobble = Wobble::of(data, *axis, turn);
+        let swivel = &model.swivels[axis.direction()];
+        let (data, wobble) = (&swivel.data, Wobble::of(swivel, *axis, turn, &stretch.state.rotary_play));
         // As far as in the middle of the stretch, and half of its way.
         let arm = tip - data.centre_mm;
         nominal.value = arm.norm() + 0.5 * nominal.first;

@@ -22,7 +22,7 @@ use crate::{
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// let parameters = [("expansion_um_per_m_k".to_owned(), 11.5)];
 /// let warm = EffectTerm::from_entry("thermal.X", &parameters).unwrap();
@@ -57,7 +57,7 @@ pub struct UnknownCondition {
 /// #     RigidBody::new(Description { chain, linear, rotary, squareness: Squareness::default() }).unwrap()
 /// # }
 /// # fn at(x: f64, y: f64, z: f64) -> Command {
-/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3] }
+/// #     Command { linear_mm: Vector::new(x, y, z), rotary_rad: Vector::zeros(), tool_mm: Vector::zeros(), direction: [0; 3], rotary_play: Default::default() }
 /// # }
 /// // Half a lost motion of 3 µm: the tip lags behind, whichever way X goes.
 /// let lost = EffectTerm::from_entry("backlash.X", &[("half_width_um".to_owned(), 3.0)]).unwrap();
@@ -94,6 +94,7 @@ impl WithEffects {
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [1; 3],
+            rotary_play: Default::default(),
         };
         for term in &terms {
             term.displacement_mm(&anywhere, &conditions)
@@ -286,6 +287,14 @@ impl PathModel for WithEffects {
 
     fn depends_on_direction(&self) -> bool {
         self.depends_on_direction
+    }
+
+    fn has_rotary_play(&self) -> bool {
+        self.base.has_rotary_play()
+    }
+
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.base.rotary_reversal_rad(axis, command)
     }
 
     /// That of the tables and of every lost motion along the axis. What a servo lags by changes with the direction too,

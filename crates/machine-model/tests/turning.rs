@@ -5,8 +5,8 @@
 mod machines;
 
 use machine_model::{
-    AxisTables, Command, Description, Engine, Interpolation, Move, PathModel, Range, RigidBody, Table, Tilt,
-    TipControl, Turn, Vector,
+    AxisTables, Command, Description, Engine, Interpolation, Move, PathModel, Range, RigidBody, RotaryPlay,
+    Table, Tilt, TipControl, Turn, Vector,
 };
 use machines::{Random, command, machine, perfect};
 use proptest::prelude::*;
@@ -45,11 +45,19 @@ fn described(seed: u64, chain: &str, monotone: bool) -> Description {
         rotary.tilt = if seed.is_multiple_of(2) { Tilt::Body } else { Tilt::Axis };
         // Any direction, mostly near none of the machine's.
         rotary.direction = (seed.is_multiple_of(3)).then(|| random.vector(1.0).normalize());
-        rotary.errors = AxisTables::new(&std::array::from_fn(|i| {
-            let size = if i < 3 { 0.01 } else { 1e-4 };
-            let values = nodes.iter().map(|_| random.number(size)).collect();
-            Some(Table::new(nodes.clone(), values, interpolation).unwrap())
-        }));
+        let mut tables = || {
+            AxisTables::new(&std::array::from_fn(|i| {
+                let size = if i < 3 { 0.01 } else { 1e-4 };
+                let values = nodes.iter().map(|_| random.number(size)).collect();
+                Some(Table::new(nodes.clone(), values, interpolation).unwrap())
+            }))
+        };
+        rotary.errors = tables();
+        if seed.is_multiple_of(5) {
+            rotary.errors_negative = tables();
+        } else {
+            rotary.backlash_rad = 1e-4;
+        }
     }
     machine
 }
@@ -70,13 +78,17 @@ impl Way<'_> {
     fn error_mm(&self, s: f64) -> Vector {
         let linear_mm = self.at(&self.linear_mm, s);
         let rotary_rad = self.at(&self.turn.commanded_rad, s);
-        let command = Command { linear_mm, rotary_rad, ..self.state };
+        let lag_rad = self.at(&self.turn.lag_rad, s);
+        let rotary_play = RotaryPlay { lag_rad, ..self.state.rotary_play };
+        let command = Command { linear_mm, rotary_rad, rotary_play, ..self.state };
         self.model.error_from_mm(&command, &self.at(&self.turn.programmed_rad, s))
     }
 
     fn stands(&self) -> bool {
-        let Turn { programmed_rad, commanded_rad } = self.turn;
-        commanded_rad[0] == commanded_rad[1] && programmed_rad == commanded_rad
+        let Turn { programmed_rad, commanded_rad, lag_rad } = self.turn;
+        commanded_rad[0] == commanded_rad[1]
+            && programmed_rad == commanded_rad
+            && lag_rad == [Vector::zeros(); 2]
     }
 
     fn bound_mm(&self) -> f64 {
@@ -117,14 +129,20 @@ fn way<'m>(
         turn: Turn {
             programmed_rad,
             commanded_rad: programmed_rad.map(|angles| angles + random.vector(slip_rad)),
+            lag_rad: [random.vector(3.0 * slip_rad), random.vector(3.0 * slip_rad)],
         },
-        state: command([0.0; 3], random.vector(120.0).into()),
+        state: Command { rotary_play: sides(random), ..command([0.0; 3], random.vector(120.0).into()) },
     }
 }
 
+/// Any sides of all rotary axes, no lag.
+fn sides(random: &mut Random) -> RotaryPlay {
+    RotaryPlay { direction: [(); 3].map(|()| random.number(1.49).round() as i8), ..RotaryPlay::default() }
+}
+
 /// Programmed and commanded alike.
-fn commanded(programmed_rad: [Vector; 2]) -> Turn {
-    Turn { programmed_rad, commanded_rad: programmed_rad }
+fn commanded(programmed_rad: [Vector; 2], lag_rad: [Vector; 2]) -> Turn {
+    Turn { programmed_rad, commanded_rad: programmed_rad, lag_rad }
 }
 
 proptest! {
@@ -132,7 +150,7 @@ proptest! {
     #[test]
     fn under_tip_control_neither(
         seed: u64, chain in 0usize..5, monotone: bool, length in 0.0f64..15.0, apart in 0.0f64..0.2,
-        turn in prop_oneof![Just(0.0), 0.0f64..0.02, 0.0f64..0.4],
+        turn in prop_oneof![Just(0.0), 0.0f64..0.02, 0.0f64..0.4], lag in prop_oneof![Just(0.0), 0.0f64..2e-4],
     ) {
         let mut random = Random::new(seed);
         let machine = without_play(seed, CHAINS[chain], monotone);
@@ -144,10 +162,11 @@ proptest! {
         };
         let from = model.tip_command(&axes).linear_mm;
         prop_assert!((model.axis_command(&model.tip_command(&axes)).linear_mm - axes.linear_mm).norm() < 1e-9);
-        let turn = commanded([angles, angles + random.vector(turn)]);
+        let lags = [random.vector(lag), random.vector(lag)];
+        let turn = commanded([angles, angles + random.vector(turn)], lags);
         let way = Way {
             model: &model, linear_mm: [from, from + random.vector(length)], turn,
-            state: Command { rotary_rad: angles, ..axes },
+            state: Command { rotary_rad: angles, rotary_play: sides(&mut random), ..axes },
         };
         let (bound, found) = (way.bound_mm(), way.leaves_mm(200));
         prop_assert!(found <= bound + 1e-11, "{found} > {bound}");
@@ -217,7 +236,7 @@ fn the_bound_under_tip_control_is_not_far_either() {
             let centres = machine.description().rotary.each_ref().map(|axis| axis.centre_mm);
             let model = TipControl::new(&machine, centres).unwrap();
             let angles = random.vector(3.0);
-            let turn = commanded([angles, angles + random.vector(0.05)]);
+            let turn = commanded([angles, angles + random.vector(0.05)], [Vector::zeros(); 2]);
             let axes =
                 Command { rotary_rad: angles, ..command([200.0, 140.0, 100.0], random.vector(60.0).into()) };
             let from = model.tip_command(&axes).linear_mm;

@@ -241,6 +241,8 @@ pub(crate) struct RotaryAxis<'d> {
     pub(crate) tilt: TiltName,
     pub(crate) resolution_deg: Option<&'d Spanned<Finite>>,
     pub(crate) errors: Option<&'d Spanned<String>>,
+    pub(crate) errors_negative: Option<&'d Spanned<String>>,
+    pub(crate) backlash_urad: Option<&'d Spanned<Finite>>,
     pub(crate) shift_um: [Option<Finite>; 3],
     pub(crate) tilt_urad: [Option<Finite>; 3],
 }
@@ -268,6 +270,12 @@ macro_rules! rotary {
             /// CSV file of error functions over position_deg.
             #[schemars(with = "Option<String>")]
             errors: Option<Spanned<String>>,
+            /// The same for motion in the negative direction; `errors` is then the positive one.
+            #[schemars(with = "Option<String>")]
+            errors_negative: Option<Spanned<String>>,
+            /// Full reversal value; `errors` is then the mean of both directions.
+            #[schemars(with = "Option<f64>")]
+            backlash_urad: Option<Spanned<Finite>>,
             $($shift: Option<Finite>,)*
             $($tilt: Option<Finite>,)*
         }
@@ -284,6 +292,8 @@ macro_rules! rotary {
                     tilt: self.tilt,
                     resolution_deg: self.resolution_deg.as_ref(),
                     errors: self.errors.as_ref(),
+                    errors_negative: self.errors_negative.as_ref(),
+                    backlash_urad: self.backlash_urad.as_ref(),
                     shift_um: $shifts,
                     tilt_urad: $tilts,
                 }

@@ -70,6 +70,8 @@ static MM: Text = Text::pair("mm", "мм");
 const MOST_FINISHING_PASSES: f64 = 99.0;
 /// No control of a machine whose errors are worth correcting has a coarser step, mm; a resolution in µm would be.
 const COARSEST_MM: f64 = 0.1;
+/// No rotary axis of a machine tool has so much play: a fifth of a degree, in µrad.
+const MOST_BACKLASH_URAD: f64 = 3500.0;
 /// The finest step that decimals are counted for, mm.
 const FINEST_MM: f64 = 1e-6;
 /// The Y that a lathe does not have stands at 0; so far it may be named.
@@ -543,6 +545,46 @@ impl Loader<'_> {
         None
     }
 
+    /// Refuses tables of one direction without those of the other, and play that is said twice.
+    fn both_directions(
+        &mut self,
+        axis: Axis,
+        has_errors: bool,
+        negative: Option<&Spanned<String>>,
+        backlash: Option<(&Spanned<Finite>, &str)>,
+    ) {
+        let Some(negative) = negative else { return };
+        if !has_errors {
+            let diagnostic = Diagnostic::error(
+                CONFLICT,
+                both!(
+                    "axis {axis} has errors_negative, but no errors",
+                    "у оси {axis} есть errors_negative, а errors нет"
+                ),
+            )
+            .help(both!(
+                "errors is the table of the positive direction; a table for both directions is errors alone",
+                "errors — таблица движения в плюс; таблица для обоих направлений — одно errors"
+            ));
+            self.refuse(
+                negative,
+                diagnostic,
+                both!("the other direction is missing", "нет другого направления"),
+            );
+        }
+        if let Some((backlash, key)) = backlash {
+            let message = both!(
+                "axis {axis} has both errors_negative and {key}",
+                "у оси {axis} и errors_negative, и {key}"
+            );
+            let diagnostic = Diagnostic::error(CONFLICT, message).help(both!(
+                "two tables already hold the reversal value: leave {key} out",
+                "погрешность реверса уже есть в двух таблицах: уберите {key}"
+            ));
+            self.refuse(backlash, diagnostic, both!("counted twice", "учтено дважды"));
+        }
+    }
+
     fn linear(
         &mut self,
         axis: Axis,
@@ -594,31 +636,8 @@ impl Loader<'_> {
             .travel_mm
             .as_ref()
             .and_then(|travel| self.range(travel, &both!("travel_mm of {axis}", "travel_mm оси {axis}")));
-        if let (Some(name), None) = (&data.errors_negative, &data.errors) {
-            let diagnostic = Diagnostic::error(
-                CONFLICT,
-                both!(
-                    "axis {axis} has errors_negative, but no errors",
-                    "у оси {axis} есть errors_negative, а errors нет"
-                ),
-            )
-            .help(both!(
-                "errors is the table of the positive direction; a table for both directions is errors alone",
-                "errors — таблица движения в плюс; таблица для обоих направлений — одно errors"
-            ));
-            self.refuse(name, diagnostic, both!("the other direction is missing", "нет другого направления"));
-        }
-        if let (Some(backlash), Some(_)) = (&data.backlash_um, &data.errors_negative) {
-            let message = both!(
-                "axis {axis} has both errors_negative and backlash_um",
-                "у оси {axis} и errors_negative, и backlash_um"
-            );
-            let diagnostic = Diagnostic::error(CONFLICT, message).help(both!(
-                "two tables already hold the reversal value: leave backlash_um out",
-                "погрешность реверса уже есть в двух таблицах: уберите backlash_um"
-            ));
-            self.refuse(backlash, diagnostic, both!("counted twice", "учтено дважды"));
-        }
+        let backlash = data.backlash_um.as_ref().map(|value| (value, "backlash_um"));
+        self.both_directions(axis, data.errors.is_some(), data.errors_negative.as_ref(), backlash);
         if let Some(place) = &data.measured_at_mm
             && [place.get_ref().X, place.get_ref().Y, place.get_ref().Z][index].is_some()
         {
@@ -758,6 +777,25 @@ impl Loader<'_> {
                 result.travel_rad = Range { low: rad(range.low), high: rad(range.high) };
             }
             result.errors = self.table(parts.errors, *axis).and_then(|rows| rows.tables(interpolation));
+            result.errors_negative =
+                self.table(parts.errors_negative, *axis).and_then(|rows| rows.tables(interpolation));
+            let backlash = parts.backlash_urad.map(|value| (value, "backlash_urad"));
+            self.both_directions(*axis, parts.errors.is_some(), parts.errors_negative, backlash);
+            if let Some(backlash) = parts.backlash_urad {
+                let Finite(urad) = *backlash.get_ref();
+                result.backlash_rad = Angle::from_urad(urad).rad();
+                if urad.abs() > MOST_BACKLASH_URAD {
+                    let diagnostic = Diagnostic::error(
+                        VALUE,
+                        both!("backlash_urad of {axis} is {urad}", "backlash_urad оси {axis} — {urad}"),
+                    )
+                    .help(both!(
+                        "the unit is the microradian: 1 arc second is 4.848 urad",
+                        "единица — микрорадиан: 1 угловая секунда — 4.848 мкрад"
+                    ));
+                    self.refuse(backlash, diagnostic, both!("wrong unit?", "не та единица?"));
+                }
+            }
         }
         all
     }

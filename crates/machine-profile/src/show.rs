@@ -126,6 +126,12 @@ impl Profile {
             let c = data.centre_mm;
             let state = if data.is_perfect() { "no errors given: taken as perfect" } else { "with errors" };
             writeln!(out, "axis {axis}       centre {} {} {} mm, {state}", c.x, c.y, c.z)?;
+            if data.errors_negative.is_some() {
+                writeln!(out, "  own tables for the negative direction")?;
+            }
+            if data.backlash_rad != 0.0 {
+                writeln!(out, "  backlash   {:.3} urad", data.backlash_rad * 1e6)?;
+            }
         }
         if let Some(traverses) = &self.traverses {
             let text: Vec<String> = traverses

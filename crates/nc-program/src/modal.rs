@@ -344,6 +344,7 @@ impl Axes {
         Partial {
             linear_mm: self.linear.map(Axis::known),
             rotary_deg: self.rotary.map(|axis| axis.known().unwrap_or(0.0)),
+            rotary_known: self.rotary.map(|axis| axis.known().is_some()),
         }
     }
 }

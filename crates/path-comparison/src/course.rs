@@ -4,7 +4,7 @@ use machine_model::{Command, Models, PathModel, Play, Vector};
 use toolpath::{Kinematics, PeckRetreats};
 
 use crate::Step;
-use crate::items::{Counted, Item, Items, Role};
+use crate::items::{Counted, Item, Items, Role, behind_a_switch};
 use crate::way::Way;
 
 /// A feed motion with the errors of several machines along it.
@@ -77,7 +77,7 @@ impl<'m> Others<'m> {
     pub(crate) fn switch(&mut self, kinematics: Kinematics) {
         for other in &mut self.machines {
             other.model = other.models.of(kinematics).unwrap_or(other.models.axes);
-            other.play = other.model.depends_on_direction().then(Play::unknown);
+            other.play = behind_a_switch(other.model, other.play);
         }
     }
 
@@ -98,6 +98,7 @@ impl<'m> Others<'m> {
             None => other.model.error_mm(here),
             Some(play) => {
                 play.go(other.model, here);
+                play.turn(other.model, here, [true; 3]);
                 play.error_mm(other.model, here)
             }
         })

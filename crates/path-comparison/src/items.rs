@@ -28,6 +28,22 @@ const TURN_RAD: f64 = 0.01;
 const MOST_SAMPLES: f64 = 100_000.0;
 /// So near to where an axis turns it is asked for on either side, mm: above what counts as the same place.
 const TURN_MM: f64 = 1e-8;
+/// The same of a rotary axis, as a share of the turn between two places.
+const TURN_SHARE: f64 = 1e-6;
+
+/// True where what a machine makes of a command depends on how it came there.
+pub(crate) fn has_play(model: &dyn PathModel) -> bool {
+    model.depends_on_direction() || model.has_rotary_play()
+}
+
+/// Where the axes stand in their play behind a switch: a rotary axis is what it was, of a linear one nothing is known.
+pub(crate) fn behind_a_switch(model: &dyn PathModel, before: Option<Play>) -> Option<Play> {
+    has_play(model).then(|| {
+        let mut play = before.unwrap_or(Play::unknown());
+        (0..3).for_each(|axis| play.forget(axis, None));
+        play
+    })
+}
 
 /// What must be the same for two motions to go on together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,7 +288,13 @@ struct Common {
 
 impl Common {
     fn command(&self, linear_mm: Vector, rotary_rad: Vector) -> Command {
-        Command { linear_mm, rotary_rad, tool_mm: self.tool_mm, direction: [0; 3] }
+        Command {
+            linear_mm,
+            rotary_rad,
+            tool_mm: self.tool_mm,
+            direction: [0; 3],
+            rotary_play: Default::default(),
+        }
     }
 }
 
@@ -285,7 +307,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         counted: Counted,
     ) -> Self {
         let model = models.axes;
-        let play = model.depends_on_direction().then(Play::unknown);
+        let play = has_play(model).then(Play::unknown);
         Self {
             steps,
             role,
@@ -392,7 +414,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     fn switch(&mut self, kinematics: Kinematics) {
         self.kinematics = kinematics;
         self.model = self.models.of(kinematics).unwrap_or(self.models.axes);
-        self.play = self.model.depends_on_direction().then(Play::unknown);
+        self.play = behind_a_switch(self.model, self.play);
         self.at.linear_mm = [None; 3];
         self.place = None;
         if let Some(others) = &mut self.others {
@@ -406,7 +428,9 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             // From where the program begins a first move has a direction too.
             for place in [start, end] {
                 let known = Vector::from(place.linear_mm.map(|at| at.unwrap_or(0.0)));
+                let turned = Vector::from(place.rotary_deg.map(f64::to_radians));
                 play.go(model, &common.command(known, rotary_rad));
+                play.turn(model, &common.command(known, turned), place.rotary_known);
             }
             for axis in 0..3 {
                 let [from, to] = [start.linear_mm[axis], end.linear_mm[axis]];
@@ -516,6 +540,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         self.at = Partial {
             linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),
             rotary_deg: way.end_rotary_deg(),
+            rotary_known: [true; 3],
         };
         self.place = stretches.last().map(|stretch| stretch.at(1.0));
         self.ready.push_back(Item::Feed(Box::new(Feeding {
@@ -571,6 +596,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         }
         let mut at = command(0.0);
         play.go(self.model, &at);
+        play.turn(self.model, &at, [true; 3]);
         let mut found: SmallVec<[(f64, Vector); 4]> = SmallVec::new();
         found.push((0.0, play.error_mm(self.model, &at)));
         let mut from = 0.0;
@@ -590,10 +616,22 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                     taken_up.extend(before_and_behind.map(|mm| where_gone(way, from, cut, axis, *mm)));
                 }
             }
+            let way_rad: [f64; 3] = (to.rotary_rad - at.rotary_rad).into();
+            let heading = way_rad.map(|rad| i8::from(rad > 0.0) - i8::from(rad < 0.0));
+            let lag_rad = play.rotary_lag_rad(self.model, &at, heading);
+            for axis in (0..3).filter(|axis| lag_rad[*axis] > 0.0) {
+                let share = lag_rad[axis] / way_rad[axis].abs();
+                // The turn runs evenly, and what changes at once is met from both sides.
+                let around = [share - TURN_SHARE, share, share + TURN_SHARE];
+                taken_up.extend(
+                    around.iter().filter(|s| (0.0..1.0).contains(*s)).map(|s| from + (cut - from) * s),
+                );
+            }
             taken_up.sort_by(f64::total_cmp);
             for s in taken_up.into_iter().chain([cut]) {
                 let here = command(s);
                 play.go(self.model, &here);
+                play.turn(self.model, &here, [true; 3]);
                 found.push((s, play.error_mm(self.model, &here)));
             }
             (from, at) = (cut, to);

@@ -30,7 +30,13 @@ fn beside_mm(model: &dyn PathModel, nose_mm: f64, tool_mm: [f64; 3], feed: &Feed
     let error = |place: [f64; 3], aside: Vector| {
         let linear_mm = Vector::from(place) + aside;
         let (rotary_rad, direction) = (Vector::zeros(), [0; 3]);
-        model.error_mm(&Command { linear_mm, rotary_rad, tool_mm: tool_mm - aside, direction })
+        model.error_mm(&Command {
+            linear_mm,
+            rotary_rad,
+            tool_mm: tool_mm - aside,
+            direction,
+            rotary_play: Default::default(),
+        })
     };
     let difference = |place: [f64; 3]| {
         let here = error(place, Vector::zeros());

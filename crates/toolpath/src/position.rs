@@ -35,6 +35,8 @@ pub struct Partial {
     pub linear_mm: [Option<f64>; 3],
     /// A, B, C in degrees. Unknown counts as an error only where a rotary axis matters.
     pub rotary_deg: [f64; 3],
+    /// Of which of them that is known; 0 stands for the others.
+    pub rotary_known: [bool; 3],
 }
 
 impl Partial {
@@ -48,6 +50,6 @@ impl Partial {
 
 impl From<Position> for Partial {
     fn from(p: Position) -> Self {
-        Self { linear_mm: p.linear_mm.map(Some), rotary_deg: p.rotary_deg }
+        Self { linear_mm: p.linear_mm.map(Some), rotary_deg: p.rotary_deg, rotary_known: [true; 3] }
     }
 }

@@ -47,6 +47,7 @@ pub struct Tip {
 ///     rotary_rad: Vector::zeros(),
 ///     tool_mm: Vector::zeros(),
 ///     direction: [0; 3],
+///     rotary_play: Default::default(),
 /// };
 /// // A cone of 50 µm on the diameter.
 /// assert!((2000.0 * lathe.error_mm(&told).x - 49.999_86).abs() < 1e-5);
@@ -92,7 +93,13 @@ impl Lathe {
             (0..LOOKS * LOOKS).map(|k| {
                 let linear_mm =
                     Vector::new(along(volume.0[0], k / LOOKS), 0.0, along(volume.0[2], k % LOOKS));
-                Command { linear_mm, tool_mm: *tool_mm, rotary_rad: Vector::zeros(), direction: [0; 3] }
+                Command {
+                    linear_mm,
+                    tool_mm: *tool_mm,
+                    rotary_rad: Vector::zeros(),
+                    direction: [0; 3],
+                    rotary_play: Default::default(),
+                }
             })
         });
         let highest = heights.map(|command| lathe.height_mm(&command).abs()).fold(0.0, f64::max);

@@ -192,7 +192,13 @@ pub(crate) fn grid<'py>(
         warnings.extend(conditions::doubts(&profile, id));
         let places = grid.axes().each_ref().map(|nodes| nodes.places_mm().to_vec());
         let map = volume_map::evaluated(grid, |place_mm| {
-            model.error_mm(&Command { linear_mm: *place_mm, rotary_rad, tool_mm, direction: [0; 3] })
+            model.error_mm(&Command {
+                linear_mm: *place_mm,
+                rotary_rad,
+                tool_mm,
+                direction: [0; 3],
+                rotary_play: Default::default(),
+            })
         });
         let errors: Vec<f64> = map.errors_mm().iter().flat_map(|error| [error.x, error.y, error.z]).collect();
         Ok((places, errors, warnings))

@@ -294,8 +294,13 @@ fn lattice(profile: &Profile, arguments: &Export) -> Result<Vec<Text>, Failure> 
         for y in &places[1] {
             for x in &places[0] {
                 let at = Vector::new(*x, *y, *z);
-                let command =
-                    Command { linear_mm: at, rotary_rad: Vector::zeros(), tool_mm, direction: [0; 3] };
+                let command = Command {
+                    linear_mm: at,
+                    rotary_rad: Vector::zeros(),
+                    tool_mm,
+                    direction: [0; 3],
+                    rotary_play: Default::default(),
+                };
                 let error = model.error_mm(&command) * (1e3 * sign);
                 let cells: Vec<String> = at
                     .iter()

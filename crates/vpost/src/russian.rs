@@ -166,6 +166,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Completions for a shell", "Автодополнение для оболочки"),
     ("Conditions: temp_c=24, time_s=600 … (repeatable)", "Условия: temp_c=24, time_s=600 … (повторяемый)"),
     ("Control points of a file instead (CSV, as for `vpost predict`); - for standard input", "Контрольные точки из файла (CSV, как для `vpost predict`); - стандартный ввод"),
+    ("Control points: a ball on the rotary table, at a radius and a height from its centre, mm, which the linear axes follow through the angles of both rotary axes in steps of 30 degrees; the leading axis turns slowest", "Контрольные точки: шар на поворотном столе, радиус и высота от его центра, мм; линейные оси следуют за ним по углам обеих поворотных осей с шагом 30 градусов; ведущая ось поворачивается реже"),
     ("Control points: nodes of X, Y and Z, how many over the calibrated volume (22x22x21), or from:to:step in mm for each (40:880:40,30:450:20,5:505:25)", "Контрольные точки: узлы X, Y и Z, сколько их на объём (22x22x21) или от:до:шаг в мм для каждой (40:880:40,30:450:20,5:505:25)"),
     ("Correct a program that says it was corrected before", "Исправить программу, в которой сказано, что она исправлена"),
     ("Correct a program: the main job, which needs no name", "Исправить программу: главная работа, имя можно опустить"),

@@ -114,7 +114,7 @@ fn linear_only(machine: &Description) -> Description {
     for rotary in &mut machine.rotary {
         rotary.shift_mm = Vector::zeros();
         rotary.tilt_rad = Vector::zeros();
-        rotary.errors = None;
+        (rotary.errors, rotary.errors_negative, rotary.backlash_rad) = (None, None, 0.0);
     }
     machine
 }

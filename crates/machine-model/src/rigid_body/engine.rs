@@ -122,6 +122,14 @@ impl PathModel for RigidBody {
         self.depends_on_direction
     }
 
+    fn has_rotary_play(&self) -> bool {
+        self.has_rotary_play
+    }
+
+    fn rotary_reversal_rad(&self, axis: usize, command: &Command) -> f64 {
+        self.swivels[axis].reversal_rad(command.rotary_rad[axis])
+    }
+
     fn reversal_mm(&self, axis: usize, command: &Command) -> f64 {
         let link = &self.links[self.place_of[axis]];
         match link.by_direction.as_slice() {

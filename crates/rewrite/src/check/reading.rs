@@ -245,7 +245,13 @@ impl<'a, 'n> Program<'a, 'n> {
             return None;
         }
         let (linear_mm, rotary_rad, direction) = (Vector::zeros(), Vector::zeros(), [0; 3]);
-        let command = Command { linear_mm, rotary_rad, tool_mm: context.tool_mm.into(), direction };
+        let command = Command {
+            linear_mm,
+            rotary_rad,
+            tool_mm: context.tool_mm.into(),
+            direction,
+            rotary_play: Default::default(),
+        };
         match self.job.models.axes.knows(&command) {
             Err(error @ SolveError::OtherTool { .. }) => Some(other_tool(&error, block.file_range())),
             _ => None,

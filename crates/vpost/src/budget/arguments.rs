@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::values::{Given, Lattice, Rotary, ToolVector};
+use crate::values::{Ball, Given, Lattice, Rotary, ToolVector};
 
 /// `vpost budget`
 #[derive(Debug, Args)]
@@ -16,6 +16,10 @@ pub struct Budget {
     /// Control points of a file instead (CSV, as for `vpost predict`); - for standard input.
     #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["grid", "rotary"])]
     pub points: Option<PathBuf>,
+    /// Control points: a ball on the rotary table, at a radius and a height from its centre, mm, which the linear axes
+    /// follow through the angles of both rotary axes in steps of 30 degrees; the leading axis turns slowest.
+    #[arg(long, value_name = "R=MM,H=MM,lead=AXIS", allow_hyphen_values = true, conflicts_with_all = ["grid", "rotary", "points"])]
+    pub ball: Option<Given<Ball>>,
     /// Tool vector, gauge point to tip, mm: an H number of the profile or X,Y,Z; default: the profile's.
     #[arg(long, value_name = "H1|X,Y,Z", allow_hyphen_values = true)]
     pub tool_vector: Option<Given<ToolVector>>,

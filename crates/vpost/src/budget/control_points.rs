@@ -3,7 +3,7 @@
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use error_budget::Machine;
 use error_map::Nodes;
-use machine_model::{Command, Engine, PathModel, Vector};
+use machine_model::{Axis, Command, Engine, PathModel, RotaryAxis, RotaryPlay, Vector, Volume};
 use machine_profile::Profile;
 
 use super::arguments::Budget;
@@ -13,6 +13,7 @@ use crate::file;
 use crate::message::{Failure, Messages, OPTION, Report};
 use crate::points::{self, POINTS};
 use crate::predict::POINT_OUTSIDE;
+use crate::values::{Ball, Given};
 use jobs::map::{grid, rotary, tool};
 
 /// Most control points: with forty deviations they fill a quarter of a gigabyte.
@@ -34,6 +35,9 @@ pub(super) fn read(
     messages: &Messages,
 ) -> Result<ControlPoints, Failure> {
     let tool_mm = tool(arguments.tool_vector.as_ref(), &shared.job, profile)?;
+    if let Some(ball) = &arguments.ball {
+        return on_a_ball(ball, tool_mm, profile, machine);
+    }
     match &arguments.points {
         Some(path) => {
             let (name, bytes) = (file::name(path), file::read(path)?);
@@ -56,20 +60,25 @@ fn over_the_volume(
     crate::map::outside([grid.axes().each_ref().map(Nodes::range_mm)], volume, shared, messages)?;
     let rotary_rad = rotary(arguments.rotary.as_ref(), profile)?;
     // Where lost motion counts, the worst approach of each axis is looked for, too.
-    let directions: Vec<[i8; 3]> = if machine.model().depends_on_direction() {
-        (0..8_u8).map(|bits| [0, 1, 2].map(|axis| if bits >> axis & 1 == 0 { 1 } else { -1 })).collect()
-    } else {
-        vec![[0; 3]]
+    let sides = |plays: [bool; 3]| -> Vec<[i8; 3]> {
+        let all = (0..8_u8).filter(|bits| (0..3).all(|axis| plays[axis] || bits >> axis & 1 == 0));
+        let side = |bits: u8, axis: usize| if bits >> axis & 1 == 0 { 1 } else { -1 };
+        all.map(|bits| [0, 1, 2].map(|axis| i8::from(plays[axis]) * side(bits, axis))).collect()
     };
+    let linear = sides([machine.model().depends_on_direction(); 3]);
+    let rotary = sides(machine.model().base().description().rotary.each_ref().map(RotaryAxis::has_play));
+    let directions: Vec<([i8; 3], [i8; 3])> =
+        linear.iter().flat_map(|linear| rotary.iter().map(|rotary| (*linear, *rotary))).collect();
     let count = grid.len().saturating_mul(directions.len());
     if count > MOST {
         return Err(too_many(&format!("`--grid {}`", arguments.grid), count, directions.len()));
     }
-    let command = |(place, direction): (usize, &[i8; 3])| Command {
+    let command = |(place, (direction, rotary)): (usize, &([i8; 3], [i8; 3]))| Command {
         linear_mm: grid.place_mm(place),
         rotary_rad,
         tool_mm,
         direction: *direction,
+        rotary_play: RotaryPlay { direction: *rotary, ..RotaryPlay::default() },
     };
     let commands: Vec<Command> =
         (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();
@@ -77,12 +86,113 @@ fn over_the_volume(
         let range = nodes.range_mm();
         format!("{name} {} to {} mm ({})", range.low, range.high, nodes.places_mm().len())
     });
-    let approach = if directions.len() > 1 { ", each approached from all 8 sides" } else { "" };
+    let approach = match directions.len() {
+        1 => String::new(),
+        sides => format!(", each approached from all {sides} sides"),
+    };
     let what = format!(
         "{}{approach}\ntool vector {}, rotary axes {}",
         axes.collect::<Vec<_>>().join(", "),
         triple(&tool_mm, 3),
         triple(&rotary_rad.map(f64::to_degrees), 3)
+    );
+    Ok(ControlPoints { commands, what })
+}
+
+/// Between places of a ball its axes turn by so many degrees: Serkov 2017.
+const BALL_STEP_DEG: f64 = 30.0;
+
+/// A ball on the table that the linear axes follow through the angles of the table's axes (Serkov 2017), all rotary axes
+/// coming from below, the linear ones as they come from place to place.
+fn on_a_ball(
+    ball: &Given<Ball>,
+    tool_mm: Vector,
+    profile: &Profile,
+    machine: &Machine,
+) -> Result<ControlPoints, Failure> {
+    let Ball { radius_mm, height_mm, lead } = **ball;
+    let refuse = |message: Text, help: Text| Err(Failure::option(message, help));
+    let table = profile.chain().table();
+    let Some(spin) = table.first().copied() else {
+        return refuse(
+            both!(
+                "`--ball {ball}`: this machine has no rotary table",
+                "`--ball {ball}`: у этого станка нет поворотного стола"
+            ),
+            both!("give the points by `--points`", "задайте точки через `--points`"),
+        );
+    };
+    let other = profile.chain().axes().find(|axis| !axis.is_linear() && *axis != spin);
+    let Some(lead) = [Some(spin), other].into_iter().flatten().find(|axis| axis.letter() == lead) else {
+        let axes: Vec<String> =
+            [Some(spin), other].into_iter().flatten().map(|axis| axis.to_string()).collect();
+        return refuse(
+            both!(
+                "`--ball {ball}`: there is no rotary axis {lead}",
+                "`--ball {ball}`: поворотной оси {lead} нет"
+            ),
+            both!("let one of {} lead", "ведущей может быть {}", axes.join(", ")),
+        );
+    };
+    let angles = |axis: Axis| -> Vec<f64> {
+        let range = profile.description.rotary[axis.direction()].calibrated_rad();
+        let round = if axis == spin { [0.0, 359.0] } else { [-180.0, 179.0] };
+        let (low, high) = (range.low.to_degrees().max(round[0]), range.high.to_degrees().min(round[1]));
+        // The end of a range in degrees is not exact in radians.
+        let first = ((low - 1e-9) / BALL_STEP_DEG).ceil() as i32;
+        let last = ((high + 1e-9) / BALL_STEP_DEG).floor() as i32;
+        (first..=last).map(|k| f64::from(k) * BALL_STEP_DEG).collect()
+    };
+    let outer = angles(lead);
+    let inner = [Some(spin), other].into_iter().flatten().find(|axis| *axis != lead);
+    let inner_deg = inner.map_or(vec![0.0], angles);
+    let body = machine.model().base();
+    let centre = body.description().rotary[spin.direction()].centre_mm;
+    let place = centre + Vector::new(radius_mm, 0.0, height_mm) - tool_mm;
+    let plays = body.description().rotary.each_ref().map(|rotary| i8::from(rotary.has_play()));
+    let mut commands: Vec<Command> = Vec::new();
+    for one in &outer {
+        for two in &inner_deg {
+            let mut degrees = Vector::zeros();
+            degrees[lead.direction()] = *one;
+            if let Some(inner) = inner {
+                degrees[inner.direction()] = *two;
+            }
+            let mut command = Command {
+                linear_mm: Vector::zeros(),
+                rotary_rad: degrees.map(f64::to_radians),
+                tool_mm,
+                direction: [0; 3],
+                rotary_play: RotaryPlay { direction: plays, ..RotaryPlay::default() },
+            };
+            command.linear_mm = body.same_tip_mm(&place, &command, &Vector::zeros());
+            let before = commands.last().map_or(command, |before| *before);
+            let way = command.linear_mm - before.linear_mm;
+            command.direction = [0, 1, 2].map(|i| match way[i] {
+                step if step > 1e-9 => 1,
+                step if step < -1e-9 => -1,
+                _ => before.direction[i],
+            });
+            commands.push(command);
+        }
+    }
+    let volume: Volume = machine.model().volume();
+    if let Some(outside) = commands.iter().find(|command| !volume.contains(&command.linear_mm)) {
+        let at = triple(&outside.linear_mm, 3);
+        return refuse(
+            both!(
+                "`--ball {ball}`: the linear axes would have to go to {at}, outside the calibrated volume",
+                "`--ball {ball}`: линейным осям пришлось бы идти в {at}, вне калиброванного объёма"
+            ),
+            both!(
+                "take a smaller R or H, or another tool (`--tool-vector`)",
+                "возьмите меньше R или H или другой инструмент (`--tool-vector`)"
+            ),
+        );
+    }
+    let what = format!(
+        "a ball at R {radius_mm} mm, {height_mm} mm above the centre of {spin}, in steps of {BALL_STEP_DEG} degrees, {lead} leading\ntool vector {}",
+        triple(&tool_mm, 3)
     );
     Ok(ControlPoints { commands, what })
 }
@@ -168,7 +278,10 @@ fn from_file(
 
 fn too_many(what: &str, count: usize, directions: usize) -> Failure {
     let each = if directions > 1 {
-        both!(" (each node from 8 sides, for lost motion)", " (каждый узел с 8 сторон, из-за потери хода)")
+        both!(
+            " (each node from {directions} sides, for lost motion)",
+            " (каждый узел с {directions} сторон, из-за потери хода)"
+        )
     } else {
         Text::EMPTY
     };

@@ -25,7 +25,13 @@ pub(super) struct Asked {
 
 /// The state in which errors are asked for.
 pub(super) fn command(asked: &Asked, linear_mm: Vector, direction: [i8; 3]) -> Command {
-    Command { linear_mm, rotary_rad: asked.rotary_rad, tool_mm: asked.tool_mm, direction }
+    Command {
+        linear_mm,
+        rotary_rad: asked.rotary_rad,
+        tool_mm: asked.tool_mm,
+        direction,
+        rotary_play: Default::default(),
+    }
 }
 
 /// Reads the options.

@@ -110,7 +110,13 @@ fn measured(
         // The tool ball is the tip; of a circle only its place is said.
         Some(Bar { ball_mm, direction, .. }) if sheet.is_polar() => {
             let tool_mm = Vector::from(tool_mm);
-            Command { linear_mm: ball_mm - tool_mm, rotary_rad: Vector::zeros(), tool_mm, direction }
+            Command {
+                linear_mm: ball_mm - tool_mm,
+                rotary_rad: Vector::zeros(),
+                tool_mm,
+                direction,
+                rotary_play: Default::default(),
+            }
         }
         _ => row.command(tool_mm)?,
     };

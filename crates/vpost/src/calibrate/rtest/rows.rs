@@ -220,6 +220,19 @@ fn columns(sheet: &Sheet, sphere: bool, profile: &Profile) -> Result<(), Failure
         );
         return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
     }
+    let both_ways = |axis: &usize| has[*axis] && profile.description.rotary[*axis].errors_negative.is_some();
+    if let Some(axis) = (0..3).find(both_ways) {
+        let letter = ["A", "B", "C"][axis];
+        let message = both!(
+            "[rotary.{letter}] of the base has `errors_negative`, and angles do not say from which side the axis came",
+            "в [rotary.{letter}] исходного профиля есть `errors_negative`, а по углам не видно, с какой стороны пришла ось"
+        );
+        let help = both!(
+            "give a base with one table, the mean of both directions, and `backlash_urad`",
+            "дайте профиль с одной таблицей, средней по направлениям, и `backlash_urad`"
+        );
+        return Err(Failure::usage(Diagnostic::error(AXES, message).help(help)));
+    }
     if !(0..3).any(|axis| has[axis] && sheet.has(angles[axis])) {
         let wanted: Vec<&str> = (0..3).filter(|axis| has[*axis]).map(|axis| angles[axis]).collect();
         let help = both!(

@@ -4,6 +4,7 @@ use diagnostic::both;
 use machine_model::effects::Conditions;
 use machine_model::{Vector, Volume};
 
+use super::rotary::Spot;
 use crate::message::Failure;
 
 /// Time at rest for a reading, seconds.
@@ -11,13 +12,13 @@ pub(super) const DWELL_S: f64 = 3.0;
 /// Stops along a line, each way.
 const STOPS: usize = 15;
 /// The ends of the volume stay free, for the way to a line and for the overrun at its ends.
-const MARGIN: f64 = 0.04;
+pub(super) const MARGIN: f64 = 0.04;
 /// Feed to a stop and between lines, mm/min.
 pub(super) const SLOW_MM_MIN: f64 = 1000.0;
 /// Feeds of the lines that are read on the fly, mm/min.
 const FEEDS_MM_MIN: [f64; 2] = [500.0, 3000.0];
 /// The second tool is so much longer, or half as long where the first is long already, mm.
-const LONGER_MM: f64 = 100.0;
+pub(super) const LONGER_MM: f64 = 100.0;
 const LONG_MM: f64 = 150.0;
 /// The third is aside.
 const ASIDE_MM: f64 = 80.0;
@@ -29,6 +30,8 @@ const WARM_UP_S: f64 = 1800.0;
 pub(in crate::diagnose) struct Stop {
     /// Axis positions.
     pub at_mm: Vector,
+    /// A, B, C.
+    pub rotary_deg: [f64; 3],
     /// How each axis came there.
     pub direction: [i8; 3],
 }
@@ -56,6 +59,8 @@ pub(in crate::diagnose) struct Line {
     pub turn_mm: Vector,
     /// The stops in order.
     pub stops: Vec<Stop>,
+    /// Where rotary axes turn and the others follow: where that begins, and what is passed on the way to each stop.
+    pub swing: Option<(Spot, Vec<Vec<Spot>>)>,
 }
 
 /// Lines through the volume that make the effects of a three-axis machine separable: every axis in three places, all
@@ -188,7 +193,8 @@ impl Plan {
             let share = (k as f64 + 0.6 * uneven) / (STOPS - 1) as f64;
             rounded(from + (to - from) * share)
         };
-        let stop = |k: usize, sign: f64| Stop { at_mm: place(k), direction: direction(sign) };
+        let stop =
+            |k: usize, sign: f64| Stop { at_mm: place(k), rotary_deg: [0.0; 3], direction: direction(sign) };
         let overrun = (to - from) * self.overrun;
         let (feed_mm_min, flying) = match kind {
             Kind::AtRest => (SLOW_MM_MIN, false),
@@ -205,6 +211,7 @@ impl Plan {
             before_mm: from - overrun,
             turn_mm: to + overrun,
             stops: (0..STOPS).map(|k| stop(k, 1.0)).chain((0..STOPS).rev().map(|k| stop(k, -1.0))).collect(),
+            swing: None,
         });
     }
 }

@@ -3,6 +3,7 @@
 mod lines;
 mod program;
 mod proposed;
+mod rotary;
 
 use std::fmt::Write;
 
@@ -10,7 +11,7 @@ use clap::ValueEnum;
 use diagnostic::{Text, both};
 use gap_diagnosis::{Confounding, Diagnosis, Measurements, Reading, Row, confounding};
 use machine_model::effects::{Conditions, EffectGeometry, EffectKind};
-use machine_model::{Command, Vector};
+use machine_model::{Axis, Command, Vector};
 
 use crate::arguments::Shared;
 use crate::file;
@@ -19,6 +20,7 @@ use jobs::diagnose::Model;
 
 use lines::{Line, lines};
 use proposed::proposed;
+use rotary::rotary_lines;
 
 /// What of a plan is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -31,10 +33,13 @@ pub enum Form {
 
 /// Prints a plan for the profile's axes and volume, and says what it cannot separate.
 pub(super) fn print(form: Form, model: &Model, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
-    let plan = lines(model.profile.volume(), Vector::from(model.profile.default_tool_mm))?;
+    let tool_mm = Vector::from(model.profile.default_tool_mm);
+    let mut plan = lines(model.profile.volume(), tool_mm)?;
+    let (turning, missing) = rotary_lines(&model.profile, tool_mm, plan.len());
+    plan.extend(turning);
     print_lines(form, &plan, "measuring plan of vpost", shared, messages)?;
     let found = confounding(&design(&plan, &model.geometry));
-    messages.note(&summary(&plan, &found, &model.geometry));
+    messages.note(&summary(&plan, &found, &missing));
     Ok(())
 }
 
@@ -82,16 +87,18 @@ fn print_lines(
 /// goes on where the rows that were measured end.
 fn times(plan: &[Line]) -> Vec<Vec<f64>> {
     let mut now = plan.first().and_then(|line| line.conditions.time_s).unwrap_or(0.0);
-    let mut here: Option<Vector> = None;
+    let mut here: Option<(Vector, [f64; 3])> = None;
     plan.iter()
         .map(|line| {
             now += line.wait_s;
             line.stops
                 .iter()
                 .map(|stop| {
-                    let way = here.map_or(0.0, |from| (stop.at_mm - from).norm());
+                    // A degree takes as long as a millimetre.
+                    let turned = |from: [f64; 3]| Vector::from(stop.rotary_deg) - Vector::from(from);
+                    let way = here.map_or(0.0, |(mm, deg)| (stop.at_mm - mm).norm().max(turned(deg).norm()));
                     now += 60.0 * way / line.feed_mm_min + if line.flying { 0.0 } else { lines::DWELL_S };
-                    here = Some(stop.at_mm);
+                    here = Some((stop.at_mm, stop.rotary_deg));
                     now
                 })
                 .collect()
@@ -101,8 +108,11 @@ fn times(plan: &[Line]) -> Vec<Vec<f64>> {
 
 /// The rows in the columns of a measurement file, readings and conditions to be filled in.
 fn points(plan: &[Line]) -> String {
-    let mut out = String::from(
-        "run,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um,dir_x,dir_y,dir_z,feed_mm_min,tool_x_mm,tool_y_mm,tool_z_mm,load_kg,time_s,temp_c,repeat,u_um\n",
+    // Machines without rotary axes need no columns for them.
+    let turns = plan.iter().any(|line| line.swing.is_some());
+    let mut out = format!(
+        "run,x_mm,y_mm,z_mm,{}dx_um,dy_um,dz_um,dir_x,dir_y,dir_z,feed_mm_min,tool_x_mm,tool_y_mm,tool_z_mm,load_kg,time_s,temp_c,repeat,u_um\n",
+        if turns { "a_deg,b_deg,c_deg," } else { "" }
     );
     let filled = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v}"));
     for (line, times) in plan.iter().zip(times(plan)) {
@@ -111,10 +121,12 @@ fn points(plan: &[Line]) -> String {
             let (q, t, d) = (stop.at_mm, line.tool_mm, stop.direction);
             // An axis at rest lags behind nothing: only readings on the fly have a feed.
             let feed = if line.flying { format!("{}", line.feed_mm_min) } else { String::new() };
+            let [a, b, c] = stop.rotary_deg;
+            let angles = if turns { format!("{a},{b},{c},") } else { String::new() };
             // Writing into a string cannot fail.
             let _ = writeln!(
                 out,
-                "{},{:.3},{:.3},{:.3},,,,{},{},{},{feed},{:.3},{:.3},{:.3},{load_kg},{time:.0},{temp_c},{},",
+                "{},{:.3},{:.3},{:.3},{angles},,,{},{},{},{feed},{:.3},{:.3},{:.3},{load_kg},{time:.0},{temp_c},{},",
                 line.run, q.x, q.y, q.z, d[0], d[1], d[2], t.x, t.y, t.z, line.repeat
             );
         }
@@ -137,9 +149,10 @@ pub(super) fn design(plan: &[Line], geometry: &EffectGeometry) -> Measurements {
                 run: data.runs.len() - 1,
                 command: Command {
                     linear_mm: stop.at_mm,
-                    rotary_rad: Vector::zeros(),
+                    rotary_rad: Vector::from(stop.rotary_deg.map(f64::to_radians)),
                     tool_mm: line.tool_mm,
                     direction: stop.direction,
+                    rotary_play: Default::default(),
                 },
                 conditions: Conditions {
                     time_s: Some(time),
@@ -184,7 +197,7 @@ fn reason(a: EffectKind, b: EffectKind) -> Text {
     }
 }
 
-fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> Text {
+fn summary(plan: &[Line], found: &Confounding, missing: &[Axis]) -> Text {
     let rows: usize = plan.iter().map(|l| l.stops.len()).sum();
     let hours = times(plan).last().and_then(|t| t.last().copied()).unwrap_or(0.0) / 3600.0;
     let mut text = both!(
@@ -206,16 +219,11 @@ fn summary(plan: &[Line], found: &Confounding, geometry: &EffectGeometry) -> Tex
             "\nкроме {kind}: этих линий для него мало"
         ));
     }
-    let rotary: Vec<&str> = ["A", "B", "C"]
-        .into_iter()
-        .zip(0..)
-        .filter(|(_, a)| geometry.has_rotary(*a))
-        .map(|(name, _)| name)
-        .collect();
+    let rotary: Vec<String> = missing.iter().map(Axis::to_string).collect();
     if !rotary.is_empty() {
         text.push(&both!(
-            "\nexcept everything of {}: these lines keep rotary axes still; measure a target on the table at several angles as well",
-            "\nкроме всего, что относится к {}: на этих линиях поворотные оси стоят; измерьте ещё цель на столе под несколькими углами",
+            "\nexcept everything of {}: X, Y and Z have not the travel to follow a target while it turns; measure one at several angles",
+            "\nкроме всего, что относится к {}: осям X, Y и Z не хватает хода, чтобы следовать за целью при повороте; измерьте её под несколькими углами",
             rotary.join(", ")
         ));
     }

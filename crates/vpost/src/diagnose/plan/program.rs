@@ -7,6 +7,7 @@ use machine_model::Vector;
 use nc_syntax::dialect::{Paren, Semicolon};
 
 use super::lines::{DWELL_S, Line};
+use super::rotary::Spot;
 use crate::message::Failure;
 use crate::settings::Settings;
 
@@ -20,6 +21,15 @@ struct Blocks<'a> {
     /// Machine coordinates of the program's zero.
     zero_mm: [f64; 3],
     high_z_mm: f64,
+    /// Of the rotary axes that turn.
+    letters: Vec<(usize, char)>,
+}
+
+/// The rotary axes that turn in a plan.
+fn turning(plan: &[Line]) -> Vec<(usize, char)> {
+    let turns =
+        |axis: usize| plan.iter().flat_map(|line| &line.stops).any(|stop| stop.rotary_deg[axis] != 0.0);
+    ['A', 'B', 'C'].into_iter().enumerate().filter(|(axis, _)| turns(*axis)).collect()
 }
 
 /// The program: slow, Z up between lines, both ways along each, a dwell at every stop.
@@ -36,8 +46,14 @@ pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<St
             ),
         ));
     };
-    let high_z_mm = plan.iter().flat_map(|l| [l.before_mm.z, l.turn_mm.z]).fold(f64::MIN, f64::max);
-    let mut blocks = Blocks { out: String::new(), settings, zero_mm, high_z_mm };
+    let spots = |line: &Line| {
+        let (before, passed) = line.swing.as_ref()?;
+        Some(passed.iter().flatten().map(|spot| spot.at_mm.z).fold(before.at_mm.z, f64::max))
+    };
+    let high = |line: &Line| spots(line).unwrap_or(f64::MIN).max(line.before_mm.z).max(line.turn_mm.z);
+    let high_z_mm = plan.iter().map(high).fold(f64::MIN, f64::max);
+    let letters = turning(plan);
+    let mut blocks = Blocks { out: String::new(), settings, zero_mm, high_z_mm, letters };
     let name = settings.dialect.name.as_str();
     if name == "fanuc" {
         blocks.block("%");
@@ -59,6 +75,9 @@ pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<St
     blocks.comment("the first moves are rapids, z up and then across: override low");
     if let Some(first) = plan.first() {
         blocks.block(&format!("G0 Z{}", blocks.number(2, blocks.high_z_mm)));
+        if !blocks.letters.is_empty() {
+            blocks.block(&format!("G0 {}", blocks.angles([0.0; 3])));
+        }
         let (x, y) = (blocks.number(0, first.before_mm.x), blocks.number(1, first.before_mm.y));
         blocks.block(&format!("G0 X{x} Y{y}"));
     }
@@ -74,6 +93,10 @@ pub(super) fn text(plan: &[Line], title: &str, settings: &Settings) -> Result<St
         if line.wait_s > 0.0 {
             blocks.comment(&format!("let the axes run for {:.0} minutes first", line.wait_s / 60.0));
             blocks.block("M0");
+        }
+        if let Some((before, passed)) = &line.swing {
+            blocks.swing(line, before, passed);
+            continue;
         }
         blocks.to(line.before_mm);
         blocks.block(&format!("F{:.0}.", line.feed_mm_min));
@@ -127,6 +150,43 @@ impl Blocks<'_> {
         let words: Vec<String> =
             (0..3).map(|a| format!("{}{}", ["X", "Y", "Z"][a], self.number(a, at_mm[a]))).collect();
         self.block(&format!("G1 {}", words.join(" ")));
+    }
+
+    /// Words of the rotary axes.
+    fn angles(&self, rotary_deg: [f64; 3]) -> String {
+        let equals = if self.settings.dialect.name == "sinumerik" { "=" } else { "" };
+        let word = |(axis, letter): &(usize, char)| {
+            // Half steps of what stops are rounded to.
+            let number = format!("{:.3}", rotary_deg[*axis] + 0.0);
+            format!("{letter}{equals}{}", if number == "-0.000" { "0.000" } else { &number })
+        };
+        self.letters.iter().map(word).collect::<Vec<_>>().join(" ")
+    }
+
+    /// A line on which rotary axes turn: Z up before they stand where it begins, and when they go back to 0.
+    fn swing(&mut self, line: &Line, before: &Spot, passed: &[Vec<Spot>]) {
+        let up = self.number(2, self.high_z_mm);
+        self.block(&format!("G1 Z{up} F{BETWEEN_MM_MIN:.0}."));
+        self.comment("rotary axes turn by a rapid");
+        self.block(&format!("G0 {}", self.angles(before.rotary_deg)));
+        self.to(before.at_mm);
+        self.block(&format!("F{:.0}.", line.feed_mm_min));
+        for (stop, passed) in line.stops.iter().zip(passed) {
+            for spot in passed {
+                self.turned(spot.at_mm, spot.rotary_deg);
+            }
+            self.turned(stop.at_mm, stop.rotary_deg);
+            self.rest();
+        }
+        self.block(&format!("G1 Z{up} F{BETWEEN_MM_MIN:.0}."));
+        self.block(&format!("G0 {}", self.angles([0.0; 3])));
+    }
+
+    /// To a place while rotary axes turn.
+    fn turned(&mut self, at_mm: Vector, rotary_deg: [f64; 3]) {
+        let words: Vec<String> =
+            (0..3).map(|a| format!("{}{}", ["X", "Y", "Z"][a], self.number(a, at_mm[a]))).collect();
+        self.block(&format!("G1 {} {}", words.join(" "), self.angles(rotary_deg)));
     }
 
     /// To the beginning of a line: Z up, across, Z down, all at a feed that an operator can stop.

@@ -37,7 +37,11 @@ fn line(rows: &[Row], run: String, volume: Volume) -> Result<Line, Failure> {
     let end = if volume.contains(&(to + overrun)) { to } else { to - overrun };
     let stop = |row: &Row| {
         let share = (row.command.linear_mm - from).dot(&way) / way.norm_squared();
-        Stop { at_mm: rounded(start.lerp(&end, share)), direction: row.command.direction }
+        Stop {
+            at_mm: rounded(start.lerp(&end, share)),
+            rotary_deg: [0.0; 3],
+            direction: row.command.direction,
+        }
     };
     let feed = rows[0].conditions.feed_mm_min;
     Ok(Line {
@@ -51,5 +55,6 @@ fn line(rows: &[Row], run: String, volume: Volume) -> Result<Line, Failure> {
         before_mm: start - overrun,
         turn_mm: end + overrun,
         stops: rows.iter().map(stop).collect(),
+        swing: None,
     })
 }
