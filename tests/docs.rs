@@ -281,6 +281,7 @@ fn russian_pages_have_the_same_commands_and_pictures() {
         ("README.md", "README.ru.md"),
         ("docs/tutorial.md", "docs/tutorial.ru.md"),
         ("docs/how-to/turn-straight.md", "docs/how-to/turn-straight.ru.md"),
+        ("docs/how-to/correct-for-my-machine.md", "docs/how-to/correct-for-my-machine.ru.md"),
     ] {
         let blocks = |name: &str| {
             // What is printed is in the reader's language.

@@ -117,6 +117,169 @@ fn help_and_wrong_arguments_are_said_in_russian() {
     }
 }
 
+/// What is read of a page: its texts, one a line, and those of its drawings; none of its script, styles and data.
+fn texts_of(page: &str) -> String {
+    let mut text = String::new();
+    let mut rest = page;
+    while let Some(start) = rest.find('<') {
+        text.push_str(&rest[..start]);
+        text.push('\n');
+        let tag = &rest[start..];
+        let silent = ["script", "style"].into_iter().find(|name| tag[1..].starts_with(name));
+        let end = match silent {
+            Some(name) => {
+                let close = format!("</{name}>");
+                tag.find(&close).map_or(tag.len(), |at| at + close.len())
+            }
+            None => tag.find('>').map_or(tag.len(), |at| at + 1),
+        };
+        for attribute in ["aria-label=\"", "title=\""] {
+            for said in tag[..end].split(attribute).skip(1).filter(|_| silent.is_none()) {
+                text.push_str(said.split('"').next().unwrap_or_default());
+                text.push('\n');
+            }
+        }
+        rest = &tag[end..];
+    }
+    text + rest
+}
+
+/// Names of machines in samples, and of the manuals that tables cite.
+const NAMES: [&str; 7] = [
+    "Generic VMC as a field (invented errors)",
+    "Mill with a crooked tilting table",
+    "Tilting rotary table",
+    "vpost calibrate",
+    "Mill Operator's Manual",
+    "Programming Manual Cycles",
+    "Default to Float",
+];
+
+/// Every line without a Latin sentence; the first that has one.
+fn latin_line(text: &str) -> Option<&str> {
+    text.lines().find(|line| {
+        let line = NAMES.iter().fold((*line).to_owned(), |line, name| line.replace(name, ""));
+        latin_sentence(&line).is_some()
+    })
+}
+
+#[test]
+fn results_and_pages_are_said_in_russian() {
+    const STAN: &str = "machine-profiles/stan_s500.toml";
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let (page, viewer, out) = (at("page.html"), at("viewer.html"), at("out.nc"));
+    let plate = ["samples/plate_linuxcnc.nc", "-m", STAN, "-d", "linuxcnc"];
+    assert!(run(&[&plate[..], &["-o", &out]].concat()).status.success());
+    let tracker = ["x", "y", "z"].map(|axis| format!("machine-profiles/stan_s500/tracker_48_{axis}.csv"));
+    let [x, y, z] = tracker.each_ref().map(String::as_str);
+    let mill = "[w X Y b Z t]";
+    let commands: &[&[&str]] = &[
+        &["calibrate", "ballbar", "samples/calibration/ballbar_circles.csv", "--html", &page],
+        &[
+            "calibrate",
+            "ballbar",
+            "samples/calibration/ballbar_ac.csv",
+            "--chain",
+            "[w C A X Y b Z t]",
+            "--crossing",
+            "250,150,-300",
+            "--after",
+            "samples/calibration/ballbar_ac_compensated.csv",
+            "--html",
+            &page,
+        ],
+        &["calibrate", "interferometer", "samples/calibration/iso230_2_muts_2022.csv", "--html", &page],
+        &[
+            "calibrate",
+            "rtest",
+            "samples/calibration/rtest_bc.csv",
+            "-m",
+            "samples/profiles/table_bc.toml",
+            "--holdout",
+            "samples/calibration/rtest_bc_unseen.csv",
+        ],
+        &["calibrate", "tracker", x, y, z, "--chain", mill, "--against", STAN],
+        &[
+            "calibrate",
+            "volumetric",
+            "samples/calibration/volume_points.csv",
+            "--chain",
+            mill,
+            "--nodes",
+            "4",
+        ],
+        &["map", "-m", STAN, "--grid", "9x9x9", "--clamp", "120,80,40", "--second-order", "--html", &page],
+        &["map", "-m", STAN, "--grid", "5x5x5", "--viewer", &viewer],
+        &["map", "-m", "samples/field/generic_vmc_field.toml", "--grid", "5x5x5", "--html", &page],
+        &["budget", "-m", STAN, "--target", "100", "--keep", "EXX,EYY", "--grid", "3x3x3"],
+        &[
+            "budget",
+            "-m",
+            "samples/budget/ms300_like.toml",
+            "--points",
+            "samples/budget/ball_points.csv",
+            "--target",
+            "1",
+        ],
+        &["check", plate[0], &out, "-m", STAN, "-d", "linuxcnc", "--html", &page, "--viewer", &viewer],
+        &["check", plate[0], plate[0], "-m", STAN, "-d", "linuxcnc", "--html", &page],
+        &[
+            "diagnose",
+            "samples/diagnosis/squareness_and_scale.csv",
+            "-m",
+            "samples/diagnosis/squareness_and_scale.toml",
+            "--holdout",
+            "samples/diagnosis/squareness_and_scale_holdout.csv",
+            "--html",
+            &page,
+            "--viewer",
+            &viewer,
+        ],
+        &[
+            "diagnose",
+            "samples/diagnosis/one_feed.csv",
+            "-m",
+            "samples/diagnosis/one_feed.toml",
+            "--html",
+            &page,
+        ],
+        &[
+            "diagnose",
+            "samples/diagnosis/nothing.csv",
+            "-m",
+            "samples/diagnosis/nothing.toml",
+            "--html",
+            &page,
+        ],
+        &["profile", "show", STAN],
+        &["profile", "show", "samples/profiles/tilting_table.toml"],
+        &["profile", "show", "machine-profiles/generic_lathe.toml"],
+        &["profile", "show", "samples/field/generic_vmc_field.toml"],
+        &["profile", "show", "tests/profiles/five_axis.toml"],
+        &["grammar", "list"],
+    ];
+    let mut failed = Vec::new();
+    for command in commands {
+        let ran = run(&[command, &["--lang", "ru"][..]].concat());
+        let printed = String::from_utf8_lossy(&ran.stdout).into_owned();
+        assert!(ran.status.code().is_some_and(|code| code < 2), "{command:?}\n{}", messages(&ran));
+        assert!(printed.chars().any(|c| ('а'..='я').contains(&c)), "{command:?}\n{printed}");
+        let mut said = vec![("printed", printed), ("messages", words(&messages(&ran)))];
+        for (file, name) in [(&page, "page"), (&viewer, "viewer")] {
+            if let Some(html) = command.contains(&file.as_str()).then(|| std::fs::read_to_string(file)) {
+                let html = html.expect("written");
+                assert!(html.contains("<html lang=\"ru\">"), "{command:?}");
+                said.push((name, texts_of(&html)));
+            }
+        }
+        for (what, text) in said {
+            failed.extend(latin_line(&text).map(|line| format!("{command:?}, {what}: {line}")));
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
 #[test]
 fn a_language_is_asked_for_or_the_locale_says_it() {
     let said = |locale: &str, more: &[&str]| {

@@ -24,6 +24,7 @@
 //! assert_eq!(found.redundancy, 1);
 //! ```
 
+use diagnostic::Speaks;
 use nalgebra::{DMatrix, DVector};
 
 use crate::student::{quantile, quantile_95};
@@ -103,6 +104,17 @@ pub enum AdjustmentError {
     /// The steps do not settle.
     #[error("the adjustment does not settle: the last step still changes a prediction by {0:e}")]
     NotSettled(f64),
+}
+
+impl Speaks for AdjustmentError {
+    fn russian(&self) -> String {
+        match self {
+            Self::NotFinite(reading) => format!("у отсчёта {reading} нет конечного предсказания"),
+            Self::NotSettled(step) => {
+                format!("уравнивание не сходится: последний шаг ещё меняет предсказание на {step:e}")
+            }
+        }
+    }
 }
 
 /// An adjusted set of parameters: equation (30).

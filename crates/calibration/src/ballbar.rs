@@ -1,5 +1,6 @@
 //! What both ball-bar adjustments share: the base with a change, and what to say of an adjustment.
 
+use diagnostic::{Language, Text, both};
 use std::rc::Rc;
 
 use machine_model::{Description, RigidBody, Vector, WithEffects};
@@ -50,28 +51,40 @@ pub(crate) fn too_few(readings: usize, unknowns: usize) -> Result<(), Calibratio
     if readings > unknowns {
         return Ok(());
     }
-    Err(CalibrationError::TooFew(format!("{readings} readings for {unknowns} unknowns")))
+    Err(CalibrationError::TooFew(both!(
+        "{readings} readings for {unknowns} unknowns",
+        "отсчётов {readings} на {unknowns} неизвестных"
+    )))
+}
+
+/// Names of what is not told apart: `EXX from EYX`.
+pub(crate) fn from_one_another<'t>(names: impl IntoIterator<Item = &'t Text> + Clone) -> Text {
+    let of = |language, between: &str| {
+        let names: Vec<&str> = names.clone().into_iter().map(|name| name.in_language(language)).collect();
+        names.join(between)
+    };
+    Text::new(of(Language::English, " from "), of(Language::Russian, " и "))
 }
 
 /// Refuses an adjustment with open combinations, by the names of the parameters that have a share in them.
-pub(crate) fn open_error(estimate: &Estimate, names: &[String]) -> Result<(), CalibrationError> {
+pub(crate) fn open_error(estimate: &Estimate, names: &[Text]) -> Result<(), CalibrationError> {
     if estimate.open.is_empty() {
         return Ok(());
     }
-    let texts: Vec<String> = estimate
+    let texts: Vec<Text> = estimate
         .open
         .iter()
         .map(|combination| {
-            let mut own: Vec<&str> = Vec::new();
+            let mut own: Vec<&Text> = Vec::new();
             for (name, share) in names.iter().zip(combination) {
-                if share.abs() > 0.05 && !own.contains(&name.as_str()) {
+                if share.abs() > 0.05 && !own.contains(&name) {
                     own.push(name);
                 }
             }
-            own.join(" from ")
+            from_one_another(own)
         })
         .collect();
-    Err(CalibrationError::Unobservable(texts.join("; ")))
+    Err(CalibrationError::Unobservable(Text::join(&texts, "; ")))
 }
 
 /// Refuses an adjustment in which one reading is far from all others.
@@ -81,10 +94,15 @@ pub(crate) fn no_outlier(estimate: &Estimate) -> Result<(), CalibrationError> {
     };
     Err(CalibrationError::Outlier {
         point: outlier.reading,
-        message: format!(
+        message: both!(
             "this length is {:.4} mm {} than all other readings say: {:.0} times its standard deviation",
+            "эта длина на {:.4} мм {:#}, чем говорят все остальные отсчёты: это {:.0} её стандартных отклонений",
             outlier.residual.abs(),
-            if outlier.residual > 0.0 { "longer" } else { "shorter" },
+            if outlier.residual > 0.0 {
+                Text::pair("longer", "больше")
+            } else {
+                Text::pair("shorter", "меньше")
+            },
             outlier.standardised.abs()
         ),
     })

@@ -1,5 +1,6 @@
 //! Has the machine changed? Two calibrations compared beyond what they are uncertain of: equation (37).
 
+use diagnostic::Speaks;
 use machine_model::{Command, Description, PathModel, RigidBody, Vector, Volume};
 
 use crate::error::CalibrationError;
@@ -189,8 +190,7 @@ fn p95(vectors: &[Vector]) -> f64 {
 
 /// What 95 % of the places deviate by at most from an ideal machine in the best frame, mm.
 pub(crate) fn departure_p95_mm(machine: &Description, commands: &[Command]) -> Result<f64, CalibrationError> {
-    let machine =
-        RigidBody::new(machine.clone()).map_err(|error| CalibrationError::Axes(error.to_string()))?;
+    let machine = RigidBody::new(machine.clone()).map_err(|error| CalibrationError::Axes(error.text()))?;
     let places = commands.iter().map(|c| machine.predict(c));
     let (real, ideal): (Vec<Vector>, Vec<Vector>) =
         places.map(|p| (p.position_mm, p.position_mm - p.error_mm)).unzip();

@@ -1,5 +1,6 @@
 //! Why measurements give no profile.
 
+use diagnostic::{Speaks, Text};
 use thiserror::Error;
 
 /// Letters of the linear axes.
@@ -10,30 +11,30 @@ pub(crate) const LETTERS: [char; 3] = ['X', 'Y', 'Z'];
 pub enum CalibrationError {
     /// A file of another axis, or two axes in one traverse.
     #[error("{0}")]
-    Axes(String),
+    Axes(Text),
     /// Numbers that are in another unit than they claim.
     #[error("{0}")]
-    Units(String),
+    Units(Text),
     /// Runs or targets that are missing or do not belong together.
     #[error("{0}")]
-    Runs(String),
+    Runs(Text),
     /// Fewer data than unknowns.
     #[error("{0}")]
-    TooFew(String),
+    TooFew(Text),
     /// One reading that does not belong to the others.
     #[error("{message}")]
     Outlier {
         /// Index of the point.
         point: usize,
         /// Which component, where, and how far off.
-        message: String,
+        message: Text,
     },
     /// The data contradict one another, or every machine of this kind.
     #[error("{0}")]
-    Contradicted(String),
+    Contradicted(Text),
     /// The data leave some unknowns, or combinations of them, open.
     #[error("the measurements cannot tell {0}")]
-    Unobservable(String),
+    Unobservable(Text),
 }
 
 impl CalibrationError {
@@ -44,6 +45,20 @@ impl CalibrationError {
                 Self::Outlier { point: kept.get(point).copied().unwrap_or(point), message }
             }
             other => other,
+        }
+    }
+}
+
+impl Speaks for CalibrationError {
+    fn russian(&self) -> String {
+        match self {
+            Self::Axes(text)
+            | Self::Units(text)
+            | Self::Runs(text)
+            | Self::TooFew(text)
+            | Self::Contradicted(text)
+            | Self::Outlier { message: text, .. } => format!("{text:#}"),
+            Self::Unobservable(what) => format!("измерения не различают: {what:#}"),
         }
     }
 }

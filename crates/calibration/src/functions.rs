@@ -1,5 +1,6 @@
 //! Error functions of one axis from readings of an interferometer: means per target and direction, slopes, finer tables.
 
+use diagnostic::both;
 use std::collections::BTreeMap;
 
 use machine_model::{Interpolation, Squareness, Table};
@@ -57,17 +58,20 @@ pub fn runs(readings: &[FunctionReading]) -> Result<Runs, CalibrationError> {
         targets.entry(key(r.position_mm)).or_insert(r.position_mm);
         let own = by_run.entry((r.run.clone(), r.direction.signum())).or_default();
         if own.insert(key(r.position_mm), (r.position_mm, r.value)).is_some() {
-            return Err(CalibrationError::Runs(format!(
+            return Err(CalibrationError::Runs(both!(
                 "run `{}` reads the target {} mm twice in the same direction",
-                r.run, r.position_mm
+                "проход `{}`: цель {} мм в одном направлении снята дважды",
+                r.run,
+                r.position_mm
             )));
         }
     }
     let mut out = Runs { targets: targets.values().copied().collect(), ..Runs::default() };
     for ((run, direction), own) in &by_run {
         if let Some((_, missing)) = targets.iter().find(|(k, _)| !own.contains_key(k)) {
-            return Err(CalibrationError::Runs(format!(
+            return Err(CalibrationError::Runs(both!(
                 "run `{run}` has no reading at the target {missing} mm, which other runs have: {} of {} targets",
+                "в проходе `{run}` нет отсчёта в цели {missing} мм, которая есть в других проходах: целей {} из {}",
                 own.len(),
                 targets.len()
             )));
@@ -85,7 +89,11 @@ pub fn runs(readings: &[FunctionReading]) -> Result<Runs, CalibrationError> {
 pub fn function(readings: &[FunctionReading]) -> Result<Function, CalibrationError> {
     let runs = runs(readings)?;
     if runs.targets.len() < 2 {
-        return Err(CalibrationError::TooFew(format!("{} target: a table needs two", runs.targets.len())));
+        return Err(CalibrationError::TooFew(both!(
+            "{} target: a table needs two",
+            "целей {}: для таблицы нужны две",
+            runs.targets.len()
+        )));
     }
     let mean_of = |all: &[Vec<f64>], i: usize| all.iter().map(|run| run[i]).sum::<f64>() / all.len() as f64;
     let count = runs.targets.len();

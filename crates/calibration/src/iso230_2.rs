@@ -2,6 +2,7 @@
 //!
 //! Deviations are actual minus target position. Everything is in the unit of the deviations, mm or rad.
 
+use diagnostic::{Text, both};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use units::math;
 
@@ -253,23 +254,33 @@ fn range(limits: &[(Limit, Limit)], relative: f64) -> Option<Uncertain> {
 pub fn evaluate(runs: &Runs, relative: f64) -> Result<Evaluation, CalibrationError> {
     let count = runs.targets.len();
     if count < 2 || (runs.positive.is_empty() && runs.negative.is_empty()) {
-        return Err(CalibrationError::TooFew(format!(
+        return Err(CalibrationError::TooFew(both!(
             "{count} targets and {} runs: two targets and one run are the least",
+            "целей {count}, проходов {}: нужны хотя бы две цели и один проход",
             runs.positive.len() + runs.negative.len()
         )));
     }
     let unequal = |all: &[Vec<f64>]| all.iter().position(|run| run.len() != count);
-    for (all, direction) in [(&runs.positive, "positive"), (&runs.negative, "negative")] {
+    for (all, direction) in [
+        (&runs.positive, Text::pair("positive", "положительном")),
+        (&runs.negative, Text::pair("negative", "отрицательном")),
+    ] {
         if let Some(run) = unequal(all) {
-            return Err(CalibrationError::Runs(format!(
+            return Err(CalibrationError::Runs(both!(
                 "run {} in the {direction} direction has {} readings for {count} targets",
+                "в проходе {} в {direction:#} направлении отсчётов {} на {count} целей",
                 run + 1,
                 all[run].len()
             )));
         }
     }
     let targets: Vec<Target> = (0..count).map(|i| Target::of(runs, i)).collect();
-    let few = || CalibrationError::TooFew("no target was read in either direction".to_owned());
+    let few = || {
+        CalibrationError::TooFew(Text::pair(
+            "no target was read in either direction",
+            "ни в одном направлении не снято ни одной цели",
+        ))
+    };
     let passes = Passes::of(&targets, [runs.positive.len(), runs.negative.len()]);
     let given: Vec<f64> = targets.iter().filter_map(|t| t.reversal).collect();
     Ok(Evaluation {

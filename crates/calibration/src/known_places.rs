@@ -1,5 +1,6 @@
 //! The places that a base profile knows.
 
+use diagnostic::{Speaks, both};
 use machine_model::Engine;
 
 use crate::error::{CalibrationError, LETTERS};
@@ -20,13 +21,14 @@ pub(crate) fn known_places(points: &[Point], base: &Base) -> Result<Vec<usize>, 
         })
     };
     if let Some(error) = points.iter().find_map(|p| machine.rotary_inside(&p.command).err()) {
-        return Err(CalibrationError::Axes(error.to_string()));
+        return Err(CalibrationError::Axes(error.text()));
     }
     let kept: Vec<usize> = (0..points.len()).filter(|&k| beyond(&points[k]).is_none()).collect();
     let outside = points.len() - kept.len();
     match points.iter().find_map(|p| beyond(p).map(|axis| (p, axis))) {
-        Some((first, axis)) if 3 * outside > points.len() => Err(CalibrationError::Axes(format!(
+        Some((first, axis)) if 3 * outside > points.len() => Err(CalibrationError::Axes(both!(
             "{outside} of {} places lie outside the base's volume, as {} at {} mm, which it knows from {} to {} mm: is it the profile of another machine?",
+            "вне объёма исходного профиля лежит мест: {outside} из {}, например {} в {} мм, а он знает её от {} до {} мм: это профиль другого станка?",
             points.len(),
             LETTERS[axis],
             first.command.linear_mm[axis],

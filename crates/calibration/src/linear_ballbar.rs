@@ -4,6 +4,7 @@
 //! its play changed; where the fixed one stands in the plane of the circle, and how much longer the bar is than it
 //! says, is the set-up of each run. Nothing is linearised: the fixed ball may be millimetres off.
 
+use diagnostic::{Speaks, Text, both};
 use std::cell::RefCell;
 
 use machine_model::{Command, Engine, PathModel, Vector, WithEffects};
@@ -88,9 +89,10 @@ fn plane(readings: &[CircleReading], run: usize) -> Result<usize, CalibrationErr
     let moving: Vec<usize> = (0..3).filter(|&i| span(i) > 1e-3).collect();
     PLANES.iter().position(|p| moving.len() == 2 && p.iter().all(|i| moving.contains(i))).ok_or_else(|| {
         let names: Vec<String> = moving.iter().map(|&i| LETTERS[i].to_string()).collect();
-        CalibrationError::Axes(format!(
+        CalibrationError::Axes(both!(
             "a circle moves two axes; in this run {} move",
-            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+            "окружность обходят две оси, а в этом проходе движутся: {:#}",
+            if names.is_empty() { Text::pair("none", "ни одна") } else { Text::same(names.join(", ")) }
         ))
     })
 }
@@ -105,33 +107,32 @@ struct Layout {
     play: [Option<usize>; 3],
     /// First of the three of run 0: fixed ball along the two axes of the plane, length of the bar.
     setup: usize,
-    names: Vec<String>,
+    names: Vec<Text>,
 }
 
 impl Layout {
     fn new(readings: &[CircleReading], planes: &[usize]) -> Self {
-        let mut names: Vec<String> = Vec::new();
-        let mut place = |name: String| {
+        let mut names: Vec<Text> = Vec::new();
+        let mut place = |name: Text| {
             names.push(name);
             names.len() - 1
         };
         let (mut squareness, mut mismatch, mut play) = ([None; 3], [None; 3], [None; 3]);
         for plane in (0..3).filter(|plane| planes.contains(plane)) {
             let [u, v] = PLANES[plane].map(|i| LETTERS[i]);
-            squareness[plane] = Some(place(SQUARENESS[plane].to_owned()));
-            mismatch[plane] = Some(place(format!("scale {u}-{v}")));
+            squareness[plane] = Some(place(Text::same(SQUARENESS[plane])));
+            mismatch[plane] = Some(place(both!("scale {u}-{v}", "масштаб {u}-{v}")));
         }
         for axis in 0..3 {
             let both = |sign: i8| readings.iter().any(|r| r.command.direction[axis] == sign);
             if both(1) && both(-1) {
-                play[axis] = Some(place(format!("backlash {}", LETTERS[axis])));
+                play[axis] = Some(place(both!("backlash {}", "люфт {}", LETTERS[axis])));
             }
         }
         let setup = names.len();
         for _ in planes {
-            names.extend(
-                ["the fixed ball's place", "the fixed ball's place", "the bar's length"].map(str::to_owned),
-            );
+            let ball = Text::pair("the fixed ball's place", "место неподвижного шарика");
+            names.extend([ball.clone(), ball, Text::pair("the bar's length", "длина измерителя")]);
         }
         Self { squareness, mismatch, play, setup, names }
     }
@@ -217,7 +218,7 @@ pub fn calibrate(
         settled: 1e-9,
     };
     let estimate = adjust(&problem, &DVector::zeros(layout.names.len()))
-        .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+        .map_err(|error| CalibrationError::Contradicted(error.text()))?;
     open_error(&estimate, &layout.names)?;
     no_outlier(&estimate)?;
     let term = |k: usize, base: f64| Term {
@@ -382,8 +383,9 @@ impl CircleCalibration {
         if let Some(sum) = self.closure
             && sum.value.abs() > (limit * sum.uncertainty).max(RESOLVED_RATIO)
         {
-            return Err(CalibrationError::Contradicted(format!(
+            return Err(CalibrationError::Contradicted(both!(
                 "the scales do not add up: X-Y, Z-X and Y-Z sum to {:.1} ± {:.1} um/m and not to 0",
+                "масштабы не сходятся: сумма X-Y, Z-X и Y-Z равна {:.1} ± {:.1} мкм/м, а не 0",
                 sum.value * 1e6,
                 sum.half_width_95 * 1e6
             )));
@@ -391,11 +393,14 @@ impl CircleCalibration {
         let seen: Vec<(char, &Term)> =
             LETTERS.into_iter().zip(&self.backlash_mm).filter_map(|(l, t)| Some((l, t.as_ref()?))).collect();
         if !seen.is_empty() && seen.iter().all(|(_, t)| t.value < -(limit * t.uncertainty).max(RESOLVED_MM)) {
-            let each: Vec<String> =
-                seen.iter().map(|(letter, t)| format!("{letter} {:.2} um", t.value * 1e3)).collect();
-            return Err(CalibrationError::Contradicted(format!(
+            let each: Vec<Text> = seen
+                .iter()
+                .map(|(letter, t)| both!("{letter} {:.2} um", "{letter} {:.2} мкм", t.value * 1e3))
+                .collect();
+            return Err(CalibrationError::Contradicted(both!(
                 "every axis would have negative play: {}",
-                each.join(", ")
+                "люфт всех осей вышел бы отрицательным: {:#}",
+                Text::join(&each, ", ")
             )));
         }
         Ok(())

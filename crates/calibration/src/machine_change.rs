@@ -5,6 +5,7 @@
 //! rotary axes) is in the prediction once. Set-ups are exact: a rotation and a shift per run, or the place and the zero of a
 //! station. Nothing but the change is fitted: a machine measured from its own profile changes by nothing.
 
+use diagnostic::{Speaks, Text, both};
 use std::ops::Range;
 
 use machine_model::rotation::{of_any_size, turned_by};
@@ -88,7 +89,7 @@ impl Base {
     }
 
     pub(crate) fn machine(&self) -> Result<RigidBody, CalibrationError> {
-        RigidBody::new(self.description.clone()).map_err(|error| CalibrationError::Axes(error.to_string()))
+        RigidBody::new(self.description.clone()).map_err(|error| CalibrationError::Axes(error.text()))
     }
 
     /// Place in the chain, 0 next to the workpiece.
@@ -120,11 +121,13 @@ pub(crate) enum Group {
 }
 
 impl Group {
-    fn name(self) -> String {
+    fn name(self) -> Text {
         match self {
-            Self::Function(axis, f) => format!("E{}{}", ['X', 'Y', 'Z', 'A', 'B', 'C'][f], LETTERS[axis]),
-            Self::Play(axis) => format!("the play of {}", LETTERS[axis]),
-            Self::Run(_) => "the set-up".to_owned(),
+            Self::Function(axis, f) => {
+                Text::same(format!("E{}{}", ['X', 'Y', 'Z', 'A', 'B', 'C'][f], LETTERS[axis]))
+            }
+            Self::Play(axis) => both!("the play of {}", "люфт {}", LETTERS[axis]),
+            Self::Run(_) => Text::pair("the set-up", "установка прибора"),
         }
     }
 }
@@ -174,7 +177,7 @@ pub(crate) struct Found {
     pub(crate) values: DVector<f64>,
     pub(crate) setups: Vec<Option<SetUp>>,
     /// Functions that keep what the base says as far as the readings cannot tell them, and from what.
-    pub(crate) open: Vec<(String, String)>,
+    pub(crate) open: Vec<(Text, Text)>,
     pub(crate) rows: Vec<RowOrigin>,
 }
 
@@ -492,7 +495,7 @@ impl Geometry {
         const STEPS: [f64; 2] = [1.0, 1e-4];
         let ideal = ideal(base);
         let build = |description: Description| {
-            RigidBody::new(description).map_err(|error| CalibrationError::Axes(error.to_string()))
+            RigidBody::new(description).map_err(|error| CalibrationError::Axes(error.text()))
         };
         let machine = build(ideal.clone())?;
         let ideal_mm: Vec<Vector> = commands.iter().map(|c| machine.predict(c).position_mm).collect();
@@ -581,8 +584,9 @@ pub(crate) fn find(points: &[Point], base: &Base, plan: &Plan) -> Result<Found, 
     let geometry = Geometry::new(base, &commands)?;
     let rows = rows(points);
     if rows.is_empty() || 2 * rows.len() < layout.count {
-        return Err(CalibrationError::TooFew(format!(
+        return Err(CalibrationError::TooFew(both!(
             "{} readings for {} unknowns",
+            "отсчётов {} на {} неизвестных",
             rows.len(),
             layout.count
         )));
@@ -612,7 +616,11 @@ pub(crate) fn find(points: &[Point], base: &Base, plan: &Plan) -> Result<Found, 
             settled: if has_stations && round < FIRST_STEPS { f64::INFINITY } else { SETTLED_MM },
         };
         let found = adjust(&problem, &values).map_err(|error| {
-            CalibrationError::Axes(format!("the readings fit no machine of this chain: {error}"))
+            let error = error.text();
+            CalibrationError::Axes(both!(
+                "the readings fit no machine of this chain: {error}",
+                "показания не подходят никакому станку с такой цепью: {error:#}"
+            ))
         })?;
         if !found.open.is_empty() {
             hold_back(&layout, base, &design, &found.open, &mut gauge, &mut open)?;
@@ -836,7 +844,7 @@ fn hold_back(
     design: &DMatrix<f64>,
     combinations: &[DVector<f64>],
     gauge: &mut Vec<DVector<f64>>,
-    open: &mut Vec<(String, String)>,
+    open: &mut Vec<(Text, Text)>,
 ) -> Result<(), CalibrationError> {
     /// Shares of unit vectors below this are rounding.
     const SHARE: f64 = 1e-3;
@@ -856,16 +864,20 @@ fn hold_back(
         layout.groups.iter().filter(|(_, range)| share(range) > SHARE).collect();
     let Some((victim, range)) = concerned.iter().copied().max_by_key(|(group, range)| rank(*group, range))
     else {
-        return Err(CalibrationError::Unobservable("any error from the set-up".to_owned()));
+        return Err(CalibrationError::Unobservable(Text::pair(
+            "any error from the set-up",
+            "погрешности станка и установка прибора",
+        )));
     };
-    let mut rivals: Vec<String> =
+    let mut rivals: Vec<Text> =
         concerned.iter().filter(|(group, _)| group != victim).map(|(group, _)| group.name()).collect();
     rivals.dedup();
     if matches!(victim, Group::Function(_, 0..3)) && !unseen(range) {
-        let names: Vec<String> = concerned.iter().map(|(group, _)| group.name()).collect();
-        return Err(CalibrationError::TooFew(format!(
+        let names: Vec<Text> = concerned.iter().map(|(group, _)| group.name()).collect();
+        return Err(CalibrationError::TooFew(both!(
             "too few places for the functions asked: {} stay open at some of their {} nodes",
-            names.join(", "),
+            "для этих функций мало мест: {:#} остаются открыты в некоторых из своих узлов ({})",
+            Text::join(&names, ", "),
             range.len()
         )));
     }
@@ -877,7 +889,7 @@ fn hold_back(
         }
     }
     if !matches!(victim, Group::Run(_)) && open.iter().all(|(name, _)| *name != victim.name()) {
-        open.push((victim.name(), rivals.join(", ")));
+        open.push((victim.name(), Text::join(&rivals, ", ")));
     }
     Ok(())
 }
@@ -889,9 +901,10 @@ impl Found {
         let geometry = Geometry { ideal_mm: ideal_places(base, &commands)?, by_function: Vec::new() };
         let rows = rows(points);
         let Some(machine) = machine_with(base, &self.layout, &self.values) else {
-            return Err(CalibrationError::Axes(
-                "the tables and the travel of an axis have nothing in common".to_owned(),
-            ));
+            return Err(CalibrationError::Axes(Text::pair(
+                "the tables and the travel of an axis have nothing in common",
+                "у таблиц и хода одной из осей нет общей части",
+            )));
         };
         let seen = predicted(&machine, points, &rows, &self.layout, &self.setups, &geometry, &self.values);
         Ok(DVector::from_fn(rows.len(), |i, _| value(&points[rows[i].point], rows[i].component) - seen[i]))
@@ -900,6 +913,6 @@ impl Found {
 
 /// Where an ideal machine of this kind would be, mm.
 pub(crate) fn ideal_places(base: &Base, commands: &[Command]) -> Result<Vec<Vector>, CalibrationError> {
-    let machine = RigidBody::new(ideal(base)).map_err(|error| CalibrationError::Axes(error.to_string()))?;
+    let machine = RigidBody::new(ideal(base)).map_err(|error| CalibrationError::Axes(error.text()))?;
     Ok(commands.iter().map(|c| machine.predict(c).position_mm).collect())
 }

@@ -3,6 +3,7 @@
 //! A column exchanged or a sign turned round still gives numbers, and a machine of a hundred parameters takes up much of them. What
 //! it cannot take up shows: the readings fit far better once the mistake is undone.
 
+use diagnostic::{Text, both};
 use machine_model::{Chain, Vector};
 use units::math::exp;
 
@@ -40,10 +41,10 @@ pub(crate) fn plausible(points: &[Point], base: &Base, before: &Found) -> Result
             && rms > LARGEST_MM
             && mirrored < 0.1 * rms
         {
-            return Err(CalibrationError::Axes(
-                "the measured positions are a mirror image of the commanded ones: one axis has the opposite sign in the measurement, or two are exchanged"
-                    .to_owned(),
-            ));
+            return Err(CalibrationError::Axes(Text::pair(
+                "the measured positions are a mirror image of the commanded ones: one axis has the opposite sign in the measurement, or two are exchanged",
+                "измеренные положения — зеркальное отображение заданных: у одной оси в измерении обратный знак или две переставлены",
+            )));
         }
         let left = from.iter().zip(&to).map(|(a, b)| (b - motion.apply(a)).amax());
         if own().all(|(p, _)| matches!(p.reading, PointReading::Deviation(_))) {
@@ -58,16 +59,18 @@ pub(crate) fn plausible(points: &[Point], base: &Base, before: &Found) -> Result
     let mut rest: Vec<f64> = before.estimate.residuals.iter().map(|r| r.abs()).collect();
     let median = at(&mut all, 0.5).or_else(|| at(&mut rest, 0.5)).unwrap_or(0.0);
     if median > LARGEST_MM {
-        return Err(CalibrationError::Units(format!(
-            "half of the readings are more than {median:.1} mm off, the best set-up of the instrument taken off: units or frames do not fit"
+        return Err(CalibrationError::Units(both!(
+            "half of the readings are more than {median:.1} mm off, the best set-up of the instrument taken off: units or frames do not fit",
+            "половина показаний отходит больше чем на {median:.1} мм даже за вычетом лучшей установки прибора: не те единицы или системы координат"
         )));
     }
     let large = at(&mut deviations, 0.9).unwrap_or(f64::INFINITY);
     let stated: Option<Vec<f64>> = points.iter().map(|p| p.uncertainty_mm).collect();
     let noise = stated.and_then(|mut all| at(&mut all, 0.5)).unwrap_or(0.0);
     if deviations.len() > 3 && (large < SMALLEST_MM || large < 0.1 * noise) {
-        return Err(CalibrationError::Units(format!(
+        return Err(CalibrationError::Units(both!(
             "nine deviations of ten are below {:.4} um, the set-up taken off: are they in mm where um was said?",
+            "девять отклонений из десяти меньше {:.4} мкм за вычетом установки: они в мм, а названы мкм?",
             large * 1e3
         )));
     }
@@ -86,9 +89,12 @@ pub(crate) fn outlier(points: &[Point], found: &Found) -> Result<(), Calibration
     let at = points[row.point].command.linear_mm;
     Err(CalibrationError::Outlier {
         point: row.point,
-        message: format!(
+        message: both!(
             "the {} at X{} Y{} Z{} is {:.1} um off what all other readings say: {:.0} times its standard deviation",
-            row.component.map_or("length".to_owned(), |i| format!("{} reading", LETTERS[i])),
+            "{:#} в X{} Y{} Z{} отходит на {:.1} мкм от того, что говорят все остальные отсчёты: это {:.0} стандартных отклонений",
+            row.component.map_or(Text::pair("length", "длина"), |i| {
+                both!("{} reading", "отсчёт {}", LETTERS[i])
+            }),
             at.x,
             at.y,
             at.z,
@@ -108,8 +114,9 @@ pub(crate) fn play(play_mm: &[Option<(f64, f64)>; 3]) -> Result<(), CalibrationE
         .collect();
     match clear.first() {
         Some((axis, value, half)) if clear.iter().all(|(_, value, _)| *value < 0.0) => {
-            Err(CalibrationError::Axes(format!(
+            Err(CalibrationError::Axes(both!(
                 "every play comes out negative, that of {} as {:.2} ± {:.2} um: the directions of approach are exchanged (dir is +1 where the command rises)",
+                "все люфты выходят отрицательными, у {} {:.2} ± {:.2} мкм: переставлены направления подхода (dir равен +1, где задание растёт)",
                 LETTERS[*axis],
                 value * 1e3,
                 half * 1e3
@@ -120,7 +127,7 @@ pub(crate) fn play(play_mm: &[Option<(f64, f64)>; 3]) -> Result<(), CalibrationE
 }
 
 /// Readings as they would be without one mistake.
-type Repair = (String, Vec<Point>, Base);
+type Repair = (Text, Vec<Point>, Base);
 
 /// Refuses readings that fit far better once a mistake is undone.
 pub(crate) fn contradicted(points: &[Point], base: &Base, plan: &Plan) -> Result<(), CalibrationError> {
@@ -140,7 +147,7 @@ pub(crate) fn contradicted(points: &[Point], base: &Base, plan: &Plan) -> Result
     // Ratio of two variances of as many degrees of freedom, one of a million by chance: five standard deviations of its
     // logarithm. Beyond a half more it is no matter of chance and shape alone.
     let limit = 1.5_f64.max(exp(5.0 * (4.0 / free.max(1) as f64).sqrt()));
-    let mut best: Option<(f64, String)> = None;
+    let mut best: Option<(f64, Text)> = None;
     for (name, repaired, base) in repairs(points, base) {
         let Some(misfit) = fit(repaired, &base).map(|fit| fit.misfit) else { continue };
         if misfit * misfit * limit < own * own && best.as_ref().is_none_or(|(least, _)| misfit < *least) {
@@ -149,8 +156,9 @@ pub(crate) fn contradicted(points: &[Point], base: &Base, plan: &Plan) -> Result
     }
     match best {
         None => Ok(()),
-        Some((left, name)) => Err(CalibrationError::Axes(format!(
+        Some((left, name)) => Err(CalibrationError::Axes(both!(
             "the readings fit {:.1} times better {name}: a mistake in the file or on the command line",
+            "показания подходят в {:.1} раза лучше {name:#}: ошибка в файле или в команде",
             own / left
         ))),
     }
@@ -195,22 +203,43 @@ fn repairs(points: &[Point], base: &Base) -> Vec<Repair> {
         for i in 0..3 {
             let j = (i + 1) % 3;
             let exchanged = on_deviations(&|d| d.swap(i, j));
-            all.push((format!("with d{} and d{} exchanged", name(i), name(j)), exchanged, base.clone()));
+            all.push((
+                both!("with d{} and d{} exchanged", "с переставленными d{} и d{}", name(i), name(j)),
+                exchanged,
+                base.clone(),
+            ));
             let turned = on_deviations(&|d| d[i] = d[i].map(|v| -v));
-            all.push((format!("with the other sign of d{}", name(i)), turned, base.clone()));
+            all.push((
+                both!("with the other sign of d{}", "с обратным знаком d{}", name(i)),
+                turned,
+                base.clone(),
+            ));
             let commands = changed(&|p| p.command.linear_mm.swap_rows(i, j));
-            all.push((format!("with {}_mm and {}_mm exchanged", name(i), name(j)), commands, base.clone()));
+            all.push((
+                both!("with {}_mm and {}_mm exchanged", "с переставленными {}_mm и {}_mm", name(i), name(j)),
+                commands,
+                base.clone(),
+            ));
         }
     }
     let tools = changed(&|p| p.command.tool_mm = -p.command.tool_mm);
-    all.push(("with the other sign of the tool vectors".to_owned(), tools, base.clone()));
-    for (late, by) in [("early", 1), ("late", points.len() - 1)] {
+    all.push((
+        Text::pair("with the other sign of the tool vectors", "с обратным знаком векторов инструмента"),
+        tools,
+        base.clone(),
+    ));
+    for (late, by) in [(Text::pair("early", "раньше"), 1), (Text::pair("late", "позже"), points.len() - 1)]
+    {
         let moved = points.iter().enumerate().filter_map(|(k, p)| {
             let from = &points[(k + by) % points.len()];
             // A station's place belongs to its run.
             (from.run == p.run).then_some(Point { reading: from.reading, ..*p })
         });
-        all.push((format!("with readings one row {late}"), moved.collect(), base.clone()));
+        all.push((
+            both!("with readings one row {late}", "с отсчётами на строку {late:#}"),
+            moved.collect(),
+            base.clone(),
+        ));
     }
     if !base.is_known {
         all.extend(other_chains(base).map(|(name, base)| (name, points.to_vec(), base)));
@@ -221,7 +250,7 @@ fn repairs(points: &[Point], base: &Base) -> Vec<Repair> {
 }
 
 /// The linear axes in every other order.
-fn other_chains(base: &Base) -> impl Iterator<Item = (String, Base)> {
+fn other_chains(base: &Base) -> impl Iterator<Item = (Text, Base)> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     let own = base.description.chain.linear().map(|axis| axis.direction());
     let rest = |axes: &[machine_model::Axis]| {
@@ -242,6 +271,10 @@ fn other_chains(base: &Base) -> impl Iterator<Item = (String, Base)> {
         let mut other = base.clone();
         other.description.chain = chain;
         let order = linear.map(String::from).join(" ");
-        Some((format!("with the axes {order} in this order from workpiece to tool"), other))
+        let name = both!(
+            "with the axes {order} in this order from workpiece to tool",
+            "с осями в таком порядке от детали к инструменту: {order}"
+        );
+        Some((name, other))
     })
 }

@@ -5,6 +5,7 @@
 //! changed; the other one where the bar put it at angle 0. Locations are those of the base's `centre_mm`, wherever the
 //! readings were taken.
 
+use diagnostic::{Speaks, Text, both};
 use machine_model::{Axis, Chain, Command, Engine, Range, Vector, WithEffects};
 use nalgebra::{DMatrix, DVector};
 use units::math;
@@ -139,12 +140,16 @@ fn only_of_the_table(tests: &[Test], chain: &Chain) -> Result<(), CalibrationErr
     for test in tests {
         let Turning::Axis(axis) = test.turning else { continue };
         if chain.head().contains(&axis) {
-            return Err(CalibrationError::Axes(format!(
-                "{axis} turns the tool on {chain}: location errors are found of axes that turn the table, not of a head's"
+            return Err(CalibrationError::Axes(both!(
+                "{axis} turns the tool on {chain}: location errors are found of axes that turn the table, not of a head's",
+                "{axis} поворачивает на {chain} инструмент: погрешности положения находят у осей стола, а не головы"
             )));
         }
         if !chain.table().contains(&axis) {
-            return Err(CalibrationError::Axes(format!("{axis} turns, which is not in {chain}")));
+            return Err(CalibrationError::Axes(both!(
+                "{axis} turns, which is not in {chain}",
+                "поворачивается {axis}, а в {chain} её нет"
+            )));
         }
     }
     Ok(())
@@ -181,9 +186,9 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
         Axis::ALL.into_iter().filter(|axis| turned(axis)).flat_map(Location::of).collect();
     let cup = locations.len();
     let setup = cup + 2;
-    let mut names: Vec<String> = locations.iter().map(Location::name).collect();
-    names.extend(["eX", "eY"].map(str::to_owned));
-    names.extend(tests.iter().map(|_| "the bar's length".to_owned()));
+    let mut names: Vec<Text> = locations.iter().map(|l| Text::same(l.name())).collect();
+    names.extend(["eX", "eY"].map(Text::same));
+    names.extend(tests.iter().map(|_| Text::pair("the bar's length", "длина измерителя")));
     let rows = tests.iter().map(|t| t.readings.len()).sum();
     too_few(rows, names.len())?;
     let predicted = |x: &DVector<f64>| -> Vec<Vec<f64>> {
@@ -207,7 +212,7 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
         settled: 1e-9,
     };
     let estimate = adjust(&problem, &DVector::zeros(names.len()))
-        .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+        .map_err(|error| CalibrationError::Contradicted(error.text()))?;
     open_error(&estimate, &names)?;
     no_outlier(&estimate)?;
     let x = &estimate.values;
@@ -221,10 +226,14 @@ pub fn calibrate(tests: &[Test], machines: &[WithEffects]) -> Result<RotaryCalib
         })
         .collect();
     if let Some(wild) = found.iter().find(|f| f.value.abs() > LARGEST[usize::from(!f.location.is_length)]) {
-        let (size, unit) =
-            if wild.location.is_length { (wild.value, "mm") } else { (wild.value * 1e3, "mrad") };
-        return Err(CalibrationError::Contradicted(format!(
+        let (size, unit) = if wild.location.is_length {
+            (wild.value, Text::pair("mm", "мм"))
+        } else {
+            (wild.value * 1e3, Text::pair("mrad", "мрад"))
+        };
+        return Err(CalibrationError::Contradicted(both!(
             "{} would be {size:.1} {unit}: no table is so far from its place",
+            "{} была бы {size:.1} {unit:#}: так далеко от своего места стол не бывает",
             wild.location.name()
         )));
     }

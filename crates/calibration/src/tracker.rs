@@ -3,6 +3,7 @@
 //! A tracker that follows a point sees where it goes, not how the carriage turns: angles (roll, pitch, yaw) are not in
 //! three traverses, and so nothing is known of what happens beside the measured lines with other tool vectors.
 
+use diagnostic::{Text, both};
 use machine_model::{Description, Squareness, Vector};
 use nalgebra::Matrix3;
 
@@ -189,9 +190,11 @@ fn common_origin(traverses: &[MeanTraverse; 3]) -> Result<Vector, CalibrationErr
         let nodes = &traverses[i].nodes;
         let inside = (nodes[0].commanded_mm..=nodes[nodes.len() - 1].commanded_mm).contains(&a);
         if (a - b).abs() > 1e-6 || !inside {
-            return Err(CalibrationError::Axes(format!(
+            return Err(CalibrationError::Axes(both!(
                 "the three traverses have no common point: {} stands at {a} mm in one and at {b} mm in another, and its own \
                  traverse runs from {} to {} mm",
+                "у трёх проходов нет общей точки: {} стоит в одном на {a} мм, в другом на {b} мм, а её собственный проход идёт \
+                 от {} до {} мм",
                 LETTERS[i],
                 nodes[0].commanded_mm,
                 nodes[nodes.len() - 1].commanded_mm
@@ -239,14 +242,17 @@ fn cosines(traverse: &MeanTraverse) -> Vec<Cosines> {
 fn nearest_rotation(directions: &Matrix3<f64>) -> Result<Matrix3<f64>, CalibrationError> {
     let svd = directions.svd(true, true);
     let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
-        return Err(CalibrationError::Axes("the three measured lines span no space".to_owned()));
+        return Err(CalibrationError::Axes(Text::pair(
+            "the three measured lines span no space",
+            "три измеренные линии не образуют пространства",
+        )));
     };
     let turn = u * v_t;
     if turn.determinant() < 0.0 {
-        return Err(CalibrationError::Axes(
-            "the three measured lines form a left-handed frame: one axis has the opposite sign in the measurement, or two are exchanged"
-                .to_owned(),
-        ));
+        return Err(CalibrationError::Axes(Text::pair(
+            "the three measured lines form a left-handed frame: one axis has the opposite sign in the measurement, or two are exchanged",
+            "три измеренные линии образуют левую систему: у одной оси в измерении обратный знак или две переставлены",
+        )));
     }
     Ok(turn)
 }
@@ -256,21 +262,26 @@ fn check_frame(lines: &[Line; 3]) -> Result<(), CalibrationError> {
     for (axis, line) in lines.iter().enumerate() {
         let main = line.slope.iamax();
         if main != axis {
-            return Err(CalibrationError::Axes(format!(
+            return Err(CalibrationError::Axes(both!(
                 "where {} is commanded, the measured {} moves",
-                LETTERS[axis], LETTERS[main]
+                "задаётся {}, а по измерению движется {}",
+                LETTERS[axis],
+                LETTERS[main]
             )));
         }
         if line.slope[axis] < 0.0 {
-            return Err(CalibrationError::Axes(format!(
+            return Err(CalibrationError::Axes(both!(
                 "where {} is commanded upwards, the measured {} falls",
-                LETTERS[axis], LETTERS[axis]
+                "{} задаётся вверх, а измеренная {} убывает",
+                LETTERS[axis],
+                LETTERS[axis]
             )));
         }
         let tilt = (0..3).filter(|&k| k != axis).map(|k| line.slope[k].abs()).fold(0.0, f64::max);
         if tilt > LARGEST_FRAME_TURN_RAD {
-            return Err(CalibrationError::Axes(format!(
+            return Err(CalibrationError::Axes(both!(
                 "the line of {} leans by {:.1} mrad in the measuring frame: the instrument was not aligned to the machine",
+                "линия {} наклонена в системе измерения на {:.1} мрад: прибор не выверен по станку",
                 LETTERS[axis],
                 tilt * 1e3
             )));

@@ -1,5 +1,6 @@
 //! One axis driven alone, read several times: mean and standard uncertainty per node.
 
+use diagnostic::{Text, both};
 use machine_model::Vector;
 
 use crate::error::{CalibrationError, LETTERS};
@@ -86,8 +87,9 @@ impl MeanTraverse {
             }
         }
         if groups.len() < 3 {
-            return Err(CalibrationError::TooFew(format!(
+            return Err(CalibrationError::TooFew(both!(
                 "the traverse of {} has {} nodes; a line and what departs from it need 3",
+                "в проходе {} узлов {}; для линии и отклонений от неё нужны 3",
                 LETTERS[axis],
                 groups.len()
             )));
@@ -152,23 +154,35 @@ impl MeanTraverse {
 /// Refuses a file in which another axis moves, or more than one.
 fn moving_axis(axis: usize, readings: &[Reading]) -> Result<(), CalibrationError> {
     let Some(first) = readings.first() else {
-        return Err(CalibrationError::TooFew(format!("the traverse of {} has no readings", LETTERS[axis])));
+        return Err(CalibrationError::TooFew(both!(
+            "the traverse of {} has no readings",
+            "в проходе {} нет отсчётов",
+            LETTERS[axis]
+        )));
     };
     let moves =
         |i: usize| readings.iter().any(|r| (r.commanded_mm[i] - first.commanded_mm[i]).abs() > SAME_MM);
     let moving: Vec<char> = (0..3).filter(|&i| moves(i)).map(|i| LETTERS[i]).collect();
     match moving.as_slice() {
         [one] if *one == LETTERS[axis] => Ok(()),
-        [one] => Err(CalibrationError::Axes(format!(
+        [one] => Err(CalibrationError::Axes(both!(
             "a traverse of {} is expected here, but the axis commanded in it is {one}",
+            "здесь ожидается проход {}, а задаётся в нём ось {one}",
             LETTERS[axis]
         ))),
-        [] => Err(CalibrationError::Axes(format!("no axis moves in the traverse of {}", LETTERS[axis]))),
-        _ => Err(CalibrationError::Axes(format!(
-            "the axes {} move in the traverse of {}; a traverse moves one axis alone",
-            moving.iter().map(char::to_string).collect::<Vec<_>>().join(" and "),
+        [] => Err(CalibrationError::Axes(both!(
+            "no axis moves in the traverse of {}",
+            "в проходе {} не движется ни одна ось",
             LETTERS[axis]
         ))),
+        several => {
+            let names: Vec<String> = several.iter().map(char::to_string).collect();
+            let (own, names, russian) = (LETTERS[axis], names.join(" and "), names.join(" и "));
+            Err(CalibrationError::Axes(Text::new(
+                format!("the axes {names} move in the traverse of {own}; a traverse moves one axis alone"),
+                format!("в проходе {own} движутся оси {russian}; в проходе движется только одна ось"),
+            )))
+        }
     }
 }
 
@@ -236,20 +250,31 @@ fn check_scale(axis: usize, nodes: &[Node]) -> Result<(), CalibrationError> {
     let ratio = (last.measured_mm - first.measured_mm).norm() / (last.commanded_mm - first.commanded_mm);
     let near = |factor: f64| (ratio / factor - 1.0).abs() < 0.05;
     let guess = [
-        (1000.0, "are the measured positions in micrometres?"),
-        (1e-3, "are the commanded positions in micrometres, or the measured ones in metres?"),
-        (25.4, "are the commanded positions in inches?"),
-        (1.0 / 25.4, "are the measured positions in inches?"),
+        (
+            1000.0,
+            Text::pair("are the measured positions in micrometres?", "измеренные положения в микрометрах?"),
+        ),
+        (
+            1e-3,
+            Text::pair(
+                "are the commanded positions in micrometres, or the measured ones in metres?",
+                "заданные положения в микрометрах или измеренные в метрах?",
+            ),
+        ),
+        (25.4, Text::pair("are the commanded positions in inches?", "заданные положения в дюймах?")),
+        (1.0 / 25.4, Text::pair("are the measured positions in inches?", "измеренные положения в дюймах?")),
     ];
     if near(1.0) {
         return Ok(());
     }
-    let why = guess
-        .iter()
-        .find(|(factor, _)| near(*factor))
-        .map_or("are commanded and measured positions in millimetres?", |g| g.1);
-    Err(CalibrationError::Units(format!(
+    let usual = Text::pair(
+        "are commanded and measured positions in millimetres?",
+        "заданные и измеренные положения в миллиметрах?",
+    );
+    let why = guess.into_iter().find(|(factor, _)| near(*factor)).map_or(usual, |(_, why)| why);
+    Err(CalibrationError::Units(both!(
         "the traverse of {} is {ratio:.4} times as long as commanded: {why}",
+        "проход {} длиннее заданного в {ratio:.4} раза: {why:#}",
         LETTERS[axis]
     )))
 }

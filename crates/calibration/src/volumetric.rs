@@ -1,5 +1,6 @@
 //! All rigid-body terms from points anywhere in the volume: equations (51) to (51c).
 
+use diagnostic::{Text, both};
 use machine_model::{Command, Description, PathModel, Range, Vector};
 
 use crate::adjustment::Estimate;
@@ -35,7 +36,7 @@ pub struct VolumetricCalibration {
     /// sides.
     pub play_mm: [Option<(f64, f64)>; 3],
     /// Terms that the points cannot tell from others and that stay as in the base: term, and what it looks like.
-    pub open: Vec<(String, String)>,
+    pub open: Vec<(Text, Text)>,
     /// The tables of the changed machine.
     pub axes: [ChangedAxis; 3],
     /// The changed machine.
@@ -88,9 +89,11 @@ pub fn calibrate(
 ) -> Result<VolumetricCalibration, CalibrationError> {
     let runs = points.iter().map(|p| p.run + 1).max().unwrap_or(0);
     if runs > MOST_RUNS {
-        return Err(CalibrationError::TooFew(format!(
+        return Err(CalibrationError::TooFew(both!(
             "{runs} runs, each with a set-up of its own, for {} points; at most {MOST_RUNS} are told apart: give one run id to what \
              was measured in one set-up of the instrument",
+            "серий {runs}, каждая со своей установкой, на {} точек; различимы не больше {MOST_RUNS}: дайте одно имя серии всему, что \
+             измерено при одной установке прибора",
             points.len()
         )));
     }
@@ -106,8 +109,9 @@ pub fn calibrate(
     let unknowns = found.rows.len() - found.estimate.redundancy;
     // A tenth more readings than unknowns: below it no residual shows a mistake.
     if found.estimate.redundancy * 10 < found.rows.len() {
-        return Err(CalibrationError::TooFew(format!(
+        return Err(CalibrationError::TooFew(both!(
             "{} readings for {unknowns} unknowns",
+            "отсчётов {} на {unknowns} неизвестных",
             found.rows.len()
         )));
     }
@@ -170,8 +174,9 @@ fn nodes(points: &[Point], count: usize) -> Result<[Vec<f64>; 3], CalibrationErr
         places.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
         let (Some(low), Some(high)) = (places.first().copied(), places.last().copied()) else { continue };
         if places.len() < 2 {
-            return Err(CalibrationError::TooFew(format!(
+            return Err(CalibrationError::TooFew(both!(
                 "{} does not move in the measurements",
+                "{} в измерениях не движется",
                 LETTERS[axis]
             )));
         }

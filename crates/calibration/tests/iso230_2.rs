@@ -199,13 +199,13 @@ fn runs_with_other_targets_are_named() {
     all.remove(7);
     let error = runs(&all).unwrap_err();
     assert!(
-        matches!(&error, CalibrationError::Runs(m) if m.contains("run `1`") && m.contains("4 of 5")),
+        matches!(&error, CalibrationError::Runs(m) if m.english().contains("run `1`") && m.english().contains("4 of 5")),
         "{error}"
     );
     let mut all = readings("psi_2021");
     all[3].position_mm += 1.0;
     assert!(
-        matches!(runs(&all).unwrap_err(), CalibrationError::Runs(m) if m.contains("has no reading at the target"))
+        matches!(runs(&all).unwrap_err(), CalibrationError::Runs(m) if m.english().contains("has no reading at the target"))
     );
 }
 

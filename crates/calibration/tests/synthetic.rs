@@ -212,7 +212,7 @@ fn a_run_for_every_point_is_refused() {
     let each: Vec<Point> =
         points(&rows).into_iter().enumerate().map(|(run, point)| Point { run, ..point }).collect();
     let refused = volumetric::calibrate(&each, &bare(), Options { nodes: 4, holdout_every: 5 });
-    assert!(matches!(refused, Err(CalibrationError::TooFew(why)) if why.starts_with("240 runs")));
+    assert!(matches!(refused, Err(CalibrationError::TooFew(why)) if why.english().starts_with("240 runs")));
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn held_out_points_are_predicted_and_open_terms_named() {
     // One tool: the angles of the axis nearest the tool look like its straightness.
     let one: Vec<Point> = points(&rows).into_iter().filter(|p| p.run == 1).collect();
     let found = volumetric::calibrate(&one, &bare(), Options { nodes: 4, holdout_every: 0 }).unwrap();
-    let open: Vec<&str> = found.open.iter().map(|(term, _)| term.as_str()).collect();
+    let open: Vec<&str> = found.open.iter().map(|(term, _)| term.english()).collect();
     for wanted in ["EAZ", "EBZ", "ECZ", "ECY"] {
         assert!(open.contains(&wanted), "{wanted} in {:?}", found.open);
     }

@@ -83,6 +83,10 @@ fn value(found: &calibration::turning::TurningCalibration, term: Term) -> f64 {
     found.terms.iter().find(|found| found.term == term).unwrap_or_else(|| panic!("{term:?}: {found:?}")).value
 }
 
+fn pairs(not_told_apart: &[[diagnostic::Text; 2]]) -> Vec<[&str; 2]> {
+    not_told_apart.iter().map(|pair| pair.each_ref().map(diagnostic::Text::english)).collect()
+}
+
 #[test]
 fn a_machine_without_noise_is_found_to_a_millionth() {
     let change = Change { axis: 85e-6, eb0z_rad: -130e-6, bow_mm: [0.012, 0.0] };
@@ -214,11 +218,11 @@ fn growth_and_wear_are_named_only_where_they_can_be_told_apart() {
     };
     // Parts one after the other, as they go: time and order are one.
     let together = machine(&[0.0, 1.0, 2.0, 3.0], &[0; 4]);
-    assert_eq!(together.not_told_apart, [["growth", "wear"]]);
+    assert_eq!(pairs(&together.not_told_apart), [["growth", "wear"]]);
     assert!(together.terms.iter().all(|found| !matches!(found.term, Term::Growth | Term::Wear)));
     // A second edge while the machine is warm tells them.
     let apart = machine(&[0.0, 1.0, 2.0, 3.0], &[0, 0, 1, 1]);
-    assert!(apart.not_told_apart.is_empty() || apart.not_told_apart == [["growth", "wear"]]);
+    assert!(apart.not_told_apart.is_empty() || pairs(&apart.not_told_apart) == [["growth", "wear"]]);
     let paused = machine(&[0.0, 0.2, 0.4, 3.0, 3.2], &[0; 5]);
     assert!(paused.not_told_apart.is_empty(), "{paused:?}");
     assert!((value(&paused, Term::Growth) - 0.006).abs() < 1e-9, "{paused:?}");
@@ -251,7 +255,7 @@ fn what_may_be_something_else_is_not_called_wear() {
     let told = machine(true, [60.0, 40.0, 40.0, 60.0]);
     assert!(has_wear(&told) && told.not_told_apart.is_empty(), "{told:?}");
     let untimed = machine(false, [60.0, 40.0, 40.0, 60.0]);
-    assert_eq!(untimed.not_told_apart, [["wear", "growth"]]);
+    assert_eq!(pairs(&untimed.not_told_apart), [["wear", "growth"]]);
     let sized = machine(true, [40.0, 44.0, 48.0, 52.0]);
     assert_eq!(sized.not_told_apart, [["wear", "an error of X that goes with the diameter"]]);
     for found in [untimed, sized] {

@@ -11,7 +11,7 @@ use crate::Language;
 
 /// A text for people, in every language.
 ///
-/// Printed it is English, and Russian with `{:#}`: so one text stands inside another.
+/// Printed it is English, and Russian with `{:#}`: so one text stands inside another. A width holds for both: `{:<#9}`.
 ///
 /// ```
 /// use diagnostic::{Language, both};
@@ -40,6 +40,24 @@ macro_rules! both {
             ::std::format!($english, $($argument)+),
             ::std::format!($russian, $($argument)+),
         )
+    };
+}
+
+/// What [`both!`](crate::both) says, in one language: for running text that is made where it is printed.
+///
+/// ```
+/// use diagnostic::{Language, say};
+///
+/// let rows = 7;
+/// assert_eq!(say!(Language::Russian, "{rows} rows", "строк: {rows}"), "строк: 7");
+/// ```
+#[macro_export]
+macro_rules! say {
+    ($language:expr, $english:literal, $russian:literal $(, $($argument:tt)*)?) => {
+        match $language {
+            $crate::Language::English => ::std::format!($english $(, $($argument)*)?),
+            $crate::Language::Russian => ::std::format!($russian $(, $($argument)*)?),
+        }
     };
 }
 
@@ -118,7 +136,7 @@ impl std::error::Error for Text {}
 
 impl fmt::Display for Text {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if f.alternate() { &self.russian } else { &self.english })
+        f.pad(if f.alternate() { &self.russian } else { &self.english })
     }
 }
 
@@ -138,6 +156,8 @@ mod tests {
     fn braces_and_arguments_of_either_kind_stand_in_both() {
         let (name, number) = ("H", 1);
         let text = both!("`{name}{number} = {{ {} }}` here", "здесь `{name}{number} = {{ {} }}`", 0.5);
+        let word = Text::pair("play", "люфт");
+        assert_eq!(format!("{word:<6}|{word:>#6}|"), "play  |  люфт|");
         assert_eq!(format!("{text} / {text:#}"), "`H1 = { 0.5 }` here / здесь `H1 = { 0.5 }`");
     }
 }

@@ -6,6 +6,7 @@ use crate::judgement::assembly::Assembly;
 use crate::judgement::unseen::kept_back;
 use crate::options::Options;
 use crate::search::lengths::{explained, first_equations};
+use diagnostic::{Text, both};
 
 /// Diagnoses the gap between `data` and the model that predicted its rows; `holdout` is never fitted.
 #[must_use]
@@ -25,30 +26,35 @@ fn too_little(data: &Measurements, scalars: &[Scalar]) -> Option<Diagnosis> {
     let mut missing = Vec::new();
     let runs = data.runs.len();
     if scalars.len() < 24 {
-        missing.push(format!(
+        missing.push(both!(
             "{} readings, at least 24 are needed beside the six set-up parameters",
+            "отсчётов {}, а сверх шести параметров установки их нужно не меньше 24",
             scalars.len()
         ));
     }
     if runs < 2 {
-        missing.push(format!("{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each"));
+        missing.push(both!(
+            "{runs} run: what is set-up and what is machine cannot be told; measure at least two lines with a run id each",
+            "серий {runs}: установку не отличить от станка; измерьте хотя бы две линии, каждую со своим именем серии"
+        ));
     }
     if (0..3).all(|a| data.range_mm(a).1 - data.range_mm(a).0 < 1e-6) && !moves_rotary(data) {
-        missing.push("no axis moves in this file".to_owned());
+        missing.push(Text::pair("no axis moves in this file", "в этом файле ни одна ось не движется"));
     }
     let first = scalars.first().map(|s| s.gap_um);
     if scalars.iter().all(|s| Some(s.gap_um) == first) {
-        missing.push("every reading is the same number".to_owned());
+        missing.push(Text::pair("every reading is the same number", "все отсчёты — одно и то же число"));
     }
     (!missing.is_empty()).then(|| underpowered(data.rows.len(), missing))
 }
 
 /// The verdict UNDERPOWERED with what is missing.
 #[must_use]
-pub fn underpowered(rows: usize, missing: Vec<String>) -> Diagnosis {
+pub fn underpowered(rows: usize, missing: Vec<Text>) -> Diagnosis {
+    let list = Text::join(&missing, "; ");
     Diagnosis {
         verdict: Verdict::Underpowered,
-        sentence: format!("Too little was measured: {}.", missing.join("; ")),
+        sentence: both!("Too little was measured: {list}.", "Измерено слишком мало: {list:#}."),
         gap: Gap { rows, ..Gap::default() },
         places: Vec::new(),
         causes: Vec::new(),

@@ -425,29 +425,79 @@ fn frame(vectors: &[ErrorVector]) -> [Vector; 2] {
 
 impl MeasuredField {
     /// Lines of `profile show`.
-    pub(crate) fn write(&self, out: &mut String) -> std::fmt::Result {
+    pub(crate) fn write(&self, out: &mut String, language: diagnostic::Language) -> std::fmt::Result {
         use std::fmt::Write as _;
+
+        use crate::show::tell;
         let [low, high] = self.uncertainty_um;
         let how = match self.field.made() {
-            Made::Lattice([x, y, z]) => format!("a lattice of {x} x {y} x {z}, met exactly"),
+            Made::Lattice([x, y, z]) => {
+                both!(
+                    "a lattice of {x} x {y} x {z}, met exactly",
+                    "решётка {x} x {y} x {z}, воспроизводится точно"
+                )
+            }
             Made::Smooth { residuals, .. } => {
-                let noise = if low == high { format!("{low} um") } else { format!("{low} … {high} um") };
-                format!("smoothed, noise {noise}, residuals {:.2} of what it says", residuals.sqrt())
+                let noise = if low == high {
+                    both!("{low} um", "{low} мкм")
+                } else {
+                    both!("{low} … {high} um", "{low} … {high} мкм")
+                };
+                both!(
+                    "smoothed, noise {noise}, residuals {:.2} of what it says",
+                    "сглажено, шум {noise:#}, остатки {:.2} от него",
+                    residuals.sqrt()
+                )
             }
         };
-        writeln!(out, "field        {}: {} vectors, {how}", self.file, self.vectors)?;
-        let volume = machine_model::Engine::volume(&self.field);
-        let ranges =
-            volume.0.iter().zip(["X", "Y", "Z"]).map(|(r, name)| format!("{name} {} … {} mm", r.low, r.high));
-        let cut = if self.field.is_cut() { ", without corners that no vector is near" } else { "" };
-        writeln!(out, "  volume     {}{cut}", ranges.collect::<Vec<_>>().join(", "))?;
-        let tool = self.field.tool_mm();
-        writeln!(out, "  tool       {} {} {} mm, and no other", tool.x, tool.y, tool.z)?;
-        let (shift, turn) = (self.frame[0] * 1e3, self.frame[1] * 1e6);
-        writeln!(
+        tell!(
             out,
+            language,
+            "field        {}: {} vectors, {how}",
+            "поле         {}: векторов {}, {how:#}",
+            self.file,
+            self.vectors
+        )?;
+        let volume = machine_model::Engine::volume(&self.field);
+        let ranges = volume
+            .0
+            .iter()
+            .zip(["X", "Y", "Z"])
+            .map(|(r, name)| both!("{name} {} … {} mm", "{name} {} … {} мм", r.low, r.high));
+        let cut = if self.field.is_cut() {
+            Text::pair(", without corners that no vector is near", ", без углов, где рядом нет векторов")
+        } else {
+            Text::EMPTY
+        };
+        tell!(
+            out,
+            language,
+            "  volume     {}{cut}",
+            "  объём      {:#}{cut:#}",
+            Text::join(&ranges.collect::<Vec<_>>(), ", ")
+        )?;
+        let tool = self.field.tool_mm();
+        tell!(
+            out,
+            language,
+            "  tool       {} {} {} mm, and no other",
+            "  инструмент {} {} {} мм, и никакой другой",
+            tool.x,
+            tool.y,
+            tool.z
+        )?;
+        let (shift, turn) = (self.frame[0] * 1e3, self.frame[1] * 1e6);
+        tell!(
+            out,
+            language,
             "  as a whole shifted by {:.2} {:.2} {:.2} um, turned by {:.1} {:.1} {:.1} urad: of the machine or of the set-up",
-            shift.x, shift.y, shift.z, turn.x, turn.y, turn.z
+            "  в целом сдвинуто на {:.2} {:.2} {:.2} мкм, повёрнуто на {:.1} {:.1} {:.1} мкрад: станок это или установка",
+            shift.x,
+            shift.y,
+            shift.z,
+            turn.x,
+            turn.y,
+            turn.z
         )
     }
 }

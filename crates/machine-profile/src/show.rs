@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use diagnostic::{Language, Text, both, say};
 use machine_model::{Axis, EngineId};
 
 use crate::format::Document;
@@ -15,40 +16,63 @@ pub fn schema() -> String {
     serde_json::to_string_pretty(&schema).unwrap_or_default()
 }
 
+/// A line in a language.
+macro_rules! tell {
+    ($out:expr, $language:expr, $($said:tt)+) => {
+        writeln!($out, "{}", diagnostic::say!($language, $($said)+))
+    };
+}
+pub(crate) use tell;
+
 impl Profile {
     /// What the profile says, as text: one fact per line, units named.
     #[must_use]
-    pub fn show(&self) -> String {
+    pub fn show(&self, language: Language) -> String {
         let mut out = String::new();
         // Writing to a String cannot fail.
-        let _ = self.write(&mut out);
+        let _ = self.write(&mut out, language);
         out
     }
 
-    fn write(&self, out: &mut String) -> std::fmt::Result {
-        writeln!(out, "machine      {}", self.name)?;
+    fn write(&self, out: &mut String, language: Language) -> std::fmt::Result {
+        tell!(out, language, "machine      {}", "станок       {}", self.name)?;
         if let Some(control) = &self.control {
-            writeln!(out, "control      {control}")?;
+            tell!(out, language, "control      {control}", "ЧПУ          {control}")?;
         }
         match &self.lathe {
-            None => writeln!(out, "chain        {}", self.chain())?,
+            None => tell!(out, language, "chain        {}", "цепь         {}", self.chain())?,
             Some(lathe) => {
                 let spindle = &lathe.spindle;
                 let [x, y, z] = [spindle.centre_mm.x, spindle.centre_mm.y, spindle.centre_mm.z];
-                writeln!(out, "chain        {}, a lathe", lathe.chain)?;
-                writeln!(out, "spindle      axis at X {x} Y {y} mm, chuck's face at Z {z} mm")?;
+                tell!(
+                    out,
+                    language,
+                    "chain        {}, a lathe",
+                    "цепь         {}, токарный станок",
+                    lathe.chain
+                )?;
+                tell!(
+                    out,
+                    language,
+                    "spindle      axis at X {x} Y {y} mm, chuck's face at Z {z} mm",
+                    "шпиндель     ось на X {x} Y {y} мм, торец патрона на Z {z} мм"
+                )?;
                 if let Some(tail) = spindle.tailstock {
                     let [x, y] = tail.offset_mm.map(|mm| mm * 1e3);
-                    writeln!(
+                    tell!(
                         out,
+                        language,
                         "tailstock    {} mm from the chuck, offset X {x:.1} Y {y:.1} um",
+                        "задняя бабка {} мм от патрона, смещение X {x:.1} Y {y:.1} мкм",
                         tail.at_mm
                     )?;
                 }
                 if !lathe.bending.is_none() {
-                    writeln!(
+                    tell!(
                         out,
+                        language,
                         "workpiece    bends by {:.3} um at most",
+                        "деталь       прогиб не больше {:.3} мкм",
                         lathe.bending.largest_mm() * 1e3
                     )?;
                 }
@@ -58,29 +82,49 @@ impl Profile {
             let temperature = c.temperature_c.map(|t| format!("{t} °C"));
             let parts: Vec<String> =
                 [c.date.clone(), temperature, c.instrument.clone()].into_iter().flatten().collect();
-            writeln!(out, "calibrated   {}", parts.join(", "))?;
+            tell!(out, language, "calibrated   {}", "калибровка   {}", parts.join(", "))?;
             if let Some(um) = c.repeatability_um {
-                writeln!(out, "  repeats    within {um} um (standard deviation of one reading)")?;
+                tell!(
+                    out,
+                    language,
+                    "  repeats    within {um} um (standard deviation of one reading)",
+                    "  повторяем. в пределах {um} мкм (стандартное отклонение одного отсчёта)"
+                )?;
             }
             if let Some(um) = c.uncertainty_um {
-                writeln!(out, "  known to   {um} um at the far corner (95 %)")?;
+                tell!(
+                    out,
+                    language,
+                    "  known to   {um} um at the far corner (95 %)",
+                    "  точность   {um} мкм в дальнем углу (95 %)"
+                )?;
             }
         }
         let volume = self.volume();
         for (i, axis) in Axis::ALL[..3].iter().enumerate() {
             let data = &self.description.linear[i];
             let (travel, known) = (data.travel_mm, volume.0[i]);
-            write!(
-                out,
+            out.push_str(&say!(
+                language,
                 "axis {axis}       travel {} … {} mm, step {} mm",
-                travel.low, travel.high, self.resolution_mm[i]
-            )?;
+                "ось {axis}        ход {} … {} мм, дискрета {} мм",
+                travel.low,
+                travel.high,
+                self.resolution_mm[i]
+            ));
             match &self.rows[i] {
-                None => writeln!(out, ", no tables: taken as perfect")?,
+                None => tell!(
+                    out,
+                    language,
+                    ", no tables: taken as perfect",
+                    ", таблиц нет: считается идеальной"
+                )?,
                 Some(rows) => {
-                    writeln!(
+                    tell!(
                         out,
+                        language,
                         ", calibrated {} … {} mm, {} rows",
+                        ", калибрована {} … {} мм, строк {}",
                         known.low,
                         known.high,
                         rows.rows.len()
@@ -92,31 +136,55 @@ impl Profile {
                             values().fold(f64::NEG_INFINITY, f64::max),
                         );
                         let symbol = format!("E{}{axis}", ['X', 'Y', 'Z', 'A', 'B', 'C'][f]);
-                        let (scale, unit) = if f < 3 { (1e3, "um") } else { (1e6, "urad") };
+                        let (scale, unit) = if f < 3 {
+                            (1e3, Text::pair("um", "мкм"))
+                        } else {
+                            (1e6, Text::pair("urad", "мкрад"))
+                        };
                         if rows.given[f] {
-                            writeln!(
+                            tell!(
                                 out,
+                                language,
                                 "  {symbol}        {:.2} … {:.2} {unit}",
+                                "  {symbol}        {:.2} … {:.2} {unit:#}",
                                 low * scale,
                                 high * scale
                             )?;
                         } else {
-                            writeln!(out, "  {symbol}        not measured: taken as 0")?;
+                            tell!(
+                                out,
+                                language,
+                                "  {symbol}        not measured: taken as 0",
+                                "  {symbol}        не измерялась: принята за 0"
+                            )?;
                         }
                     }
                 }
             }
             if data.errors_negative.is_some() {
-                writeln!(out, "  own tables for the negative direction")?;
+                tell!(
+                    out,
+                    language,
+                    "  own tables for the negative direction",
+                    "  для отрицательного направления свои таблицы"
+                )?;
             }
             if data.backlash_mm != 0.0 {
-                writeln!(out, "  backlash   {:.3} um", data.backlash_mm * 1e3)?;
+                tell!(
+                    out,
+                    language,
+                    "  backlash   {:.3} um",
+                    "  люфт       {:.3} мкм",
+                    data.backlash_mm * 1e3
+                )?;
             }
         }
         let s = self.description.squareness;
-        writeln!(
+        tell!(
             out,
+            language,
             "squareness   EC0Y {:.2} urad, EB0Z {:.2} urad, EA0Z {:.2} urad",
+            "перпендик.   EC0Y {:.2} мкрад, EB0Z {:.2} мкрад, EA0Z {:.2} мкрад",
             s.ec0y_rad * 1e6,
             s.eb0z_rad * 1e6,
             s.ea0z_rad * 1e6
@@ -124,13 +192,31 @@ impl Profile {
         for axis in self.chain().axes().filter(|axis| !axis.is_linear()) {
             let data = &self.description.rotary[axis.direction()];
             let c = data.centre_mm;
-            let state = if data.is_perfect() { "no errors given: taken as perfect" } else { "with errors" };
-            writeln!(out, "axis {axis}       centre {} {} {} mm, {state}", c.x, c.y, c.z)?;
+            let state = if data.is_perfect() {
+                Text::pair("no errors given: taken as perfect", "погрешности не заданы: считается идеальной")
+            } else {
+                Text::pair("with errors", "с погрешностями")
+            };
+            tell!(
+                out,
+                language,
+                "axis {axis}       centre {} {} {} mm, {state}",
+                "ось {axis}        центр {} {} {} мм, {state:#}",
+                c.x,
+                c.y,
+                c.z
+            )?;
             if data.errors_negative.is_some() {
-                writeln!(out, "  own tables for the negative direction")?;
+                tell!(
+                    out,
+                    language,
+                    "  own tables for the negative direction",
+                    "  для отрицательного направления свои таблицы"
+                )?;
             }
             if data.backlash_rad != 0.0 {
-                writeln!(out, "  backlash   {:.3} urad", data.backlash_rad * 1e6)?;
+                let urad = data.backlash_rad * 1e6;
+                tell!(out, language, "  backlash   {urad:.3} urad", "  люфт       {urad:.3} мкрад")?;
             }
         }
         if let Some(traverses) = &self.traverses {
@@ -138,117 +224,207 @@ impl Profile {
                 .iter()
                 .map(|t| {
                     let (first, last) = (t.nodes_mm.first().copied(), t.nodes_mm.last().copied());
-                    format!("{} {} … {} mm", Axis::ALL[t.axis], first.unwrap_or(0.0), last.unwrap_or(0.0))
+                    say!(
+                        language,
+                        "{} {} … {} mm",
+                        "{} {} … {} мм",
+                        Axis::ALL[t.axis],
+                        first.unwrap_or(0.0),
+                        last.unwrap_or(0.0)
+                    )
                 })
                 .collect();
-            writeln!(out, "tracker      {}", text.join(", "))?;
+            tell!(out, language, "tracker      {}", "трекер       {}", text.join(", "))?;
         }
         if let Some(field) = &self.field {
-            field.write(out)?;
+            field.write(out, language)?;
         }
         let [x, y, z] = self.default_tool_mm;
-        writeln!(out, "tool         default {x} {y} {z} mm")?;
+        tell!(
+            out,
+            language,
+            "tool         default {x} {y} {z} mm",
+            "инструмент   по умолчанию {x} {y} {z} мм"
+        )?;
         if let Some(length_mm) = self.gauge_point_mm {
-            writeln!(out, "  gauge point  {length_mm} mm")?;
+            tell!(out, language, "  gauge point  {length_mm} mm", "  базовая точка {length_mm} мм")?;
         }
         for (number, [x, y, z]) in &self.tools {
-            writeln!(out, "  H{number}         {x} {y} {z} mm")?;
+            tell!(out, language, "  H{number}         {x} {y} {z} mm", "  H{number}         {x} {y} {z} мм")?;
         }
         for (name, [x, y, z]) in &self.work_offsets {
-            writeln!(out, "{name}          {x} {y} {z} mm")?;
+            tell!(out, language, "{name}          {x} {y} {z} mm", "{name}          {x} {y} {z} мм")?;
         }
         let c = self.correction;
-        let outside = if c.outside == Outside::Refuse { "refused" } else { "clamped" };
+        let outside = if c.outside == Outside::Refuse {
+            Text::pair("refused", "отклоняется")
+        } else {
+            Text::pair("clamped", "берёт ближайшую точку")
+        };
         let engine: EngineId = c.engine;
-        writeln!(
+        tell!(
             out,
+            language,
             "correction   engine {engine}, tolerance {} um, feed outside {outside}",
+            "коррекция    метод {engine}, допуск {} мкм, рабочий ход вне объёма {outside:#}",
             c.tolerance_um
         )?;
-        self.write_program_rules(out)?;
+        self.write_program_rules(out, language)?;
         for effect in &self.effects {
             let text: Vec<String> =
                 effect.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            writeln!(out, "effect       {} {}", effect.id, text.join(", "))?;
+            tell!(out, language, "effect       {} {}", "эффект       {} {}", effect.id, text.join(", "))?;
         }
         Ok(())
     }
 
     /// What is said of the machine's programs, where anything is.
-    fn write_program_rules(&self, out: &mut String) -> std::fmt::Result {
+    fn write_program_rules(&self, out: &mut String, language: Language) -> std::fmt::Result {
         let rules = &self.program;
         match rules.bare_lengths {
-            Some(BareLengths::Increments) => writeln!(out, "programs     Z10 is ten increments")?,
-            Some(BareLengths::Millimetres) => writeln!(out, "programs     Z10 is Z10.")?,
+            Some(BareLengths::Increments) => tell!(
+                out,
+                language,
+                "programs     Z10 is ten increments",
+                "программы    Z10 — это десять дискрет"
+            )?,
+            Some(BareLengths::Millimetres) => {
+                tell!(out, language, "programs     Z10 is Z10.", "программы    Z10 — это Z10.")?
+            }
             None => {}
         }
         if rules.tool_change != [AfterChange::Unknown; 3] {
             let axis = |(name, change): (char, AfterChange)| match change {
-                AfterChange::Unknown => format!("{name} anywhere"),
-                AfterChange::Stays => format!("{name} where it was"),
-                AfterChange::At(place_mm) => format!("{name} at {place_mm} mm"),
+                AfterChange::Unknown => both!("{name} anywhere", "{name} где угодно"),
+                AfterChange::Stays => both!("{name} where it was", "{name} где была"),
+                AfterChange::At(place_mm) => both!("{name} at {place_mm} mm", "{name} на {place_mm} мм"),
             };
-            let axes: Vec<String> = "XYZ".chars().zip(rules.tool_change).map(axis).collect();
-            writeln!(out, "tool change  {}", axes.join(", "))?;
+            let axes: Vec<Text> = "XYZ".chars().zip(rules.tool_change).map(axis).collect();
+            tell!(out, language, "tool change  {}", "смена инстр. {:#}", Text::join(&axes, ", "))?;
         }
         if let Some(mm) = rules.arc_tolerance_mm {
-            writeln!(out, "arcs         radii may differ by {mm} mm")?;
+            tell!(
+                out,
+                language,
+                "arcs         radii may differ by {mm} mm",
+                "дуги         радиусы могут различаться на {mm} мм"
+            )?;
         }
         let turning = &rules.turning;
         let said = [
-            ("chamfer of threads", turning.thread_chamfer_leads, " leads"),
-            ("its angle", turning.thread_chamfer_deg, " degrees"),
-            ("escape of roughing", turning.roughing_escape_mm, " mm"),
-            ("return of pecks", turning.groove_return_mm, " mm"),
-            ("finishing passes of threads", turning.thread_finishing_passes, ""),
-            ("their least infeed", turning.thread_least_mm, " mm"),
-            ("their allowance", turning.thread_allowance_mm, " mm"),
-            ("return in drilling", turning.drill_return_mm, " mm"),
+            (
+                Text::pair("chamfer of threads", "сбег резьбы"),
+                turning.thread_chamfer_leads,
+                Text::pair(" leads", " шагов"),
+            ),
+            (
+                Text::pair("its angle", "его угол"),
+                turning.thread_chamfer_deg,
+                Text::pair(" degrees", " градусов"),
+            ),
+            (
+                Text::pair("escape of roughing", "отскок при черновой"),
+                turning.roughing_escape_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("return of pecks", "отвод между врезаниями"),
+                turning.groove_return_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("finishing passes of threads", "чистовых проходов резьбы"),
+                turning.thread_finishing_passes,
+                Text::pair("", ""),
+            ),
+            (
+                Text::pair("their least infeed", "их наименьшее врезание"),
+                turning.thread_least_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("their allowance", "их припуск"),
+                turning.thread_allowance_mm,
+                Text::pair(" mm", " мм"),
+            ),
+            (
+                Text::pair("return in drilling", "отвод при сверлении"),
+                turning.drill_return_mm,
+                Text::pair(" mm", " мм"),
+            ),
         ];
-        let mut said: Vec<String> = said
+        let mut said: Vec<Text> = said
             .into_iter()
-            .filter_map(|(what, value, unit)| Some(format!("{what} {}{unit}", value?)))
+            .filter_map(|(what, value, unit)| Some(both!("{what} {}{unit}", "{what:#} {}{unit:#}", value?)))
             .collect();
         if let Some(from) = turning.thread_flank_from {
             said.push(match from {
-                FlankFrom::Start => "flanks count from the start".to_owned(),
-                FlankFrom::FirstPass => "flanks count from the first pass".to_owned(),
-                FlankFrom::LastPass => "flanks count from the last pass".to_owned(),
+                FlankFrom::Start => {
+                    Text::pair("flanks count from the start", "боковые стороны считаются от начала")
+                }
+                FlankFrom::FirstPass => Text::pair(
+                    "flanks count from the first pass",
+                    "боковые стороны считаются от первого прохода",
+                ),
+                FlankFrom::LastPass => Text::pair(
+                    "flanks count from the last pass",
+                    "боковые стороны считаются от последнего прохода",
+                ),
             });
         }
         if let Some(chips) = turning.drill_chips {
-            said.push(if chips { "pecks break the chip" } else { "pecks go back to R" }.to_owned());
+            said.push(if chips {
+                Text::pair("pecks break the chip", "врезания ломают стружку")
+            } else {
+                Text::pair("pecks go back to R", "после врезания отвод до R")
+            });
         }
         if turning.nose_in_finishing {
-            said.push("G41 and G42 of contours in finishing alone".to_owned());
+            said.push(Text::pair(
+                "G41 and G42 of contours in finishing alone",
+                "G41 и G42 контуров только при чистовой",
+            ));
         }
         if !said.is_empty() {
-            writeln!(out, "cycles       {}", said.join(", "))?;
+            tell!(out, language, "cycles       {}", "циклы        {:#}", Text::join(&said, ", "))?;
         }
         if !rules.harmless_m_codes.is_empty() {
             let codes: Vec<String> = rules.harmless_m_codes.iter().map(|code| format!("M{code}")).collect();
-            writeln!(out, "M codes      {} move neither an axis nor the frame", codes.join(", "))?;
+            tell!(
+                out,
+                language,
+                "M codes      {} move neither an axis nor the frame",
+                "функции M    {} не двигают ни осей, ни системы координат",
+                codes.join(", ")
+            )?;
         }
         if let Some(kinematics) = &self.kinematics {
             let axes = self.chain().axes().filter(|axis| !axis.is_linear());
-            let centres: Vec<String> = axes
+            let centres: Vec<Text> = axes
                 .map(|axis| {
                     let [x, y, z] = kinematics.centres_mm[axis.direction()];
-                    format!("{} about {x} {y} {z} mm", axis.letter())
+                    both!("{} about {x} {y} {z} mm", "{} вокруг {x} {y} {z} мм", axis.letter())
                 })
                 .collect();
-            writeln!(out, "tip control  {}", centres.join(", "))?;
+            tell!(out, language, "tip control  {}", "ведение вершины {:#}", Text::join(&centres, ", "))?;
             let rule = &kinematics.tilt_rule;
             let branch = rule.branch.map(|(axis, positive)| {
-                format!("{} {} 0", toolpath::AXIS_NAMES[3 + axis], if positive { "above" } else { "below" })
+                let side = if positive {
+                    Text::pair("above", "больше")
+                } else {
+                    Text::pair("below", "меньше")
+                };
+                both!("{} {side} 0", "{} {side:#} 0", toolpath::AXIS_NAMES[3 + axis])
             });
             let turns = rule.turns.map(|turns| match turns {
-                toolpath::WholeTurns::Shortest => "the shortest way".to_owned(),
-                toolpath::WholeTurns::Principal => "between -180 and 180 degrees".to_owned(),
+                toolpath::WholeTurns::Shortest => Text::pair("the shortest way", "кратчайшим путём"),
+                toolpath::WholeTurns::Principal => {
+                    Text::pair("between -180 and 180 degrees", "между -180 и 180 градусами")
+                }
             });
-            let rule: Vec<String> = branch.into_iter().chain(turns).collect();
+            let rule: Vec<Text> = branch.into_iter().chain(turns).collect();
             if !rule.is_empty() {
-                writeln!(out, "tilted plane {}", rule.join(", "))?;
+                tell!(out, language, "tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", "))?;
             }
         }
         Ok(())

@@ -164,7 +164,7 @@ fn the_schema_knows_every_key_of_the_contract() {
 
 #[test]
 fn shown_profiles_name_what_is_known_and_what_is_not() {
-    let text = shipped("stan_s500.toml").show();
+    let text = shipped("stan_s500.toml").show(diagnostic::Language::English);
     insta::assert_snapshot!(text, @r"
     machine      STAN S500
     control      perspektiva

@@ -6,6 +6,7 @@
 //! test that proves it.
 
 mod action;
+mod assumptions;
 mod checks;
 mod describe;
 mod inherited;
@@ -15,6 +16,7 @@ mod shipped;
 mod table;
 
 pub use action::{ACTION_NAMES, action_name, action_named};
+pub use assumptions::assumption;
 pub use describe::{Row, Rows, Treatment, rows, treatment};
 pub use load::load;
 pub use shipped::{builtin, builtin_names};

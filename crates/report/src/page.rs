@@ -1,5 +1,6 @@
 //! The page: head, styles, sections, data block.
 
+use diagnostic::{Language, Text, say};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::text::{json_block, shown};
@@ -10,7 +11,7 @@ pub struct Section {
     /// For links to it.
     pub id: &'static str,
     /// Its heading.
-    pub title: &'static str,
+    pub title: Text,
     /// What it holds.
     pub body: Markup,
 }
@@ -18,6 +19,8 @@ pub struct Section {
 /// A whole page as bytes of HTML.
 #[derive(Clone, Debug)]
 pub struct Page<'a> {
+    /// The language that it is written in.
+    pub language: Language,
     /// Title of the window and of a printed page.
     pub title: &'a str,
     /// What stands above the first section.
@@ -42,9 +45,10 @@ impl Page<'_> {
     /// The file.
     #[must_use]
     pub fn into_html(self) -> String {
+        let language = self.language;
         let mut text = html! {
             (DOCTYPE)
-            html lang="en" {
+            html lang=(language.name()) {
                 head {
                     meta charset="utf-8";
                     meta http-equiv="Content-Security-Policy" content=(POLICY);
@@ -55,15 +59,15 @@ impl Page<'_> {
                     style { (PreEscaped(STYLE)) }
                 }
                 body {
-                    a.skip href="#content" { "Skip to the content" }
+                    a.skip href="#content" { (say!(language, "Skip to the content", "К содержанию")) }
                     header { (self.head) }
-                    nav aria-label="Sections" {
-                        ol { @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title) } } } }
+                    nav aria-label=(say!(language, "Sections", "Разделы")) {
+                        ol { @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title.in_language(language)) } } } }
                     }
                     main #content tabindex="-1" {
                         @for section in &self.sections {
                             section id=(section.id) aria-labelledby={ (section.id) "-title" } {
-                                h2 id={ (section.id) "-title" } { (section.title) }
+                                h2 id={ (section.id) "-title" } { (section.title.in_language(language)) }
                                 (section.body)
                             }
                         }
@@ -81,9 +85,9 @@ impl Page<'_> {
 
 /// A table of texts; the columns named in `numbers` are set as numbers.
 #[must_use]
-pub fn table(header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
+pub fn table(language: Language, header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
     html! {
-        div.scroll tabindex="0" role="region" aria-label="Table" {
+        div.scroll tabindex="0" role="region" aria-label=(say!(language, "Table", "Таблица")) {
             table {
                 thead { tr { @for cell in header { th scope="col" { (cell) } } } }
                 tbody {
@@ -102,18 +106,18 @@ pub fn table(header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup
 
 /// A drawing with its words, and its numbers behind a fold.
 #[must_use]
-pub fn figure(drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
+pub fn figure(language: Language, drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
     html! {
         figure {
-            div.scroll tabindex="0" role="region" aria-label="Drawing" { (drawing) }
+            div.scroll tabindex="0" role="region" aria-label=(say!(language, "Drawing", "Рисунок")) { (drawing) }
             figcaption { (shown(caption)) }
-            @if let Some(numbers) = numbers { (folded(&numbers)) }
+            @if let Some(numbers) = numbers { (folded(language, &numbers)) }
         }
     }
 }
 
 /// The numbers of drawings, behind a fold.
 #[must_use]
-pub fn folded(numbers: &Markup) -> Markup {
-    html! { details { summary { "Numbers" } (numbers) } }
+pub fn folded(language: Language, numbers: &Markup) -> Markup {
+    html! { details { summary { (say!(language, "Numbers", "Числа")) } (numbers) } }
 }

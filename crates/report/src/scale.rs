@@ -1,5 +1,9 @@
 //! From values to places on the drawing.
 
+use diagnostic::Language;
+
+use crate::text::Numbers;
+
 /// A linear scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
@@ -35,15 +39,12 @@ impl Scale {
 
     /// Round values on the scale, about `count` of them, with their labels.
     #[must_use]
-    pub fn ticks(&self, count: usize) -> Vec<(f64, String)> {
+    pub fn ticks(&self, count: usize, language: Language) -> Vec<(f64, String)> {
         let step = nice((self.high - self.low) / count.max(1) as f64);
         let digits = digits(step);
         let first = (self.low / step - 1e-9).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
-        (first..=last)
-            .map(|k| k as f64 * step)
-            .map(|value| (value, crate::text::number_of_digits(value, digits)))
-            .collect()
+        (first..=last).map(|k| k as f64 * step).map(|value| (value, language.digits(value, digits))).collect()
     }
 }
 
@@ -93,7 +94,11 @@ mod tests {
     #[test]
     fn ticks_are_round() {
         let labels = |low, high, count| -> Vec<String> {
-            Scale::new((low, high), (0.0, 1.0)).ticks(count).into_iter().map(|(_, l)| l).collect()
+            Scale::new((low, high), (0.0, 1.0))
+                .ticks(count, Language::English)
+                .into_iter()
+                .map(|(_, l)| l)
+                .collect()
         };
         assert_eq!(labels(0.0, 315.0, 4), ["0", "100", "200", "300"]);
         assert_eq!(labels(-0.3, 0.3, 3), ["\u{2212}0.2", "0.0", "0.2"]);

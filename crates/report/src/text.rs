@@ -1,5 +1,6 @@
-//! Texts from files: shown, never acting.
+//! Texts from files: shown, never acting; numbers as people write them.
 
+use diagnostic::{Language, Text};
 use maud::{Markup, PreEscaped};
 
 /// A text as it can be shown: control characters become their pictures, and marks that reorder what stands beside them
@@ -96,10 +97,115 @@ pub fn number_of_digits(value: f64, digits: usize) -> String {
     if zero { text.replace('-', "") } else { text.replacen('-', "\u{2212}", 1) }
 }
 
+/// The unit of nearly every number on a page.
+pub static MICROMETRES: Text = Text::pair("\u{b5}m", "мкм");
+
+/// Numbers as the readers of a language write them.
+///
+/// In Russian that is a decimal comma, and digits in groups of three behind a space from ten thousand on; four
+/// stay together, as in the trade's tables.
+pub trait Numbers: Copy {
+    /// A number's English text, as this language writes it.
+    fn figures(self, english: String) -> String;
+
+    /// [`number`]
+    fn number(self, value: f64) -> String {
+        self.figures(number(value))
+    }
+
+    /// [`number_of_digits`]
+    fn digits(self, value: f64, digits: usize) -> String {
+        self.figures(number_of_digits(value, digits))
+    }
+
+    /// [`percent`]
+    fn percent(self, share: f64) -> String {
+        self.figures(percent(share))
+    }
+
+    /// A text made for the terminal, where numbers have a point, as a page of this language shows it.
+    fn prose(self, text: &Text) -> String;
+
+    /// A whole number.
+    fn count(self, count: impl TryInto<u64>) -> String {
+        self.figures(count.try_into().map_or_else(|_| "\u{2014}".to_owned(), |count| count.to_string()))
+    }
+}
+
+impl Numbers for Language {
+    fn figures(self, english: String) -> String {
+        match self {
+            Self::English => english,
+            Self::Russian => grouped(&english.replace('.', ",")),
+        }
+    }
+
+    fn prose(self, text: &Text) -> String {
+        match self {
+            Self::English => text.english().to_owned(),
+            Self::Russian => with_commas(text.in_language(self)),
+        }
+    }
+}
+
+/// The points of decimal numbers as commas; points of names, versions and codes (`G54.1`, `x.csv`, `0.1.0`) stay.
+fn with_commas(text: &str) -> String {
+    let of_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '`');
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let length = rest[start..].find(|c: char| !(c.is_ascii_digit() || c == '.'));
+        let end = length.map_or(rest.len(), |length| start + length);
+        let (before, number) = (&rest[..start], rest[start..end].trim_end_matches('.'));
+        out.push_str(before);
+        let stands_alone = !out.ends_with(of_name)
+            && !rest[start + number.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_');
+        if stands_alone && number.matches('.').count() == 1 {
+            out.push_str(&number.replace('.', ","));
+        } else {
+            out.push_str(number);
+        }
+        rest = &rest[start + number.len()..];
+    }
+    out + rest
+}
+
+/// Digits before the comma in groups of three, where there are more than four.
+fn grouped(text: &str) -> String {
+    let start = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
+    let count = text[start..].bytes().take_while(u8::is_ascii_digit).count();
+    if count <= 4 {
+        return text.to_owned();
+    }
+    let (whole, rest) = text[start..].split_at(count);
+    let mut out = text[..start].to_owned();
+    for (at, digit) in whole.chars().enumerate() {
+        if at > 0 && (count - at) % 3 == 0 {
+            out.push('\u{a0}');
+        }
+        out.push(digit);
+    }
+    out + rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use maud::html;
+
+    #[test]
+    fn numbers_are_written_as_in_the_language() {
+        let both = |value: f64| Language::ALL.map(|language| language.digits(value, 1));
+        assert_eq!(both(-1234.5), ["\u{2212}1234.5", "\u{2212}1234,5"]);
+        assert_eq!(both(1_234_567.8), ["1234567.8", "1\u{a0}234\u{a0}567,8"]);
+        assert_eq!(Language::Russian.count(20_001_usize), "20\u{a0}001");
+        assert_eq!(Language::Russian.number(-0.0001), "\u{2212}1,0e-4");
+        assert_eq!(Language::Russian.percent(0.5), "50 %");
+        assert_eq!(Language::Russian.number(f64::NAN), "\u{2014}");
+        let text = Text::pair("", "на 14.1 мкм, ±0.5; G54.1, 0.1.0, a1.5, в 2. строке 3.");
+        let said = "на 14,1 мкм, ±0,5; G54.1, 0.1.0, a1.5, в 2. строке 3.";
+        assert_eq!(Language::Russian.prose(&text), said);
+    }
 
     #[test]
     fn what_stands_in_a_file_is_text_on_the_page() {

@@ -44,7 +44,6 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
     let limit_mm = limit_mm(&settings, &comparison);
     let outcome = Outcome::new(&settings, &comparison, findings);
     let passed = outcome.passed;
-    let findings: Vec<String> = outcome.findings.iter().map(|finding| finding.english().to_owned()).collect();
     let json = outcome.json();
     if arguments.html.is_some() || arguments.viewer.is_some() {
         let facts = page::Facts {
@@ -57,11 +56,11 @@ pub(crate) fn run(arguments: &Check, shared: &Shared, messages: &Messages) -> Re
             engine: model.id().name(),
             limit_mm,
             passed,
-            findings: &findings,
+            findings: &outcome.findings,
         };
         if let Some(path) = &arguments.html {
             let json = String::from_utf8_lossy(&json);
-            file::write(path, page::html(&comparison, &facts, &json).as_bytes())?;
+            file::write(path, page::html(&comparison, &facts, &json, messages.language()).as_bytes())?;
         }
         if let Some(path) = &arguments.viewer {
             let program = (wanted_name.as_str(), wanted.as_slice());

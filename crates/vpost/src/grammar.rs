@@ -14,9 +14,11 @@ pub(crate) fn run(arguments: &Grammar, messages: &Messages) -> Result<(), Failur
             let mut text = String::new();
             for name in nc_dialect::builtin_names() {
                 let dialect = load_dialect(name)?;
-                text.push_str(&format!("{name}: {}\n", dialect.title));
+                let said =
+                    |phrase: &str| nc_dialect::assumption(phrase).in_language(messages.language()).to_owned();
+                text.push_str(&format!("{name}: {}\n", said(&dialect.title)));
                 for assumption in &dialect.assumptions {
-                    text.push_str(&format!("  - {assumption}\n"));
+                    text.push_str(&format!("  - {}\n", said(assumption)));
                 }
             }
             file::print(text.as_bytes())

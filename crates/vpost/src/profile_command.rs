@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Profile, messages: &Messages) -> Result<(), Failur
         }
         ProfileCommand::Show { profile: path } => {
             let loaded = profile::load(path)?;
-            file::print(loaded.profile.show().as_bytes())
+            file::print(loaded.profile.show(messages.language()).as_bytes())
         }
         ProfileCommand::New(a) => profile_new::run(a, messages),
         ProfileCommand::Export(a) => export::run(a, messages),

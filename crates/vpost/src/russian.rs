@@ -265,7 +265,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("The profile; a file that is there is left alone", "Профиль; существующий файл не тронут"),
     ("The program as posted", "Программа, какой её выдал постпроцессор"),
     ("The result as JSON on standard output", "Результат как JSON в стандартный вывод"),
-    ("The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um", "Строки – места, где щуп центрировали по сфере, закреплённой на детали: без dx_um dy_um dz_um"),
+    ("The rows are places at which a touch probe was centred on a sphere fixed to the workpiece: no dx_um dy_um dz_um", "Строки — места, где щуп центрировали по сфере, закреплённой на детали: без dx_um dy_um dz_um"),
     ("The same for a layer of nodes, at a place of the third axis in mm, or for every layer (repeatable)", "То же для слоя узлов, в месте третьей оси в мм, или для каждого слоя (повторяемый)"),
     ("The same for a workpiece, where its axis commands lie, mm", "То же для детали, где лежат команды её осей, мм"),
     ("The same tests after a compensation: a table before and after", "Те же опыты после компенсации: таблица до и после"),

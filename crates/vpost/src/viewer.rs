@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use diagnostic::{Code, Diagnostic, Language, Text, both};
+use diagnostic::{Code, Diagnostic, Text, both};
 use jobs::causes::Causes;
 use report::viewer::scene::{BEFORE, CAUSES, Cause, Displacement, Place, Scene};
 use report::viewer::thinning::TooLarge;
-use report::viewer::words;
 
 use crate::file;
-use crate::message::{Failure, Messages};
+use crate::message::Failure;
 
 /// Even thinned the path is too large for a page.
 const TOO_LARGE: Code = Code(1201);
@@ -20,14 +19,6 @@ const NO_PATH: Code = Code(1202);
 /// The texts of all lines may be so long together, bytes, and each no longer than that.
 const MOST_TEXT: usize = 1_000_000;
 const LONGEST: usize = 160;
-
-/// The page begins in the language that the command speaks.
-pub(crate) fn language(messages: &Messages) -> words::Language {
-    match messages.language() {
-        Language::English => words::Language::English,
-        Language::Russian => words::Language::Russian,
-    }
-}
 
 /// What is refused where a path cannot be drawn truly.
 pub(crate) fn too_large(name: &str, refused: &TooLarge) -> Failure {

@@ -1,5 +1,6 @@
 //! Derivatives of what is read by what is unknown: equation (101).
 
+use diagnostic::Speaks;
 use machine_model::{Axis, AxisTables, Command, Description, Range, RigidBody, Vector};
 use nalgebra::DMatrix;
 
@@ -22,7 +23,7 @@ pub(crate) struct Columns {
 }
 
 pub(crate) fn model(description: Description) -> Result<RigidBody, CalibrationError> {
-    RigidBody::new(description).map_err(|error| CalibrationError::Axes(error.to_string()))
+    RigidBody::new(description).map_err(|error| CalibrationError::Axes(error.text()))
 }
 
 impl Columns {

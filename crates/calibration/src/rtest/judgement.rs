@@ -1,5 +1,6 @@
 //! What may be written, which reading does not belong, and whether the rows are of one machine: equations (102) and (104).
 
+use diagnostic::{Text, both};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -116,19 +117,27 @@ fn joined(sets: Vec<Vec<String>>) -> Vec<Vec<String>> {
 /// Refuses rows of which one reading is far from all others, or of which many are: those hide behind the scatter that they
 /// make, and half of the readings do not.
 pub(super) fn no_outlier(estimate: &Estimate, measured: &Measured<'_>) -> Result<(), CalibrationError> {
-    let refuse = |reading: usize, more: String| {
+    let refuse = |reading: usize, more: Text| {
         let own = measured.readings[reading];
         Err(CalibrationError::Outlier {
             point: own.row,
-            message: format!(
+            message: both!(
                 "this row's {} is {:.1} um off what all other rows say{more}",
+                "{} этой строки отходит на {:.1} мкм от того, что говорят все остальные{more:#}",
                 LETTERS[own.component],
                 estimate.residuals[reading] * 1e3
             ),
         })
     };
     if let Some(one) = estimate.outlier(OUTLIER_CHANCE).filter(|one| one.residual.abs() > RESOLVED_MM) {
-        return refuse(one.reading, format!(": {:.0} times its standard deviation", one.standardised.abs()));
+        return refuse(
+            one.reading,
+            both!(
+                ": {:.0} times its standard deviation",
+                ": это {:.0} его стандартных отклонений",
+                one.standardised.abs()
+            ),
+        );
     }
     let sizes: Vec<f64> = estimate
         .residuals
@@ -144,9 +153,13 @@ pub(super) fn no_outlier(estimate: &Estimate, measured: &Measured<'_>) -> Result
     let far = sizes.iter().filter(|size| **size > FAR * usual && **size > RESOLVED_MM).count();
     let largest = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
     match largest.filter(|_| far > 0 && estimate.misfit > TAILS * usual) {
-        Some(largest) => {
-            refuse(largest, format!(", and so are {far} readings by more than {FAR} times the usual scatter"))
-        }
+        Some(largest) => refuse(
+            largest,
+            both!(
+                ", and so are {far} readings by more than {FAR} times the usual scatter",
+                ", и ещё так же отсчёты ({far}) больше чем на {FAR} обычных разбросов"
+            ),
+        ),
         None => Ok(()),
     }
 }
@@ -194,9 +207,11 @@ pub(super) fn runs_alone(
         return Ok(None);
     }
     if times > TWO_MACHINES {
-        return Err(CalibrationError::Contradicted(format!(
+        return Err(CalibrationError::Contradicted(both!(
             "the runs contradict one another: a machine for each leaves {:.2} um, one machine for all {:.2} um. Rows of two machines, a \
              ball that moved, or errors of the linear axes that the profile does not have",
+            "серии противоречат друг другу: свой станок для каждой оставляет {:.2} мкм, один для всех {:.2} мкм. Строки двух станков, \
+             сдвинувшийся шар или погрешности линейных осей, которых нет в профиле",
             alone.sqrt() * 1e3,
             estimate.misfit * 1e3
         )));

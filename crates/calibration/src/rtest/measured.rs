@@ -1,5 +1,6 @@
 //! Rows as readings of an adjustment, with the offsets of their runs.
 
+use diagnostic::Text;
 use std::collections::BTreeMap;
 
 use machine_model::{
@@ -60,7 +61,10 @@ impl<'r> Measured<'r> {
             }
         }
         if readings.is_empty() {
-            return Err(CalibrationError::TooFew("no row holds a reading".to_owned()));
+            return Err(CalibrationError::TooFew(Text::pair(
+                "no row holds a reading",
+                "ни в одной строке нет отсчёта",
+            )));
         }
         let is_stated = uncertainties.len() == readings.len();
         let mean = uncertainties.iter().map(|u| u * u).sum::<f64>() / uncertainties.len().max(1) as f64;

@@ -17,6 +17,7 @@ mod ownership;
 mod tables;
 mod terms;
 
+use diagnostic::{Speaks, Text, both};
 use machine_model::{Axis, Command, Description, Vector};
 use nalgebra::{DMatrix, DVector};
 
@@ -25,6 +26,7 @@ pub use tables::WrittenTable;
 pub use terms::Term;
 
 use crate::adjustment::{Estimate, Jacobian, Noise, Problem, adjust};
+use crate::ballbar::from_one_another;
 use crate::error::CalibrationError;
 use crate::machine_change::Base;
 use crate::rotary_ballbar::Location;
@@ -180,8 +182,9 @@ pub fn calibrate(
     let sweep = normal.sweep(&order);
     let readings = measured.values.len();
     if (readings - sweep.kept.len().min(readings)) * 10 < readings {
-        return Err(CalibrationError::TooFew(format!(
+        return Err(CalibrationError::TooFew(both!(
             "{readings} readings for {} unknowns",
+            "отсчётов {readings} на {} неизвестных",
             sweep.kept.len()
         )));
     }
@@ -216,7 +219,7 @@ pub fn calibrate(
         settled: SETTLED_MM,
     };
     let mut estimate = adjust(&problem, &DVector::zeros(sweep.kept.len()))
-        .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+        .map_err(|error| CalibrationError::Contradicted(error.text()))?;
     judgement::no_outlier(&estimate, &measured)?;
     let alone_mm = judgement::runs_alone(&estimate, &measured, &design, &sweep.kept)?;
     let repeats_mm = judgement::repeats(&mut estimate, &measured);
@@ -285,7 +288,11 @@ fn turning(
 ) -> Result<(Vec<Axis>, Vec<Axis>), CalibrationError> {
     let rotary: Vec<Axis> = description.chain.axes().filter(|axis| !axis.is_linear()).collect();
     if rotary.is_empty() {
-        return Err(CalibrationError::Axes(format!("the chain {} has no rotary axis", description.chain)));
+        return Err(CalibrationError::Axes(both!(
+            "the chain {} has no rotary axis",
+            "в цепи {} нет поворотной оси",
+            description.chain
+        )));
     }
     let turns = |axis: &Axis| {
         let angle = |row: &BallReading| row.command.rotary_rad[axis.direction()];
@@ -296,10 +303,11 @@ fn turning(
     };
     let (moved, still): (Vec<Axis>, Vec<Axis>) = rotary.into_iter().partition(turns);
     if moved.is_empty() {
-        let names: Vec<String> = still.iter().map(ToString::to_string).collect();
-        return Err(CalibrationError::Axes(format!(
+        let names: Vec<Text> = still.iter().map(|axis| Text::same(axis.to_string())).collect();
+        return Err(CalibrationError::Axes(both!(
             "every run stands at one angle of {}: where nothing turns, nothing is seen of a rotary axis",
-            names.join(" and ")
+            "в каждой серии один угол {:#}: где ничего не поворачивается, поворотной оси не видно",
+            and(&names)
         )));
     }
     Ok((moved, still))
@@ -472,9 +480,14 @@ fn found_term(
 fn plausible(found: &[FoundTerm]) -> Result<(), CalibrationError> {
     let wild = |f: &&FoundTerm| (f.base + f.change).abs() > LARGEST[usize::from(!f.term.is_length())];
     let Some(wild) = found.iter().filter(|f| f.is_written).find(wild) else { return Ok(()) };
-    let (size, unit) = if wild.term.is_length() { (1.0, "mm") } else { (1e3, "mrad") };
-    Err(CalibrationError::Contradicted(format!(
+    let (size, unit) = if wild.term.is_length() {
+        (1.0, Text::pair("mm", "мм"))
+    } else {
+        (1e3, Text::pair("mrad", "мрад"))
+    };
+    Err(CalibrationError::Contradicted(both!(
         "{} would be {:.1} {unit}: no axis is so far from its place; are centre_mm and the angles those of this machine?",
+        "{} была бы {:.1} {unit:#}: так далеко от своего места ось не бывает; centre_mm и углы от этого станка?",
         wild.term.name(),
         (wild.base + wild.change) * size
     )))
@@ -499,22 +512,39 @@ fn styli_of_a_head(
     if aside_mm >= ASIDE_MM {
         return Ok(());
     }
-    let names: Vec<String> = heads.iter().map(ToString::to_string).collect();
-    Err(CalibrationError::Unobservable(format!(
+    let names: Vec<Text> = heads.iter().map(|axis| Text::same(axis.to_string())).collect();
+    Err(CalibrationError::Unobservable(both!(
         "what {} of the head does beside one line: the balls of all rows lie on it ({aside_mm:.1} mm beside it at most); read with styli that do not, {ASIDE_MM} mm or more beside the others",
-        names.join(" and ")
+        "что делают {:#} головы в стороне от одной линии: шары всех строк лежат на ней (не дальше {aside_mm:.1} мм); снимите щупами, которые стоят в стороне на {ASIDE_MM} мм и больше",
+        and(&names)
     )))
+}
+
+/// `A and C`.
+fn and(names: &[Text]) -> Text {
+    let between = Text::pair(" and ", " и ");
+    let mut all = Text::EMPTY;
+    for (index, name) in names.iter().enumerate() {
+        if index > 0 {
+            all.push(&between);
+        }
+        all.push(name);
+    }
+    all
 }
 
 /// Why no location error is determined.
 fn nothing_found(axes: &[TurnedAxis], open: &judgement::Open) -> CalibrationError {
     if let Some(own) = axes.iter().find(|own| own.arm_mm < ON_AXIS_MM) {
-        return CalibrationError::Unobservable(format!(
+        return CalibrationError::Unobservable(both!(
             "where the axis of {} is from how it leans: the ball lies on the axis in every run, {:.3} mm from it at most",
-            own.axis, own.arm_mm
+            "положение оси {} и её наклон: во всех сериях шар лежит на самой оси, не дальше {:.3} мм от неё",
+            own.axis,
+            own.arm_mm
         ));
     }
-    let mut sets: Vec<String> = open.not_told_apart.iter().map(|set| set.join(" from ")).collect();
-    sets.extend(open.unseen.iter().cloned());
-    CalibrationError::Unobservable(sets.join("; "))
+    let named = |names: &[String]| names.iter().map(Text::same).collect::<Vec<_>>();
+    let mut sets: Vec<Text> = open.not_told_apart.iter().map(|set| from_one_another(&named(set))).collect();
+    sets.extend(named(&open.unseen));
+    CalibrationError::Unobservable(Text::join(&sets, "; "))
 }

@@ -1,5 +1,6 @@
 //! What the test pieces say of the lathe, and what they cannot.
 
+use diagnostic::{Speaks, Text, both};
 use nalgebra::{DMatrix, DVector};
 
 use super::equations::{Change, Stretch, TurningBase};
@@ -71,7 +72,7 @@ pub struct TurningCalibration {
     /// Shapes of the barrel that were looked for and are not significant.
     pub not_there: Vec<FoundTerm>,
     /// Pairs that these parts cannot tell apart.
-    pub not_told_apart: Vec<[&'static str; 2]>,
+    pub not_told_apart: Vec<[Text; 2]>,
     /// Sizes of the tools.
     pub offsets: Vec<Offset>,
     /// What the profile is to be given.
@@ -97,7 +98,7 @@ struct ToldApart {
     terms: Vec<Term>,
     /// Fitted, since each takes part of what the others show, but not told.
     unnamed: Vec<Term>,
-    pairs: Vec<[&'static str; 2]>,
+    pairs: Vec<[Text; 2]>,
 }
 
 impl ToldApart {
@@ -116,7 +117,7 @@ impl ToldApart {
             let seen = without(&whole, &sizes);
             if seen.norm() <= 1e-6 * whole.norm() {
                 if term.is_drift() && whole.norm() > 0.0 {
-                    told.pairs.push([term.name(), "offset"]);
+                    told.pairs.push([term.words(), Text::pair("offset", "коррекция инструмента")]);
                 }
                 continue;
             }
@@ -140,11 +141,11 @@ impl ToldApart {
                 let Some((rival, _)) = rival else { continue };
                 match (*rival, term) {
                     (Term::Growth, Term::Wear) => {
-                        told.pairs.push(["growth", "wear"]);
+                        told.pairs.push([Term::Growth.words(), Term::Wear.words()]);
                         told.unnamed.extend([Term::Growth, Term::Wear]);
                     }
-                    (rival, Term::Growth | Term::Wear) => told.pairs.push([term.name(), rival.name()]),
-                    (rival, Term::Squareness) => told.pairs.push([rival.name(), term.name()]),
+                    (rival, Term::Growth | Term::Wear) => told.pairs.push([term.words(), rival.words()]),
+                    (rival, Term::Squareness) => told.pairs.push([rival.words(), term.words()]),
                     _ => {}
                 }
                 if !is_drift_alone {
@@ -155,7 +156,10 @@ impl ToldApart {
         }
         told.terms = kept.into_iter().map(|(term, _)| term).collect();
         if told.terms.first() != Some(&Term::Axis) {
-            return Err(CalibrationError::Unobservable("the taper from the sizes of the tools".to_owned()));
+            return Err(CalibrationError::Unobservable(Text::pair(
+                "the taper from the sizes of the tools",
+                "конусность и размеры инструментов",
+            )));
         }
         told.rivals(readings);
         Ok(told)
@@ -171,13 +175,16 @@ impl ToldApart {
                 continue;
             }
             let rival = if term == Term::Wear && !is_timed {
-                "growth"
+                Term::Growth.words()
             } else if readings.goes_with_the_diameter(term, ALIKE) {
-                "an error of X that goes with the diameter"
+                Text::pair(
+                    "an error of X that goes with the diameter",
+                    "погрешность X, которая идёт с диаметром",
+                )
             } else {
                 continue;
             };
-            self.pairs.push([term.name(), rival]);
+            self.pairs.push([term.words(), rival]);
             match term {
                 Term::Wear => {
                     for own in self.terms.iter_mut().filter(|own| **own == Term::Wear) {
@@ -196,7 +203,10 @@ impl ToldApart {
         for term in [Term::Growth, Term::Wear] {
             if self.terms.contains(&term) && !self.unnamed.contains(&term) {
                 self.unnamed.push(term);
-                self.pairs.push([term.name(), "what else differs from part to part"]);
+                self.pairs.push([
+                    term.words(),
+                    Text::pair("what else differs from part to part", "прочие различия образцов"),
+                ]);
             }
         }
     }
@@ -226,8 +236,9 @@ pub fn calibrate(
     if let Some(outlier) = readings.outlier(&within, OUTLIER_CHANCE) {
         return Err(CalibrationError::Outlier {
             point: outlier.reading,
-            message: format!(
+            message: both!(
                 "this reading is {:.2} um off what the others say, {:.1} standard deviations (limit {:.1})",
+                "этот отсчёт отходит от остальных на {:.2} мкм, это {:.1} стандартных отклонений (предел {:.1})",
                 outlier.residual * 1e3,
                 outlier.standardised,
                 outlier.limit
@@ -398,7 +409,7 @@ impl TurningCalibration {
         let left = |change: &Change| -> Result<Vec<f64>, CalibrationError> {
             let predicted = base
                 .predicted_mm(change, self.stretch, &rows)
-                .map_err(|error| CalibrationError::Axes(error.to_string()))?;
+                .map_err(|error| CalibrationError::Axes(error.text()))?;
             let raw: Vec<f64> = rows.iter().zip(&predicted).map(|(row, p)| row.deviation_mm - p).collect();
             let mut left = Vec::new();
             for (k, row) in rows.iter().enumerate() {
@@ -420,9 +431,10 @@ impl TurningCalibration {
         };
         let (before, after) = (left(&Change::default())?, left(&self.change)?);
         if after.is_empty() {
-            return Err(CalibrationError::TooFew(
-                "the held-out file has no part with two diameters, nor a tool whose size is known".to_owned(),
-            ));
+            return Err(CalibrationError::TooFew(Text::pair(
+                "the held-out file has no part with two diameters, nor a tool whose size is known",
+                "в контрольном файле нет ни образца с двумя диаметрами, ни инструмента с известным размером",
+            )));
         }
         let rms = |all: &[f64]| (all.iter().map(|v| v * v).sum::<f64>() / all.len() as f64).sqrt();
         Ok(HeldOut {

@@ -1,5 +1,6 @@
 //! Readings as equations, and their adjustments.
 
+use diagnostic::{Speaks, both};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -201,8 +202,9 @@ impl<'r> Readings<'r> {
     fn fit(&self, terms: &[Term], levels: &Levels) -> Result<Estimate, CalibrationError> {
         let unknowns = terms.len() + levels.count();
         if self.rows.len() <= unknowns {
-            return Err(CalibrationError::TooFew(format!(
+            return Err(CalibrationError::TooFew(both!(
                 "{} readings for {unknowns} unknowns: nothing is left that could judge them",
+                "отсчётов {} на {unknowns} неизвестных: судить о них уже нечем",
                 self.rows.len()
             )));
         }
@@ -215,7 +217,7 @@ impl<'r> Readings<'r> {
             settled: SETTLED_MM,
         };
         adjust(&problem, &DVector::zeros(unknowns))
-            .map_err(|error| CalibrationError::Contradicted(error.to_string()))
+            .map_err(|error| CalibrationError::Contradicted(error.text()))
     }
 
     /// Each part at its own size: what is left is the noise of a reading.
@@ -333,7 +335,7 @@ impl<'r> Readings<'r> {
             settled,
         };
         let found = adjust(&problem, &DVector::zeros(unknowns))
-            .map_err(|error| CalibrationError::Contradicted(error.to_string()))?;
+            .map_err(|error| CalibrationError::Contradicted(error.text()))?;
         let design = whitening.apply_to(&self.weighted(self.jacobian(terms, &self.tools, &found.values)));
         let gains = whitening.apply_to(&(design * &found.covariance)).transpose();
         let is_face: Vec<bool> = (0..self.rows.len()).map(|k| self.is(k, Feature::Face)).collect();
@@ -408,7 +410,7 @@ impl<'r> Readings<'r> {
         let fitted = |design: &DMatrix<f64>| {
             let gauge = DMatrix::zeros(0, design.ncols());
             linear(design, &adjusted.residuals, Noise::Relative(&self.weights), &gauge)
-                .map_err(|error| CalibrationError::Contradicted(error.to_string()))
+                .map_err(|error| CalibrationError::Contradicted(error.text()))
         };
         let (alike, apart) = (fitted(&design)?, fitted(&wide)?);
         let (all, left) = (self.squares(&alike), self.squares(&apart));
@@ -426,9 +428,11 @@ impl<'r> Readings<'r> {
         }
         let odd = tapers.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let odd = odd.map_or(0, |(k, _)| self.parts[k + 1]);
-        Err(CalibrationError::Contradicted(format!(
+        Err(CalibrationError::Contradicted(both!(
             "the test pieces differ in their tapers, by {:.2} um on the diameter over {length:.0} mm (F {ratio:.1}, {limit:.1} by \
              chance at 0.1 %), `{}` and `{}` among them: that is their own bending or clamping, not one machine",
+            "конусность образцов различается на {:.2} мкм на диаметр на длине {length:.0} мм (F {ratio:.1}, случайно {limit:.1} \
+             при 0.1 %), в том числе `{}` и `{}`: это их собственный изгиб или закрепление, а не один станок",
             apart_mm * 1e3,
             names[self.parts[0]],
             names[odd],

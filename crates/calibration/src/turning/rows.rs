@@ -1,5 +1,6 @@
 //! What was measured on turned test pieces, and what cannot be used of it.
 
+use diagnostic::{Text, both};
 use machine_model::{Command, Vector};
 
 use crate::CalibrationError;
@@ -77,18 +78,23 @@ pub(super) fn check(
 ) -> Result<(), CalibrationError> {
     let diameters = || rows.iter().filter(|row| row.feature == Feature::Diameter);
     if parts.len() < 2 {
-        return Err(CalibrationError::TooFew(format!(
-            "diameters of {} test piece{}: one part cannot tell its own bending from the machine",
-            if parts.is_empty() { "no" } else { "one" },
-            if parts.is_empty() { "s" } else { "" }
+        return Err(CalibrationError::TooFew(both!(
+            "diameters of {}: one part cannot tell its own bending from the machine",
+            "диаметры {:#}: один образец не отличает собственный изгиб от станка",
+            if parts.is_empty() {
+                Text::pair("no test pieces", "ни одного образца")
+            } else {
+                Text::pair("one test piece", "одного образца")
+            }
         )));
     }
     for part in parts.iter().copied() {
         let places = || diameters().filter(|row| row.part == part).map(|row| row.tip_mm().z);
         let first = places().next().unwrap_or(0.0);
         if places().all(|z| (z - first).abs() <= SAME_MM) {
-            return Err(CalibrationError::TooFew(format!(
+            return Err(CalibrationError::TooFew(both!(
                 "part `{}` has one cross section: a taper needs two along Z or more",
+                "у образца `{}` одно сечение: для конусности нужны хотя бы два вдоль Z",
                 part_names[part]
             )));
         }
@@ -106,8 +112,9 @@ pub(super) fn check_repeats(rows: &[TurnedReading], usual_mm: f64) -> Result<(),
             row.is_repeat_of(earlier) && apart > (DISAGREE * u(row).max(u(earlier))).max(finest_mm)
         });
         if let Some(earlier) = before {
-            let message = format!(
+            let message = both!(
                 "the same place was read as {:.3} and as {:.3} um, more than six standard uncertainties apart",
+                "одно и то же место снято как {:.3} и как {:.3} мкм, разница больше шести стандартных неопределённостей",
                 earlier.deviation_mm * 1e3,
                 row.deviation_mm * 1e3
             );

@@ -1,5 +1,7 @@
 //! What a test piece may show.
 
+use diagnostic::Text;
+
 /// One thing that test pieces may show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Term {
@@ -22,15 +24,15 @@ pub enum Term {
 impl Term {
     /// As messages name it.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub const fn words(self) -> Text {
         match self {
-            Self::Axis => "taper",
-            Self::Squareness => "squareness",
-            Self::Growth => "growth",
-            Self::Wear => "wear",
-            Self::Bow => "barrel",
-            Self::FourthOrder => "order 4 of the barrel",
-            Self::PartToPart => "from part to part",
+            Self::Axis => Text::pair("taper", "конусность"),
+            Self::Squareness => Text::pair("squareness", "перпендикулярность"),
+            Self::Growth => Text::pair("growth", "рост"),
+            Self::Wear => Text::pair("wear", "износ"),
+            Self::Bow => Text::pair("barrel", "бочкообразность"),
+            Self::FourthOrder => Text::pair("order 4 of the barrel", "4-й порядок бочкообразности"),
+            Self::PartToPart => Text::pair("from part to part", "от образца к образцу"),
         }
     }
 

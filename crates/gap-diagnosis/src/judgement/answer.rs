@@ -1,5 +1,6 @@
 //! The answer: what `vpost diagnose` reports.
 
+use diagnostic::{Text, both};
 use machine_model::Vector;
 use machine_model::effects::{EffectKind, EffectTerm};
 
@@ -37,6 +38,20 @@ impl Verdict {
         }
     }
 
+    /// The same for people.
+    #[must_use]
+    pub const fn words(self) -> Text {
+        match self {
+            Self::NoGap => Text::pair("NO GAP", "РАСХОЖДЕНИЯ НЕТ"),
+            Self::Named => Text::pair("NAMED", "ПРИЧИНА НАЗВАНА"),
+            Self::Ambiguous => Text::pair("AMBIGUOUS", "НЕОДНОЗНАЧНО"),
+            Self::Partial => Text::pair("PARTIAL", "НАЗВАНА ЧАСТЬ"),
+            Self::Unknown => Text::pair("UNKNOWN", "ПРИЧИНА НЕИЗВЕСТНА"),
+            Self::NoiseModelSuspect => Text::pair("NOISE MODEL SUSPECT", "СОМНИТЕЛЬНЫЙ ШУМ"),
+            Self::Underpowered => Text::pair("UNDERPOWERED", "МАЛО ДАННЫХ"),
+        }
+    }
+
     /// True where a part of the gap has no name, or unseen rows refute the causes: none to act on.
     #[must_use]
     pub const fn leaves_open(self) -> bool {
@@ -70,6 +85,48 @@ pub struct Cell {
     pub share: f64,
     /// How likely a gap spread evenly would show this much here, corrected for the number of cells.
     pub p: f64,
+}
+
+impl Cell {
+    /// What the rows are sorted by, for people.
+    #[must_use]
+    pub fn family(&self) -> Text {
+        let russian = match self.by.as_str() {
+            "component" => "составляющая",
+            "direction" => "направление",
+            "voxel" => "часть объёма",
+            "run" => "серия",
+            "feed" => "подача",
+            "load" => "нагрузка",
+            "tool" => "инструмент",
+            "time" => "время",
+            axis => axis,
+        };
+        Text::new(self.by.clone(), russian.to_owned())
+    }
+
+    /// Which part of it, for people.
+    #[must_use]
+    pub fn part(&self) -> Text {
+        let russian = match (self.by.as_str(), self.cell.as_str()) {
+            ("component", "along the bar") => "вдоль датчика".to_owned(),
+            ("direction", "unknown") => "неизвестно".to_owned(),
+            ("feed", cell) => cell.replace("mm/min", "мм/мин"),
+            ("load", cell) => cell.replace("kg", "кг"),
+            ("tool", cell) => cell.replace("mm", "мм").replace(',', "; "),
+            ("time", cell) => cell.replace(" s", " с"),
+            (_, cell) => cell.to_owned(),
+        };
+        // Two points between numbers with a comma.
+        Text::new(self.cell.clone(), russian.replace("..", "…"))
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn words(&self) -> Text {
+        let (family, part) = (self.family(), self.part());
+        both!("{family} {part}", "{family:#} {part:#}")
+    }
 }
 
 /// A number of a cause.
@@ -113,7 +170,7 @@ pub struct Cause {
     /// Its id.
     pub effect: String,
     /// What it is, in words, with its size.
-    pub words: String,
+    pub words: Text,
     /// Its numbers.
     pub parameters: Vec<Parameter>,
     /// Share of the reducible gap that nothing else explains.
@@ -133,7 +190,7 @@ pub struct Cause {
     /// Predicted shrinkage by this cause and those before it, on the hold-out commands or on the rows.
     pub shrink_predicted: Shrinkage,
     /// What to do.
-    pub remedy: &'static str,
+    pub remedy: Text,
 }
 
 impl Cause {
@@ -169,9 +226,9 @@ pub struct Leftover {
     /// How likely noise alone would leave this much.
     pub lack_of_fit_p: f64,
     /// Where it is largest.
-    pub correlates_with: Vec<String>,
+    pub correlates_with: Vec<Text>,
     /// The effect that would absorb most of it, and why it is not named.
-    pub absorber: Option<String>,
+    pub absorber: Option<Text>,
 }
 
 /// What one equation of a row shows before and after the causes are in the model, alignment taken out.
@@ -193,7 +250,7 @@ pub struct Residual {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// What was added: part of the measuring frame, or a cause.
-    pub added: String,
+    pub added: Text,
     /// RMS with it and all before it, µm.
     pub rms_um: f64,
 }
@@ -219,9 +276,9 @@ pub struct Holdout {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextMeasurement {
     /// In words.
-    pub text: String,
+    pub text: Text,
     /// The pair it separates.
-    pub separates: [String; 2],
+    pub separates: [Text; 2],
     /// How far apart they would lie, standard deviations; 0 where nothing is to be separated yet.
     pub expected_sigma: f64,
     /// Its rows, readings to be filled in: each run goes along its line and back.
@@ -256,7 +313,7 @@ pub struct Diagnosis {
     /// In one word.
     pub verdict: Verdict,
     /// In one sentence.
-    pub sentence: String,
+    pub sentence: Text,
     /// Size.
     pub gap: Gap,
     /// Place.
@@ -264,7 +321,7 @@ pub struct Diagnosis {
     /// Causes, largest share first.
     pub causes: Vec<Cause>,
     /// Why no correction may be made of the causes, in words; `None` where one may.
-    pub withheld: Option<String>,
+    pub withheld: Option<Text>,
     /// Set-up.
     pub setup: Setup,
     /// Rest.
@@ -280,7 +337,7 @@ pub struct Diagnosis {
     /// What the gap depends on where no effect explains it, the best first: a description, no cause.
     pub formulas: Vec<crate::search::formula::Formula>,
     /// What the reader should know about how this was found.
-    pub notes: Vec<String>,
+    pub notes: Vec<Text>,
     /// Equation by equation, outliers left out.
     pub residuals: Vec<Residual>,
 }

@@ -1,5 +1,6 @@
 //! One solved model as an answer: shares, verdict, causes in order.
 
+use diagnostic::both;
 use std::cell::OnceCell;
 
 use machine_model::effects::EffectKind;
@@ -290,7 +291,11 @@ impl<'a> Assembly<'a> {
             Vec::new()
         };
         let absorber = model.refused.as_ref().map(|r| {
-            format!("{} would absorb {:.0} % of what is left ({})", r.kind, 100.0 * r.share, r.reason)
+            let (kind, share, reason) = (r.kind, 100.0 * r.share, r.reason.words());
+            both!(
+                "{kind} would absorb {share:.0} % of what is left ({reason})",
+                "{kind} поглотил бы {share:.0} % остатка ({reason:#})"
+            )
         });
         Leftover { rms_um: rms(&lengths), phi, lack_of_fit_p, correlates_with, absorber }
     }

@@ -1,5 +1,6 @@
 //! What to measure next: the cheap line that best tells a cause from its rival.
 
+use diagnostic::{Text, both};
 use machine_model::Vector;
 use nalgebra::DMatrix;
 
@@ -19,7 +20,7 @@ const POINTS: usize = 21;
 /// A line that could be measured.
 pub(crate) struct Line {
     /// In words.
-    pub text: String,
+    pub text: Text,
     /// Its rows; the readings do not count.
     pub rows: Vec<Row>,
 }
@@ -80,33 +81,41 @@ pub(crate) fn next_measurement(
     let cause = name(model.parts[place]);
     let Some(first) = told.first() else {
         let rival = name(rivals[0]);
-        let text =
-            format!("No simple line tells {cause} from {rival}: a different kind of measurement is needed.");
+        let text = both!(
+            "No simple line tells {cause} from {rival}: a different kind of measurement is needed.",
+            "Ни одна простая линия не отличит {cause} от {rival}: нужно измерение другого рода."
+        );
         return Some(NextMeasurement {
             text,
-            separates: [cause, rival],
+            separates: [cause, rival].map(Text::same),
             expected_sigma: sigmas[0],
             rows: line.rows,
         });
     };
     let names: Vec<String> = told.iter().map(|r| name(rivals[*r])).collect();
-    let text = format!("Measure {}: it tells {cause} from {}.", line.text, names.join(", "));
+    let (what, names) = (&line.text, names.join(", "));
+    let text = both!(
+        "Measure {what}: it tells {cause} from {names}.",
+        "Измерьте {what:#}: это отличит {cause} от {names}."
+    );
     let expected_sigma = told.iter().map(|r| sigmas[*r]).fold(f64::INFINITY, f64::min);
-    let separates = [cause, name(rivals[*first])];
+    let separates = [cause, name(rivals[*first])].map(Text::same);
     Some(NextMeasurement { text, separates, expected_sigma, rows: line.rows })
 }
 
 /// Where no effect explains a gap: the line on which all axes move, so that what has no name comes back there or does not.
 #[must_use]
 pub(crate) fn once_more(data: &Measurements) -> Option<NextMeasurement> {
-    let line = lines(data).into_iter().find(|line| line.text.starts_with("the body diagonal"))?;
+    let line = lines(data).into_iter().find(|line| line.text.english().starts_with("the body diagonal"))?;
     let line =
         Line { rows: line.rows.into_iter().map(|r| Row { run: data.runs.len(), ..r }).collect(), ..line };
-    let text = format!(
-        "Measure {}, and once more from its other end: what no effect explains must come back there.",
-        line.text
+    let text = both!(
+        "Measure {what}, and once more from its other end: what no effect explains must come back there.",
+        "Измерьте {what:#} и ещё раз с другого конца: необъяснённое должно там повториться.",
+        what = line.text
     );
-    let separates = ["what has no name".to_owned(), "chance".to_owned()];
+    let separates =
+        [Text::pair("what has no name", "то, у чего нет названия,"), Text::pair("chance", "случайность")];
     // Back and forth from one end, then from the other.
     let (there, back) = line.rows.split_at(line.rows.len() / 2);
     let again = back.iter().chain(there).map(|row| Row { run: row.run + 1, ..*row });
@@ -160,12 +169,15 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
     let plain = ends(data);
     let mut lines = Vec::new();
     for (text, from, to) in &plain {
-        lines.push(Line { text: format!("{text}, both ways"), rows: both_ways(*from, *to, &base) });
+        lines.push(Line {
+            text: both!("{text}, both ways", "{text:#}, туда и обратно"),
+            rows: both_ways(*from, *to, &base),
+        });
     }
-    let mut vary = |words: &str, changed: &Row| {
+    let mut vary = |words: &Text, changed: &Row| {
         for (text, from, to) in &plain {
             lines.push(Line {
-                text: format!("{text}, both ways, {words}"),
+                text: both!("{text}, both ways, {words}", "{text:#}, туда и обратно, {words:#}"),
                 rows: both_ways(*from, *to, changed),
             });
         }
@@ -175,61 +187,78 @@ pub(crate) fn lines(data: &Measurements) -> Vec<Line> {
         let other = if feed > 1500.0 { feed / 4.0 } else { feed * 4.0 };
         let mut changed = base;
         changed.conditions.feed_mm_min = Some(other);
-        vary(&format!("at {other:.0} mm/min"), &changed);
+        vary(&both!("at {other:.0} mm/min", "на подаче {other:.0} мм/мин"), &changed);
     }
     let mut changed = base;
     changed.command.tool_mm.z -= 100.0;
-    vary("with a tool 100 mm longer", &changed);
+    vary(&Text::pair("with a tool 100 mm longer", "с инструментом длиннее на 100 мм"), &changed);
     changed.command.tool_mm = base.command.tool_mm + Vector::new(80.0, 0.0, 0.0);
-    vary("with the target 80 mm aside in X", &changed);
+    vary(&Text::pair("with the target 80 mm aside in X", "с отражателем в стороне на 80 мм по X"), &changed);
     // Angles about all three directions show at once.
     changed.command.tool_mm = base.command.tool_mm + Vector::new(80.0, 80.0, -100.0);
-    vary("with the target 80 mm aside in X and in Y, on a tool 100 mm longer", &changed);
+    vary(
+        &Text::pair(
+            "with the target 80 mm aside in X and in Y, on a tool 100 mm longer",
+            "с отражателем в стороне на 80 мм по X и по Y, на инструменте длиннее на 100 мм",
+        ),
+        &changed,
+    );
     if let Some(time) = time {
         let mut changed = base;
         changed.conditions.time_s = Some(3.0 * time);
-        vary(&format!("again after {:.0} min", 3.0 * time / 60.0), &changed);
+        let minutes = 3.0 * time / 60.0;
+        vary(&both!("again after {minutes:.0} min", "ещё раз через {minutes:.0} мин"), &changed);
     }
     if c.temp_c.iter().any(Option::is_some) {
         let mut changed = base;
         changed.conditions.temp_c = c.temp_c.map(|t| t.map(|t| t + 4.0));
-        vary("4 degrees warmer", &changed);
+        vary(&Text::pair("4 degrees warmer", "при температуре на 4 °C выше"), &changed);
     }
     if let Some(load) = c.load_kg {
         let mut changed = base;
         changed.conditions.load_kg = Some(load + 100.0);
-        vary("with 100 kg more load", &changed);
+        vary(&Text::pair("with 100 kg more load", "с нагрузкой больше на 100 кг"), &changed);
     }
     lines
 }
 
 /// Lines along the axes and their diagonals in the measured box: in words, from where, to where.
-fn ends(data: &Measurements) -> Vec<(String, Vector, Vector)> {
+fn ends(data: &Measurements) -> Vec<(Text, Vector, Vector)> {
     let range = [0, 1, 2].map(|a| data.range_mm(a));
     let travels: Vec<usize> = (0..3).filter(|a| range[*a].1 > range[*a].0).collect();
     let at = |share: f64| Vector::from_fn(|a, _| range[a].0 + share * (range[a].1 - range[a].0));
     let (low, middle, high) = (at(0.0), at(0.5), at(1.0));
     let name = |a: usize| ["X", "Y", "Z"][a];
-    let mut all: Vec<(String, Vector, Vector)> = Vec::new();
+    let mut all: Vec<(Text, Vector, Vector)> = Vec::new();
     for place in [middle, low, high] {
         for a in &travels {
             let (mut from, mut to) = (place, place);
             (from[*a], to[*a]) = (low[*a], high[*a]);
             let others: Vec<String> =
                 (0..3).filter(|b| b != a).map(|b| format!("{} {:.0}", name(b), place[b])).collect();
-            all.push((format!("a line along {} at {}", name(*a), others.join(", ")), from, to));
+            let (along, others) = (name(*a), others.join(", "));
+            all.push((
+                both!("a line along {along} at {others}", "линию вдоль {along} при {others}"),
+                from,
+                to,
+            ));
         }
     }
     for (i, a) in travels.iter().enumerate() {
         for b in travels.iter().skip(i + 1) {
             let (mut from, mut to) = (middle, middle);
             (from[*a], to[*a], from[*b], to[*b]) = (low[*a], high[*a], low[*b], high[*b]);
-            all.push((format!("the diagonal in {}{}", name(*a), name(*b)), from, to));
+            let plane = format!("{}{}", name(*a), name(*b));
+            all.push((both!("the diagonal in {plane}", "диагональ в плоскости {plane}"), from, to));
             (from[*b], to[*b]) = (high[*b], low[*b]);
-            all.push((format!("the other diagonal in {}{}", name(*a), name(*b)), from, to));
+            all.push((
+                both!("the other diagonal in {plane}", "другую диагональ в плоскости {plane}"),
+                from,
+                to,
+            ));
         }
     }
-    all.push(("the body diagonal".to_owned(), low, high));
+    all.push((Text::pair("the body diagonal", "диагональ тела"), low, high));
     all
 }
 

@@ -1,5 +1,6 @@
 //! Is what is left noise?
 
+use diagnostic::Text;
 use std::collections::BTreeMap;
 
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -105,7 +106,7 @@ pub(crate) fn jerks(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64
 
 /// Columns along which the leftover is uneven: squares of group means against the scatter.
 #[must_use]
-pub(crate) fn correlates(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64]) -> Vec<String> {
+pub(crate) fn correlates(data: &Measurements, scalars: &[Scalar], residuals_um: &[f64]) -> Vec<Text> {
     type Value = fn(&Row) -> Option<f64>;
     let columns: [(&str, Value); 12] = [
         ("x_mm", |r| Some(r.command.linear_mm.x)),
@@ -121,7 +122,7 @@ pub(crate) fn correlates(data: &Measurements, scalars: &[Scalar], residuals_um: 
         ("tool_z_mm", |r| Some(r.command.tool_mm.z)),
         ("dir_x", |r| Some(f64::from(r.command.direction[0]))),
     ];
-    let mut found: Vec<(f64, String)> = Vec::new();
+    let mut found: Vec<(f64, Text)> = Vec::new();
     for (name, value) in columns {
         for class in 0..4 {
             let points: Vec<(f64, f64)> = scalars
@@ -133,7 +134,9 @@ pub(crate) fn correlates(data: &Measurements, scalars: &[Scalar], residuals_um: 
             let p = group_p(points);
             if p < 1e-4 {
                 let component = ["dx", "dy", "dz", "length"][class];
-                found.push((p, format!("{component} over {name}")));
+                let russian = ["dx", "dy", "dz", "длина"][class];
+                found
+                    .push((p, Text::new(format!("{component} over {name}"), format!("{russian} от {name}"))));
             }
         }
     }

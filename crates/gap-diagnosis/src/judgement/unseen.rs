@@ -1,5 +1,6 @@
 //! The causes on points that no fit has seen.
 
+use diagnostic::Text;
 use machine_model::Vector;
 
 use machine_model::effects::EffectKind;
@@ -24,7 +25,7 @@ impl Assembly<'_> {
         let gaps: Vec<Vec<f64>> =
             (0..=self.ordered.len()).map(|count| self.gap(holdout, &scalars, count)).collect();
         let sizes: Vec<f64> = gaps.iter().map(|gap| rms(&row_lengths(&scalars, gap))).collect();
-        let names = std::iter::once("set-up".to_owned()).chain(self.names());
+        let names = std::iter::once(Text::pair("set-up", "установка")).chain(self.names().map(Text::same));
         let steps = names.zip(&sizes).map(|(added, rms_um)| Step { added, rms_um: *rms_um }).collect();
         let residuals = residuals(&scalars, &gaps[0], &gaps[self.ordered.len()]);
         let rows = row_lengths(&scalars, &gaps[0]).len();
@@ -39,18 +40,21 @@ impl Assembly<'_> {
             solution.terms.iter().copied().zip(solution.coefficients.iter().copied()).collect();
         let mut taken_off: Vec<(Term, f64)> = Vec::new();
         let mut errors = vec![magnitude_errors(holdout, &taken_off)];
-        let mut names = vec!["model alone".to_owned()];
-        let frame = [("zero of the measuring frame", 0..3), ("its rotation", 3..6)];
+        let mut names = vec![Text::pair("model alone", "одна модель")];
+        let frame = [
+            (Text::pair("zero of the measuring frame", "нуль системы измерения"), 0..3),
+            (Text::pair("its rotation", "её поворот"), 3..6),
+        ];
         for (name, range) in frame {
             taken_off.extend_from_slice(&all[range]);
             errors.push(magnitude_errors(holdout, &taken_off));
-            names.push(name.to_owned());
+            names.push(name);
         }
         taken_off.extend(self.instrument());
         for (ranked, name) in self.ordered.iter().zip(self.names()) {
             taken_off.extend(self.own(ranked.place));
             errors.push(magnitude_errors(holdout, &taken_off));
-            names.push(name);
+            names.push(Text::same(name));
         }
         let sizes: Vec<f64> = errors.iter().map(|e| rms(e)).collect();
         let steps = names.into_iter().zip(&sizes).map(|(added, r)| Step { added, rms_um: *r }).collect();

@@ -14,6 +14,7 @@ use crate::equations::noise::median;
 use crate::equations::observation::{Measurements, Row, Scalar};
 use crate::equations::term::Term;
 use crate::library::seen::curve_axis;
+use crate::search::explanation::Why;
 
 /// A cause may displace by so many times the largest reading: twice is what two causes that overlap can need.
 const LARGEST: f64 = 2.0;
@@ -201,14 +202,16 @@ impl Bounds {
         kind: EffectKind,
         terms: &[(Term, f64)],
         geometry: &EffectGeometry,
-    ) -> Option<&'static str> {
+    ) -> Option<Why> {
         if let Some(reason) = implausible(kind, terms) {
             return Some(reason);
         }
         let largest_um = if is_straight(kind) { self.widest_um } else { self.largest_um };
         let harmful = self.excursion_um(terms, geometry) > LARGEST * largest_um;
-        harmful
-            .then_some("between the places measured it would displace by more than twice the largest reading")
+        harmful.then_some([
+            "between the places measured it would displace by more than twice the largest reading",
+            "между измеренными точками он дал бы смещение больше удвоенного наибольшего отсчёта",
+        ])
     }
 }
 
@@ -263,16 +266,38 @@ const fn depends_on_place(kind: EffectKind) -> bool {
 }
 
 /// Numbers that no machine has, far beyond what wear, crashes and bad assembly do.
-fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<&'static str> {
+fn implausible(kind: EffectKind, terms: &[(Term, f64)]) -> Option<Why> {
     let (largest, reason) = match kind {
         EffectKind::Backlash(_) | EffectKind::LostMotion { .. } => {
-            (500.0, "a play of a millimetre is felt by hand")
+            (500.0, ["a play of a millimetre is felt by hand", "люфт в миллиметр чувствуется рукой"])
         }
-        EffectKind::Pitch(_) => (200.0, "no screw errs by 0.2 mm within a turn"),
-        EffectKind::Squareness(..) => (20_000.0, "axes that lean by 20 mm per metre are seen by eye"),
-        EffectKind::Scale(_) => (10_000.0, "a scale wrong by 10 mm per metre is a wrong unit"),
-        EffectKind::ServoLag(_) | EffectKind::ServoMismatch(..) => (1000.0, "no servo runs a second behind"),
-        EffectKind::ProbeLobing => (200.0, "no probe has a pre-travel of 0.2 mm"),
+        EffectKind::Pitch(_) => {
+            (200.0, ["no screw errs by 0.2 mm within a turn", "винт не ошибается на 0.2 мм за оборот"])
+        }
+        EffectKind::Squareness(..) => (
+            20_000.0,
+            [
+                "axes that lean by 20 mm per metre are seen by eye",
+                "наклон осей на 20 мм на метр виден на глаз",
+            ],
+        ),
+        EffectKind::Scale(_) => (
+            10_000.0,
+            [
+                "a scale wrong by 10 mm per metre is a wrong unit",
+                "масштаб с ошибкой 10 мм на метр — это не та единица",
+            ],
+        ),
+        EffectKind::ServoLag(_) | EffectKind::ServoMismatch(..) => {
+            (1000.0, ["no servo runs a second behind", "следящий привод не отстаёт на секунду"])
+        }
+        EffectKind::ProbeLobing => (
+            200.0,
+            [
+                "no probe has a pre-travel of 0.2 mm",
+                "предварительного хода 0.2 мм у измерительных головок не бывает",
+            ],
+        ),
         _ => return None,
     };
     terms.iter().any(|(_, value)| value.abs() > largest).then_some(reason)

@@ -1,5 +1,6 @@
 //! What a search arrived at.
 
+use diagnostic::Text;
 use machine_model::effects::EffectKind;
 
 use crate::equations::fit::Solution;
@@ -68,17 +69,24 @@ pub(crate) enum Reason {
     /// It explains the rows and not the next ones.
     NotElsewhere,
     /// Its form cannot be meant, whatever it explains.
-    Form(&'static str),
+    Form(Why),
     /// It explains too little to be named.
-    Little(&'static str),
+    Little(Why),
 }
 
-impl std::fmt::Display for Reason {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Unproven => "the F test",
-            Self::NotElsewhere => "it does not predict lines it has not seen",
-            Self::Form(words) | Self::Little(words) => words,
-        })
+/// Why, in English and in Russian.
+pub(crate) type Why = [&'static str; 2];
+
+impl Reason {
+    /// The same in words.
+    pub(crate) const fn words(self) -> Text {
+        let [english, russian] = match self {
+            Self::Unproven => ["the F test", "не прошёл F-критерий"],
+            Self::NotElsewhere => {
+                ["it does not predict lines it has not seen", "не предсказывает линий, которых не видел"]
+            }
+            Self::Form(why) | Self::Little(why) => why,
+        };
+        Text::pair(english, russian)
     }
 }

@@ -5,6 +5,7 @@
 //! quarter of the runs is kept back; what the basis explains there of what the base leaves decides, and a second column must
 //! earn its place. A formula is a description, no cause: nothing is named by it and nothing corrected.
 
+use diagnostic::Text;
 use machine_model::effects::legendre;
 use nalgebra::{DMatrix, DVector};
 
@@ -16,7 +17,7 @@ pub struct Formula {
     /// `dx ~ dir_x·(y - 140)`.
     pub text: String,
     /// The same as a sentence.
-    pub words: String,
+    pub words: Text,
     /// Share of the component's variance (set-up, scale and squareness taken out) explained on runs that were not fitted.
     pub share: f64,
 }
@@ -165,11 +166,15 @@ fn of_component(data: &Measurements, columns: &[Column], class: usize, scalars: 
         .map(|(set, share)| {
             let text = written(columns, &set, class, &judge, &basis);
             let names: Vec<&str> = set.iter().map(|c| columns[*c].name).collect();
-            let words = format!(
-                "d{} depends on {}: {:.0} % of it is explained so on runs that were not fitted; no effect of the library does that",
-                ["x", "y", "z"][class],
-                names.join(" and "),
-                100.0 * share
+            let (component, share_percent) = (["x", "y", "z"][class], 100.0 * share);
+            let [names, russian_names] = [" and ", " и "].map(|and| names.join(and));
+            let words = Text::new(
+                format!(
+                    "d{component} depends on {names}: {share_percent:.0} % of it is explained so on runs that were not fitted; no effect of the library does that"
+                ),
+                format!(
+                    "d{component} зависит от {russian_names}: так объясняется {share_percent:.0} % на сериях, которых не было в подгонке; ни один эффект библиотеки этого не делает"
+                ),
             );
             Formula { text, words, share }
         })

@@ -9,6 +9,7 @@
 //! therefore shows what `squareness.XZ` shows, and only the set-up, small as it is, tells them apart. Whatever fits the
 //! lengths as well is reported with the cause.
 
+use diagnostic::Text;
 use machine_model::Vector;
 use machine_model::effects::EffectKind;
 
@@ -37,7 +38,7 @@ const CLOSE: f64 = 10.0;
 
 /// Equations of a file and its explanation; the notes say what the lengths leave open.
 #[must_use]
-pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explanation, Vec<String>) {
+pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explanation, Vec<Text>) {
     if !data.has_magnitudes() {
         return (explain(data, &data.scalars(None), without), Vec::new());
     }
@@ -59,8 +60,10 @@ pub(crate) fn explained(data: &Measurements, without: &[EffectKind]) -> (Explana
     }
     let mut model = explain(data, &data.scalars(Some(&all.believed(&displaced))), without);
     model.equally_good = close;
-    let notes =
-        vec!["Only lengths of displacements were measured: where the model alone predicts none, the sign of a cause is open.".to_owned()];
+    let notes = vec![Text::pair(
+        "Only lengths of displacements were measured: where the model alone predicts none, the sign of a cause is open.",
+        "Измерены только длины смещений: там, где сама модель смещения не предсказывает, знак причины остаётся открытым.",
+    )];
     (model, notes)
 }
 

@@ -13,7 +13,7 @@ use crate::library::candidates::Part;
 use crate::library::seen::curve_axis;
 use crate::search::crossval::{Folding, Folds};
 use crate::search::doubt::inflations;
-use crate::search::explanation::{Reason, Refused};
+use crate::search::explanation::{Reason, Refused, Why};
 use crate::search::moves::without;
 use crate::search::proposals::STEP_ROWS;
 use crate::search::space::{FREE, Fit};
@@ -70,19 +70,26 @@ impl State<'_, '_> {
         }
         let trifling = residual > (1.0 - WORTH) * (1.0 - WORTH) * tested;
         if self.setting.is_doubtful() && trifling && ratio < BEYOND_DOUBT * BEYOND_DOUBT {
-            return refuse(Reason::Little(
+            return refuse(Reason::Little([
                 "so small a gain rests on the noise being independent and normal, which it is not",
-            ));
+                "столь малый выигрыш значим лишь при независимом нормальном шуме, а шум не такой",
+            ]));
         }
         let reducible = (self.space.total(fit.level) - fit.residual).max(1e-12);
         let by_shape = matches!(kind, EffectKind::Joint(_)) || self.on_a_flank(rest, part);
         if by_shape && gain / reducible < LEAST_STEP {
-            return refuse(Reason::Little("so little is what the shape of another curve leaves"));
+            return refuse(Reason::Little([
+                "so little is what the shape of another curve leaves",
+                "столько остаётся и от формы другой кривой",
+            ]));
         }
         if gain * self.spread(part) / reducible < LEAST_SHARE
             && !self.was_taken_over(&with, gain, before, fit.level)
         {
-            return refuse(Reason::Little("its share is below 2 % of what can be explained"));
+            return refuse(Reason::Little([
+                "its share is below 2 % of what can be explained",
+                "его доля меньше 2 % объяснимого",
+            ]));
         }
         if !self.predicts(&with, fit.level) {
             return refuse(Reason::NotElsewhere);
@@ -113,12 +120,15 @@ impl State<'_, '_> {
     }
 
     /// Why a knock cannot be told: hardly a row lies on its other side.
-    fn unsupported(&self, part: Part) -> Option<&'static str> {
+    fn unsupported(&self, part: Part) -> Option<Why> {
         let (EffectKind::Step(_), shape) = self.shape(part)? else { return None };
         let times = || self.source.rows.iter().filter_map(|row| row.conditions.time_s);
         let before = times().filter(|time| *time < shape.time_s).count();
         let fewest = before.min(times().count() - before);
-        (fewest < STEP_ROWS).then_some("so few rows lie on one side of the knock that they could be blunders")
+        (fewest < STEP_ROWS).then_some([
+            "so few rows lie on one side of the knock that they could be blunders",
+            "по одну сторону скачка так мало строк, что это могут быть промахи",
+        ])
     }
 
     /// True for damage where a joint of the same rails stands: the shape of the joint leaves something there.
@@ -160,7 +170,7 @@ impl State<'_, '_> {
     }
 
     /// Curves along one axis seen in one component: together they may have no more coefficients than half the places.
-    fn crowded(&self, with: &[Part]) -> Option<&'static str> {
+    fn crowded(&self, with: &[Part]) -> Option<Why> {
         let crowd = |axis: usize, component: usize| {
             let columns = with.iter().flat_map(|part| {
                 let candidate = &self.library.candidates[part.candidate];
@@ -171,13 +181,14 @@ impl State<'_, '_> {
             2.0 * columns.filter(seen).count() as f64 > self.library.sampling[axis].effective + 0.5
         };
         let crowded = (0..3).any(|axis| (0..3).any(|component| crowd(axis, component)));
-        crowded.then_some(
+        crowded.then_some([
             "the curves along that axis would have more coefficients than half the places measured",
-        )
+            "у кривых вдоль этой оси было бы коэффициентов больше половины измеренных точек",
+        ])
     }
 
     /// Why a part, with the numbers it has beside the others, must not be used.
-    fn out_of_bounds(&self, parts: &[Part], level: usize) -> Option<&'static str> {
+    fn out_of_bounds(&self, parts: &[Part], level: usize) -> Option<Why> {
         let sub = self.space.gram.select(&self.library.model_columns(parts));
         let values = sub.coefficients(self.space.rho(level));
         (0..parts.len()).find_map(|place| {

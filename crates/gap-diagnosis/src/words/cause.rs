@@ -1,5 +1,6 @@
 //! Each cause in a sentence that a metrologist would say, and what not to do about it.
 
+use diagnostic::{Text, both};
 use machine_model::Vector;
 use machine_model::effects::EffectKind;
 
@@ -8,15 +9,31 @@ use crate::judgement::assembly::Assembly;
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
+/// What a tracker reads wrong, in Russian, in the order of [`machine_model::effects::TRACKER`].
+const TRACKER: [&str; machine_model::effects::TRACKER.len()] = [
+    "масштаб дальности",
+    "нуль дальности",
+    "круг азимута",
+    "круг угла места",
+    "ось качания трубы",
+    "коллимацию",
+];
+
 /// What stands in the place of a remedy where the causes do not explain the gap, or unseen rows refute them.
-pub(crate) const DO_NOT_ACT: &str = "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it, or it would move more than was ever read.";
+pub(crate) const DO_NOT_ACT: Text = Text::pair(
+    "Do not act on this: what is left of the gap has no name yet, or rows that were not fitted contradict it, or it would move more than was ever read.",
+    "Ничего по этому не делайте: у остатка расхождения ещё нет названия, или строки вне подгонки этому противоречат, или смещение вышло бы больше любого отсчёта.",
+);
 
 /// What stands there for play of the wrong sign.
-pub(crate) const NO_PLAY: &str = "This is no play: the reversal is over-compensated (lower the control's backlash value), or the sensor sits on the motor's side of it.";
+pub(crate) const NO_PLAY: Text = Text::pair(
+    "This is no play: the reversal is over-compensated (lower the control's backlash value), or the sensor sits on the motor's side of it.",
+    "Это не люфт: реверс перекомпенсирован (уменьшите значение люфта в ЧПУ) или датчик стоит со стороны двигателя.",
+);
 
 impl Assembly<'_> {
     /// The part at a place of the model in words, with its size where it was measured.
-    pub(crate) fn words(&self, place: usize) -> String {
+    pub(crate) fn words(&self, place: usize) -> Text {
         let kind = self.model.library.kind(self.model.parts[place]);
         let own = self.own(place);
         let first = own.first().map_or(0.0, |(_, value)| *value);
@@ -27,119 +44,171 @@ impl Assembly<'_> {
         });
         let shape = shape.unwrap_or_default();
         let axis = |a: usize| AXES[a];
+        let size = first.abs();
         match kind {
-            EffectKind::Scale(a) => format!(
-                "{} travels {:.1} µm per metre too {}",
-                axis(a),
-                first.abs(),
-                if first > 0.0 { "far" } else { "short" }
-            ),
-            EffectKind::Squareness(a, b) => format!(
-                "{} leans {:.0} µrad against {}: {:.1} µm per 100 mm",
-                axis(b),
-                first.abs(),
-                axis(a),
-                0.1 * first.abs()
-            ),
-            EffectKind::Backlash(a) if first < 0.0 => format!(
-                "{} reverses with {:.1} µm too much, not too little: over-compensated, or the sensor sits on the motor's side",
-                axis(a),
-                2.0 * first.abs()
-            ),
-            EffectKind::Backlash(a) => {
-                format!("{} loses {:.1} µm of travel when it reverses", axis(a), 2.0 * first)
+            EffectKind::Scale(a) => {
+                let way = if first > 0.0 {
+                    Text::pair("far", "больше")
+                } else {
+                    Text::pair("short", "меньше")
+                };
+                both!(
+                    "{} travels {size:.1} µm per metre too {way}",
+                    "{} проходит на {size:.1} мкм на метр {way:#} заданного",
+                    axis(a)
+                )
             }
-            EffectKind::LostMotion { direction, axis: a } => format!(
-                "{} steps {:.1} µm along {} when it reverses",
+            EffectKind::Squareness(a, b) => both!(
+                "{} leans {:.0} µrad against {}: {:.1} µm per 100 mm",
+                "{} наклонена на {:.0} мкрад относительно {}: {:.1} мкм на 100 мм",
+                axis(b),
+                size,
                 axis(a),
-                2.0 * first.abs(),
+                0.1 * size
+            ),
+            EffectKind::Backlash(a) if first < 0.0 => both!(
+                "{} reverses with {:.1} µm too much, not too little: over-compensated, or the sensor sits on the motor's side",
+                "{} при реверсе проходит на {:.1} мкм больше, а не меньше: люфт перекомпенсирован или датчик стоит со стороны двигателя",
+                axis(a),
+                2.0 * size
+            ),
+            EffectKind::Backlash(a) => both!(
+                "{} loses {:.1} µm of travel when it reverses",
+                "{} теряет при реверсе {:.1} мкм хода",
+                axis(a),
+                2.0 * first
+            ),
+            EffectKind::LostMotion { direction, axis: a } => both!(
+                "{} steps {:.1} µm along {} when it reverses",
+                "{} при реверсе смещается на {:.1} мкм вдоль {}",
+                axis(a),
+                2.0 * size,
                 axis(direction)
             ),
-            EffectKind::Thermal(a) => {
-                format!("{} grows with its temperature: {swing:.1} µm over what was measured", axis(a))
-            }
-            EffectKind::Warmup(a) => format!(
+            EffectKind::Thermal(a) => both!(
+                "{} grows with its temperature: {swing:.1} µm over what was measured",
+                "{} удлиняется от нагрева: {swing:.1} мкм на измеренном участке",
+                axis(a)
+            ),
+            EffectKind::Warmup(a) => both!(
                 "{} creeps by {:.1} µm with a time constant of {:.0} min",
+                "{} при прогреве уходит на {:.1} мкм с постоянной времени {:.0} мин",
                 axis(a),
-                first.abs(),
+                size,
                 shape.tau_s / 60.0
             ),
-            EffectKind::Positioning(a) => {
-                format!("the positions of {} err along a curve of {swing:.1} µm", axis(a))
-            }
-            EffectKind::Straightness { direction, axis: a } => {
-                format!("{} runs {swing:.1} µm out of straight along {}", axis(a), axis(direction))
-            }
-            EffectKind::Pitch(a) => format!(
+            EffectKind::Positioning(a) => both!(
+                "the positions of {} err along a curve of {swing:.1} µm",
+                "отклонение позиционирования {} идёт по кривой размахом {swing:.1} мкм",
+                axis(a)
+            ),
+            EffectKind::Straightness { direction, axis: a } => both!(
+                "{} runs {swing:.1} µm out of straight along {}",
+                "отклонение от прямолинейности {} вдоль {}: {swing:.1} мкм",
+                axis(a),
+                axis(direction)
+            ),
+            EffectKind::Pitch(a) => both!(
                 "{} errs by {swing:.1} µm once every {:.2} mm: one turn of its screw",
+                "{} ошибается на {swing:.1} мкм каждые {:.2} мм: один оборот винта",
                 axis(a),
                 shape.pitch_mm
             ),
-            EffectKind::Angular { about, axis: a } => format!(
-                "{} {} as it travels: {swing:.1} µm at the tool",
-                axis(a),
-                if about == a {
-                    "rolls"
+            EffectKind::Angular { about, axis: a } => {
+                let turns = if about == a {
+                    Text::pair("rolls", "кренится")
                 } else if about == 2 {
-                    "yaws"
+                    Text::pair("yaws", "рыскает")
                 } else {
-                    "pitches"
-                }
+                    Text::pair("pitches", "клюёт")
+                };
+                both!(
+                    "{} {turns} as it travels: {swing:.1} µm at the tool",
+                    "{} на ходу {turns:#}: {swing:.1} мкм на инструменте",
+                    axis(a)
+                )
+            }
+            EffectKind::Sag(a) => both!(
+                "{} droops by {swing:.1} µm as it reaches out",
+                "{} провисает на {swing:.1} мкм с вылетом",
+                axis(a)
             ),
-            EffectKind::Sag(a) => format!("{} droops by {swing:.1} µm as it reaches out", axis(a)),
-            EffectKind::Load(a) => {
-                format!("the load bends the machine along {} by {swing:.1} µm", axis(a))
-            }
-            EffectKind::ServoLag(a) => format!("{} runs {:.2} ms behind its command", axis(a), first.abs()),
-            EffectKind::ServoMismatch(a, b) => {
-                format!("{} and {} run {:.2} ms apart", axis(a), axis(b), first.abs())
-            }
-            EffectKind::Rotary { axis: a, .. } => {
-                format!(
-                    "the rotary axis {} does not stand where the model has it: {swing:.1} µm",
-                    ["A", "B", "C"][a]
-                )
-            }
-            EffectKind::Eccentricity(a) => {
-                format!("{} errs once per turn by {swing:.1} µm", ["A", "B", "C"][a])
-            }
-            EffectKind::ProbeLobing => {
-                format!("the probe triggers {swing:.1} µm apart from direction to direction")
-            }
-            EffectKind::InstrumentDrift => {
-                format!("the instrument drifts: {swing:.1} µm while it measured")
-            }
-            EffectKind::Step(a) => {
-                format!("something moved by {:.1} µm along {} at {:.0} s", first.abs(), axis(a), shape.time_s)
-            }
-            EffectKind::Joint(a) => {
-                format!(
-                    "the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm",
-                    axis(a),
-                    shape.centre_mm
-                )
-            }
-            EffectKind::Spike(a) => format!(
-                "{} sticks where it turns: {:.1} µm, gone after {:.1} mm of way",
+            EffectKind::Load(a) => both!(
+                "the load bends the machine along {} by {swing:.1} µm",
+                "нагрузка прогибает станок вдоль {} на {swing:.1} мкм",
+                axis(a)
+            ),
+            EffectKind::ServoLag(a) => both!(
+                "{} runs {size:.2} ms behind its command",
+                "{} отстаёт от задания на {size:.2} мс",
+                axis(a)
+            ),
+            EffectKind::ServoMismatch(a, b) => both!(
+                "{} and {} run {size:.2} ms apart",
+                "{} и {} расходятся на {size:.2} мс",
                 axis(a),
-                first.abs(),
+                axis(b)
+            ),
+            EffectKind::Rotary { axis: a, .. } => both!(
+                "the rotary axis {} does not stand where the model has it: {swing:.1} µm",
+                "поворотная ось {} стоит не там, где в модели: {swing:.1} мкм",
+                ["A", "B", "C"][a]
+            ),
+            EffectKind::Eccentricity(a) => both!(
+                "{} errs once per turn by {swing:.1} µm",
+                "{} ошибается раз за оборот на {swing:.1} мкм",
+                ["A", "B", "C"][a]
+            ),
+            EffectKind::ProbeLobing => both!(
+                "the probe triggers {swing:.1} µm apart from direction to direction",
+                "измерительная головка срабатывает в разных направлениях с разницей {swing:.1} мкм"
+            ),
+            EffectKind::InstrumentDrift => both!(
+                "the instrument drifts: {swing:.1} µm while it measured",
+                "прибор дрейфует: {swing:.1} мкм за время измерения"
+            ),
+            EffectKind::Step(a) => both!(
+                "something moved by {:.1} µm along {} at {:.0} s",
+                "что-то сдвинулось на {:.1} мкм вдоль {} в момент {:.0} с",
+                size,
+                axis(a),
+                shape.time_s
+            ),
+            EffectKind::Joint(a) => both!(
+                "the rails of {} do not meet at {:.0} mm: a step of {swing:.1} µm",
+                "направляющие {} не сходятся на {:.0} мм: ступенька {swing:.1} мкм",
+                axis(a),
+                shape.centre_mm
+            ),
+            EffectKind::Spike(a) => both!(
+                "{} sticks where it turns: {:.1} µm, gone after {:.1} mm of way",
+                "{} залипает в точке реверса: {:.1} мкм, проходит через {:.1} мм пути",
+                axis(a),
+                size,
                 2.3 * shape.width_mm
             ),
-            EffectKind::Contraction => {
-                format!("circles shrink with the square of the feed: {swing:.1} µm over what was measured")
-            }
-            EffectKind::SpindleTilt(a) => format!(
+            EffectKind::Contraction => both!(
+                "circles shrink with the square of the feed: {swing:.1} µm over what was measured",
+                "окружности сжимаются с квадратом подачи: {swing:.1} мкм в измеренных пределах"
+            ),
+            EffectKind::SpindleTilt(a) => both!(
                 "the spindle leans {:.0} µrad towards {}: {:.1} µm per 100 mm of tool",
-                first.abs(),
+                "шпиндель наклонён на {:.0} мкрад в сторону {}: {:.1} мкм на 100 мм инструмента",
+                size,
                 axis(a),
-                0.1 * first.abs()
+                0.1 * size
             ),
-            EffectKind::Tracker(fault) => format!(
-                "the tracker reads its {} wrong: {swing:.1} µm",
-                machine_model::effects::TRACKER[fault].replace('-', " ")
-            ),
-            EffectKind::Local(a) => format!(
+            EffectKind::Tracker(fault) => {
+                let name = machine_model::effects::TRACKER[fault];
+                let (name, russian) = (name.replace('-', " "), TRACKER[fault]);
+                Text::new(
+                    format!("the tracker reads its {name} wrong: {swing:.1} µm"),
+                    format!("трекер неверно отсчитывает {russian}: {swing:.1} мкм"),
+                )
+            }
+            EffectKind::Local(a) => both!(
                 "{} errs by {swing:.1} µm near {:.0} mm, over {:.0} mm",
+                "{} ошибается на {swing:.1} мкм около {:.0} мм, на участке {:.0} мм",
                 axis(a),
                 shape.centre_mm,
                 shape.width_mm

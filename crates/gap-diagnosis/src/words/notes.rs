@@ -1,5 +1,7 @@
 //! What the reader of an answer should know beside it.
 
+use diagnostic::{Text, both};
+
 use crate::equations::noise::{Noise, NoiseSource};
 use crate::equations::observation::{Measurements, Row};
 use crate::equations::set_up::Clamping;
@@ -9,61 +11,76 @@ use crate::judgement::structure::jerks;
 use crate::search::bounds::Harm;
 
 impl Assembly<'_> {
-    pub(crate) fn notes(&self) -> Vec<String> {
+    pub(crate) fn notes(&self) -> Vec<Text> {
         let mut notes = Vec::new();
         match self.noise {
-            Some(Noise { source: NoiseSource::Neighbours, .. }) => notes.push(
-                "No command was measured twice in a run: the noise is estimated from neighbouring rows, and a gap finer than their distance counts as noise.".to_owned(),
-            ),
-            Some(Noise { source: NoiseSource::Returns, .. }) => notes.push(
-                "No command was measured twice in a run: the noise is estimated from what the same commands read in other runs, for neighbouring rows differ by far more.".to_owned(),
-            ),
-            Some(Noise { source: NoiseSource::Forms, .. }) => notes.push(
-                "No command was measured twice in a run: the noise is what a form of second degree leaves of each run, for rows measured one after the other differ by far more.".to_owned(),
-            ),
-            None => notes.push("There are neither repeats nor neighbours to tell noise from gap.".to_owned()),
-            Some(noise) if noise.is_slow() => notes.push(format!(
+            Some(Noise { source: NoiseSource::Neighbours, .. }) => notes.push(Text::pair(
+                "No command was measured twice in a run: the noise is estimated from neighbouring rows, and a gap finer than their distance counts as noise.",
+                "Ни одна точка не измерена в серии дважды: шум оценён по соседним строкам, и расхождение мельче их шага считается шумом.",
+            )),
+            Some(Noise { source: NoiseSource::Returns, .. }) => notes.push(Text::pair(
+                "No command was measured twice in a run: the noise is estimated from what the same commands read in other runs, for neighbouring rows differ by far more.",
+                "Ни одна точка не измерена в серии дважды: шум оценён по отсчётам тех же точек в других сериях, так как соседние строки различаются куда сильнее.",
+            )),
+            Some(Noise { source: NoiseSource::Forms, .. }) => notes.push(Text::pair(
+                "No command was measured twice in a run: the noise is what a form of second degree leaves of each run, for rows measured one after the other differ by far more.",
+                "Ни одна точка не измерена в серии дважды: шумом взято то, что в каждой серии остаётся от формы второй степени, так как соседние по времени строки различаются куда сильнее.",
+            )),
+            None => notes.push(Text::pair(
+                "There are neither repeats nor neighbours to tell noise from gap.",
+                "Нет ни повторов, ни соседних строк, чтобы отличить шум от расхождения.",
+            )),
+            Some(noise) if noise.is_slow() => notes.push(both!(
                 "Repeats of one command scatter {:.1} times as much as neighbouring readings: something changes between the passes (temperature, machine or instrument), and the repeats' scatter is not noise alone.",
+                "Повторы одной точки разбросаны в {:.1} раза сильнее соседних отсчётов: между проходами что-то меняется (температура, станок или прибор), и разброс повторов — не только шум.",
                 noise.slow
             )),
             Some(_) => {}
         }
         if !self.model.caution.is_none() {
-            notes.push(format!(
+            notes.push(both!(
                 "Neighbouring readings hang together (correlation {:.2} from one to the next): intervals and tests count them as {:.0} % of as many independent ones.",
+                "Соседние отсчёты связаны (корреляция {:.2} от одного к следующему): интервалы и критерии считают их за {:.0} % стольких же независимых.",
                 self.model.caution.lag(1),
                 100.0 / self.model.caution.as_one()
             ));
         }
         notes.extend(self.setup_notes());
         if let Some(ratio) = self.noise_ratio().filter(|r| !(1.0 / 1.6..=1.6).contains(r)) {
-            notes.push(format!(
-                "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used."
+            notes.push(both!(
+                "The scatter of the rows is {ratio:.2} times what u_um says; the rows' own scatter was used.",
+                "Разброс строк в {ratio:.2} раза отличается от названного в u_um; взят собственный разброс строк."
             ));
         }
         let model = self.model;
         notes.extend(jerks(self.data, &model.scalars, &model.solution.residuals_um).into_iter().map(|found| {
-            format!(
+            both!(
                 "{} moves in jerks below {:.0} mm/min: there it scatters {:.1} times as much from reading to reading as when it is faster (stick-slip, or a drive that hunts). No effect describes that and no correction removes it: see to guideways, lubrication and drive.",
+                "{} ниже {:.0} мм/мин идёт рывками: там разброс от отсчёта к отсчёту в {:.1} раза больше, чем на большей скорости (скачкообразное движение или рыскающий привод). Ни один эффект этого не описывает, и никакая коррекция не уберёт: займитесь направляющими, смазкой и приводом.",
                 ["X", "Y", "Z"][found.axis], found.below_mm_min, found.ratio
             )
         }));
         if let Some(refused) = &self.model.refused {
-            notes.push(format!("{} was considered next and not named: {}.", refused.kind, refused.reason));
+            let (kind, reason) = (refused.kind, refused.reason.words());
+            notes.push(both!(
+                "{kind} was considered next and not named: {reason}.",
+                "Следующим рассматривался {kind} и не назван: {reason:#}."
+            ));
         }
         notes
     }
 
     /// What the set-up holds that its reader should know.
-    fn setup_notes(&self) -> Vec<String> {
+    fn setup_notes(&self) -> Vec<Text> {
         let setup = self.setup();
         let mut notes = Vec::new();
         if self.model.clamping == Clamping::Turned {
             let turns = || setup.run_rotations_urad.iter().flat_map(|(_, turn)| turn.iter().copied());
             let (low, high) =
                 turns().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-            notes.push(format!(
+            notes.push(both!(
                 "The runs are turned against each other by up to {:.0} urad: every run has a set-up of its own (clamping), and that is taken out of the gap.",
+                "Серии повёрнуты друг относительно друга до {:.0} мкрад: у каждой своя установка (закрепление), и это вычтено из расхождения.",
                 high - low
             ));
         }
@@ -72,8 +89,9 @@ impl Assembly<'_> {
             let (value, u95) = zeros[axis];
             if value.abs() > u95 && value.abs() > 2.0 * self.noise_variance().sqrt() {
                 let name = |i: usize| self.data.instruments.get(i).map_or("?", String::as_str);
-                notes.push(format!(
+                notes.push(both!(
                     "The instruments {} and {} disagree by {:.1} ± {u95:.1} um in {}: taken out as set-up; which of them is right these rows do not say.",
+                    "Приборы {} и {} расходятся на {:.1} ± {u95:.1} мкм по {}: вычтено как установка; который из них прав, эти строки не говорят.",
                     name(0),
                     name(*instrument),
                     value.abs(),
@@ -86,17 +104,19 @@ impl Assembly<'_> {
 
     /// What the reader of a forecast for other commands must know: where they lie outside what was measured, and
     /// where the rivals of a cause would have it otherwise.
-    pub(crate) fn forecast_notes(&self, holdout: &Measurements, causes: &[Cause]) -> Vec<String> {
+    pub(crate) fn forecast_notes(&self, holdout: &Measurements, causes: &[Cause]) -> Vec<Text> {
         type Value = fn(&Row) -> Option<f64>;
         let mut notes = Vec::new();
-        let mut beyond: Vec<&str> = Vec::new();
-        let values: [(&str, Value); 6] = [
-            ("X", |r| Some(r.command.linear_mm.x)),
-            ("Y", |r| Some(r.command.linear_mm.y)),
-            ("Z", |r| Some(r.command.linear_mm.z)),
-            ("the tool's length", |r| Some(r.command.tool_mm.z)),
-            ("the feed", |r| r.conditions.feed_mm_min),
-            ("the load", |r| r.conditions.load_kg),
+        let mut beyond: Vec<Text> = Vec::new();
+        let values: [(Text, Value); 6] = [
+            (Text::pair("X", "X"), |r| Some(r.command.linear_mm.x)),
+            (Text::pair("Y", "Y"), |r| Some(r.command.linear_mm.y)),
+            (Text::pair("Z", "Z"), |r| Some(r.command.linear_mm.z)),
+            (Text::pair("the tool's length", "длина инструмента"), |r| {
+                Some(r.command.tool_mm.z)
+            }),
+            (Text::pair("the feed", "подача"), |r| r.conditions.feed_mm_min),
+            (Text::pair("the load", "нагрузка"), |r| r.conditions.load_kg),
         ];
         for (name, value) in values {
             let ends = |data: &Measurements| {
@@ -111,16 +131,18 @@ impl Assembly<'_> {
             }
         }
         if !beyond.is_empty() {
-            notes.push(format!(
+            notes.push(both!(
                 "The hold-out lies outside what was measured in {}: the predicted shrinkage is an extrapolation there.",
-                beyond.join(", ")
+                "Контрольные измерения выходят за измеренное ({:#}): там прогноз — экстраполяция.",
+                Text::join(&beyond, ", ")
             ));
         }
         if let Some(open) = causes.iter().find(|c| {
             !c.cannot_be_told_from.is_empty() && c.shrink_predicted.high - c.shrink_predicted.low > 0.2
         }) {
-            notes.push(format!(
+            notes.push(both!(
                 "Whether {} or {} is the cause decides how far the gap shrinks on the hold-out: settle that before correcting there.",
+                "От того, {} причина или {}, зависит, насколько уменьшится расхождение на контрольных измерениях: выясните это, прежде чем исправлять там.",
                 open.effect,
                 open.cannot_be_told_from.join(", ")
             ));
@@ -131,16 +153,19 @@ impl Assembly<'_> {
 
 impl Harm {
     /// Why no correction may be made of the causes.
-    pub(crate) fn words(self) -> String {
+    pub(crate) fn words(self) -> Text {
         match self {
-            Self::Swings(moved_um, reading_um) => format!(
-                "No correction is made of the causes: between the places measured they would together move the tool by up to {moved_um:.0} um, and no reading is larger than {reading_um:.0} um. Measure more places between, and repeat each."
+            Self::Swings(moved_um, reading_um) => both!(
+                "No correction is made of the causes: between the places measured they would together move the tool by up to {moved_um:.0} um, and no reading is larger than {reading_um:.0} um. Measure more places between, and repeat each.",
+                "По причинам ничего не исправляется: между измеренными точками они вместе сместили бы инструмент до {moved_um:.0} мкм, а ни один отсчёт не больше {reading_um:.0} мкм. Измерьте больше промежуточных точек и каждую повторите."
             ),
-            Self::Cancels(alone_um, gap_um) => format!(
-                "No correction is made of the causes: they cancel each other. With the first of them alone {alone_um:.1} um RMS are left, and {gap_um:.1} um without any; another cause with the shape of their difference is likelier."
+            Self::Cancels(alone_um, gap_um) => both!(
+                "No correction is made of the causes: they cancel each other. With the first of them alone {alone_um:.1} um RMS are left, and {gap_um:.1} um without any; another cause with the shape of their difference is likelier.",
+                "По причинам ничего не исправляется: они гасят друг друга. С одной первой остаётся {alone_um:.1} мкм (СКЗ), без всех — {gap_um:.1} мкм; вероятнее другая причина, с формой их разности."
             ),
-            Self::Shifts(moved_um, range_um) => format!(
-                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, and the readings reach and range over no more than {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis."
+            Self::Shifts(moved_um, range_um) => both!(
+                "No correction is made of the causes: they count from machine zero and would move all of the places measured by up to {moved_um:.0} um, and the readings reach and range over no more than {range_um:.0} um: the way that was measured is too short, so far from zero. Measure over more of the axis.",
+                "По причинам ничего не исправляется: они отсчитываются от нуля станка и сместили бы все измеренные точки до {moved_um:.0} мкм, а отсчёты и их размах не больше {range_um:.0} мкм: измеренный путь слишком короток так далеко от нуля. Измерьте больший участок оси."
             ),
         }
     }

@@ -1,5 +1,6 @@
 //! The whole answer, put together.
 
+use diagnostic::{Text, both};
 use machine_model::effects::EffectKind;
 
 use crate::equations::align::{rms, row_lengths};
@@ -60,12 +61,13 @@ impl Assembly<'_> {
         let mut notes = self.notes();
         notes.extend(evidence.unseen.filter(|_| holdout.is_none()).map(|u| u.kept_back_note()));
         notes.extend(holdout.iter().flat_map(|h| self.forecast_notes(h, &causes)));
-        notes.extend(formulas.iter().map(|f| format!("{} ({}).", f.words, f.text)));
+        notes.extend(formulas.iter().map(|f| both!("{} ({}).", "{:#} ({}).", f.words, f.text)));
         let unsure = verdict == Verdict::Underpowered && !causes.is_empty();
         let sentence = if unsure {
             notes.extend(causes.iter().map(seen_but_unsure));
-            format!(
+            both!(
                 "These rows cannot carry a correction: what they show is uncertain by {corner_um:.1} um in the far corner, and the gap itself is {:.1} um RMS.",
+                "Исправлять по этим строкам нельзя: неопределённость того, что они показывают, в дальнем углу {corner_um:.1} мкм, а само расхождение — {:.1} мкм (СКЗ).",
                 gap.rms_um
             )
         } else {
@@ -75,7 +77,9 @@ impl Assembly<'_> {
             } else {
                 unseen.and_then(|u| u.refutation())
             };
-            sentence(verdict, &gap, &causes, &leftover) + &refuted.unwrap_or_default()
+            let mut said = sentence(verdict, &gap, &causes, &leftover);
+            said.push(&refuted.unwrap_or_default());
+            said
         };
         if verdict == Verdict::Underpowered {
             causes.clear();
@@ -137,9 +141,13 @@ impl Assembly<'_> {
 }
 
 /// What a file that cannot carry a correction hints at.
-fn seen_but_unsure(cause: &Cause) -> String {
+fn seen_but_unsure(cause: &Cause) -> Text {
     let first = cause.parameters.first().map_or_else(String::new, |p| {
         format!(" ({} = {:.1} ± {:.1})", p.name, p.value, p.u95.unwrap_or_default())
     });
-    format!("Hinted at, too uncertain to be used: {}{first}.", cause.effect)
+    both!(
+        "Hinted at, too uncertain to be used: {}{first}.",
+        "Намечается, но слишком неопределённо для использования: {}{first}.",
+        cause.effect
+    )
 }

@@ -1,5 +1,6 @@
 //! What acting on a cause changes in the profile: from and to, so that no increment passes for a value.
 
+use diagnostic::{Text, both};
 use gap_diagnosis::Cause;
 use machine_model::effects::EffectKind;
 use machine_profile::Profile;
@@ -9,7 +10,8 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// Its name for people: `EC0Y`, `play of Y`, or a coefficient of the effect.
-    name: String,
+    #[serde(serialize_with = "in_english")]
+    name: Text,
     /// What the profile says now; `null` where its tables hold it, as a curve.
     from: Option<f64>,
     /// By how much it grows.
@@ -21,12 +23,40 @@ pub struct Change {
 impl Change {
     /// `EC0Y 85.0 → 148.0 µrad`, or `play of Y +11.2 µm` where no one number of the profile holds it.
     #[must_use]
-    pub fn text(&self) -> String {
+    pub fn text(&self) -> Text {
+        let Self { name, by, .. } = self;
+        let unit = unit_text(self.unit);
         match self.from {
-            Some(from) => format!("{} {from:.1} → {:.1} {}", self.name, from + self.by, self.unit),
-            None => format!("{} {:+.1} {}", self.name, self.by, self.unit),
+            Some(from) => {
+                let to = from + by;
+                both!("{name} {from:.1} → {to:.1} {unit}", "{name:#} {from:.1} → {to:.1} {unit:#}")
+            }
+            None => both!("{name} {by:+.1} {unit}", "{name:#} {by:+.1} {unit:#}"),
         }
     }
+}
+
+/// JSON is English in every language.
+fn in_english<S: serde::Serializer>(text: &Text, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(text.english())
+}
+
+/// A unit of [`UNITS`], for people.
+fn unit_text(unit: &str) -> Text {
+    // Longer ones before those that are part of them.
+    const PARTS: [(&str, &str); 8] = [
+        ("µrad", "мкрад"),
+        ("µm", "мкм"),
+        ("ms", "мс"),
+        ("min", "мин"),
+        ("kg", "кг"),
+        ("m", "м"),
+        ("s²", "с²"),
+        ("/h", "/ч"),
+    ];
+    let russian =
+        PARTS.iter().fold(unit.to_owned(), |text, (english, russian)| text.replace(english, russian));
+    Text::new(unit.to_owned(), russian.replace('K', "К"))
 }
 
 /// What a cause changes in a profile: the profile's own key where it has one for it, else the effect's coefficients.
@@ -48,8 +78,8 @@ pub fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
             }
             None => Change {
                 name: match kind.coefficient_names() {
-                    [_] => cause.effect.clone(),
-                    _ => format!("{} {}", cause.effect, without_unit(name)),
+                    [_] => Text::same(cause.effect.as_str()),
+                    _ => Text::same(format!("{} {}", cause.effect, without_unit(name))),
                 },
                 from: entered,
                 by,
@@ -62,7 +92,7 @@ pub fn of(cause: &Cause, profile: &Profile) -> Vec<Change> {
 
 /// A key of the profile, outside `[[effect]]`, that holds the first coefficient of an effect.
 struct Key {
-    name: String,
+    name: Text,
     /// `None` where tables hold it instead.
     value: Option<f64>,
     /// Key by coefficient.
@@ -80,13 +110,14 @@ fn key(kind: EffectKind, profile: &Profile) -> Option<Key> {
                 (0, _) => ("EB0Z", machine.squareness.eb0z_rad),
                 _ => ("EA0Z", machine.squareness.ea0z_rad),
             };
-            Key { name: name.to_owned(), value: Some(1e6 * rad), factor: 1.0, unit: "µrad" }
+            Key { name: Text::pair(name, name), value: Some(1e6 * rad), factor: 1.0, unit: "µrad" }
         }
         // The reversal value is twice the half width; equation (9), "Direction".
         EffectKind::Backlash(axis) => {
             let data = &machine.linear[axis];
             let value = data.errors_negative.is_none().then_some(1e3 * data.backlash_mm);
-            Key { name: format!("play of {}", LINEAR[axis]), value, factor: 2.0, unit: "µm" }
+            let name = both!("play of {}", "люфт {}", LINEAR[axis]);
+            Key { name, value, factor: 2.0, unit: "µm" }
         }
         // The effect moves the axis' line, the profile what the table carries: alike but for a set-up. Of a head the
         // profile's shift is none of its line's.
@@ -98,7 +129,7 @@ fn key(kind: EffectKind, profile: &Profile) -> Option<Key> {
                 0..=2 => (1e3 * rotary.shift_mm[component], "µm"),
                 _ => (1e6 * rotary.tilt_rad[component - 3], "µrad"),
             };
-            Key { name: symbol(kind), value: Some(value), factor: 1.0, unit }
+            Key { name: Text::same(symbol(kind)), value: Some(value), factor: 1.0, unit }
         }
         _ => return None,
     })
@@ -148,6 +179,8 @@ fn without_unit(name: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
+    use diagnostic::Language;
+
     use super::*;
 
     #[test]
@@ -161,9 +194,13 @@ mod tests {
 
     #[test]
     fn a_change_says_from_and_to() {
-        let change = Change { name: "EC0Y".to_owned(), from: Some(85.0), by: 63.0, unit: "µrad" };
-        assert_eq!(change.text(), "EC0Y 85.0 → 148.0 µrad");
-        let change = Change { name: "play of Y".to_owned(), from: None, by: 11.2, unit: "µm" };
-        assert_eq!(change.text(), "play of Y +11.2 µm");
+        let change = Change { name: Text::pair("EC0Y", "EC0Y"), from: Some(85.0), by: 63.0, unit: "µrad" };
+        assert_eq!(change.text().english(), "EC0Y 85.0 → 148.0 µrad");
+        assert_eq!(change.text().in_language(Language::Russian), "EC0Y 85.0 → 148.0 мкрад");
+        let change =
+            Change { name: Text::pair("play of Y", "люфт Y"), from: None, by: 11.2, unit: "µm" };
+        assert_eq!(change.text(), Text::pair("play of Y +11.2 µm", "люфт Y +11.2 мкм"));
+        assert_eq!(unit_text("ms/(m/min)"), Text::pair("ms/(m/min)", "мс/(м/мин)"));
+        assert_eq!(unit_text("µm/(m/s²)"), Text::pair("µm/(m/s²)", "мкм/(м/с²)"));
     }
 }

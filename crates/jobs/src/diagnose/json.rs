@@ -1,5 +1,6 @@
 //! The diagnosis as JSON, `vpost.diagnosis/1`.
 
+use diagnostic::Text;
 use gap_diagnosis::{Cause, Diagnosis, Row};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -23,7 +24,7 @@ struct Document<'a> {
     outlier_lines: &'a [u64],
     detectable: Vec<Value>,
     formulas: Vec<Value>,
-    notes: &'a [String],
+    notes: Vec<&'a str>,
 }
 
 /// The file's text.
@@ -32,7 +33,7 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
     let document = Document {
         schema: "vpost.diagnosis/1",
         verdict: d.verdict.name(),
-        sentence: &d.sentence,
+        sentence: d.sentence.english(),
         gap: json!({
             "rows": d.gap.rows, "rms_um": round(d.gap.rms_um), "p95_um": round(d.gap.p95_um),
             "max_um": round(d.gap.max_um), "noise_um": round(d.gap.noise_um),
@@ -43,7 +44,7 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             .map(|c| json!({ "by": c.by, "cell": c.cell, "share": round(c.share), "p": round(c.p) }))
             .collect(),
         causes: d.causes.iter().zip(changes).map(|(c, changes)| cause(c, changes)).collect(),
-        withheld: d.withheld.as_deref(),
+        withheld: d.withheld.as_ref().map(Text::english),
         setup: json!({
             "shift_um": d.setup.shift_um.map(round),
             "rotation_urad": d.setup.rotation_urad.map(round),
@@ -54,17 +55,17 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
         }),
         leftover: json!({
             "rms_um": round(d.leftover.rms_um), "phi": round(d.leftover.phi),
-            "lack_of_fit_p": round(d.leftover.lack_of_fit_p), "correlates_with": d.leftover.correlates_with,
-            "absorber": d.leftover.absorber,
+            "lack_of_fit_p": round(d.leftover.lack_of_fit_p), "correlates_with": english(&d.leftover.correlates_with),
+            "absorber": d.leftover.absorber.as_ref().map(Text::english),
         }),
         holdout: d.holdout.as_ref().map_or(Value::Null, |h| {
             json!({ "rows": h.rows, "rms_before_um": round(h.rms_before_um),
                 "rms_after_um": round(h.rms_after_um), "shrink": round(h.shrink),
-                "steps": h.steps.iter().map(|s| json!({ "added": s.added, "rms_um": round(s.rms_um) }))
+                "steps": h.steps.iter().map(|s| json!({ "added": s.added.english(), "rms_um": round(s.rms_um) }))
                     .collect::<Vec<_>>() })
         }),
         next_measurement: d.next_measurement.as_ref().map_or(Value::Null, |n| {
-            json!({ "text": n.text, "separates": n.separates, "expected_sigma": round(n.expected_sigma),
+            json!({ "text": n.text.english(), "separates": english(&n.separates), "expected_sigma": round(n.expected_sigma),
                 "rows": n.rows.iter().map(|r| row(r, &n.run(r))).collect::<Vec<_>>() })
         }),
         outlier_lines: &d.outlier_lines,
@@ -78,11 +79,16 @@ pub fn text(d: &Diagnosis, changes: &[Vec<Change>]) -> String {
             .iter()
             .map(|f| json!({ "formula": f.text, "share_unseen": round(f.share) }))
             .collect(),
-        notes: &d.notes,
+        notes: english(&d.notes),
     };
     let mut text = serde_json::to_string_pretty(&document).expect("plain values always serialise");
     text.push('\n');
     text
+}
+
+/// JSON is English in every language.
+fn english(texts: &[Text]) -> Vec<&str> {
+    texts.iter().map(Text::english).collect()
 }
 
 /// A row to be measured, in the columns of a measurement file; the reading is not there yet.
@@ -116,7 +122,7 @@ fn cause(c: &Cause, changes: &[Change]) -> Value {
         .collect();
     json!({
         "effect": c.effect,
-        "words": c.words,
+        "words": c.words.english(),
         "parameters": parameters,
         "share_unique": round(c.share_unique),
         "share_alone": round(c.share_alone),
@@ -132,7 +138,7 @@ fn cause(c: &Cause, changes: &[Change]) -> Value {
             "mid": round(c.shrink_predicted.mid),
             "high": round(c.shrink_predicted.high),
         },
-        "remedy": c.remedy,
+        "remedy": c.remedy.english(),
         "changes": changes,
     })
 }

@@ -1,10 +1,11 @@
 //! Repeated runs over an axis, with their means and what the scatter adds to them: the diagram of ISO 230-2.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
 use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
 use crate::scale::{Scale, px};
-use crate::text::number;
+use crate::text::Numbers;
 
 /// One direction: what it was at each place.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -39,7 +40,7 @@ const RIGHT: f64 = WIDTH - 96.0;
 
 /// Thin lines for runs, strong ones for means, shaded bands for the limits.
 #[must_use]
-pub fn bands(title: &str, d: &Bands, unit: &str) -> Markup {
+pub fn bands(language: Language, title: &str, d: &Bands, unit: &str) -> Markup {
     let of_band = |b: &Band| -> Vec<f64> {
         let limits = b.limits.iter().flatten().flatten();
         b.runs.iter().flatten().chain(&b.mean).chain(limits).copied().filter(|v| v.is_finite()).collect()
@@ -55,8 +56,8 @@ pub fn bands(title: &str, d: &Bands, unit: &str) -> Markup {
     let body = html! {
         (legend(LEFT, 14.0, &keys))
         (rect("frame", (LEFT, TOP), RIGHT - LEFT, HEIGHT))
-        (ticks_left(&y, 7, LEFT, RIGHT))
-        (ticks_below(&x, 8, TOP, TOP + HEIGHT))
+        (ticks_left(language, &y, 7, LEFT, RIGHT))
+        (ticks_below(language, &x, 8, TOP, TOP + HEIGHT))
         (line("zero", (LEFT, y.at(0.0)), (RIGHT, y.at(0.0))))
         @for (k, band) in d.bands.iter().enumerate() {
             @if let Some(limits) = &band.limits {
@@ -74,7 +75,8 @@ pub fn bands(title: &str, d: &Bands, unit: &str) -> Markup {
         (text(4.0, TOP - 6.0, "m", unit))
         (text(0.5 * (LEFT + RIGHT), TOP + HEIGHT + 31.0, "m c", &d.label))
     };
-    let described = format!("from {} to {} {unit}", number(low), number(high));
+    let [low, high] = [low, high].map(|v| language.number(v));
+    let described = say!(language, "from {low} to {high} {unit}", "от {low} до {high} {unit}");
     svg(TOP + HEIGHT + 40.0, title, &described, &body)
 }
 
@@ -135,12 +137,12 @@ mod tests {
             span: Some("A 6".to_owned()),
             ..Bands::default()
         };
-        let drawing = bands("t", &d, "um").into_string();
+        let drawing = bands(Language::English, "t", &d, "um").into_string();
         assert_eq!(drawing.matches("class=\"run s0\"").count(), 2);
         assert_eq!(drawing.matches("class=\"shade k0\"").count(), 1);
         assert!(drawing.contains("A 6"));
         let once = Bands { bands: vec![Band { limits: None, ..d.bands[0].clone() }], span: None, ..d };
-        let drawing = bands("t", &once, "um").into_string();
+        let drawing = bands(Language::English, "t", &once, "um").into_string();
         assert!(!drawing.contains("shade") && !drawing.contains("whisker"), "one run has no limits");
     }
 }

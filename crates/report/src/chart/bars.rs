@@ -1,10 +1,11 @@
 //! Horizontal bars: amounts, what is taken off them, intervals.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
 use super::{WIDTH, line, rect, svg, text, ticks_below};
 use crate::scale::Scale;
-use crate::text::{number, percent, short};
+use crate::text::{Numbers, short};
 
 /// A labelled amount.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,14 +59,20 @@ fn scale_to(largest: f64) -> Scale {
 /// Amounts from top to bottom: a faint bar for what remains at each step, a strong one for what the step took off.
 /// `floor`: an amount below which nothing can go, with its name.
 #[must_use]
-pub fn waterfall(title: &str, bars: &[Bar], floor: Option<(f64, &str)>, unit: &str) -> Markup {
+pub fn waterfall(
+    language: Language,
+    title: &str,
+    bars: &[Bar],
+    floor: Option<(f64, &str)>,
+    unit: &str,
+) -> Markup {
     let values: Vec<f64> = bars.iter().map(|b| finite(b.value)).collect();
     let scale = scale_to(values.iter().copied().fold(floor.map_or(0.0, |f| finite(f.0)), f64::max));
     let bottom = TOP + STEP * bars.len() as f64;
     let described: Vec<String> =
-        bars.iter().map(|b| format!("{} {} {unit}", b.label, number(b.value))).collect();
+        bars.iter().map(|b| format!("{} {} {unit}", b.label, language.number(b.value))).collect();
     let body = html! {
-        (ticks_below(&scale, 6, TOP, bottom))
+        (ticks_below(language, &scale, 6, TOP, bottom))
         (text(RIGHT + 8.0, bottom + 14.0, "m", unit))
         @for (at, bar) in bars.iter().enumerate() {
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
@@ -76,12 +83,12 @@ pub fn waterfall(title: &str, bars: &[Bar], floor: Option<(f64, &str)>, unit: &s
             @if at > 0 {
                 (rect(if values[at] > before { "gone" } else { "faint" }, (scale.at(low), y), scale.at(high) - scale.at(low), BAR))
             }
-            (text(scale.at(high) + 6.0, y + 11.0, "", &number(bar.value)))
+            (text(scale.at(high) + 6.0, y + 11.0, "", &language.number(bar.value)))
         }
         @if let Some((value, name)) = floor {
             @let x = scale.at(finite(value));
             (line("floor", (x, TOP), (x, bottom)))
-            (text(x, bottom + 28.0, "c", &format!("{name} {}", number(value))))
+            (text(x, bottom + 28.0, "c", &format!("{name} {}", language.number(value))))
         }
     };
     svg(bottom + 34.0, title, &described.join("; "), &body)
@@ -89,19 +96,19 @@ pub fn waterfall(title: &str, bars: &[Bar], floor: Option<(f64, &str)>, unit: &s
 
 /// Amounts beside each other.
 #[must_use]
-pub fn bars(title: &str, all: &[Bar], unit: &str) -> Markup {
+pub fn bars(language: Language, title: &str, all: &[Bar], unit: &str) -> Markup {
     let scale = scale_to(all.iter().map(|b| finite(b.value)).fold(0.0, f64::max));
     let bottom = TOP + STEP * all.len() as f64;
     let described: Vec<String> =
-        all.iter().map(|b| format!("{} {} {unit}", b.label, number(b.value))).collect();
+        all.iter().map(|b| format!("{} {} {unit}", b.label, language.number(b.value))).collect();
     let body = html! {
-        (ticks_below(&scale, 6, TOP, bottom))
+        (ticks_below(language, &scale, 6, TOP, bottom))
         (text(RIGHT + 8.0, bottom + 14.0, "m", unit))
         @for (at, bar) in all.iter().enumerate() {
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
             (text(LEFT - 10.0, y + 11.0, "e", &short(&bar.label, 30)))
             (rect("bar", (LEFT, y), scale.at(finite(bar.value)) - LEFT, BAR))
-            (text(scale.at(finite(bar.value)) + 6.0, y + 11.0, "", &number(bar.value)))
+            (text(scale.at(finite(bar.value)) + 6.0, y + 11.0, "", &language.number(bar.value)))
         }
     };
     svg(bottom + 22.0, title, &described.join("; "), &body)
@@ -109,15 +116,18 @@ pub fn bars(title: &str, all: &[Bar], unit: &str) -> Markup {
 
 /// Shares between 0 and 1: a bar to the low end, a whisker from there to the high end.
 #[must_use]
-pub fn ranges(title: &str, all: &[Range]) -> Markup {
+pub fn ranges(language: Language, title: &str, all: &[Range]) -> Markup {
     let scale = Scale::new((0.0, 1.0), (LEFT, RIGHT));
     let bottom = TOP + STEP * all.len() as f64;
-    let described: Vec<String> =
-        all.iter().map(|r| format!("{} {} to {}", r.label, percent(r.low), percent(r.high))).collect();
+    let described = |r: &Range| {
+        let (label, low, high) = (&r.label, language.percent(r.low), language.percent(r.high));
+        say!(language, "{label} {low} to {high}", "{label} от {low} до {high}")
+    };
+    let described: Vec<String> = all.iter().map(described).collect();
     let body = html! {
         @for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
             (line("axis", (scale.at(share), TOP), (scale.at(share), bottom)))
-            (text(scale.at(share), bottom + 14.0, "m c", &percent(share)))
+            (text(scale.at(share), bottom + 14.0, "m c", &language.percent(share)))
         }
         @for (at, range) in all.iter().enumerate() {
             @let y = TOP + STEP * at as f64 + 0.5 * (STEP - BAR);
@@ -130,9 +140,9 @@ pub fn ranges(title: &str, all: &[Range]) -> Markup {
                 (line("whisker", (high, middle - 4.0), (high, middle + 4.0)))
             }
             @let words = if range.high - range.low >= 0.005 {
-                format!("{}\u{2013}{}", crate::text::number_of_digits(100.0 * range.low, 0), percent(range.high))
+                format!("{}\u{2013}{}", language.digits(100.0 * range.low, 0), language.percent(range.high))
             } else {
-                percent(range.low)
+                language.percent(range.low)
             };
             (text(high + 8.0, y + 11.0, "", &words))
         }
@@ -142,33 +152,33 @@ pub fn ranges(title: &str, all: &[Range]) -> Markup {
 
 /// A forecast of a share and what was achieved, on one line from nothing to all.
 #[must_use]
-pub fn interval(title: &str, forecast: &Interval) -> Markup {
+pub fn interval(language: Language, title: &str, forecast: &Interval) -> Markup {
     let ends = [Some(forecast.low), forecast.achieved, Some(0.0)];
     let lowest = ends.into_iter().flatten().filter(|v| v.is_finite()).fold(0.0, f64::min).max(-1.0);
     let scale = Scale::new((lowest, 1.0), (LEFT, RIGHT));
     let (predicted, achieved) = (TOP + 10.0, TOP + 36.0);
-    let described = format!(
-        "predicted {} ({} to {}){}",
-        percent(forecast.mid),
-        percent(forecast.low),
-        percent(forecast.high),
-        forecast.achieved.map_or_else(String::new, |a| format!(", achieved {}", percent(a)))
-    );
+    let [low, mid, high] = [forecast.low, forecast.mid, forecast.high].map(|share| language.percent(share));
+    let came = forecast.achieved.map_or_else(String::new, |share| {
+        let share = language.percent(share);
+        say!(language, ", achieved {share}", ", достигнуто {share}")
+    });
+    let described =
+        say!(language, "predicted {mid} ({low} to {high}){came}", "прогноз {mid} (от {low} до {high}){came}");
     let bottom = TOP + 52.0;
     let body = html! {
-        @for (value, _) in scale.ticks(5) {
+        @for (value, _) in scale.ticks(5, language) {
             (line("axis", (scale.at(value), TOP), (scale.at(value), bottom)))
-            (text(scale.at(value), bottom + 14.0, "m c", &percent(value)))
+            (text(scale.at(value), bottom + 14.0, "m c", &language.percent(value)))
         }
-        (text(LEFT - 10.0, predicted + 4.0, "e", "predicted"))
+        (text(LEFT - 10.0, predicted + 4.0, "e", &say!(language, "predicted", "прогноз")))
         (rect("faint", (scale.at(forecast.low), predicted - 7.0), scale.at(forecast.high) - scale.at(forecast.low), BAR))
         (line("whisker", (scale.at(forecast.mid), predicted - 9.0), (scale.at(forecast.mid), predicted + 9.0)))
-        (text(scale.at(forecast.high) + 6.0, predicted + 4.0, "", &percent(forecast.mid)))
+        (text(scale.at(forecast.high) + 6.0, predicted + 4.0, "", &mid))
         @if let Some(value) = forecast.achieved {
-            (text(LEFT - 10.0, achieved + 4.0, "e", "achieved on unseen points"))
+            (text(LEFT - 10.0, achieved + 4.0, "e", &say!(language, "achieved on unseen points", "на новых точках")))
             (line("floor", (scale.at(value), predicted - 9.0), (scale.at(value), achieved + 9.0)))
             (rect("gone", (scale.at(value) - 4.0, achieved - 4.0), 8.0, 8.0))
-            (text(scale.at(value) + 9.0, achieved + 4.0, "", &percent(value)))
+            (text(scale.at(value) + 9.0, achieved + 4.0, "", &language.percent(value)))
         }
     };
     svg(bottom + 22.0, title, &described, &body)

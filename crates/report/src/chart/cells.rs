@@ -1,10 +1,11 @@
 //! Cells coloured or shaded by an amount: slices through the machine, and tables of likeness.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, rect, svg, text};
+use super::{WIDTH, rect, right_and_up, svg, text};
 use crate::scale::{Scale, px};
-use crate::text::{number, number_of_digits, short};
+use crate::text::{Numbers, short};
 
 /// Mean amounts over a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,9 +49,10 @@ pub(super) fn shade(value: f64, largest: f64) -> usize {
 
 /// Slices, three in a row, all on one scale from zero to `largest`.
 #[must_use]
-pub fn slices(title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
+pub fn slices(language: Language, title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
     let step = (SIDE + 68.0, SIDE + 64.0);
     let place = |at: usize| (46.0 + step.0 * (at % PER_ROW) as f64, 22.0 + step.1 * (at / PER_ROW) as f64);
+    let largest_said = language.number(largest);
     let height = 22.0 + step.1 * all.len().div_ceil(PER_ROW) as f64;
     let body = html! {
         @for (at, slice) in all.iter().enumerate() {
@@ -66,26 +68,31 @@ pub fn slices(title: &str, all: &[Slice], largest: f64, unit: &str) -> Markup {
                 @let class = value.map_or_else(|| "cell none".to_owned(), |v| format!("cell h{}", shade(v, largest)));
                 (rect(&class, corner, size[0], size[1]))
             }
-            @for (value, label) in x.ticks(3) { (text(x.at(value), top + SIDE + 14.0, "m c", &label)) }
-            @for (value, label) in y.ticks(3) { (text(left - 5.0, y.at(value) + 4.0, "m e", &label)) }
-            (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", &format!("{} to the right, {} up", slice.axes[0], slice.axes[1])))
+            @for (value, label) in x.ticks(3, language) { (text(x.at(value), top + SIDE + 14.0, "m c", &label)) }
+            @for (value, label) in y.ticks(3, language) { (text(left - 5.0, y.at(value) + 4.0, "m e", &label)) }
+            (text(left + 0.5 * SIDE, top + SIDE + 28.0, "m c", &right_and_up(language, slice.axes)))
         }
         @for k in 0..SHADES {
             (rect(&format!("h{k}"), (46.0 + 24.0 * k as f64, height), 24.0, 10.0))
         }
         (text(46.0, height + 24.0, "m", "0"))
-        (text(46.0 + 24.0 * SHADES as f64, height + 24.0, "m e", &format!("{} {unit}", number(largest))))
+        (text(46.0 + 24.0 * SHADES as f64, height + 24.0, "m e", &format!("{largest_said} {unit}")))
         @if all.iter().any(|slice| slice.values.iter().any(Option::is_none)) {
             (rect("cell none", (330.0, height), 24.0, 10.0))
-            (text(360.0, height + 9.0, "m", "not measured"))
+            (text(360.0, height + 9.0, "m", &say!(language, "not measured", "не измерялось")))
         }
     };
-    svg(height + 30.0, title, &format!("one scale for all slices, 0 to {} {unit}", number(largest)), &body)
+    let described = say!(
+        language,
+        "one scale for all slices, 0 to {largest_said} {unit}",
+        "общая шкала для всех сечений, от 0 до {largest_said} {unit}"
+    );
+    svg(height + 30.0, title, &described, &body)
 }
 
 /// A table of likeness, darker where more alike.
 #[must_use]
-pub fn matrix(title: &str, m: &Matrix) -> Markup {
+pub fn matrix(language: Language, title: &str, m: &Matrix) -> Markup {
     const LEFT: f64 = 150.0;
     const TOP: f64 = 110.0;
     let width = ((WIDTH - LEFT - 70.0) / m.columns.len().max(1) as f64).min(46.0);
@@ -108,7 +115,7 @@ pub fn matrix(title: &str, m: &Matrix) -> Markup {
                         (rect(&format!("cell h{shade}"), (x, y), width, height))
                         @if value >= m.limit { (rect("whisker", (x + 1.5, y + 1.5), width - 3.0, height - 3.0)) }
                         text.c.(if shade < 5 { "on0" } else { "on1" }) x=(px(x + 0.5 * width)) y=(px(y + 16.0)) style=(text_size) {
-                            (number_of_digits(value, 2))
+                            (language.digits(value, 2))
                         }
                     }
                 }
@@ -116,6 +123,11 @@ pub fn matrix(title: &str, m: &Matrix) -> Markup {
         }
     };
     let alike = m.values.iter().flatten().filter(|v| **v >= m.limit).count();
-    let described = format!("{alike} pairs are more alike than {}", number(m.limit));
+    let limit = language.number(m.limit);
+    let described = say!(
+        language,
+        "{alike} pairs are more alike than {limit}",
+        "пар, сходных больше чем на {limit}: {alike}"
+    );
     svg(TOP + height * m.rows.len() as f64 + 8.0, title, &described, &body)
 }

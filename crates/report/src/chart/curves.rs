@@ -1,10 +1,11 @@
 //! Curves over a variable, and how often an amount occurs.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
+use super::{WIDTH, before_and_after, legend, line, rect, svg, text, ticks_below, ticks_left};
 use crate::scale::{Scale, px};
-use crate::text::number;
+use crate::text::Numbers;
 
 /// Values over a variable.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +39,13 @@ const RIGHT: f64 = WIDTH - 16.0;
 ///
 /// * `series` – classes and names of the series, as many as every panel has
 #[must_use]
-pub fn curves(title: &str, panels: &[Curves], series: &[(&str, &str)], unit: &str) -> Markup {
+pub fn curves(
+    language: Language,
+    title: &str,
+    panels: &[Curves],
+    series: &[(&str, &str)],
+    unit: &str,
+) -> Markup {
     let all = || panels.iter().flat_map(|p| p.values.iter().flatten()).copied().filter(|v| v.is_finite());
     let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
     let margin = 0.06 * (high - low);
@@ -53,8 +60,8 @@ pub fn curves(title: &str, panels: &[Curves], series: &[(&str, &str)], unit: &st
             @let x = Scale::new(ends, (LEFT + 4.0, RIGHT - 4.0));
             @let y = Scale::new((low - margin, high + margin), (top + HEIGHT, top));
             (rect("frame", (LEFT, top), RIGHT - LEFT, HEIGHT))
-            (ticks_left(&y, 5, LEFT, RIGHT))
-            (ticks_below(&x, 8, top, top + HEIGHT))
+            (ticks_left(language, &y, 5, LEFT, RIGHT))
+            (ticks_below(language, &x, 8, top, top + HEIGHT))
             (line("zero", (LEFT, y.at(0.0)), (RIGHT, y.at(0.0))))
             @for ((class, _), values) in series.iter().zip(&panel.values) {
                 path class={ "line " (class) } d=(path(&panel.at, values, &x, &y)) {}
@@ -62,7 +69,12 @@ pub fn curves(title: &str, panels: &[Curves], series: &[(&str, &str)], unit: &st
             (text(0.5 * (LEFT + RIGHT), top + HEIGHT + 30.0, "m c", &panel.label))
         }
     };
-    let described = format!("from {} to {} {unit}, one scale for all", number(low), number(high));
+    let [low, high] = [low, high].map(|v| language.number(v));
+    let described = say!(
+        language,
+        "from {low} to {high} {unit}, one scale for all",
+        "от {low} до {high} {unit}, общая шкала"
+    );
     svg(TOP + STEP * panels.len() as f64, title, &described, &body)
 }
 
@@ -76,7 +88,14 @@ fn path(at: &[f64], values: &[f64], x: &Scale, y: &Scale) -> String {
 
 /// Columns: filled before, outlined after.
 #[must_use]
-pub fn histogram(title: &str, h: &Histogram, limit: Option<(f64, &str)>, label: &str, unit: &str) -> Markup {
+pub fn histogram(
+    language: Language,
+    title: &str,
+    h: &Histogram,
+    limit: Option<(f64, &str)>,
+    label: &str,
+    unit: &str,
+) -> Markup {
     let (top, bottom) = (36.0, 226.0);
     let most = h.before.iter().chain(&h.after).copied().max().unwrap_or(0).max(1);
     let x = Scale::new((0.0, h.largest), (LEFT, RIGHT));
@@ -86,10 +105,10 @@ pub fn histogram(title: &str, h: &Histogram, limit: Option<(f64, &str)>, label: 
         path + &format!("V{}H{}", px(y.at(*n as f64)), px(LEFT + width * (k + 1) as f64))
     });
     let body = html! {
-        (legend(LEFT, 14.0, &[("k1", "before"), ("k0", "after")]))
+        (before_and_after(language, LEFT))
         (rect("frame", (LEFT, top), RIGHT - LEFT, bottom - top))
-        (ticks_left(&y, 5, LEFT, RIGHT))
-        (ticks_below(&x, 10, top, bottom))
+        (ticks_left(language, &y, 5, LEFT, RIGHT))
+        (ticks_below(language, &x, 10, top, bottom))
         @for (k, n) in h.before.iter().enumerate().filter(|(_, n)| **n > 0) {
             @let up = y.at(*n as f64);
             (rect("gone", (LEFT + width * k as f64 + 0.5, up), width - 1.0, bottom - up))
@@ -97,11 +116,12 @@ pub fn histogram(title: &str, h: &Histogram, limit: Option<(f64, &str)>, label: 
         path class="line s0" style="stroke-width:2" d={ (outline) "V" (px(bottom)) } {}
         @if let Some((value, name)) = limit.filter(|(value, _)| *value <= h.largest) {
             (line("limit", (x.at(value), top), (x.at(value), bottom)))
-            (text(x.at(value) + 4.0, top - 6.0, "", &format!("{name} {} {unit}", number(value))))
+            (text(x.at(value) + 4.0, top - 6.0, "", &format!("{name} {} {unit}", language.number(value))))
         }
         (text(0.5 * (LEFT + RIGHT), bottom + 30.0, "m c", label))
     };
-    let total = |counts: &[u64]| counts.iter().sum::<u64>();
-    let described = format!("{} values before, {} after", total(&h.before), total(&h.after));
+    let [before, after] = [&h.before, &h.after].map(|counts| language.count(counts.iter().sum::<u64>()));
+    let described =
+        say!(language, "{before} values before, {after} after", "значений до: {before}, после: {after}");
     svg(bottom + 38.0, title, &described, &body)
 }

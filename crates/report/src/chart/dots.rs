@@ -1,9 +1,11 @@
 //! Dots over a variable, in panels side by side.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
 use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
 use crate::scale::{Scale, px};
+use crate::text::Numbers;
 
 /// Dots of one colour.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +36,7 @@ const GAP: f64 = 40.0;
 /// Panels in rows of columns, all on one vertical scale of `reach` above and below zero, so that sizes can be compared.
 #[must_use]
 pub fn panels(
+    language: Language,
     title: &str,
     columns: &[&str],
     rows: &[Vec<Panel>],
@@ -44,8 +47,13 @@ pub fn panels(
     let count = columns.len().max(1) as f64;
     let width = (WIDTH - LEFT - 18.0 - GAP * (count - 1.0)) / count;
     let left = |column: usize| LEFT + column as f64 * (width + GAP);
-    let described =
-        format!("{}; vertical scale \u{b1}{} {unit}", columns.join(" and "), crate::text::number(reach));
+    let columns_said = columns.join(&say!(language, " and ", " и "));
+    let reach_said = language.number(reach);
+    let described = say!(
+        language,
+        "{columns_said}; vertical scale \u{b1}{reach_said} {unit}",
+        "{columns_said}; вертикальная шкала \u{b1}{reach_said} {unit}"
+    );
     let body = html! {
         (legend(LEFT, 14.0, series))
         @for (column, name) in columns.iter().enumerate() {
@@ -57,8 +65,8 @@ pub fn panels(
                 @let x = Scale::new(panel.range, (left(column) + 4.0, left(column) + width - 4.0));
                 @let y = Scale::new((-reach, reach), (top + HEIGHT, top));
                 (rect("frame", (left(column), top), width, HEIGHT))
-                (ticks_left(&y, 4, left(column), left(column) + width))
-                (ticks_below(&x, 5, top, top + HEIGHT))
+                (ticks_left(language, &y, 4, left(column), left(column) + width))
+                (ticks_below(language, &x, 5, top, top + HEIGHT))
                 (line("zero", (left(column), y.at(0.0)), (left(column) + width, y.at(0.0))))
                 @for points in &panel.points {
                     path class={ "dots s" (points.series) } d=(dots(&points.at, &x, &y)) {}

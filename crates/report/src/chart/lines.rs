@@ -1,10 +1,11 @@
 //! Error vectors over the machine, and how often an error is smaller than.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, legend, line, rect, svg, text, ticks_below, ticks_left};
+use super::{WIDTH, before_and_after, line, rect, right_and_up, svg, text, ticks_below, ticks_left};
 use crate::scale::{Scale, px};
-use crate::text::{number, percent};
+use crate::text::Numbers;
 
 /// A displacement at a place, in the plane drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,10 +34,10 @@ const TOP: f64 = 30.0;
 
 /// Views side by side, each on its own scale, lengths along both of its axes equal.
 #[must_use]
-pub fn views(title: &str, all: &[View], magnification: f64) -> Markup {
+pub fn views(language: Language, title: &str, all: &[View], magnification: f64) -> Markup {
     let left = |at: usize| 40.0 + at as f64 * (SIDE + 48.0);
     let body = html! {
-        (legend(40.0, 14.0, &[("k1", "before"), ("k0", "after")]))
+        (before_and_after(language, 40.0))
         @for (at, view) in all.iter().enumerate() {
             @let spans = view.ranges.map(|(low, high)| high - low);
             @let half = 0.64 * spans[0].max(spans[1]).max(1.0);
@@ -44,16 +45,20 @@ pub fn views(title: &str, all: &[View], magnification: f64) -> Markup {
             @let x = Scale::new((middle[0] - half, middle[0] + half), (left(at), left(at) + SIDE));
             @let y = Scale::new((middle[1] - half, middle[1] + half), (TOP + SIDE, TOP));
             (rect("frame", (left(at), TOP), SIDE, SIDE))
-            (ticks_below(&x, 4, TOP, TOP + SIDE))
-            (ticks_left(&y, 4, left(at), left(at) + SIDE))
-            (text(left(at) + 0.5 * SIDE, TOP + SIDE + 29.0, "m c", &format!("{} to the right, {} up, mm", view.axes[0], view.axes[1])))
+            (ticks_below(language, &x, 4, TOP, TOP + SIDE))
+            (ticks_left(language, &y, 4, left(at), left(at) + SIDE))
+            (text(left(at) + 0.5 * SIDE, TOP + SIDE + 29.0, "m c", &format!("{}, {}", right_and_up(language, view.axes), say!(language, "mm", "мм"))))
             path class="line s1" d=(strokes(view, &x, &y, |a| a.before)) {}
             path class="line s0" d=(strokes(view, &x, &y, |a| a.after)) {}
             path class="dots s3" style="stroke-width:2" d=(feet(view, &x, &y)) {}
         }
     };
-    let described =
-        format!("errors drawn {} times their size from the commanded point", number(magnification));
+    let times = language.number(magnification);
+    let described = say!(
+        language,
+        "errors drawn {times} times their size from the commanded point",
+        "погрешности отложены от заданной точки, увеличение {times}\u{d7}"
+    );
     svg(TOP + SIDE + 36.0, title, &described, &body)
 }
 
@@ -77,6 +82,7 @@ fn feet(view: &View, x: &Scale, y: &Scale) -> String {
 /// Share of the rows that lie below an amount, before and after, with a limit if there is one. Both lists ascend.
 #[must_use]
 pub fn cumulative(
+    language: Language,
     title: &str,
     before: &[f64],
     after: &[f64],
@@ -91,27 +97,35 @@ pub fn cumulative(
         limit.map(|(l, _)| values.iter().filter(|v| **v <= l).count() as f64 / values.len().max(1) as f64)
     };
     let body = html! {
-        (legend(left, 14.0, &[("k1", "before"), ("k0", "after")]))
+        (before_and_after(language, left))
         (rect("frame", (left, top), right - left, bottom - top))
-        (ticks_below(&x, 7, top, bottom))
+        (ticks_below(language, &x, 7, top, bottom))
         @for share in [0.0, 0.25, 0.5, 0.75, 0.95, 1.0] {
             (line("axis", (left, y.at(share)), (right, y.at(share))))
-            @if (share - 0.95_f64).abs() > 1e-9 { (text(left - 6.0, y.at(share) + 4.0, "m e", &percent(share))) }
+            @if (share - 0.95_f64).abs() > 1e-9 { (text(left - 6.0, y.at(share) + 4.0, "m e", &language.percent(share))) }
         }
         (text(left - 6.0, y.at(0.95) + 9.0, "m e", "95 %"))
         path class="line s1" d=(steps(before, &x, &y)) {}
         path class="line s0" d=(steps(after, &x, &y)) {}
         @if let Some((value, name)) = limit {
             (line("limit", (x.at(value), top), (x.at(value), bottom)))
-            (text(x.at(value), top - 7.0, "", &format!("{name} {} {unit}", number(value))))
+            (text(x.at(value), top - 7.0, "", &format!("{name} {} {unit}", language.number(value))))
         }
-        (text(0.5 * (left + right), bottom + 30.0, "m c", &format!("size of the gap of a row, {unit}")))
+        (text(0.5 * (left + right), bottom + 30.0, "m c", &say!(language, "size of the gap of a row, {unit}", "расхождение в строке, {unit}")))
     };
     let described = match (below(before), below(after), limit) {
         (Some(b), Some(a), Some((l, _))) => {
-            format!("{} of the rows are below {} {unit} before, {} after", percent(b), number(l), percent(a))
+            let (b, l, a) = (language.percent(b), language.number(l), language.percent(a));
+            say!(
+                language,
+                "{b} of the rows are below {l} {unit} before, {a} after",
+                "ниже {l} {unit}: {b} строк до, {a} после"
+            )
         }
-        _ => format!("largest {} {unit} before", number(largest)),
+        _ => {
+            let largest = language.number(largest);
+            say!(language, "largest {largest} {unit} before", "наибольшее до: {largest} {unit}")
+        }
     };
     svg(bottom + 38.0, title, &described, &body)
 }

@@ -12,6 +12,7 @@ mod lines;
 mod polar;
 pub mod solid;
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
 pub use bands::{Band, Bands, bands};
@@ -63,9 +64,9 @@ fn rect(class: &str, (x, y): (f64, f64), width: f64, height: f64) -> Markup {
 }
 
 /// Vertical lines and labels of a horizontal scale.
-fn ticks_below(scale: &Scale, count: usize, top: f64, bottom: f64) -> Markup {
+fn ticks_below(language: Language, scale: &Scale, count: usize, top: f64, bottom: f64) -> Markup {
     html! {
-        @for (value, label) in scale.ticks(count) {
+        @for (value, label) in scale.ticks(count, language) {
             (line("axis", (scale.at(value), top), (scale.at(value), bottom)))
             (text(scale.at(value), bottom + 14.0, "m c", &label))
         }
@@ -73,13 +74,24 @@ fn ticks_below(scale: &Scale, count: usize, top: f64, bottom: f64) -> Markup {
 }
 
 /// Horizontal lines and labels of a vertical scale.
-fn ticks_left(scale: &Scale, count: usize, left: f64, right: f64) -> Markup {
+fn ticks_left(language: Language, scale: &Scale, count: usize, left: f64, right: f64) -> Markup {
     html! {
-        @for (value, label) in scale.ticks(count) {
+        @for (value, label) in scale.ticks(count, language) {
             (line("axis", (left, scale.at(value)), (right, scale.at(value))))
             (text(left - 5.0, scale.at(value) + 4.0, "m e", &label))
         }
     }
+}
+
+/// The legend of what was and of what is left.
+fn before_and_after(language: Language, x: f64) -> Markup {
+    let [before, after] = [say!(language, "before", "до"), say!(language, "after", "после")];
+    legend(x, 14.0, &[("k1", &before), ("k0", &after)])
+}
+
+/// What an axis to the right and one up are called.
+fn right_and_up(language: Language, [right, up]: [&str; 2]) -> String {
+    say!(language, "{right} to the right, {up} up", "{right} вправо, {up} вверх")
 }
 
 /// Squares with words: what the colours mean.
@@ -102,7 +114,8 @@ mod tests {
     fn words_from_files_are_escaped_in_drawings() {
         let hostile = "\"><script>alert(1)</script>";
         let bar = Bar { label: hostile.to_owned(), value: 1.0 };
-        let drawing = waterfall(hostile, &[bar.clone(), bar], Some((0.5, hostile)), "um").into_string();
+        let drawing = waterfall(Language::English, hostile, &[bar.clone(), bar], Some((0.5, hostile)), "um")
+            .into_string();
         assert!(!drawing.contains("<script") && drawing.contains("&lt;script&gt;"), "{drawing}");
     }
 
@@ -112,7 +125,7 @@ mod tests {
             Bar { label: "a".to_owned(), value: f64::NAN },
             Bar { label: "b".to_owned(), value: f64::INFINITY },
         ];
-        let drawing = super::bars("t", &bars, "um").into_string();
+        let drawing = super::bars(Language::English, "t", &bars, "um").into_string();
         assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{drawing}");
     }
 }

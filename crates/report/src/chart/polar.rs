@@ -1,11 +1,12 @@
 //! Deviations about a circle, magnified: the plot of a ball bar.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 use units::math;
 
 use super::{legend, line, narrow, text};
 use crate::scale::{nice, px};
-use crate::text::number_of_digits;
+use crate::text::Numbers;
 
 /// One closed or open curve.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -69,7 +70,14 @@ impl Magnification {
 
 /// Curves about the circle of no deviation, with rings at round deviations.
 #[must_use]
-pub fn polar(title: &str, described: &str, p: &Polar, m: Magnification, unit: &str) -> Markup {
+pub fn polar(
+    language: Language,
+    title: &str,
+    described: &str,
+    p: &Polar,
+    m: Magnification,
+    unit: &str,
+) -> Markup {
     let rings = rings(m, p.radius);
     let digits = usize::from(m.ring < 0.999) + usize::from(m.ring < 0.0999) + usize::from(m.ring < 0.009_99);
     let out = MIDDLE - 18.0;
@@ -85,11 +93,11 @@ pub fn polar(title: &str, described: &str, p: &Polar, m: Magnification, unit: &s
         @for curve in &p.curves { path class=(curve.class) d=(curve_path(curve, m, p.radius)) {} }
         @for value in &rings {
             @let radius = CIRCLE + m.px(*value, p.radius);
-            @let label = if *value > 0.0 { format!("+{}", number_of_digits(*value, digits)) } else { number_of_digits(*value, digits) };
+            @let label = if *value > 0.0 { format!("+{}", language.digits(*value, digits)) } else { language.digits(*value, digits) };
             // Up to the left, where neither axis runs.
             (text(MIDDLE - 0.707 * radius, MIDDLE - 0.707 * radius + 4.0, "m c halo", &label))
         }
-        (text(4.0, SIDE - 6.0, "m", &format!("rings in {unit}")))
+        (text(4.0, SIDE - 6.0, "m", &say!(language, "rings in {unit}", "кольца, {unit}")))
         @for (row, (class, words)) in p.keys.iter().enumerate() {
             (legend(4.0, SIDE + 14.0 + KEY * row as f64, &[(class, words.as_str())]))
         }

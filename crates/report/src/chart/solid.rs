@@ -1,10 +1,11 @@
 //! The machine's volume seen from a corner: places coloured by an amount, arrows, paths.
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
 
-use super::{WIDTH, cells, legend, line, svg, text};
+use super::{WIDTH, before_and_after, cells, legend, line, svg, text};
 use crate::scale::px;
-use crate::text::{number, number_of_digits};
+use crate::text::Numbers;
 
 /// A box that is drawn from a corner, X to the lower right, Y to the upper right, Z up.
 ///
@@ -108,7 +109,7 @@ impl Placed {
     }
 
     /// Names and ends of the axes along the edges that the eye meets first.
-    fn labels(&self) -> Markup {
+    fn labels(&self, language: Language) -> Markup {
         let corner = |k: usize| self.solid.corner(k);
         // X along the lower left edge, Y along the lower right one, Z at the right.
         let edges =
@@ -120,23 +121,23 @@ impl Placed {
                 @let (a, b) = (self.at(corner(from)), self.at(corner(to)));
                 @for (value, share) in [(low, 0.1), (high, 0.9)] {
                     @let here = (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
-                    (text(here.0 + right, here.1 + down, class, &number_of_digits(value, 0)))
+                    (text(here.0 + right, here.1 + down, class, &language.digits(value, 0)))
                 }
                 (text(0.5 * (a.0 + b.0) + 1.4 * right, 0.5 * (a.1 + b.1) + 1.2 * down, if axis == 0 { "e" } else { "" },
-                    &format!("{}, mm", ["X", "Y", "Z"][axis])))
+                    &format!("{}, {}", ["X", "Y", "Z"][axis], say!(language, "mm", "мм"))))
             }
         }
     }
 }
 
 /// Colours of the amounts, below a drawing.
-fn key(y: f64, largest: f64, unit: &str) -> Markup {
+fn key(language: Language, y: f64, largest: f64, unit: &str) -> Markup {
     html! {
         @for k in 0..cells::SHADES {
             (super::rect(&format!("h{k}"), (LEFT + 24.0 * k as f64, y), 24.0, 10.0))
         }
         (text(LEFT, y + 24.0, "m", "0"))
-        (text(LEFT + 24.0 * cells::SHADES as f64, y + 24.0, "m e", &format!("{} {unit}", number(largest))))
+        (text(LEFT + 24.0 * cells::SHADES as f64, y + 24.0, "m e", &format!("{} {unit}", language.number(largest))))
     }
 }
 
@@ -144,7 +145,14 @@ const LEFT: f64 = 46.0;
 
 /// Places coloured by an amount, from zero to `largest`, the near ones over the far ones.
 #[must_use]
-pub fn spots(title: &str, solid: Solid, all: &[Spot], largest: f64, unit: &str) -> Markup {
+pub fn spots(
+    language: Language,
+    title: &str,
+    solid: Solid,
+    all: &[Spot],
+    largest: f64,
+    unit: &str,
+) -> Markup {
     let placed = solid.placed(0.04);
     let mut order: Vec<&Spot> = all.iter().collect();
     let depth = |s: &Spot| s.at[0] - s.at[1] + s.at[2];
@@ -156,17 +164,29 @@ pub fn spots(title: &str, solid: Solid, all: &[Spot], largest: f64, unit: &str) 
             circle class={ "spot h" (cells::shade(spot.value, largest)) } cx=(px(x)) cy=(px(y)) r="3.4" {}
         }
         (placed.edges(true))
-        (placed.labels())
-        (key(placed.bottom + 34.0, largest, unit))
+        (placed.labels(language))
+        (key(language, placed.bottom + 34.0, largest, unit))
     };
-    let described = format!("{} places coloured from 0 to {} {unit}", all.len(), number(largest));
+    let (count, to) = (all.len(), language.number(largest));
+    let described = say!(
+        language,
+        "{count} places coloured from 0 to {to} {unit}",
+        "точек: {count}, цвет от 0 до {to} {unit}"
+    );
     svg(placed.bottom + 66.0, title, &described, &body)
 }
 
 /// Displacements before and after, each from its place.
 #[must_use]
-pub fn displacements(title: &str, solid: Solid, all: &[Displacement], magnification: f64) -> Markup {
+pub fn displacements(
+    language: Language,
+    title: &str,
+    solid: Solid,
+    all: &[Displacement],
+    magnification: f64,
+) -> Markup {
     let placed = solid.placed(0.12);
+    let times = language.number(magnification);
     let strokes = |which: fn(&Displacement) -> [f64; 3]| {
         all.iter().fold(String::new(), |mut path, d| {
             let by = which(d);
@@ -182,22 +202,34 @@ pub fn displacements(title: &str, solid: Solid, all: &[Displacement], magnificat
         path
     });
     let body = html! {
-        (legend(LEFT, 14.0, &[("k1", "before"), ("k0", "after")]))
-        (text(LEFT + 170.0, 14.0, "m", &format!("drawn {} times their size", number(magnification))))
+        (before_and_after(language, LEFT))
+        (text(LEFT + 170.0, 14.0, "m", &say!(language, "drawn {times} times their size", "увеличение {times}\u{d7}")))
         (placed.edges(false))
         path class="line s1" d=(strokes(|d| d.before)) {}
         path class="line s0" style="stroke-width:2" d=(strokes(|d| d.after)) {}
         path class="dots s3" style="stroke-width:2" d=(feet) {}
         (placed.edges(true))
-        (placed.labels())
+        (placed.labels(language))
     };
-    let described = format!("{} errors drawn {} times their size", all.len(), number(magnification));
+    let count = all.len();
+    let described = say!(
+        language,
+        "{count} errors drawn {times} times their size",
+        "погрешностей: {count}, увеличение {times}\u{d7}"
+    );
     svg(placed.bottom + 40.0, title, &described, &body)
 }
 
 /// A path coloured by an amount, stretch by stretch.
 #[must_use]
-pub fn path(title: &str, solid: Solid, all: &[Stretch], largest: f64, unit: &str) -> Markup {
+pub fn path(
+    language: Language,
+    title: &str,
+    solid: Solid,
+    all: &[Stretch],
+    largest: f64,
+    unit: &str,
+) -> Markup {
     let placed = solid.placed(0.04);
     let body = html! {
         (placed.edges(false))
@@ -207,10 +239,15 @@ pub fn path(title: &str, solid: Solid, all: &[Stretch], largest: f64, unit: &str
         @for stretch in all {
             path class={ "path v" (cells::shade(stretch.value, largest)) } d=(way(&placed, &stretch.places)) {}
         }
-        (placed.labels())
-        (key(placed.bottom + 34.0, largest, unit))
+        (placed.labels(language))
+        (key(language, placed.bottom + 34.0, largest, unit))
     };
-    let described = format!("{} stretches coloured from 0 to {} {unit}", all.len(), number(largest));
+    let (count, to) = (all.len(), language.number(largest));
+    let described = say!(
+        language,
+        "{count} stretches coloured from 0 to {to} {unit}",
+        "участков: {count}, цвет от 0 до {to} {unit}"
+    );
     svg(placed.bottom + 66.0, title, &described, &body)
 }
 
@@ -227,7 +264,7 @@ pub struct Way {
 
 /// Paths beside one another, the last on top.
 #[must_use]
-pub fn ways(title: &str, solid: Solid, all: &[Way]) -> Markup {
+pub fn ways(language: Language, title: &str, solid: Solid, all: &[Way]) -> Markup {
     let placed = solid.placed(0.08);
     let names: Vec<(&str, &str)> = all.iter().map(|way| (way.class.0, way.words.as_str())).collect();
     let body = html! {
@@ -237,7 +274,7 @@ pub fn ways(title: &str, solid: Solid, all: &[Way]) -> Markup {
         @for one in all {
             path class={ "path " (one.class.1) } d=(one.pieces.iter().map(|piece| way(&placed, piece)).collect::<String>()) {}
         }
-        (placed.labels())
+        (placed.labels(language))
     };
     let described: Vec<&str> = names.iter().map(|(_, words)| *words).collect();
     svg(placed.bottom + 40.0, title, &described.join(", "), &body)

@@ -5,7 +5,7 @@
 //! shows the path as a drawing with the same words.
 //!
 //! * [`scene`]: what is drawn: places with their displacements, thinned by a bound that the page prints.
-//! * [`words`]: every text of the page in both languages.
+//! * `words`: every text of the page in both languages.
 //! * `page`: the file.
 
 mod encode;
@@ -13,6 +13,6 @@ mod page;
 mod policy;
 pub mod scene;
 pub mod thinning;
-pub mod words;
+mod words;
 
 pub use page::{Figures, Kind, Viewer, line_of};

@@ -2,14 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use diagnostic::Language;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::encode::{DISPLACED_UM, PLACE_UM, encoded};
 use super::policy::policy;
 use super::scene::{AFTER, BEFORE, CAUSES, Place, Scene};
-use super::words::{Language, WORDS, say, word};
+use super::words::{WORDS, say, word};
 use crate::chart::solid::{Solid, Way, ways};
-use crate::text::{json_block, json_string, number, number_of_digits, shown};
+use crate::text::{Numbers, json_block, json_string, shown};
 
 const SCRIPT: &str = include_str!("viewer.js");
 const STYLE: &str = include_str!("viewer.css");
@@ -85,12 +86,12 @@ impl Viewer<'_> {
         let of_kind = |what: &str| format!("{what}_{kind}");
         let mut values: Vec<(&str, String)> =
             self.figures.names.iter().map(|(name, value)| (*name, shown(value))).collect();
-        values.extend(self.figures.numbers.iter().map(|(name, um)| (*name, number(*um))));
+        values.extend(self.figures.numbers.iter().map(|(name, um)| (*name, language.number(*um))));
         let t = |key: &str| html! { span data-t=(key) { (say(key, language, &values)) } };
         let encoded = encoded(&self.scene.places, CAUSES + self.scene.causes.len());
         let mut text = html! {
             (DOCTYPE)
-            html lang=(language.tag()) {
+            html lang=(language.name()) {
                 head {
                     meta charset="utf-8";
                     meta http-equiv="Content-Security-Policy" content=(policy(SCRIPT, STYLE));
@@ -310,8 +311,8 @@ impl Viewer<'_> {
                 (!place.unknown_after).then(|| displaced(place, AFTER))
             }));
         }
-        let said = say("still", language, &[("times", number_of_digits(magnification, 0))]);
-        html! { figure.still { (ways(&said, Solid { ranges }, &all)) figcaption.muted { (said) } } }
+        let said = say("still", language, &[("times", language.digits(magnification, 0))]);
+        html! { figure.still { (ways(language, &said, Solid { ranges }, &all)) figcaption.muted { (said) } } }
     }
 
     /// What the script reads, but for the places.
@@ -340,7 +341,7 @@ impl Viewer<'_> {
             ("schema", json_string("vpost.viewer/1")),
             ("version", json_string(env!("CARGO_PKG_VERSION"))),
             ("kind", json_string(self.kind.name())),
-            ("language", json_string(self.language.tag())),
+            ("language", json_string(self.language.name())),
             ("values", object(values)),
             ("magnification", plain(scene.magnification())),
             ("has_after", self.has_after.to_string()),

@@ -1,30 +1,12 @@
 //! Every text of the page, in both languages.
 
-/// A language of the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Language {
-    /// English.
-    English,
-    /// Russian.
-    Russian,
-}
-
-impl Language {
-    /// Its name for browsers.
-    #[must_use]
-    pub const fn tag(self) -> &'static str {
-        match self {
-            Self::English => "en",
-            Self::Russian => "ru",
-        }
-    }
-}
+use diagnostic::Language;
 
 /// Key, English, Russian. What stands in braces is filled in.
 pub(super) const WORDS: &[(&str, &str, &str)] = &[
-    ("title_check", "Check in space – {output}", "Проверка в пространстве – {output}"),
-    ("title_map", "Error map in space – {machine}", "Карта погрешностей в пространстве – {machine}"),
-    ("title_diagnosis", "Diagnosis in space – {file}", "Диагностика в пространстве – {file}"),
+    ("title_check", "Check in space – {output}", "Проверка в пространстве — {output}"),
+    ("title_map", "Error map in space – {machine}", "Карта погрешностей в пространстве — {machine}"),
+    ("title_diagnosis", "Diagnosis in space – {file}", "Диагностика в пространстве — {file}"),
     (
         "kind_check",
         "{output} on {machine}, by the machine model",
@@ -35,22 +17,22 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "head_check",
         "As posted the tool leaves its path by up to {before} µm, as corrected by up to {after} µm; allowed are {limit} µm",
-        "По исходной программе инструмент уходит от пути до {before} мкм, по исправленной – до {after} мкм; допустимо {limit} мкм",
+        "По исходной программе инструмент уходит от пути до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм",
     ),
     (
         "head_map",
         "The tool is up to {before} µm from where it is told to be; with the zero point moved, up to {after} µm",
-        "Инструмент стоит до {before} мкм от заданного места; со сдвинутым нулём – до {after} мкм",
+        "Инструмент стоит до {before} мкм от заданного места; со сдвинутым нулём — до {after} мкм",
     ),
     (
         "head_diagnosis",
         "{verdict}: the rows are {before} µm (RMS) from the model, with the causes that were found {after} µm",
-        "{verdict}: строки отходят от модели на {before} мкм (СКО), с найденными причинами – на {after} мкм",
+        "{verdict}: строки отходят от модели на {before} мкм (СКЗ), с найденными причинами — на {after} мкм",
     ),
     (
         "seen",
         "Displacements are drawn {times} their size; the largest is {largest} µm. Drag to turn, pick a place to see what makes its error.",
-        "Смещения показаны увеличенными: {times}; наибольшее – {largest} мкм. Поверните вид, выберите место – и видно, из чего его погрешность.",
+        "Смещения показаны увеличенными: {times}; наибольшее — {largest} мкм. Поверните вид, выберите место — и видно, из чего его погрешность.",
     ),
     (
         "seen_without",
@@ -63,7 +45,7 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "view",
         "The path in space. Arrow keys turn it, with Shift they move it, plus and minus zoom; comma and full stop go from block to block.",
-        "Путь в пространстве. Стрелки поворачивают, с Shift – сдвигают, плюс и минус – масштаб; запятая и точка – предыдущий и следующий кадр.",
+        "Путь в пространстве. Стрелки поворачивают, с Shift — сдвигают, плюс и минус — масштаб; запятая и точка — предыдущий и следующий кадр.",
     ),
     ("commanded_check", "programmed", "по программе"),
     ("real_check", "real, as posted", "на самом деле, исходная"),
@@ -118,13 +100,13 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "causes_how",
         "Switched off, a cause no longer displaces the real path. Numbers are of the place that is looked at, µm; a minus, and an empty bar, acts against the whole.",
-        "Выключенная причина больше не смещает действительный путь. Числа – для выбранного места, мкм; минус и пустая полоса – действует против целого.",
+        "Выключенная причина больше не смещает действительный путь. Числа — для выбранного места, мкм; минус и пустая полоса — действует против целого.",
     ),
     ("all", "All", "Все"),
     ("none", "None", "Ни одной"),
-    ("cause_squareness", "squareness {symbol}", "неперпендикулярность {symbol}"),
+    ("cause_squareness", "squareness {symbol}", "отклонение от перпендикулярности {symbol}"),
     ("cause_positioning", "positioning {symbol}", "позиционирование {symbol}"),
-    ("cause_straightness", "straightness of {symbol}", "непрямолинейность {symbol}"),
+    ("cause_straightness", "straightness of {symbol}", "отклонение от прямолинейности {symbol}"),
     ("cause_angles", "angles of {symbol}", "повороты {symbol}"),
     ("cause_reversal", "reversal of {symbol}", "реверс {symbol}"),
     ("cause_location", "where {symbol} lies", "положение оси {symbol}"),
@@ -134,23 +116,23 @@ pub(super) const WORDS: &[(&str, &str, &str)] = &[
     (
         "keys_how",
         "In the drawing: arrows turn, Shift and arrows move, + and − zoom, 1 2 3 4 are the views, 0 fits; comma and full stop go to the block before and behind, W to the largest displacement; space plays the program, M swings the error between nothing and its magnified size. A finger turns, two move and zoom.",
-        "На рисунке: стрелки поворачивают, Shift и стрелки сдвигают, + и − масштаб, 1 2 3 4 – виды, 0 – целиком; запятая и точка – кадр назад и вперёд, W – наибольшее смещение; пробел проигрывает программу, M качает погрешность от нуля до увеличенной. Один палец поворачивает, два сдвигают и меняют масштаб.",
+        "На рисунке: стрелки поворачивают, Shift и стрелки сдвигают, + и − масштаб, 1 2 3 4 — виды, 0 — целиком; запятая и точка — кадр назад и вперёд, W — наибольшее смещение; пробел проигрывает программу, M качает погрешность от нуля до увеличенной. Один палец поворачивает, два сдвигают и меняют масштаб.",
     ),
     (
         "thinned",
         "{drawn} of {of} places are drawn. Every place that was left out lies within {path} µm of what is drawn, its displacements within {displaced} µm of those between the places that are drawn; places that are drawn have their own numbers.",
-        "Нарисовано мест: {drawn} из {of}. Каждое пропущенное лежит не дальше {path} мкм от нарисованного, его смещения – не дальше {displaced} мкм от промежуточных; у нарисованных мест числа свои.",
+        "Нарисовано мест: {drawn} из {of}. Каждое пропущенное лежит не дальше {path} мкм от нарисованного, его смещения — не дальше {displaced} мкм от промежуточных; у нарисованных мест числа свои.",
     ),
     ("whole", "All {of} places are drawn.", "Нарисованы все места: {of}."),
     (
         "remainder",
         "A cause is what is missing when the machine model is evaluated without it. Since errors multiply, the causes do not quite add up to the whole: by {remainder} µm at most.",
-        "Причина – то, чего не хватает, если вычислить модель станка без неё. Погрешности перемножаются, поэтому сумма причин не совсем равна целому: разница до {remainder} мкм.",
+        "Причина — то, чего не хватает, если вычислить модель станка без неё. Погрешности перемножаются, поэтому сумма причин не совсем равна целому: разница до {remainder} мкм.",
     ),
     (
         "remainder_diagnosis",
         "Measured is the gap between the rows and the model, the measuring frame aligned; a cause is what it makes of the rows, the frame aligned once more. What the causes do not explain, and what aligning all of them at once does otherwise, is up to {remainder} µm in a row.",
-        "Измерено – это расхождение строк и модели после совмещения систем координат; причина – то, что она даёт в строках, тоже после совмещения. Необъяснённое, вместе с разницей от общего совмещения, – до {remainder} мкм в строке.",
+        "Измерено — это расхождение строк и модели после совмещения систем координат; причина — то, что она даёт в строках, тоже после совмещения. Необъяснённое, вместе с разницей от общего совмещения, — до {remainder} мкм в строке.",
     ),
     (
         "undivided",

@@ -23,7 +23,7 @@ const MOST: usize = 250_000;
 pub(super) struct ControlPoints {
     pub commands: Vec<Command>,
     /// What they are, in words.
-    pub what: String,
+    pub what: Text,
 }
 
 /// From the options.
@@ -84,15 +84,18 @@ fn over_the_volume(
         (0..grid.len()).flat_map(|place| directions.iter().map(move |d| (place, d))).map(command).collect();
     let axes = ["X", "Y", "Z"].iter().zip(grid.axes()).map(|(name, nodes)| {
         let range = nodes.range_mm();
-        format!("{name} {} to {} mm ({})", range.low, range.high, nodes.places_mm().len())
+        let (low, high, count) = (range.low, range.high, nodes.places_mm().len());
+        both!("{name} {low} to {high} mm ({count})", "{name} от {low} до {high} мм ({count})")
     });
+    let axes = Text::join(&axes.collect::<Vec<_>>(), ", ");
     let approach = match directions.len() {
-        1 => String::new(),
-        sides => format!(", each approached from all {sides} sides"),
+        1 => Text::EMPTY,
+        sides => both!(", each approached from all {sides} sides", ", подход к каждой со всех {sides} сторон"),
     };
-    let what = format!(
+    let what = both!(
         "{}{approach}\ntool vector {}, rotary axes {}",
-        axes.collect::<Vec<_>>().join(", "),
+        "{:#}{approach:#}\nвектор инструмента {}, поворотные оси {}",
+        axes,
         triple(&tool_mm, 3),
         triple(&rotary_rad.map(f64::to_degrees), 3)
     );
@@ -268,10 +271,13 @@ fn from_file(
         messages.report(&Report { source: None, diagnostics: vec![diagnostic] });
     }
     let commands: Vec<Command> = points.rows.into_iter().map(|(_, command)| command).collect();
-    let mut what = format!("from {}", printable(name));
+    let mut what = both!("from {}", "из {}", printable(name));
     // Half of every reversal value would go unseen, and nobody would know.
     if machine.model().depends_on_direction() && commands.iter().any(|c| c.direction.contains(&0)) {
-        what += ", where dir_x, dir_y, dir_z do not say: the mean of both directions, without lost motion";
+        what.push(&Text::pair(
+            ", where dir_x, dir_y, dir_z do not say: the mean of both directions, without lost motion",
+            ", где dir_x, dir_y, dir_z не указаны: среднее обоих направлений, без потери хода",
+        ));
     }
     Ok(ControlPoints { commands, what })
 }

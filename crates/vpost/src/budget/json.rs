@@ -19,7 +19,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
             let (name, size, unit) = study.deviation(item.deviation);
             let share = if budget.measured.rms_mm > 0.0 { item.rms_slope_mm / budget.measured.rms_mm } else { 0.0 };
             json!({
-                "name": name, "size": round(size, 6), "unit": unit,
+                "name": name, "size": round(size, 6), "unit": unit.english(),
                 "alone": criteria(study, &item.alone),
                 "without": criteria(study, &item.without),
                 "brings_um": um(budget.measured.largest_mm - item.without.largest_mm),
@@ -92,7 +92,7 @@ fn tolerances(study: &Study, target: &Target, set: &Tolerances) -> Value {
         .filter(|item| !target.keep[item.deviation])
         .map(|item| {
             let (name, _, unit) = study.deviation(item.deviation);
-            json!({ "name": name, "within": study.tolerance(set, item.deviation), "unit": unit })
+            json!({ "name": name, "within": study.tolerance(set, item.deviation), "unit": unit.english() })
         })
         .collect();
     json!({

@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Budget, shared: &Shared, messages: &Messages) -> R
     if let Some(path) = &arguments.json {
         file::write(path, &json::bytes(&study))?;
     }
-    file::print(text::page(&study).as_bytes())
+    file::print(text::page(&study, messages.language()).as_bytes())
 }
 
 fn target_mm(target_um: f64) -> Result<f64, Failure> {

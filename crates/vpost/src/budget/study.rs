@@ -128,13 +128,13 @@ impl Study {
     }
 
     /// Name, size in the unit that is printed, and that unit.
-    pub(super) fn deviation(&self, index: usize) -> (&str, f64, &'static str) {
+    pub(super) fn deviation(&self, index: usize) -> (&str, f64, Text) {
         let deviation = &self.machine.deviations()[index];
         let (size, unit) = match deviation.unit {
-            Unit::Length => (deviation.size * 1e3, "um"),
-            Unit::Angle => (deviation.size * 1e6, "urad"),
-            Unit::Parameter(name) => (deviation.size, name),
-            Unit::Whole => (deviation.size, "times as found"),
+            Unit::Length => (deviation.size * 1e3, Text::pair("um", "мкм")),
+            Unit::Angle => (deviation.size * 1e6, Text::pair("urad", "мкрад")),
+            Unit::Parameter(name) => (deviation.size, Text::pair(name, name)),
+            Unit::Whole => (deviation.size, Text::pair("times as found", "от найденного")),
         };
         (&deviation.name, size, unit)
     }

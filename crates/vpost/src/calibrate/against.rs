@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration::change::{by_function, compare};
-use diagnostic::both;
+use diagnostic::{Language, Text, both};
 use machine_model::{Range, Vector, Volume};
 use machine_profile::Profile;
 
@@ -11,10 +11,11 @@ use crate::message::Failure;
 use crate::{file, profile};
 
 use super::codes::question;
+use super::micro;
 use crate::number::short;
 
 /// Prints the comparison.
-pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
+pub(super) fn report(old: &Path, new: &Profile, language: Language) -> Result<(), Failure> {
     let name = file::name(old);
     let old = profile::load_mill(old)?.profile;
     let (a, b) = (old.volume(), new.volume());
@@ -40,8 +41,9 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
     })?;
     let at: Vec<String> = change.at_mm.iter().map(|v| short(*v, 3)).collect();
     let d = change.difference_mm * 1e3;
-    let mut text = format!(
+    let mut text = both!(
         "\nagainst {name}: errors differ by {:.2} um RMS, {:.2} um at 95 % of the points, at most {:.2} um at ({}) mm: x {:+.2} y {:+.2} z {:+.2} um; frames taken off\n",
+        "\nотносительно {name}: погрешности различаются на {:.2} мкм (СКЗ), {:.2} мкм в 95 % точек, не больше {:.2} мкм в ({}) мм: x {:+.2} y {:+.2} z {:+.2} мкм; без систем координат\n",
         change.rms_mm * 1e3,
         change.p95_mm * 1e3,
         change.largest_mm * 1e3,
@@ -51,45 +53,53 @@ pub(super) fn report(old: &Path, new: &Profile) -> Result<(), Failure> {
         d.z
     );
     let verdict = match (change.is_beyond_uncertainty(), change.uncertainty_mm) {
-        (Some(true), Some(u)) => format!(
+        (Some(true), Some(u)) => both!(
             "  the machine has changed: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
+            "  станок изменился: неопределённость обоих вместе ±{:.2} мкм (95 % точек)\n",
             u * 1e3
         ),
         (Some(false), Some(u)) => {
-            format!(
+            both!(
                 "  no change is shown: the two are uncertain of ±{:.2} um together (95 % of the points)\n",
+                "  изменений не видно: неопределённость обоих вместе ±{:.2} мкм (95 % точек)\n",
                 u * 1e3
             )
         }
-        _ => "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n".to_owned(),
+        _ => Text::pair(
+            "  not decided: a profile does not say `uncertainty_um` in `calibrated`\n",
+            "  не решено: в одном из профилей нет `uncertainty_um` в `calibrated`\n",
+        ),
     };
-    text.push_str(&verdict);
+    text.push(&verdict);
     if let (Some(true), Some(u)) = (change.is_beyond_uncertainty(), change.uncertainty_mm) {
-        text.push_str(&functions(&old, new, u, &volume));
+        text.push(&functions(&old, new, u, &volume));
     }
-    file::print(text.as_bytes())
+    file::print(text.in_language(language).as_bytes())
 }
 
 /// What changed, function by function: place and amount at the tables' nodes, and the reversal value.
 ///
 /// An angle counts by what it does over the longest side of the volume.
-fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume) -> String {
+fn functions(old: &Profile, new: &Profile, uncertainty_mm: f64, volume: &Volume) -> Text {
     let arm_mm = volume.0.iter().map(|range| range.high - range.low).fold(0.0, f64::max);
-    let mut text = String::new();
+    let mut text = Text::EMPTY;
     for change in by_function(&old.description, &new.description) {
         let name =
             format!("E{}{}", ["X", "Y", "Z", "A", "B", "C"][change.function], ["X", "Y", "Z"][change.axis]);
-        let (factor, unit, arm) = if change.function < 3 { (1e3, "um", 1.0) } else { (1e6, "urad", arm_mm) };
+        let (factor, unit) = micro(change.function < 3);
+        let arm = if change.function < 3 { 1.0 } else { arm_mm };
         if change.by.abs() * arm > 1.5 * uncertainty_mm {
-            text.push_str(&format!(
+            text.push(&both!(
                 "  {name} by {:+.2} {unit} at {} mm\n",
+                "  {name} на {:+.2} {unit:#} в {} мм\n",
                 change.by * factor,
                 short(change.at_mm, 3)
             ));
         }
         if change.reversal.abs() * arm > 1.5 * uncertainty_mm {
-            text.push_str(&format!(
+            text.push(&both!(
                 "  reversal value of {name} by {:+.2} {unit}\n",
+                "  величина реверса {name} на {:+.2} {unit:#}\n",
                 change.reversal * factor
             ));
         }

@@ -275,24 +275,23 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     let target = &arguments.target;
     let readings = Readings::read(&arguments.files, &target.ignore_column)?;
     let mut base = Base::new(arguments, shared, &readings)?;
-    let mut out = String::new();
+    let mut out = Text::EMPTY;
     let mut rotary = None;
     if readings.turn_something() {
         base.pivots(arguments, shared, &readings)?;
         let table = Table::new(&base, &readings, target, shared)?;
         let found = table.calibrate(&base, &readings)?;
-        // Writing to a String cannot fail.
-        let _ = rotary_report(&mut out, &found, &table.tests.what, &base.description);
+        out.push(&rotary_report(&found, &table.tests.what, &base.description));
         if let Some(path) = &arguments.after {
             let readings = Readings::read(std::slice::from_ref(path), &target.ignore_column)?;
             let after = Table::new(&base, &readings, target, shared)?.calibrate(&base, &readings)?;
-            let _ = before_and_after(&mut out, &found, &after);
+            out.push(&before_and_after(&found, &after));
         }
         rotary = Some(found);
     }
     let circles = circles(&base, &readings, target, shared)?;
     if let Some((found, _)) = &circles {
-        let _ = circle_report(&mut out, found);
+        out.push(&circle_report(found));
     }
     let temperatures: Vec<f64> = readings.temperatures_c().collect();
     let temperature_c =
@@ -304,7 +303,7 @@ pub(super) fn run(arguments: &Ballbar, shared: &Shared, messages: &Messages) -> 
     };
     let parts = [rotary.as_ref().map(|r| r.uncertainty_mm), circles.as_ref().map(|(c, _)| c.uncertainty_mm)];
     let found_mm = parts.into_iter().flatten().fold(0.0, units::math::hypot);
-    file::print(out.as_bytes())?;
+    file::print(out.in_language(messages.language()).as_bytes())?;
     if target.output.is_none() && target.against.is_none() {
         // What stays of a base is as uncertain as it says, which is asked where a profile is made.
         return show(base.profile.is_none().then_some(found_mm));
@@ -372,7 +371,7 @@ fn located(
         "measure it again, or leave it out; readings moved by a row look like this as well",
         "измерьте снова или исключите; так же выглядят показания со сдвигом на строку"
     );
-    readings.refuse(OUTLIER, place(*point), Text::english_only(message.as_str()), help)
+    readings.refuse(OUTLIER, place(*point), message.clone(), help)
 }
 
 fn refusal(error: &CalibrationError) -> Failure {
@@ -402,7 +401,7 @@ fn refusal(error: &CalibrationError) -> Failure {
     };
     Failure::Refused(vec![crate::message::Report {
         source: None,
-        diagnostics: vec![Diagnostic::error(code, Text::english_only(error.to_string())).help(help)],
+        diagnostics: vec![Diagnostic::error(code, error.text()).help(help)],
     }])
 }
 

@@ -1,19 +1,15 @@
 //! What `calibrate ballbar` prints.
 
-use std::fmt::{Result, Write};
-
 use calibration::linear_ballbar::CircleCalibration;
-use calibration::rotary_ballbar::{Found, RotaryCalibration, Test};
+use calibration::rotary_ballbar::{RotaryCalibration, Test};
 use calibration::rotary_sequence::{Sequence, approximation_mm, sequence};
+use diagnostic::{Text, both};
 use machine_model::{Axis, Description, Vector};
+
+use super::micro;
 
 /// The pairs of axes of the planes XY, ZX, YZ.
 pub(super) const SCALES: [&str; 3] = ["X-Y", "Z-X", "Y-Z"];
-
-/// Factor to what is printed, and its unit.
-fn unit(found: &Found) -> (f64, &'static str) {
-    if found.location.is_length { (1e3, "um") } else { (1e6, "urad") }
-}
 
 /// Where an A that carries C crosses it; `None` for other tables, for which no sequence was published.
 fn crossing(description: &Description) -> Option<Vector> {
@@ -23,140 +19,138 @@ fn crossing(description: &Description) -> Option<Vector> {
         .then(|| Vector::new(c.centre_mm.x, a.centre_mm.y, a.centre_mm.z))
 }
 
-pub(super) fn rotary_report(
-    out: &mut String,
-    found: &RotaryCalibration,
-    tests: &[Test],
-    description: &Description,
-) -> Result {
+pub(super) fn rotary_report(found: &RotaryCalibration, tests: &[Test], description: &Description) -> Text {
     let crossing = crossing(description);
     let published: Option<Sequence> = crossing.and_then(|at| sequence(tests, &at));
     let mut axes: Vec<String> = found.locations.iter().map(|f| f.location.axis.to_string()).collect();
     axes.dedup();
-    writeln!(
-        out,
-        "location errors of {}, {} readings, {:.3} um left (standard deviation)",
-        axes.join(" and "),
-        found.estimate.residuals.len(),
-        found.estimate.sigma * 1e3
-    )?;
+    let [axes, russian_axes] = [" and ", " и "].map(|and| axes.join(and));
+    let (readings, left_um) = (found.estimate.residuals.len(), found.estimate.sigma * 1e3);
+    let mut out = Text::new(
+        format!(
+            "location errors of {axes}, {readings} readings, {left_um:.3} um left (standard deviation)\n"
+        ),
+        format!(
+            "погрешности положения {russian_axes}, отсчётов {readings}, остаток {left_um:.3} мкм (стандартное отклонение)\n"
+        ),
+    );
     let based = found.locations.iter().any(|f| f.base != 0.0);
-    let head = |shown: bool, text: &'static str| if shown { text } else { "" };
-    writeln!(
-        out,
-        "          joint fit        95 %{}{}",
-        head(published.is_some(), "   in sequence"),
-        head(based, "        base")
-    )?;
+    let head = |shown: bool, text: Text| if shown { text } else { Text::EMPTY };
+    out.push(&both!(
+        "          joint fit        95 %{}{}\n",
+        "          уравнив.         95 %{:#}{:#}\n",
+        head(published.is_some(), Text::pair("   in sequence", "   по очереди ")),
+        head(based, Text::pair("        base", "       исх. "))
+    ));
     for (k, f) in found.locations.iter().enumerate() {
-        let (scale, unit) = unit(f);
-        write!(out, "  {}  {:>10.3} ± {:>8.3}", f.location.name(), f.value * scale, f.half_width_95 * scale)?;
+        let (scale, unit) = micro(f.location.is_length);
+        let mut row =
+            format!("  {}  {:>10.3} ± {:>8.3}", f.location.name(), f.value * scale, f.half_width_95 * scale);
         if let Some(by) = &published {
-            write!(out, " {:>10.3}", by.piges[k] * scale)?;
+            row.push_str(&format!(" {:>10.3}", by.piges[k] * scale));
         }
         if based {
-            write!(out, " {:>11.3}", f.base * scale)?;
+            row.push_str(&format!(" {:>11.3}", f.base * scale));
         }
-        writeln!(out, " {unit}")?;
+        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
     }
     for (k, name) in ["eX", "eY"].into_iter().enumerate() {
-        write!(
-            out,
-            "  {name}    {:>10.3} ± {:>8.3}",
-            found.cup_mm[k] * 1e3,
-            found.cup_half_width_95_mm[k] * 1e3
-        )?;
+        let (value, half) = (found.cup_mm[k] * 1e3, found.cup_half_width_95_mm[k] * 1e3);
+        let mut row = format!("  {name}    {value:>10.3} ± {half:>8.3}");
         if let Some(by) = &published {
-            write!(out, " {:>10.3}", by.cup_mm[k] * 1e3)?;
+            row.push_str(&format!(" {:>10.3}", by.cup_mm[k] * 1e3));
         }
-        writeln!(out, "{} um (tool ball against the spindle axis)", head(based, "            "))?;
+        if based {
+            row.push_str("            ");
+        }
+        out.push(&both!(
+            "{row} um (tool ball against the spindle axis)\n",
+            "{row} мкм (шарик инструмента относительно оси шпинделя)\n"
+        ));
     }
     if let Some(off) = crossing.and_then(|at| approximation_mm(tests, &at, found)) {
-        writeln!(
-            out,
-            "  the first-order formulas of the sequence leave the exact chain by up to {:.3} um",
+        out.push(&both!(
+            "  the first-order formulas of the sequence leave the exact chain by up to {:.3} um\n",
+            "  формулы первого порядка для этой очерёдности отходят от точной цепи до {:.3} мкм\n",
             off * 1e3
-        )?;
+        ));
     }
-    Ok(())
+    out
 }
 
 /// Table 4 of Zhang 2024: location errors before and after the compensation of the four positions.
-pub(super) fn before_and_after(
-    out: &mut String,
-    before: &RotaryCalibration,
-    after: &RotaryCalibration,
-) -> Result {
-    writeln!(out, "\n            before      after")?;
+pub(super) fn before_and_after(before: &RotaryCalibration, after: &RotaryCalibration) -> Text {
+    let mut out = Text::pair("\n            before      after\n", "\n                до      после\n");
     let mut largest = [0.0_f64; 2];
     for f in &before.locations {
         let Some(g) = after.locations.iter().find(|g| g.location == f.location) else { continue };
-        let (scale, unit) = unit(f);
-        writeln!(out, "  {}  {:>9.2}  {:>9.2} {unit}", f.location.name(), f.value * scale, g.value * scale)?;
+        let (scale, unit) = micro(f.location.is_length);
+        let row = format!("  {}  {:>9.2}  {:>9.2}", f.location.name(), f.value * scale, g.value * scale);
+        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
         if f.location.is_length {
             largest[0] = largest[0].max(f.value.abs() * scale);
             largest[1] = largest[1].max(g.value.abs() * scale);
         }
     }
-    writeln!(out, "  largest position error {:.1} -> {:.1} um", largest[0], largest[1])
+    out.push(&both!(
+        "  largest position error {:.1} -> {:.1} um\n",
+        "  наибольшая линейная погрешность {:.1} -> {:.1} мкм\n",
+        largest[0],
+        largest[1]
+    ));
+    out
 }
 
-pub(super) fn circle_report(out: &mut String, found: &CircleCalibration) -> Result {
-    writeln!(
-        out,
-        "circles, {} readings, {:.3} um left (standard deviation)",
+pub(super) fn circle_report(found: &CircleCalibration) -> Text {
+    let mut out = both!(
+        "circles, {} readings, {:.3} um left (standard deviation)\n",
+        "окружности, отсчётов {}, остаток {:.3} мкм (стандартное отклонение)\n",
         found.estimate.residuals.len(),
         found.estimate.sigma * 1e3
-    )?;
+    );
     let base = |value: f64, decimals: usize| match value {
-        0.0 => String::new(),
-        value => format!(" (base {value:.decimals$})"),
+        0.0 => Text::EMPTY,
+        value => both!(" (base {value:.decimals$})", " (исходный {value:.decimals$})"),
     };
     for (name, term) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
         if let Some(t) = term {
-            let before = base(t.base * 1e6, 2);
-            writeln!(
-                out,
-                "  {name}        {:>9.2} ± {:.2} urad{before}",
-                t.value * 1e6,
-                t.half_width_95 * 1e6
-            )?;
+            let (value, half, before) = (t.value * 1e6, t.half_width_95 * 1e6, base(t.base * 1e6, 2));
+            out.push(&both!(
+                "  {name}        {value:>9.2} ± {half:.2} urad{before}\n",
+                "  {name}        {value:>9.2} ± {half:.2} мкрад{before:#}\n"
+            ));
         }
     }
     for (name, term) in SCALES.into_iter().zip(found.mismatch) {
         if let Some(t) = term {
-            writeln!(
-                out,
-                "  scale {name}   {:>9.2} ± {:.2} um/m (one axis against the other: a bar sees no common scale)",
-                t.value * 1e6,
-                t.half_width_95 * 1e6
-            )?;
+            let (value, half) = (t.value * 1e6, t.half_width_95 * 1e6);
+            out.push(&both!(
+                "  scale {name}   {value:>9.2} ± {half:.2} um/m (one axis against the other: a bar sees no common scale)\n",
+                "  масшт. {name}  {value:>9.2} ± {half:.2} мкм/м (одна ось относительно другой: общего масштаба измеритель не видит)\n"
+            ));
         }
     }
     if let Some(sum) = found.closure {
-        writeln!(
-            out,
-            "  closure     {:>9.2} ± {:.2} um/m (the three must add up to 0)",
-            sum.value * 1e6,
-            sum.half_width_95 * 1e6
-        )?;
+        let (value, half) = (sum.value * 1e6, sum.half_width_95 * 1e6);
+        out.push(&both!(
+            "  closure     {value:>9.2} ± {half:.2} um/m (the three must add up to 0)\n",
+            "  сумма       {value:>9.2} ± {half:.2} мкм/м (три вместе должны дать 0)\n"
+        ));
     }
     for (axis, term) in Axis::ALL.iter().zip(found.backlash_mm) {
-        match term {
+        out.push(&match term {
             Some(t) => {
-                let before = base(t.base * 1e3, 2);
-                writeln!(
-                    out,
-                    "  backlash {axis}  {:>9.2} ± {:.2} um{before}",
-                    t.value * 1e3,
-                    t.half_width_95 * 1e3
-                )?;
+                let (value, half, before) = (t.value * 1e3, t.half_width_95 * 1e3, base(t.base * 1e3, 2));
+                both!(
+                    "  backlash {axis}  {value:>9.2} ± {half:.2} um{before}\n",
+                    "  люфт {axis}      {value:>9.2} ± {half:.2} мкм{before:#}\n"
+                )
             }
-            None => writeln!(
-                out,
-                "  backlash {axis}  not seen: no reading says the direction of {axis} both ways"
-            )?,
-        }
+            None => both!(
+                "  backlash {axis}  not seen: no reading says the direction of {axis} both ways\n",
+                "  люфт {axis}      не виден: нет отсчётов с направлением {axis} в обе стороны\n"
+            ),
+        });
     }
-    Ok(())
+    out
 }

@@ -1,7 +1,7 @@
 //! Numbers of the messages of `calibrate`.
 
 use calibration::CalibrationError;
-use diagnostic::{Code, Diagnostic, Text, both};
+use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 
 use crate::message::Failure;
 
@@ -65,7 +65,7 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
             ),
         ),
     };
-    let diagnostic = Diagnostic::error(code, Text::english_only(error.to_string())).help(help);
+    let diagnostic = Diagnostic::error(code, error.text()).help(help);
     if file.is_empty() {
         return Failure::Refused(vec![crate::message::Report {
             source: None,

@@ -1,12 +1,11 @@
 //! `vpost calibrate interferometer`.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibration::functions::{self, refined};
 use calibration::iso230_2;
 use calibration::measured_line::{AxisOnNodes, Gauge, Zero};
-use diagnostic::{Diagnostic, both};
+use diagnostic::{Diagnostic, Text, both};
 use machine_model::{Axis, Interpolation, Six, Squareness, Table};
 use machine_profile::Calibrated;
 use measurement_files::series::{Origin, Series};
@@ -21,7 +20,7 @@ use super::options::{Between, Directions, Interferometer, Reference, Slopes};
 use super::output::{Output, warn};
 use super::page::{Positions, Read};
 use super::squareness::{Asked, Functions};
-use super::{iso_report, plausibility, sources, squareness};
+use super::{iso_report, micro, plausibility, sources, squareness};
 use crate::number::short;
 
 /// `vpost calibrate interferometer`
@@ -37,7 +36,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
             both!("add `-o PROFILE.toml`", "добавьте `-o PROFILE.toml`"),
         ));
     }
-    let mut out = String::new();
+    let mut out = Text::EMPTY;
     let mut axes: [Functions; 3] = Default::default();
     let mut found = Vec::new();
     for series in &all {
@@ -51,7 +50,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
             plausibility::copies(series, &runs, &function, messages)?;
             if function.scatter.is_some() && series.function == series.axis.direction() {
                 let e = iso230_2::evaluate(&runs, arguments.u_um_per_m * 1e-6).map_err(|e| fail(&e))?;
-                out.push_str(&iso_report::lines(&series.name(), &e, 1e3, "um"));
+                out.push(&iso_report::lines(&series.name(), &e, 1e3, &Text::pair("um", "мкм")));
                 plausibility::conditions_of_the_standard(&series.name(), &e, messages);
                 evaluation = Some(e);
             }
@@ -72,7 +71,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     summary(&mut out, &axes);
     if !writes {
         show(mean_temperature(&all), None)?;
-        return file::print(out.as_bytes());
+        return file::print(out.in_language(messages.language()).as_bytes());
     }
     let temperature_c = mean_temperature(&all);
     let mut output = Output::start(&arguments.target, shared)?;
@@ -80,7 +79,7 @@ pub(super) fn run(arguments: &Interferometer, shared: &Shared, messages: &Messag
     to_the_line(arguments, &chain, &mut all)?;
     let session = Session::new(arguments, shared, &output, &chain, &all)?;
     let uncertainty_mm = change(arguments, &mut output, &session, &all, &asked, &mut out, messages)?;
-    file::print(out.as_bytes())?;
+    file::print(out.in_language(messages.language()).as_bytes())?;
     if arguments.interpolation == Between::Monotone {
         output.text.set_text(&["interpolation"], "monotone");
     }
@@ -132,7 +131,7 @@ fn change(
     session: &Session,
     all: &[Series],
     asked: &Asked,
-    out: &mut String,
+    out: &mut Text,
     messages: &Messages,
 ) -> Result<Option<f64>, Failure> {
     let temperature_c = arguments.target.temperature;
@@ -179,9 +178,16 @@ fn change(
         // Half a nanoradian is what is written.
         if asked.rad[k].is_some() || (found[k] - values(before)[k]).abs() > 5e-10 {
             output.text.set_number(&["squareness", &format!("{name}_urad")], found[k] * 1e6, 3);
-            let why = if asked.rad[k].is_some() { "was read" } else { "is in the base" };
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "{name}  {:.3} urad: the angle between the lines {why}", found[k] * 1e6);
+            let why = if asked.rad[k].is_some() {
+                Text::pair("was read", "измерен")
+            } else {
+                Text::pair("is in the base", "взят из исходного профиля")
+            };
+            out.push(&both!(
+                "{name}  {:.3} urad: the angle between the lines {why}\n",
+                "{name}  {:.3} мкрад: угол между линиями {why:#}\n",
+                found[k] * 1e6
+            ));
         }
     }
     if !asked.is_given() && session.is_new() {
@@ -202,31 +208,37 @@ fn change(
 }
 
 /// What the set-up hides, and what was taken for it.
-fn zeros(out: &mut String, session: &Session, on_base: &[Axis], keep_slopes: bool) {
-    let slopes = if keep_slopes { "" } else { ", no slope across its axis" };
+fn zeros(out: &mut Text, session: &Session, on_base: &[Axis], keep_slopes: bool) {
+    let slopes = if keep_slopes {
+        Text::EMPTY
+    } else {
+        Text::pair(", no slope across its axis", ", без наклона поперёк оси")
+    };
     let place = |axis: &Axis| {
         let k = axis.direction();
         format!("{axis} {}", short(session.lines[k].at_mm[k], 3))
     };
     let places: Vec<String> = on_base.iter().map(place).collect();
-    // Writing to a String cannot fail.
-    let _ = writeln!(
-        out,
-        "by definition the change is 0 in length on average{slopes}, and in angle at {}: the instrument's set-up hides it",
-        places.join(", ")
-    );
+    let places = places.join(", ");
+    out.push(&both!(
+        "by definition the change is 0 in length on average{slopes}, and in angle at {places}: the instrument's set-up hides it\n",
+        "по определению изменение равно 0 по длине в среднем{slopes:#} и по углу в {places}: его скрывает установка прибора\n"
+    ));
 }
 
 /// What changed against the base.
-fn changed_lines(out: &mut String, axis: Axis, change: &Functions) {
+fn changed_lines(out: &mut Text, axis: Axis, change: &Functions) {
     for (f, function) in change.iter().enumerate() {
         let Some(function) = function else { continue };
-        let (scale, unit) = if f < 3 { (1e3, "um") } else { (1e6, "urad") };
+        let (scale, unit) = micro(f < 3);
         let values = || function.directions.iter().flatten().chain([&function.mean]).flatten();
         let low = values().copied().fold(f64::INFINITY, f64::min) * scale;
         let high = values().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "E{}{axis}  {low:.3} … {high:.3} {unit} against the base", Axis::ALL[f]);
+        out.push(&both!(
+            "E{}{axis}  {low:.3} … {high:.3} {unit} against the base\n",
+            "E{}{axis}  {low:.3} … {high:.3} {unit:#} относительно исходного профиля\n",
+            Axis::ALL[f]
+        ));
     }
 }
 
@@ -360,24 +372,28 @@ fn write_line(
     }
 }
 
-fn summary(out: &mut String, axes: &[Functions; 3]) {
+fn summary(out: &mut Text, axes: &[Functions; 3]) {
     for (axis, functions) in axes.iter().enumerate() {
         for (f, function) in functions.iter().enumerate() {
             let Some(function) = function else { continue };
-            let (scale, unit) = if f < 3 { (1e3, "um") } else { (1e6, "urad") };
+            let (scale, unit) = micro(f < 3);
             let low = function.mean.iter().copied().fold(f64::INFINITY, f64::min) * scale;
             let high = function.mean.iter().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
-            let both = if function.directions.is_some() { ", both directions" } else { "" };
-            let scatter =
-                function.scatter.map_or_else(String::new, |s| format!(", scatter {:.3} {unit}", s * scale));
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                out,
-                "E{}{}  {low:.3} … {high:.3} {unit}, {} targets{both}{scatter}",
+            let directions = if function.directions.is_some() {
+                Text::pair(", both directions", ", оба направления")
+            } else {
+                Text::EMPTY
+            };
+            let scatter = function.scatter.map_or(Text::EMPTY, |s| {
+                both!(", scatter {:.3} {unit}", ", разброс {:.3} {unit:#}", s * scale)
+            });
+            out.push(&both!(
+                "E{}{}  {low:.3} … {high:.3} {unit}, {} targets{directions}{scatter}\n",
+                "E{}{}  {low:.3} … {high:.3} {unit:#}, целей {}{directions:#}{scatter:#}\n",
                 Axis::ALL[f],
                 Axis::ALL[axis],
                 function.positions_mm.len()
-            );
+            ));
         }
     }
 }

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use diagnostic::both;
+use diagnostic::{Text, both};
 
 use crate::arguments::Shared;
 use crate::message::{Failure, Messages};
@@ -93,4 +93,9 @@ pub(crate) fn run(arguments: &Calibrate, shared: &Shared, messages: &Messages) -
         CalibrateCommand::RTest(a) => rtest::run(a, shared, messages),
         CalibrateCommand::Turning(a) => turning::run(a, shared, messages),
     }
+}
+
+/// Factor from mm or rad to what is printed, and its unit.
+fn micro(is_length: bool) -> (f64, Text) {
+    if is_length { (1e3, Text::pair("um", "мкм")) } else { (1e6, Text::pair("urad", "мкрад")) }
 }

@@ -355,7 +355,7 @@ impl Output {
     pub(super) fn write(&self, target: &Target, messages: &Messages) -> Result<(), Failure> {
         let profile = self.check()?;
         if let Some(old) = &target.against {
-            super::against::report(old, &profile)?;
+            super::against::report(old, &profile, messages.language())?;
         }
         let Some(path) = &target.output else { return Ok(()) };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(&self.folder);

@@ -1,12 +1,11 @@
 //! `vpost calibrate tracker`.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibration::tracker::{Frame, TrackerCalibration, TrackerMachine, Verdict, calibrate, machine};
 use calibration::{CalibrationError, MeanTraverse, Noise, Point, PointReading, Reading, SetUp};
 use clap::{Args, ValueEnum};
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, Vector};
 use machine_profile::Calibrated;
 use measurement_files::{Row, Sheet};
@@ -160,12 +159,13 @@ pub(super) fn run(arguments: &Tracker, shared: &Shared, messages: &Messages) -> 
     };
     let found = calibrate(traverses, frame).map_err(|error| failure("", &[], &error))?;
     let Some(output) = &mut output else {
-        file::print(report(&found, None, arguments)?.as_bytes())?;
+        file::print(report(&found, None, arguments)?.in_language(messages.language()).as_bytes())?;
         return judge_chords(&found, shared, messages);
     };
     let base = output.measured_from(&arguments.target)?;
     let changed = machine(&points, &base, &found, frame).map_err(|error| refused(&sheets, &error))?;
-    file::print(report(&found, Some(&changed), arguments)?.as_bytes())?;
+    let text = report(&found, Some(&changed), arguments)?;
+    file::print(text.in_language(messages.language()).as_bytes())?;
     judge(&changed, base.is_known, messages)?;
     judge_chords(&found, shared, messages)?;
     if arguments.target.output.is_none() && arguments.target.against.is_none() {
@@ -200,7 +200,7 @@ fn refused(sheets: &[Sheet], error: &CalibrationError) -> Failure {
             .refuse(
                 OUTLIER,
                 "x_mm",
-                Text::english_only(error.to_string()),
+                error.text(),
                 both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
             )
             .into(),
@@ -347,19 +347,7 @@ fn report(
     found: &TrackerCalibration,
     changed: Option<&TrackerMachine>,
     arguments: &Tracker,
-) -> Result<String, Failure> {
-    let mut out = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_report(&mut out, found, changed, arguments)?;
-    Ok(out)
-}
-
-fn write_report(
-    out: &mut String,
-    found: &TrackerCalibration,
-    changed: Option<&TrackerMachine>,
-    arguments: &Tracker,
-) -> Result<std::fmt::Result, Failure> {
+) -> Result<Text, Failure> {
     let k = arguments.interval;
     let (Some(g), Some(r01)) = (found.directions(k), found.offset_mm(k)) else {
         return Err(question(
@@ -370,115 +358,168 @@ fn write_report(
             ),
         ));
     };
-    let show = |v: f64| if arguments.as_published { v.abs() } else { v };
-    let text = |out: &mut String| -> std::fmt::Result {
-        for (axis, traverse) in found.traverses.iter().enumerate() {
-            let letter = Axis::ALL[axis].letter();
-            let (first, last) = (&traverse.nodes[0], &traverse.nodes[traverse.nodes.len() - 1]);
-            let from = match traverse.noise {
-                Noise::Repeats(free) => format!("repeats, {free} degrees of freedom"),
-                Noise::Given => "as given".to_owned(),
-                Noise::Roughness => "no repeats: from the roughness of the line, an upper bound".to_owned(),
-            };
-            let s = traverse.scatter_mm * 1e3;
-            writeln!(
-                out,
-                "traverse {letter}   {} … {} mm, {} nodes; scatter x {:.2} y {:.2} z {:.2} um ({from})",
-                short(first.commanded_mm, 3),
-                short(last.commanded_mm, 3),
-                traverse.nodes.len(),
-                s.x,
-                s.y,
-                s.z
-            )?;
-            if let Some(reversal) = traverse.reversal_mm {
-                let r = reversal * 1e3;
-                writeln!(
-                    out,
-                    "  reversal   x {:.2} y {:.2} z {:.2} um (from below minus from above)",
-                    r.x, r.y, r.z
-                )?;
-            }
-        }
-        let signs = if arguments.as_published { ", signs left out as in the publication" } else { "" };
-        writeln!(out, "\ninterval {k}   G, columns X Y Z{signs}")?;
-        for row in 0..3 {
-            writeln!(
-                out,
-                "  {:>11.7} {:>11.7} {:>11.7}",
-                show(g[(row, 0)]),
-                show(g[(row, 1)]),
-                show(g[(row, 2)])
-            )?;
-        }
-        writeln!(out, "  r01        {:.6} {:.6} {:.6} mm", r01.x, r01.y, r01.z)?;
-        let factor = found.far_corner.coverage_factor;
-        writeln!(out, "\nISO 230-1, lines through the common point; 95 %")?;
-        for (axis, line) in found.lines.iter().enumerate() {
-            let letter = Axis::ALL[axis].letter();
-            writeln!(
-                out,
-                "  scale {letter}    {:+.1} ± {:.1} um/m",
-                (line.slope.norm() - 1.0) * 1e6,
-                factor * line.uncertainty[axis] * 1e6
-            )?;
-        }
-        let s = found.squareness;
-        let angles = [("EC0Y", s.ec0y_rad), ("EB0Z", s.eb0z_rad), ("EA0Z", s.ea0z_rad)];
-        for ((name, angle), u) in angles.into_iter().zip(found.squareness_uncertainty_rad) {
-            writeln!(out, "  {name}       {:+.1} ± {:.1} urad", angle * 1e6, factor * u * 1e6)?;
-        }
-        if let Some(changed) = changed {
-            write_machine(out, changed)?;
-        }
-        writeln!(out, "  not seen   EA., EB., EC. of every axis: a tracker follows a point, not a carriage")?;
-        let far = &found.far_corner;
-        let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
-        writeln!(out, "\nfar corner ({corner}) mm: deviation {:.1} um", far.deviation_mm * 1e3)?;
-        writeln!(
-            out,
-            "  known to ±{:.1} um where positions add (engines rigid-body, tracker)",
-            far.positions_u95_mm * 1e3
-        )?;
-        writeln!(
-            out,
-            "  known to ±{:.1} um where one chord of {} mm is carried there (cosines, G, r01; tangential engines)",
-            far.chord_u95_mm * 1e3,
-            short(far.chord_mm, 3)
-        )
+    let mut out = Text::EMPTY;
+    for (axis, traverse) in found.traverses.iter().enumerate() {
+        out.push(&of_traverse(axis, traverse));
+    }
+    let signs = if arguments.as_published {
+        Text::pair(", signs left out as in the publication", ", без знаков, как в публикации")
+    } else {
+        Text::EMPTY
     };
-    Ok(text(out))
+    out.push(&both!(
+        "\ninterval {k}   G, columns X Y Z{signs}\n",
+        "\nинтервал {k}   G, столбцы X Y Z{signs:#}\n"
+    ));
+    let show = |v: f64| if arguments.as_published { v.abs() } else { v };
+    for row in 0..3 {
+        let [x, y, z] = [0, 1, 2].map(|column| show(g[(row, column)]));
+        out.push(&Text::same(format!("  {x:>11.7} {y:>11.7} {z:>11.7}\n")));
+    }
+    out.push(&both!(
+        "  r01        {:.6} {:.6} {:.6} mm\n",
+        "  r01        {:.6} {:.6} {:.6} мм\n",
+        r01.x,
+        r01.y,
+        r01.z
+    ));
+    let factor = found.far_corner.coverage_factor;
+    out.push(&Text::pair(
+        "\nISO 230-1, lines through the common point; 95 %\n",
+        "\nISO 230-1, линии через общую точку; 95 %\n",
+    ));
+    for (axis, line) in found.lines.iter().enumerate() {
+        let letter = Axis::ALL[axis].letter();
+        let (scale, half) = ((line.slope.norm() - 1.0) * 1e6, factor * line.uncertainty[axis] * 1e6);
+        out.push(&both!(
+            "  scale {letter}    {scale:+.1} ± {half:.1} um/m\n",
+            "  масштаб {letter}  {scale:+.1} ± {half:.1} мкм/м\n"
+        ));
+    }
+    let s = found.squareness;
+    let angles = [("EC0Y", s.ec0y_rad), ("EB0Z", s.eb0z_rad), ("EA0Z", s.ea0z_rad)];
+    for ((name, angle), u) in angles.into_iter().zip(found.squareness_uncertainty_rad) {
+        let (angle, half) = (angle * 1e6, factor * u * 1e6);
+        out.push(&both!(
+            "  {name}       {angle:+.1} ± {half:.1} urad\n",
+            "  {name}       {angle:+.1} ± {half:.1} мкрад\n"
+        ));
+    }
+    if let Some(changed) = changed {
+        out.push(&of_machine(changed));
+    }
+    out.push(&Text::pair(
+        "  not seen   EA., EB., EC. of every axis: a tracker follows a point, not a carriage\n",
+        "  не видны   EA., EB., EC. каждой оси: трекер следит за точкой, а не за кареткой\n",
+    ));
+    let far = &found.far_corner;
+    let corner = far.corner_mm.iter().map(|v| short(*v, 3)).collect::<Vec<_>>().join(", ");
+    out.push(&both!(
+        "\nfar corner ({corner}) mm: deviation {:.1} um\n",
+        "\nдальний угол ({corner}) мм: отклонение {:.1} мкм\n",
+        far.deviation_mm * 1e3
+    ));
+    out.push(&both!(
+        "  known to ±{:.1} um where positions add (engines rigid-body, tracker)\n",
+        "  известно с точностью ±{:.1} мкм, если складывать положения (методы rigid-body, tracker)\n",
+        far.positions_u95_mm * 1e3
+    ));
+    out.push(&both!(
+        "  known to ±{:.1} um where one chord of {} mm is carried there (cosines, G, r01; tangential engines)\n",
+        "  известно с точностью ±{:.1} мкм, если продолжать туда одну хорду {} мм (косинусы, G, r01; методы tangential)\n",
+        far.chord_u95_mm * 1e3,
+        short(far.chord_mm, 3)
+    ));
+    Ok(out)
 }
 
-fn write_machine(out: &mut String, changed: &TrackerMachine) -> std::fmt::Result {
-    writeln!(out, "\nmachine (X along its line, Y in its plane), tables without the angles above")?;
+fn of_traverse(axis: usize, traverse: &MeanTraverse) -> Text {
+    let letter = Axis::ALL[axis].letter();
+    let (first, last) = (&traverse.nodes[0], &traverse.nodes[traverse.nodes.len() - 1]);
+    let from = match traverse.noise {
+        Noise::Repeats(free) => {
+            both!("repeats, {free} degrees of freedom", "по повторам, степеней свободы {free}")
+        }
+        Noise::Given => Text::pair("as given", "как задано"),
+        Noise::Roughness => Text::pair(
+            "no repeats: from the roughness of the line, an upper bound",
+            "повторов нет: по неровности линии, оценка сверху",
+        ),
+    };
+    let s = traverse.scatter_mm * 1e3;
+    let mut out = both!(
+        "traverse {letter}   {} … {} mm, {} nodes; scatter x {:.2} y {:.2} z {:.2} um ({from})\n",
+        "проход {letter}     {} … {} мм, узлов {}; разброс x {:.2} y {:.2} z {:.2} мкм ({from:#})\n",
+        short(first.commanded_mm, 3),
+        short(last.commanded_mm, 3),
+        traverse.nodes.len(),
+        s.x,
+        s.y,
+        s.z
+    );
+    if let Some(reversal) = traverse.reversal_mm {
+        let r = reversal * 1e3;
+        out.push(&both!(
+            "  reversal   x {:.2} y {:.2} z {:.2} um (from below minus from above)\n",
+            "  реверс     x {:.2} y {:.2} z {:.2} мкм (снизу минус сверху)\n",
+            r.x,
+            r.y,
+            r.z
+        ));
+    }
+    out
+}
+
+fn of_machine(changed: &TrackerMachine) -> Text {
+    let mut out = Text::pair(
+        "\nmachine (X along its line, Y in its plane), tables without the angles above\n",
+        "\nстанок (X вдоль своей линии, Y в своей плоскости), таблицы без углов, названных выше\n",
+    );
     for (axis, own) in changed.axes.iter().enumerate() {
         let letter = Axis::ALL[axis].letter();
         for direction in 0..3 {
             let values = || own.errors.iter().map(|row| row[direction] * 1e3);
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            writeln!(out, "  E{}{letter}        {low:.1} … {high:.1} um", Axis::ALL[direction])?;
+            let name = Axis::ALL[direction];
+            out.push(&both!(
+                "  E{name}{letter}        {low:.1} … {high:.1} um\n",
+                "  E{name}{letter}        {low:.1} … {high:.1} мкм\n"
+            ));
         }
         if let Some((value, half)) = changed.play_mm[axis] {
-            writeln!(out, "  play {letter}     {:.2} ± {:.2} um", value * 1e3, half * 1e3)?;
+            let (value, half) = (value * 1e3, half * 1e3);
+            out.push(&both!(
+                "  play {letter}     {value:.2} ± {half:.2} um\n",
+                "  люфт {letter}     {value:.2} ± {half:.2} мкм\n"
+            ));
         }
     }
     if changed.left_out > 0 {
-        writeln!(out, "  {} readings lie outside the base's volume and were left out", changed.left_out)?;
+        out.push(&both!(
+            "  {} readings lie outside the base's volume and were left out\n",
+            "  отсчётов вне объёма исходного профиля: {}, они не использованы\n",
+            changed.left_out
+        ));
     }
     if let [Some(SetUp::Frame(motion))] = changed.setups.as_slice() {
         let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
-        writeln!(
-            out,
-            "  set-up     shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad of the instrument",
-            t.x, t.y, t.z, r.x, r.y, r.z
-        )?;
+        out.push(&both!(
+            "  set-up     shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad of the instrument\n",
+            "  установка  сдвиг {:.4} {:.4} {:.4} мм, поворот {:.1} {:.1} {:.1} мкрад прибора\n",
+            t.x,
+            t.y,
+            t.z,
+            r.x,
+            r.y,
+            r.z
+        ));
     }
-    writeln!(
-        out,
-        "  field      known to ±{:.2} um at 95 % of the points of the volume, frames taken off; deviations found {:.2} um",
+    out.push(&both!(
+        "  field      known to ±{:.2} um at 95 % of the points of the volume, frames taken off; deviations found {:.2} um\n",
+        "  поле       известно с точностью ±{:.2} мкм в 95 % точек объёма, без систем координат; найденные отклонения {:.2} мкм\n",
         changed.field_u95_mm * 1e3,
         changed.field_p95_mm * 1e3
-    )
+    ));
+    out
 }

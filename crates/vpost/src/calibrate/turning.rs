@@ -1,6 +1,5 @@
 //! `vpost calibrate turning`.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use calibration::CalibrationError;
@@ -207,7 +206,7 @@ impl Parts {
             if let Some(row) = self.sheets[sheet].row(line) {
                 let help =
                     both!("measure it again, or take the row out", "измерьте снова или уберите строку");
-                return row.refuse(OUTLIER, "d_um", Text::english_only(error.to_string()), help).into();
+                return row.refuse(OUTLIER, "d_um", error.text(), help).into();
             }
         }
         failure("", &[], error)
@@ -294,7 +293,8 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
     let holdout = holdout.map_err(|error| parts.refused(&error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
-    file::print(report(&found, holdout.as_ref(), &base, &parts, timed).as_bytes())?;
+    let text = report(&found, holdout.as_ref(), &base, &parts, timed);
+    file::print(text.in_language(messages.language()).as_bytes())?;
     if let Some(path) = &arguments.json {
         let mut text = serde_json::to_string_pretty(&json(&found, holdout.as_ref(), &base, &parts, trained))
             .expect("plain values always serialise");
@@ -402,69 +402,83 @@ fn report(
     base: &TurningBase,
     parts: &Parts,
     timed: bool,
-) -> String {
-    let mut out = String::new();
-    let mut line = |text: std::fmt::Arguments<'_>| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{text}");
-    };
-    line(format_args!(
-        "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}",
+) -> Text {
+    let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
+    let mut out = both!(
+        "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
+        "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {:#}\n",
         found.noise_mm * 1e3,
-        match found.shared_mm {
-            Some(shared_mm) => format!("by {:.3} um beyond that", shared_mm * 1e3),
-            None => "are too few to tell by how much they differ".to_owned(),
+        match shared {
+            Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
+            None => Text::pair(
+                "are too few to tell by how much they differ",
+                "неизвестно: их слишком мало",
+            ),
         }
-    ));
-    let mut term = |own: &FoundTerm| {
-        let (name, before, scale) = named(own.term, base);
-        let said = match (own.is_significant, own.term.is_geometry()) {
-            (false, _) => "not significant, not written",
-            (true, true) => "written",
-            (true, false) => "in the report only",
-        };
-        line(format_args!(
-            "  {:<10} {name} {:.3} ± {:.3}, {said}",
-            own.term.name(),
-            (before + own.value) * scale,
-            own.u.half_width_95() * scale
-        ));
-    };
+    );
     for own in found.terms.iter().chain(&found.not_there) {
-        term(own);
-    }
-    line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
-    for [a, b] in &found.not_told_apart {
-        let help = match (*a, *b) {
-            ("growth", "wear") | ("wear", "growth") if !timed => ": add the column time_s",
-            ("growth", "wear") | ("wear", "growth") => {
-                ": measure a second part with a new edge while warm, or cut the first size again when warm"
-            }
-            (_, "what else differs from part to part") => ": measure a further part",
-            _ => "",
+        let (key, before, scale) = named(own.term, base);
+        let said = match (own.is_significant, own.term.is_geometry()) {
+            (false, _) => Text::pair("not significant, not written", "незначимо, не записано"),
+            (true, true) => Text::pair("written", "записано"),
+            (true, false) => Text::pair("in the report only", "только в отчёте"),
         };
-        line(format_args!("  {a} and {b} cannot be told apart by these parts{help}"));
+        let (value, half) = ((before + own.value) * scale, own.u.half_width_95() * scale);
+        let name = own.term.words();
+        out.push(&both!(
+            "  {name:<10} {key} {value:.3} ± {half:.3}, {said}\n",
+            "  {name:<#10} {key} {value:.3} ± {half:.3}, {said:#}\n"
+        ));
+    }
+    out.push(&both!(
+        "  level of the F tests: {} %; intervals are 95 %\n",
+        "  уровень F-критериев: {} %; интервалы 95-процентные\n",
+        LEVEL * 100.0
+    ));
+    for [a, b] in &found.not_told_apart {
+        let help = match (a.english(), b.english()) {
+            ("growth", "wear") | ("wear", "growth") if !timed => {
+                Text::pair(": add the column time_s", "; добавьте столбец time_s")
+            }
+            ("growth", "wear") | ("wear", "growth") => Text::pair(
+                ": measure a second part with a new edge while warm, or cut the first size again when warm",
+                "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
+            ),
+            (_, "what else differs from part to part") => {
+                Text::pair(": measure a further part", "; измерьте ещё один образец")
+            }
+            _ => Text::EMPTY,
+        };
+        out.push(&both!(
+            "  {a} and {b} cannot be told apart by these parts{help}\n",
+            "  по этим образцам не различить {a:#} и {b:#}{help:#}\n"
+        ));
     }
     for offset in &found.offsets {
         let interval = offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
-        line(format_args!(
-            "  size of {}: {:.3}{interval} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
-            owner(offset, parts),
-            offset.radius_mm * 1e3,
-            -2.0 * offset.radius_mm
+        let (owner, radius_um) = (owner(offset, parts), offset.radius_mm * 1e3);
+        let wear_mm = -2.0 * offset.radius_mm;
+        out.push(&both!(
+            "  size of {owner}: {radius_um:.3}{interval} um on the radius; with this profile enter {wear_mm:.4} mm as wear of X on the diameter\n",
+            "  размер {owner}: {radius_um:.3}{interval} мкм на радиус; с этим профилем введите износ по X {wear_mm:.4} мм на диаметр\n"
         ));
     }
     if found.unseen_blunder_mm > 0.0 {
-        line(format_args!(
-            "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it",
+        out.push(&both!(
+            "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it\n",
+            "  мог пройти один отсчёт с ошибкой меньше {:.1} мкм: его показали бы другие места или образцы\n",
             found.unseen_blunder_mm * 1e3
         ));
     }
     let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-    line(format_args!("fitted {before:.3} -> {after:.3} um RMS on the diameter"));
+    out.push(&both!(
+        "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
+        "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
+    ));
     if let Some(judged) = holdout {
-        line(format_args!(
-            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)",
+        out.push(&both!(
+            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)\n",
+            "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (диаметров {}, каждый образец по своему размеру)\n",
             judged.rms_before_mm * 1e3,
             judged.rms_after_mm * 1e3,
             judged.max_after_mm * 1e3,
@@ -516,7 +530,7 @@ fn json(
         "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
         "covariance": covariance,
         "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
-        "not_told_apart": found.not_told_apart,
+        "not_told_apart": found.not_told_apart.iter().map(|pair| pair.each_ref().map(Text::english)).collect::<Vec<_>>(),
         "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
     });
     if let Some(judged) = holdout {

@@ -1,13 +1,12 @@
 //! `vpost calibrate volumetric`.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibration::volumetric::{Options, VolumetricCalibration, calibrate};
 use calibration::{CalibrationError, Point, PointReading, SetUp};
 use clap::Args;
-use diagnostic::{Diagnostic, Text, both};
+use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Vector};
 use machine_profile::Calibrated;
 use measurement_files::{Row, Sheet};
@@ -18,6 +17,7 @@ use crate::file;
 use crate::message::{Failure, Messages, Report};
 
 use super::codes::{CELL, DOUBTFUL, OUTLIER, UNFIT, failure, question};
+use super::micro;
 use super::output::{Output, Target, warn};
 use super::sources;
 
@@ -164,7 +164,7 @@ pub(super) fn run(arguments: &Volumetric, shared: &Shared, messages: &Messages) 
     let read = read(arguments, shared, &output)?;
     let options = Options { nodes: arguments.nodes, holdout_every: arguments.holdout_every };
     let found = calibrate(&read.points, &base, options).map_err(|error| refused(&read, &error))?;
-    file::print(report(&found, &read.runs).as_bytes())?;
+    file::print(report(&found, &read.runs).in_language(messages.language()).as_bytes())?;
     judge(&found, messages)?;
     output.changed(&base, &found.axes, &found.description);
     output.set_up(&found.setups);
@@ -196,7 +196,7 @@ fn refused(read: &Read, error: &CalibrationError) -> Failure {
             .refuse(
                 OUTLIER,
                 "x_mm",
-                Text::english_only(error.to_string()),
+                error.text(),
                 both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
             )
             .into(),
@@ -263,90 +263,115 @@ const CONTRADICTION: f64 = 10.0;
 /// Above this the stated uncertainty does not explain what is left.
 const ROUGH: f64 = 1.5;
 
-fn report(found: &VolumetricCalibration, runs: &[String]) -> String {
-    let mut out = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_report(&mut out, found, runs);
-    out
-}
-
-fn write_report(out: &mut String, found: &VolumetricCalibration, runs: &[String]) -> std::fmt::Result {
-    writeln!(out, "change from … to, largest half width of the 95 % intervals")?;
+fn report(found: &VolumetricCalibration, runs: &[String]) -> Text {
+    let mut out = Text::pair(
+        "change from … to, largest half width of the 95 % intervals\n",
+        "изменение от … до, наибольшая полуширина 95-процентных интервалов\n",
+    );
     for f in &found.functions {
-        let (scale, unit) = if f.function < 3 { (1e3, "um") } else { (1e6, "urad") };
+        let (scale, unit) = micro(f.function < 3);
         let low = f.values.iter().copied().fold(f64::INFINITY, f64::min) * scale;
         let high = f.values.iter().copied().fold(f64::NEG_INFINITY, f64::max) * scale;
         let u = f.half_widths_95.iter().copied().fold(0.0, f64::max) * scale;
-        writeln!(
-            out,
-            "E{}{}    {low:.2} … {high:.2} ± {u:.2} {unit}",
-            Axis::ALL[f.function],
-            Axis::ALL[f.axis]
-        )?;
+        let (function, axis) = (Axis::ALL[f.function], Axis::ALL[f.axis]);
+        out.push(&both!(
+            "E{function}{axis}    {low:.2} … {high:.2} ± {u:.2} {unit}\n",
+            "E{function}{axis}    {low:.2} … {high:.2} ± {u:.2} {unit:#}\n"
+        ));
     }
-    writeln!(out, "machine")?;
+    out.push(&Text::pair("machine\n", "станок\n"));
     for (name, (value, half)) in ["EC0Y", "EB0Z", "EA0Z"].into_iter().zip(found.squareness_rad) {
-        writeln!(out, "{name}   {:.2} ± {:.2} urad", value * 1e6, half * 1e6)?;
+        let (value, half) = (value * 1e6, half * 1e6);
+        out.push(&both!("{name}   {value:.2} ± {half:.2} urad\n", "{name}   {value:.2} ± {half:.2} мкрад\n"));
     }
     for (axis, play) in found.play_mm.iter().enumerate() {
         if let Some((value, half)) = play {
-            writeln!(out, "play {} {:.2} ± {:.2} um", Axis::ALL[axis], value * 1e3, half * 1e3)?;
+            let (axis, value, half) = (Axis::ALL[axis], value * 1e3, half * 1e3);
+            out.push(&both!(
+                "play {axis} {value:.2} ± {half:.2} um\n",
+                "люфт {axis} {value:.2} ± {half:.2} мкм\n"
+            ));
         }
     }
     for (term, rivals) in &found.open {
-        if rivals.is_empty() {
-            writeln!(out, "{term:<6} open: the points say nothing of it; as in the base")?;
+        out.push(&if rivals.is_empty() {
+            both!(
+                "{term:<6} open: the points say nothing of it; as in the base\n",
+                "{term:<#6} открыто: точки ничего об этом не говорят; как в исходном профиле\n"
+            )
         } else {
-            writeln!(
-                out,
-                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base"
-            )?;
-        }
+            both!(
+                "{term:<6} open in part, which these points cannot tell from {rivals}: that stays as in the base\n",
+                "{term:<#6} открыто в той части, которую эти точки не различают ({rivals:#}): она остаётся как в исходном профиле\n"
+            )
+        });
     }
-    if found.open.iter().any(|(term, _)| matches!(term.chars().nth(1), Some('A' | 'B' | 'C'))) {
-        writeln!(
-            out,
-            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen"
-        )?;
+    if found.open.iter().any(|(term, _)| matches!(term.english().chars().nth(1), Some('A' | 'B' | 'C'))) {
+        out.push(&Text::pair(
+            "       angles need other tool vectors in one run, or other positions of the axes behind, to be seen\n",
+            "       чтобы увидеть углы, нужны другие векторы инструмента в одной серии или другие положения следующих осей\n",
+        ));
     }
-    writeln!(
-        out,
-        "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness"
-    )?;
+    out.push(&Text::pair(
+        "gauge  X along its line, Y in its plane (EYX, EZX, EZY change by no slope); changes of positioning, straightness and of\n       the angles of the two axes next to the workpiece are 0 in the mean; slopes of EXY, EXZ, EYZ are squareness\n",
+        "отсчёт X вдоль своей линии, Y в своей плоскости (у EYX, EZX, EZY нет наклона); изменения позиционирования, прямолинейности\n       и углов двух ближних к детали осей в среднем равны 0; наклоны EXY, EXZ, EYZ — это отклонения от перпендикулярности\n",
+    ));
     for (run, setup) in runs.iter().zip(&found.setups) {
-        match setup {
+        out.push(&match setup {
             Some(SetUp::Frame(motion)) => {
                 let (t, r) = (motion.shift_mm, motion.rotation_rad() * 1e6);
-                writeln!(
-                    out,
-                    "set-up {run}: shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad",
-                    t.x, t.y, t.z, r.x, r.y, r.z
-                )?;
+                both!(
+                    "set-up {run}: shift {:.4} {:.4} {:.4} mm, rotation {:.1} {:.1} {:.1} urad\n",
+                    "установка {run}: сдвиг {:.4} {:.4} {:.4} мм, поворот {:.1} {:.1} {:.1} мкрад\n",
+                    t.x,
+                    t.y,
+                    t.z,
+                    r.x,
+                    r.y,
+                    r.z
+                )
             }
-            Some(SetUp::Station { place_mm: p, zero_mm }) => {
-                writeln!(out, "station {run}: {:.4} {:.4} {:.4} mm, zero {zero_mm:.4} mm", p.x, p.y, p.z)?;
-            }
-            None => {}
-        }
+            Some(SetUp::Station { place_mm: p, zero_mm }) => both!(
+                "station {run}: {:.4} {:.4} {:.4} mm, zero {zero_mm:.4} mm\n",
+                "станция {run}: {:.4} {:.4} {:.4} мм, нуль {zero_mm:.4} мм\n",
+                p.x,
+                p.y,
+                p.z
+            ),
+            None => Text::EMPTY,
+        });
     }
     if found.setups.len() > 1 {
-        writeln!(
-            out,
-            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none",
+        out.push(&both!(
+            "       [setup] of a profile is one: of these {} none is written, and `predict --include-setup` adds none\n",
+            "       раздел [setup] в профиле один: из этих {} не записана ни одна, и `predict --include-setup` ничего не прибавит\n",
             found.setups.len()
-        )?;
+        ));
     }
     if found.left_out > 0 {
-        writeln!(out, "{} points lie outside the base's volume and were left out", found.left_out)?;
+        out.push(&both!(
+            "{} points lie outside the base's volume and were left out\n",
+            "точек вне объёма исходного профиля: {}, они не использованы\n",
+            found.left_out
+        ));
     }
     let [before, after] = found.fitted_rms_mm.map(|v| v * 1e3);
-    writeln!(out, "fitted {before:.2} -> {after:.2} um RMS ({} readings)", found.estimate.residuals.len())?;
+    out.push(&both!(
+        "fitted {before:.2} -> {after:.2} um RMS ({} readings)\n",
+        "подгонка: СКЗ {before:.2} -> {after:.2} мкм (отсчётов {})\n",
+        found.estimate.residuals.len()
+    ));
     if let Some(([before, after], count)) = found.holdout {
-        writeln!(out, "unseen {:.2} -> {:.2} um RMS ({count} points)", before * 1e3, after * 1e3)?;
+        let [before, after] = [before, after].map(|mm| mm * 1e3);
+        out.push(&both!(
+            "unseen {before:.2} -> {after:.2} um RMS ({count} points)\n",
+            "новые точки: СКЗ {before:.2} -> {after:.2} мкм (точек {count})\n"
+        ));
     }
-    writeln!(
-        out,
-        "field known to ±{:.2} um at 95 % of the points of the volume, frames taken off",
+    out.push(&both!(
+        "field known to ±{:.2} um at 95 % of the points of the volume, frames taken off\n",
+        "поле известно с точностью ±{:.2} мкм в 95 % точек объёма, без систем координат\n",
         found.field_u95_mm * 1e3
-    )
+    ));
+    out
 }

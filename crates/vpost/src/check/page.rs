@@ -1,10 +1,11 @@
 //! The check as one page: the tool path coloured by its error before and after, the worst blocks by line.
 
+use diagnostic::{Language, Text, say};
 use maud::{Markup, html};
 use path_comparison::{Comparison, Trace, Way};
 use report::chart::solid::{Solid, Stretch, path};
 use report::page::{Page, Section, figure, table};
-use report::text::{number, shown};
+use report::text::{MICROMETRES, Numbers, shown};
 
 /// What the page is made of.
 pub(super) struct Facts<'a> {
@@ -18,7 +19,7 @@ pub(super) struct Facts<'a> {
     pub engine: &'a str,
     pub limit_mm: f64,
     pub passed: bool,
-    pub findings: &'a [String],
+    pub findings: &'a [Text],
 }
 
 /// Blocks listed.
@@ -28,33 +29,64 @@ const MOST_PLACES: usize = 20_000;
 /// A sample of an arc turns by no more.
 const TURN_RAD: f64 = 0.2;
 
-pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str) -> String {
+pub(super) fn html(comparison: &Comparison, facts: &Facts<'_>, json: &str, language: Language) -> String {
     let sections = vec![
-        Section { id: "result", title: "Result", body: result(comparison, facts) },
-        Section { id: "path", title: "The tool path", body: paths(comparison, facts) },
-        Section { id: "worst", title: "Worst blocks", body: worst(comparison, facts) },
-        Section { id: "provenance", title: "Where this comes from", body: provenance(facts) },
+        Section {
+            id: "result",
+            title: Text::pair("Result", "Результат"),
+            body: result(comparison, facts, language),
+        },
+        Section {
+            id: "path",
+            title: Text::pair("The tool path", "Траектория инструмента"),
+            body: paths(comparison, facts, language),
+        },
+        Section {
+            id: "worst",
+            title: Text::pair("Worst blocks", "Худшие кадры"),
+            body: worst(comparison, facts, language),
+        },
+        Section {
+            id: "provenance",
+            title: Text::pair("Where this comes from", "Откуда эти данные"),
+            body: provenance(facts, language),
+        },
     ];
     Page {
-        title: &format!("Check \u{2013} {}", facts.output),
-        head: head(comparison, facts),
+        language,
+        title: &say!(language, "Check \u{2013} {}", "Проверка \u{2014} {}", facts.output),
+        head: head(comparison, facts, language),
         sections,
         json,
-        foot: &format!(
+        foot: &say!(
+            language,
             "vpost {} check. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.check/1).",
+            "vpost {} check. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.check/1).",
             env!("CARGO_PKG_VERSION")
         ),
     }
     .into_html()
 }
 
-fn head(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+fn head(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
+    let verdict = match facts.passed {
+        true => say!(language, "PASSED", "ПРОЙДЕНО"),
+        false => say!(language, "FAILED", "НЕ ПРОЙДЕНО"),
+    };
+    let [before, after, limit] = [comparison.before.largest_mm, comparison.after.largest_mm, facts.limit_mm]
+        .map(|mm| um(mm, language));
     html! {
-        p.muted { "Both programs through the machine model: " (shown(facts.machine)) ", " (shown(file_name(facts.output))) }
-        p { span.verdict { (if facts.passed { "PASSED" } else { "FAILED" }) } }
+        p.muted {
+            (say!(language, "Both programs through the machine model: ", "Обе программы по модели станка: "))
+            (shown(facts.machine)) ", " (shown(file_name(facts.output)))
+        }
+        p { span.verdict { (verdict) } }
         h1 {
-            "As posted the tool is up to " (um(comparison.before.largest_mm)) " \u{b5}m off its path, as corrected up to "
-            (um(comparison.after.largest_mm)) " \u{b5}m; allowed are " (um(facts.limit_mm)) " \u{b5}m"
+            (say!(
+                language,
+                "As posted the tool is up to {before} \u{b5}m off its path, as corrected up to {after} \u{b5}m; allowed are {limit} \u{b5}m",
+                "По исходной программе инструмент отходит от траектории до {before} мкм, по исправленной — до {after} мкм; допустимо {limit} мкм"
+            ))
         }
     }
 }
@@ -64,36 +96,66 @@ pub(super) fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
-fn result(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+fn result(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
+    let [wanted, commanded] = [comparison.wanted, comparison.commanded].map(|count| language.count(count));
+    let largest = |mm: f64, line: u64| {
+        let um = um(mm, language);
+        say!(language, "{um} \u{b5}m, line {line}", "{um} мкм, строка {line}")
+    };
     html! {
         dl {
-            dt { "feed motions" } dd { (comparison.wanted) " as posted, " (comparison.commanded) " as corrected" }
-            dt { "largest before" } dd { (um(comparison.before.largest_mm)) " \u{b5}m, line " (comparison.before.line) }
-            dt { "largest after" } dd { (um(comparison.after.largest_mm)) " \u{b5}m, line " (comparison.after.line) }
-            dt { "moves to a corrected start" } dd { (comparison.approaches) }
+            dt { (say!(language, "feed motions", "рабочих движений")) }
+            dd {
+                (say!(
+                    language,
+                    "{wanted} as posted, {commanded} as corrected",
+                    "{wanted} в исходной, {commanded} в исправленной"
+                ))
+            }
+            dt { (say!(language, "largest before", "наибольшее до")) }
+            dd { (largest(comparison.before.largest_mm, comparison.before.line)) }
+            dt { (say!(language, "largest after", "наибольшее после")) }
+            dd { (largest(comparison.after.largest_mm, comparison.after.line)) }
+            dt { (say!(language, "moves to a corrected start", "подводов к исправленному началу")) }
+            dd { (language.count(comparison.approaches)) }
         }
         @if !facts.findings.is_empty() {
-            h3 { "Findings" }
-            ul { @for finding in facts.findings { li { (shown(finding)) } } }
+            h3 { (say!(language, "Findings", "Что найдено")) }
+            ul { @for finding in facts.findings { li { (shown(finding.in_language(language))) } } }
         }
     }
 }
 
-fn paths(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+fn paths(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
     let Some(solid) = solid(&comparison.traces) else {
-        return html! { p { "The program feeds nowhere: there is no path to draw." } };
+        let why = say!(
+            language,
+            "The program feeds nowhere: there is no path to draw.",
+            "В программе нет движений на рабочей подаче: рисовать нечего."
+        );
+        return html! { p { (why) } };
     };
     let before = comparison.before.largest_mm * 1e3;
     let after = comparison.after.largest_mm.max(facts.limit_mm) * 1e3;
     let drawing = |title: &str, value: fn(&Trace) -> f64, largest: f64| {
         let all = stretches(&comparison.traces, value, largest);
-        path(title, solid, &all, largest, "\u{b5}m")
+        path(language, title, solid, &all, largest, MICROMETRES.in_language(language))
     };
+    let posted = say!(language, "Tool path as posted", "Траектория по исходной программе");
+    let posted_caption = say!(
+        language,
+        "Axis commands of the feed motions as posted, coloured by the largest distance of the tool from each motion.",
+        "Координаты осей в рабочих движениях исходной программы; цвет — наибольшее расстояние инструмента от каждого движения."
+    );
+    let corrected = say!(language, "Tool path as corrected", "Траектория по исправленной программе");
+    let corrected_caption = say!(
+        language,
+        "The same motions, coloured by the distance that is left after the correction, on a scale of its own that ends at what is allowed, or at the largest if that is more.",
+        "Те же движения; цвет — расстояние, которое осталось после исправления, на своей шкале: она кончается на допустимом или на наибольшем, если оно больше."
+    );
     html! {
-        (figure(&drawing("Tool path as posted", |t| t.before_mm * 1e3, before),
-            "Axis commands of the feed motions as posted, coloured by the largest distance of the tool from each motion.", None))
-        (figure(&drawing("Tool path as corrected", |t| t.after_mm * 1e3, after),
-            "The same motions, coloured by the distance that is left after the correction, on a scale of its own that ends at what is allowed, or at the largest if that is more.", None))
+        (figure(language, &drawing(&posted, |t| t.before_mm * 1e3, before), &posted_caption, None))
+        (figure(language, &drawing(&corrected, |t| t.after_mm * 1e3, after), &corrected_caption, None))
     }
 }
 
@@ -163,7 +225,7 @@ fn stretches_apart(traces: &[Trace], value: fn(&Trace) -> f64, largest: f64, apa
     all
 }
 
-fn worst(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
+fn worst(comparison: &Comparison, facts: &Facts<'_>, language: Language) -> Markup {
     let lines: Vec<&str> = facts.text.lines().collect();
     let list = |of: fn(&(f64, f64)) -> f64| {
         // A line may be several motions: the worst of them counts.
@@ -180,33 +242,37 @@ fn worst(comparison: &Comparison, facts: &Facts<'_>) -> Markup {
             .map(|(line, (before, after))| {
                 let text = usize::try_from(line).ok().and_then(|n| lines.get(n.checked_sub(1)?));
                 let text = report::text::short(text.copied().unwrap_or_default(), 80);
-                vec![line.to_string(), um(before), um(after), text]
+                vec![line.to_string(), um(before, language), um(after, language), text]
             })
             .collect();
-        table(&["line", "before, \u{b5}m", "after, \u{b5}m", "block"], &[0, 1, 2], &rows)
+        let header = match language {
+            Language::English => ["line", "before, \u{b5}m", "after, \u{b5}m", "block"],
+            Language::Russian => ["строка", "до, мкм", "после, мкм", "кадр"],
+        };
+        table(language, &header, &[0, 1, 2], &rows)
     };
     html! {
-        h3 { "As posted" }
+        h3 { (say!(language, "As posted", "Исходная программа")) }
         (list(|found| found.0))
-        h3 { "As corrected" }
+        h3 { (say!(language, "As corrected", "Исправленная программа")) }
         (list(|found| found.1))
-        p.muted { "Lines of " (shown(facts.input)) "." }
+        p.muted { (say!(language, "Lines of {}.", "Строки файла {}.", shown(facts.input))) }
     }
 }
 
-fn provenance(facts: &Facts<'_>) -> Markup {
+fn provenance(facts: &Facts<'_>, language: Language) -> Markup {
     html! {
         dl {
-            dt { "as posted" } dd { (shown(facts.input)) }
-            dt { "as corrected" } dd { (shown(facts.output)) }
-            dt { "machine" } dd { (shown(facts.machine)) }
-            dt { "profile and its tables" } dd { (shown(facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
-            dt { "model" } dd { (facts.engine) }
-            dt { "made by" } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.check/1" }
+            dt { (say!(language, "as posted", "исходная программа")) } dd { (shown(facts.input)) }
+            dt { (say!(language, "as corrected", "исправленная программа")) } dd { (shown(facts.output)) }
+            dt { (say!(language, "machine", "станок")) } dd { (shown(facts.machine)) }
+            dt { (say!(language, "profile and its tables", "профиль и его таблицы")) } dd { (shown(facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
+            dt { (say!(language, "model", "модель")) } dd { (facts.engine) }
+            dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.check/1" }
         }
     }
 }
 
-fn um(mm: f64) -> String {
-    number(mm * 1e3)
+fn um(mm: f64, language: Language) -> String {
+    language.number(mm * 1e3)
 }

@@ -105,7 +105,7 @@ pub(super) fn write(
     let um = |mm: f64| mm * 1e3;
     let page = Viewer {
         kind: Kind::Check,
-        language: viewer::language(messages),
+        language: messages.language(),
         scene: &scene,
         has_after: true,
         blocks: &blocks,

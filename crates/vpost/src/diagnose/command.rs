@@ -102,6 +102,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
             holdout: unseen,
             facts: &facts,
             json: &json,
+            language: messages.language(),
         };
         if let Some(path) = &arguments.html {
             file::write(path, page.html().as_bytes())?;
@@ -124,7 +125,7 @@ pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) ->
     }
     match arguments.next {
         Some(form) => plan::print_next(form, &diagnosis, &model, shared, messages),
-        None => file::print(summary::text(&diagnosis, &changes).as_bytes()),
+        None => file::print(summary::text(&diagnosis, &changes, messages.language()).as_bytes()),
     }
 }
 

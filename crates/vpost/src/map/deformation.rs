@@ -1,5 +1,6 @@
 //! What a field does to small boxes of commands, cell by cell of the map's grid: equation (96) of `docs/equations.md`.
 
+use diagnostic::{Language, Text, say};
 use error_map::ErrorMap;
 use machine_model::{Matrix, PathModel, Range, Vector};
 
@@ -47,21 +48,21 @@ pub(super) const NAMES: [&str; 9] = [
 ];
 
 /// The same for readers.
-pub(super) const WORDS: [&str; 9] = [
-    "stretch along X",
-    "stretch along Y",
-    "stretch along Z",
-    "shear X to Y",
-    "shear X to Z",
-    "shear Y to Z",
-    "rotation about X",
-    "rotation about Y",
-    "rotation about Z",
+pub(super) const WORDS: [Text; 9] = [
+    Text::pair("stretch along X", "растяжение по X"),
+    Text::pair("stretch along Y", "растяжение по Y"),
+    Text::pair("stretch along Z", "растяжение по Z"),
+    Text::pair("shear X to Y", "сдвиг X к Y"),
+    Text::pair("shear X to Z", "сдвиг X к Z"),
+    Text::pair("shear Y to Z", "сдвиг Y к Z"),
+    Text::pair("rotation about X", "поворот вокруг X"),
+    Text::pair("rotation about Y", "поворот вокруг Y"),
+    Text::pair("rotation about Z", "поворот вокруг Z"),
 ];
 
 /// Unit of one of them.
-pub(super) fn unit(which: usize) -> &'static str {
-    if which < 3 { "um/m" } else { "urad" }
+pub(super) fn unit(which: usize, language: Language) -> String {
+    if which < 3 { say!(language, "um/m", "мкм/м") } else { say!(language, "urad", "мкрад") }
 }
 
 /// All cells, X fastest; none where an axis has one node, or where the model is one of axes.

@@ -38,7 +38,7 @@ pub(super) fn bytes(study: &Study) -> Vec<u8> {
             "backward_um": d.deviations_mm.iter().map(|row| um(row[2])).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "places": study.places.iter().map(|(freedom, place)| json!({
-            "freedom": freedom_name(*freedom),
+            "freedom": freedom_name(*freedom).english(),
             "box_mm": place.box_mm.map(range_mm),
             "centre_mm": millimetres(&place.fit.centre_mm),
             "shift_um": micrometres(&place.fit.shift_mm),
@@ -75,7 +75,7 @@ fn deformations(study: &Study) -> Value {
 
 fn part(study: &Study, part: &Part) -> Value {
     json!({
-        "name": part.name,
+        "name": part.name.english(),
         "box_mm": part.box_mm.map(range_mm),
         "figures": figures(&part.figures),
         "zero_points": part.zero_points.iter().map(|z| zero_point(study, z)).collect::<Vec<_>>(),
@@ -102,7 +102,7 @@ fn zero_point(study: &Study, zero: &ZeroPoint) -> Value {
         Proof::Count { within, at_most } => json!({ "within": within, "no_count_above": at_most }),
     };
     json!({
-        "kind": zero.kind.name(),
+        "kind": zero.kind.name().english(),
         "shift_um": micrometres(&zero.shift_mm),
         "add_to_work_offset_mm": millimetres(&enter),
         "work_offsets_mm": offsets,

@@ -62,9 +62,9 @@ pub(crate) fn run(arguments: &Map, shared: &Shared, messages: &Messages) -> Resu
     }
     if let Some(path) = &arguments.html {
         let json = String::from_utf8(json::bytes(&study)).expect("JSON is UTF-8");
-        file::write(path, page::html(&study, &facts, &json).as_bytes())?;
+        file::write(path, page::html(&study, &facts, &json, messages.language()).as_bytes())?;
     }
-    file::print(text::page(&study).as_bytes())
+    file::print(text::page(&study, messages.language()).as_bytes())
 }
 
 /// What was asked, as it was typed.

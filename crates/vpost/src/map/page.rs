@@ -1,5 +1,6 @@
 //! The map as one page.
 
+use diagnostic::{Language, Text, say};
 use error_map::Plane;
 use machine_model::Vector;
 use maud::{Markup, html};
@@ -7,7 +8,7 @@ use report::chart::solid::{Displacement, Solid, Spot, displacements, spots};
 use report::chart::{Curves, Histogram, Slice, curves, histogram, slices};
 use report::page::{Page, Section, figure, table};
 use report::scale::nice;
-use report::text::{number, number_of_digits, percent, shown};
+use report::text::{MICROMETRES, Numbers, shown};
 
 use super::deformation;
 use super::drawn::{classes, median};
@@ -29,101 +30,186 @@ pub(super) struct Facts {
 }
 
 /// The page.
-pub(super) fn html(study: &Study, facts: &Facts, json: &str) -> String {
+pub(super) fn html(study: &Study, facts: &Facts, json: &str, language: Language) -> String {
     let mut sections = vec![
-        Section { id: "figures", title: "How large the error is", body: figures(study) },
-        Section { id: "volume", title: "The volume", body: volume(study) },
-        Section { id: "vectors", title: "Error vectors", body: vectors(study) },
-        Section { id: "slices", title: "Slices", body: slices_of(study) },
-        Section { id: "histogram", title: "How many nodes have which error", body: sizes(study) },
-        Section { id: "axes", title: "Along the axes", body: axes(study) },
-        Section { id: "diagonals", title: "Body diagonals", body: diagonals(study) },
-        Section { id: "zero-point", title: "Where to put the zero point", body: zero_points(study) },
+        Section {
+            id: "figures",
+            title: Text::pair("How large the error is", "Величина погрешности"),
+            body: figures(study, language),
+        },
+        Section {
+            id: "volume",
+            title: Text::pair("The volume", "Рабочий объём"),
+            body: volume(study, language),
+        },
+        Section {
+            id: "vectors",
+            title: Text::pair("Error vectors", "Векторы погрешности"),
+            body: vectors(study, language),
+        },
+        Section {
+            id: "slices", title: Text::pair("Slices", "Сечения"), body: slices_of(study, language)
+        },
+        Section {
+            id: "histogram",
+            title: Text::pair("How many nodes have which error", "Распределение узлов по погрешности"),
+            body: sizes(study, language),
+        },
+        Section {
+            id: "axes",
+            title: Text::pair("Along the axes", "Вдоль осей"),
+            body: axes(study, language),
+        },
+        Section {
+            id: "diagonals",
+            title: Text::pair("Body diagonals", "Диагонали тела"),
+            body: diagonals(study, language),
+        },
+        Section {
+            id: "zero-point",
+            title: Text::pair("Where to put the zero point", "Куда поставить нулевую точку"),
+            body: zero_points(study, language),
+        },
     ];
-    if let Some(body) = deformations(study) {
-        sections.insert(5, Section { id: "deformation", title: "Stretch, shear and rotation", body });
+    if let Some(body) = deformations(study, language) {
+        sections.insert(
+            5,
+            Section {
+                id: "deformation",
+                title: Text::pair("Stretch, shear and rotation", "Растяжение, сдвиг и поворот"),
+                body,
+            },
+        );
     }
     if !study.places.is_empty() {
-        sections.push(Section { id: "clamp", title: "Where to clamp", body: places(study) });
+        sections.push(Section {
+            id: "clamp",
+            title: Text::pair("Where to clamp", "Где закрепить"),
+            body: places(study, language),
+        });
     }
     if let Some(found) = &study.second_order {
-        let body = html! { @for line in super::text::second_order_lines(found) { p { (line) } } };
-        sections.push(Section { id: "second-order", title: "Second order of rotations", body });
+        let body = html! { @for line in super::text::second_order_lines(found, language) { p { (line) } } };
+        sections.push(Section {
+            id: "second-order",
+            title: Text::pair("Second order of rotations", "Второй порядок поворотов"),
+            body,
+        });
     }
     sections.push(Section {
         id: "provenance",
-        title: "Where this comes from",
-        body: provenance(study, facts),
+        title: Text::pair("Where this comes from", "Откуда эти данные"),
+        body: provenance(study, facts, language),
     });
     Page {
-        title: &format!("Error map \u{2013} {}", study.machine),
-        head: head(study),
+        language,
+        title: &say!(
+            language,
+            "Error map \u{2013} {}",
+            "Карта погрешностей \u{2014} {}",
+            study.machine
+        ),
+        head: head(study, language),
         sections,
         json,
-        foot: &format!(
+        foot: &say!(
+            language,
             "vpost {} map. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.map/1).",
+            "vpost {} map. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.map/1).",
             env!("CARGO_PKG_VERSION")
         ),
     }
     .into_html()
 }
 
-fn head(study: &Study) -> Markup {
+fn head(study: &Study, language: Language) -> Markup {
     let (before, after) = (&study.parts[0].figures, &median(study).figures);
+    let [largest, largest_after] = [before, after].map(|f| um(f.magnitude_mm.high, language));
+    let [rms, rms_after] = [before, after].map(|f| um(f.rms_mm, language));
+    let [share, share_after] = [before, after].map(|f| percent2(f.share_within(), language));
+    let (nodes, within) = (language.count(before.nodes), within(study, language));
     html! {
-        p.muted { "Volumetric error map: " (shown(&study.machine)) }
+        p.muted { (say!(language, "Volumetric error map: ", "Карта объёмных погрешностей: ")) (shown(&study.machine)) }
         h1 {
-            "The tool is up to " (um(before.magnitude_mm.high)) " \u{b5}m from where it is told to be; with the zero point moved, up to "
-            (um(after.magnitude_mm.high)) " \u{b5}m"
+            (say!(
+                language,
+                "The tool is up to {largest} \u{b5}m from where it is told to be; with the zero point moved, up to {largest_after} \u{b5}m",
+                "Инструмент отстоит от заданного места до {largest} мкм; со сдвинутой нулевой точкой — до {largest_after} мкм"
+            ))
         }
         p {
-            "Of " (before.nodes) " nodes " (percent2(before.share_within())) " are within " (within(study)) " \u{b5}m as it is, "
-            (percent2(after.share_within())) " after the zero point is moved by the geometric median. Mean (RMS) error "
-            (um(before.rms_mm)) " \u{b5}m before, " (um(after.rms_mm)) " \u{b5}m after."
+            (say!(
+                language,
+                "Of {nodes} nodes {share} are within {within} \u{b5}m as it is, {share_after} after the zero point is moved by the geometric median. Mean (RMS) error {rms} \u{b5}m before, {rms_after} \u{b5}m after.",
+                "Узлов {nodes}: в пределах {within} мкм сейчас {share}, после сдвига нулевой точки на геометрическую медиану {share_after}. Среднее квадратическое значение (СКЗ) погрешности: {rms} мкм до, {rms_after} мкм после."
+            ))
         }
     }
 }
 
-fn figures(study: &Study) -> Markup {
+fn figures(study: &Study, language: Language) -> Markup {
     let rows: Vec<Vec<String>> = study
         .parts
         .iter()
         .map(|part| {
             let f = &part.figures;
-            let mut row = vec![part.name.clone(), f.nodes.to_string()];
-            row.extend(f.component_mm.iter().map(|r| um(r.high - r.low)));
-            row.extend([f.rms_mm, f.p95_mm, f.magnitude_mm.low, f.magnitude_mm.high].map(um));
-            row.push(percent2(f.share_within()));
+            let mut row = vec![part.name.in_language(language).to_owned(), language.count(f.nodes)];
+            row.extend(f.component_mm.iter().map(|r| um(r.high - r.low, language)));
+            row.extend(
+                [f.rms_mm, f.p95_mm, f.magnitude_mm.low, f.magnitude_mm.high].map(|mm| um(mm, language)),
+            );
+            row.push(percent2(f.share_within(), language));
             row
         })
         .collect();
-    let within = format!("\u{2264} {} \u{b5}m", within(study));
-    let header =
-        ["part", "nodes", "range X", "range Y", "range Z", "RMS", "95 %", "least", "largest", &within];
+    let within = within_said(study, language);
+    let header = match language {
+        Language::English => {
+            ["part", "nodes", "range X", "range Y", "range Z", "RMS", "95 %", "least", "largest", &within]
+        }
+        Language::Russian => {
+            ["часть", "узлов", "размах X", "размах Y", "размах Z", "СКЗ", "95 %", "наим.", "наиб.", &within]
+        }
+    };
     html! {
-        p { "\u{b5}m. Ranges per axis are those of ISO 230-1 for the volumetric accuracy of three linear axes; the others are of the length of the error." }
-        (table(&header, &[1, 2, 3, 4, 5, 6, 7, 8, 9], &rows))
+        p {
+            (say!(
+                language,
+                "\u{b5}m. Ranges per axis are those of ISO 230-1 for the volumetric accuracy of three linear axes; the others are of the length of the error.",
+                "мкм. Размах по каждой оси — тот, что в ISO 230-1 определяет объёмную точность трёх линейных осей; остальное относится к длине вектора погрешности."
+            ))
+        }
+        (table(language, &header, &[1, 2, 3, 4, 5, 6, 7, 8, 9], &rows))
     }
 }
 
 /// What a field does to small boxes of commands.
-fn deformations(study: &Study) -> Option<Markup> {
+fn deformations(study: &Study, language: Language) -> Option<Markup> {
     let figures = deformation::figures(&study.cells)?;
     let rows: Vec<Vec<String>> = figures
         .iter()
         .enumerate()
         .map(|(which, (range, rms))| {
-            let unit = if which < 3 { "\u{b5}m/m" } else { "\u{b5}rad" };
-            let numbers = [range.low, range.high, *rms].map(|v| number_of_digits(v, 2));
-            [deformation::WORDS[which].to_owned(), unit.to_owned()].into_iter().chain(numbers).collect()
+            let unit = deformation::unit(which, language).replace('u', "\u{b5}");
+            let numbers = [range.low, range.high, *rms].map(|v| language.digits(v, 2));
+            let words = deformation::WORDS[which].in_language(language).to_owned();
+            [words, unit].into_iter().chain(numbers).collect()
         })
         .collect();
+    let cells = language.count(study.cells.len());
+    let header = match language {
+        Language::English => ["of a cell", "unit", "least", "largest", "RMS"],
+        Language::Russian => ["в ячейке", "единица", "наименьшее", "наибольшее", "СКЗ"],
+    };
     Some(html! {
         p {
-            "The Jacobian of the field in the middle of each of " (study.cells.len())
-            " cells of the grid. Shear: by how much the right angle between two axes is smaller there. Rotation is that of a small box of commands; how the tool turns, a field does not say. All cells are in the files of --csv and --vtk."
+            (say!(
+                language,
+                "The Jacobian of the field in the middle of each of {cells} cells of the grid. Shear: by how much the right angle between two axes is smaller there. Rotation is that of a small box of commands; how the tool turns, a field does not say. All cells are in the files of --csv and --vtk.",
+                "Матрица Якоби поля в середине каждой ячейки сетки (ячеек {cells}). Сдвиг — на сколько там меньше прямой угол между двумя осями. Поворот — малого объёма заданных точек; как поворачивается инструмент, поле не говорит. Все ячейки есть в файлах --csv и --vtk."
+            ))
         }
-        (table(&["of a cell", "unit", "least", "largest", "RMS"], &[2, 3, 4], &rows))
+        (table(language, &header, &[2, 3, 4], &rows))
     })
 }
 
@@ -149,7 +235,7 @@ fn solid(study: &Study) -> Solid {
     Solid { ranges: study.map.grid().axes().each_ref().map(|n| (n.range_mm().low, n.range_mm().high)) }
 }
 
-fn volume(study: &Study) -> Markup {
+fn volume(study: &Study, language: Language) -> Markup {
     let shift = median(study).shift_mm;
     let nodes = spread(study, SPOTS);
     let largest = study.parts[0].figures.magnitude_mm.high * 1e3;
@@ -161,17 +247,33 @@ fn volume(study: &Study) -> Markup {
                 value: (study.map.errors_mm()[*index] - shift).norm() * 1e3,
             })
             .collect();
-        spots(title, solid(study), &all, largest, "\u{b5}m")
+        spots(language, title, solid(study), &all, largest, MICROMETRES.in_language(language))
     };
+    let as_it_is =
+        say!(language, "Error over the volume, as it is", "Погрешность в рабочем объёме, как есть");
+    let moved = say!(
+        language,
+        "Error over the volume, zero point moved",
+        "Погрешность в рабочем объёме, нулевая точка сдвинута"
+    );
+    let (drawn, all) = (language.count(nodes.len()), language.count(study.map.grid().len()));
+    let caption = say!(
+        language,
+        "As it is: {drawn} of {all} nodes, coloured by the length of the error.",
+        "Как есть: узлов {drawn} из {all}, цвет — длина вектора погрешности."
+    );
+    let caption_moved = say!(
+        language,
+        "The same with the zero point moved by the geometric median, in the same colours.",
+        "То же со сдвигом нулевой точки на геометрическую медиану, в тех же цветах."
+    );
     html! {
-        (figure(&drawing("Error over the volume, as it is", &Vector::zeros()),
-            &format!("As it is: {} of {} nodes, coloured by the length of the error.", nodes.len(), study.map.grid().len()), None))
-        (figure(&drawing("Error over the volume, zero point moved", &shift),
-            "The same with the zero point moved by the geometric median, in the same colours.", None))
+        (figure(language, &drawing(&as_it_is, &Vector::zeros()), &caption, None))
+        (figure(language, &drawing(&moved, &shift), &caption_moved, None))
     }
 }
 
-fn vectors(study: &Study) -> Markup {
+fn vectors(study: &Study, language: Language) -> Markup {
     let shift = median(study).shift_mm;
     let ranges = solid(study).ranges.map(|(low, high)| high - low);
     let size = ranges.into_iter().fold(0.0, f64::max);
@@ -189,18 +291,22 @@ fn vectors(study: &Study) -> Markup {
             }
         })
         .collect();
-    let drawing = displacements("Error vectors", solid(study), &all, magnification);
+    let title = say!(language, "Error vectors", "Векторы погрешности");
+    let drawing = displacements(language, &title, solid(study), &all, magnification);
+    let times = language.number(magnification);
     figure(
+        language,
         &drawing,
-        &format!(
-            "From where the tool is told to be (dots) to where it is, {} times as long as in truth; before and after the zero point is moved by the geometric median.",
-            number(magnification)
+        &say!(
+            language,
+            "From where the tool is told to be (dots) to where it is, {times} times as long as in truth; before and after the zero point is moved by the geometric median.",
+            "От заданного места инструмента (точки) к действительному, увеличение {times}\u{d7}; до и после сдвига нулевой точки на геометрическую медиану."
         ),
         None,
     )
 }
 
-fn slices_of(study: &Study) -> Markup {
+fn slices_of(study: &Study, language: Language) -> Markup {
     let grid = study.map.grid();
     let [nx, ny, _] = grid.counts();
     let largest = study.parts[0].figures.magnitude_mm.high * 1e3;
@@ -220,7 +326,14 @@ fn slices_of(study: &Study) -> Markup {
             let range = |axis: usize| (grid.axes()[axis].range_mm().low, grid.axes()[axis].range_mm().high);
             let place = grid.axes()[normal].places_mm()[layer];
             all.push(Slice {
-                title: format!("{} at {} {} mm", plane.name(), AXES[normal], number_of_digits(place, 0)),
+                title: say!(
+                    language,
+                    "{} at {} {} mm",
+                    "{} при {} {} мм",
+                    plane.name(),
+                    AXES[normal],
+                    language.digits(place, 0)
+                ),
                 axes: [AXES[right], AXES[up]],
                 ranges: [range(right), range(up)],
                 cells: [columns.len(), rows.len()],
@@ -232,17 +345,23 @@ fn slices_of(study: &Study) -> Markup {
             });
         }
     }
-    let drawing = slices("Slices through the volume", &all, largest, "\u{b5}m");
+    let title = say!(language, "Slices through the volume", "Сечения рабочего объёма");
+    let drawing = slices(language, &title, &all, largest, MICROMETRES.in_language(language));
     figure(
+        language,
         &drawing,
-        "Length of the error as it is, one scale for all slices. A cell is a node; of large grids some are left out in the drawing. All nodes are in the file of --csv.",
+        &say!(
+            language,
+            "Length of the error as it is, one scale for all slices. A cell is a node; of large grids some are left out in the drawing. All nodes are in the file of --csv.",
+            "Длина вектора погрешности, как есть; шкала для всех сечений одна. Клетка — узел; у крупных сеток часть узлов на рисунке пропущена. Все узлы есть в файле --csv."
+        ),
         None,
     )
 }
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
-fn sizes(study: &Study) -> Markup {
+fn sizes(study: &Study, language: Language) -> Markup {
     let found = classes(study);
     let width = found.width_mm * 1e3;
     let rows: Vec<Vec<String>> = found
@@ -251,49 +370,69 @@ fn sizes(study: &Study) -> Markup {
         .zip(&found.after)
         .enumerate()
         .map(|(k, (before, after))| {
-            let end = |k: usize| number(width * k as f64);
-            vec![end(k), end(k + 1), before.to_string(), after.to_string()]
+            let end = |k: usize| language.number(width * k as f64);
+            vec![end(k), end(k + 1), language.count(*before), language.count(*after)]
         })
         .collect();
     let drawn =
         Histogram { largest: width * found.before.len() as f64, before: found.before, after: found.after };
-    let limit = Some((study.within_mm * 1e3, "within"));
+    let within = say!(language, "within", "в пределах");
     let drawing = histogram(
-        "Nodes by the size of their error",
+        language,
+        &say!(language, "Nodes by the size of their error", "Узлы по величине погрешности"),
         &drawn,
-        limit,
-        "length of the error, \u{b5}m",
-        "\u{b5}m",
+        Some((study.within_mm * 1e3, &within)),
+        &say!(language, "length of the error, \u{b5}m", "длина вектора погрешности, мкм"),
+        MICROMETRES.in_language(language),
     );
-    let header = ["from, \u{b5}m", "to, \u{b5}m", "before", "after"];
+    let header = match language {
+        Language::English => ["from, \u{b5}m", "to, \u{b5}m", "before", "after"],
+        Language::Russian => ["от, мкм", "до, мкм", "до сдвига", "после сдвига"],
+    };
     figure(
+        language,
         &drawing,
-        "Before, and after the zero point is moved by the geometric median.",
-        Some(table(&header, &[0, 1, 2, 3], &rows)),
+        &say!(
+            language,
+            "Before, and after the zero point is moved by the geometric median.",
+            "До и после сдвига нулевой точки на геометрическую медиану."
+        ),
+        Some(table(language, &header, &[0, 1, 2, 3], &rows)),
     )
 }
 
-fn axes(study: &Study) -> Markup {
+fn axes(study: &Study, language: Language) -> Markup {
     let panels: Vec<Curves> = study
         .curves
         .iter()
         .map(|curve| Curves {
-            label: format!("{}, mm, the other axes in the middle of the map", AXES[curve.axis]),
+            label: say!(
+                language,
+                "{}, mm, the other axes in the middle of the map",
+                "{}, мм, остальные оси в середине карты",
+                AXES[curve.axis]
+            ),
             at: curve.at_mm.clone(),
             values: (0..3).map(|c| curve.errors_mm.iter().map(|e| e[c] * 1e3).collect()).collect(),
         })
         .collect();
     let series = [("s0", "dx"), ("s1", "dy"), ("s2", "dz")];
+    let title = say!(language, "Errors along the axes", "Погрешности вдоль осей");
     figure(
-        &curves("Errors along the axes", &panels, &series, "\u{b5}m"),
-        "Components of the error, \u{b5}m, while one axis moves. The numbers are in the JSON.",
+        language,
+        &curves(language, &title, &panels, &series, MICROMETRES.in_language(language)),
+        &say!(
+            language,
+            "Components of the error, \u{b5}m, while one axis moves. The numbers are in the JSON.",
+            "Составляющие погрешности, мкм, когда движется одна ось. Числа есть в JSON."
+        ),
         None,
     )
 }
 
-fn diagonals(study: &Study) -> Markup {
+fn diagonals(study: &Study, language: Language) -> Markup {
     let panels = [Curves {
-        label: "distance along the diagonal, mm".to_owned(),
+        label: say!(language, "distance along the diagonal, mm", "путь по диагонали, мм"),
         at: study.diagonals[0].deviations_mm.iter().map(|row| row[0]).collect(),
         values: study
             .diagonals
@@ -308,15 +447,26 @@ fn diagonals(study: &Study) -> Markup {
         .diagonals
         .iter()
         .map(|d| {
-            let figures = [d.systematic_mm, d.mean_mm, d.reversal_mm, d.length_error_mm].map(um);
+            let figures =
+                [d.systematic_mm, d.mean_mm, d.reversal_mm, d.length_error_mm].map(|mm| um(mm, language));
             std::iter::once(signs(d.signs)).chain(figures).collect()
         })
         .collect();
-    let header = ["diagonal", "systematic E", "mean M", "reversal B", "length error"];
+    let header = match language {
+        Language::English => ["diagonal", "systematic E", "mean M", "reversal B", "length error"],
+        Language::Russian => {
+            ["диагональ", "систематическое E", "среднее M", "зона реверса B", "погрешность длины"]
+        }
+    };
+    let title = say!(language, "Positioning along the body diagonals", "Позиционирование по диагоналям тела");
+    let caption = say!(
+        language,
+        "Deviation forward along each diagonal, \u{b5}m, as an interferometer would read it (ISO 230-6); P and N: whether X, Y, Z run to plus or to minus. Spread between diagonals speaks of squareness, a common slope of scale.",
+        "Отклонение на прямом ходе по каждой диагонали, мкм, как его показал бы интерферометр (ISO 230-6); P и N — в плюс или в минус идут X, Y, Z. Расхождение диагоналей говорит об отклонении от перпендикулярности, общий наклон — о масштабе."
+    );
     html! {
-        (figure(&curves("Positioning along the body diagonals", &panels, &series, "\u{b5}m"),
-            "Deviation forward along each diagonal, \u{b5}m, as an interferometer would read it (ISO 230-6); P and N: whether X, Y, Z run to plus or to minus. Spread between diagonals speaks of squareness, a common slope of scale.", None))
-        (table(&header, &[1, 2, 3, 4], &rows))
+        (figure(language, &curves(language, &title, &panels, &series, MICROMETRES.in_language(language)), &caption, None))
+        (table(language, &header, &[1, 2, 3, 4], &rows))
     }
 }
 
@@ -325,129 +475,160 @@ fn signs(signs: [i8; 3]) -> String {
     signs.iter().map(|sign| if *sign > 0 { 'P' } else { 'N' }).collect()
 }
 
-fn zero_points(study: &Study) -> Markup {
+fn zero_points(study: &Study, language: Language) -> Markup {
     html! {
         p {
-            "The offset to enter is minus the error: the machine goes too far by the error, so the zero point goes back by it. Do this or correct programs, not both."
+            (say!(
+                language,
+                "The offset to enter is minus the error: the machine goes too far by the error, so the zero point goes back by it. Do this or correct programs, not both.",
+                "Вводится погрешность с обратным знаком: станок уходит на погрешность дальше, поэтому нулевая точка отводится на неё назад. Либо так, либо исправлять программы, но не то и другое вместе."
+            ))
         }
-        @for part in &study.parts { (zero_points_of(study, part)) }
+        @for part in &study.parts { (zero_points_of(study, part, language)) }
     }
 }
 
-fn zero_points_of(study: &Study, part: &Part) -> Markup {
+fn zero_points_of(study: &Study, part: &Part, language: Language) -> Markup {
     let figures = |f: &error_map::Statistics| {
-        [um(f.rms_mm), um(f.p95_mm), um(f.magnitude_mm.high), percent2(f.share_within())]
+        let [rms, p95, largest] = [f.rms_mm, f.p95_mm, f.magnitude_mm.high].map(|mm| um(mm, language));
+        [rms, p95, largest, percent2(f.share_within(), language)]
     };
     let mut rows = vec![
-        std::iter::once("as it is".to_owned())
+        std::iter::once(say!(language, "as it is", "как есть"))
             .chain([const { String::new() }; 3])
             .chain(figures(&part.figures))
             .collect::<Vec<_>>(),
     ];
     for zero in &part.zero_points {
         let add = zero.to_enter_mm(study);
-        let shift = [add.x, add.y, add.z].map(|v| number_of_digits(v, study.decimals()));
+        let shift = [add.x, add.y, add.z].map(|v| language.digits(v, study.decimals()));
         rows.push(
-            std::iter::once(zero.kind.name().to_owned()).chain(shift).chain(figures(&zero.figures)).collect(),
+            std::iter::once(zero.kind.name().in_language(language).to_owned())
+                .chain(shift)
+                .chain(figures(&zero.figures))
+                .collect(),
         );
     }
-    let within = format!("\u{2264} {} \u{b5}m", within(study));
-    let header =
-        ["answer", "add X, mm", "add Y, mm", "add Z, mm", "RMS, \u{b5}m", "95 %", "largest", &within];
+    let within = within_said(study, language);
+    let header = match language {
+        Language::English => {
+            ["answer", "add X, mm", "add Y, mm", "add Z, mm", "RMS, \u{b5}m", "95 %", "largest", &within]
+        }
+        Language::Russian => ["ответ", "к X, мм", "к Y, мм", "к Z, мм", "СКЗ, мкм", "95 %", "наиб.", &within],
+    };
     let chosen = part.zero_points.iter().find(|zero| zero.kind == super::study::Kind::Median);
     html! {
-        h3 { (shown(&part.name)) }
-        (table(&header, &[1, 2, 3, 4, 5, 6, 7], &rows))
+        h3 { (shown(part.name.in_language(language))) }
+        (table(language, &header, &[1, 2, 3, 4, 5, 6, 7], &rows))
         details {
-            summary { "How good these answers are" }
-            ul { @for zero in &part.zero_points { li { (proof(zero, part)) } } }
+            summary { (say!(language, "How good these answers are", "Насколько хороши эти ответы")) }
+            ul { @for zero in &part.zero_points { li { (proof(zero, part, language)) } } }
         }
         @if let Some(zero) = chosen.filter(|_| !study.work_offsets.is_empty()) {
-            p { "To enter for the geometric median:" }
+            p { (say!(language, "To enter for the geometric median:", "Ввести для геометрической медианы:")) }
             dl {
                 @for (name, offset) in &study.work_offsets {
                     @let to = Vector::from(*offset) + zero.to_enter_mm(study);
                     dt { (shown(name)) }
-                    dd { "X " (number_of_digits(to.x, study.decimals())) " Y " (number_of_digits(to.y, study.decimals()))
-                        " Z " (number_of_digits(to.z, study.decimals())) }
+                    @let [x, y, z] = [to.x, to.y, to.z].map(|v| language.digits(v, study.decimals()));
+                    dd { "X " (x) " Y " (y) " Z " (z) }
                 }
             }
         }
     }
 }
 
-fn places(study: &Study) -> Markup {
+fn places(study: &Study, language: Language) -> Markup {
     let rows: Vec<Vec<String>> = study
         .places
         .iter()
         .map(|(freedom, place)| {
-            let mut row = vec![freedom_name(*freedom).to_owned()];
+            let mut row = vec![freedom_name(*freedom).in_language(language).to_owned()];
             row.extend(
                 place
                     .box_mm
                     .iter()
-                    .map(|r| format!("{} to {}", number_of_digits(r.low, 1), number_of_digits(r.high, 1))),
+                    .map(|r| range_said(language.digits(r.low, 1), language.digits(r.high, 1), language)),
             );
             let fit = &place.fit;
-            row.extend([fit.before.rms_mm, fit.after.rms_mm, fit.after.magnitude_mm.high].map(um));
-            row.extend((-fit.shift_mm).iter().map(|v| number_of_digits(*v, study.decimals())));
-            row.extend((-fit.rotation_rad).iter().map(|v| number_of_digits(v * 1e6, 0)));
+            row.extend(
+                [fit.before.rms_mm, fit.after.rms_mm, fit.after.magnitude_mm.high].map(|mm| um(mm, language)),
+            );
+            row.extend((-fit.shift_mm).iter().map(|v| language.digits(*v, study.decimals())));
+            row.extend((-fit.rotation_rad).iter().map(|v| language.digits(v * 1e6, 0)));
             row
         })
         .collect();
-    let header = [
-        "the set-up can",
-        "X, mm",
-        "Y, mm",
-        "Z, mm",
-        "RMS before, \u{b5}m",
-        "after",
-        "largest",
-        "add X, mm",
-        "add Y",
-        "add Z",
-        "turn X, \u{b5}rad",
-        "turn Y",
-        "turn Z",
-    ];
+    #[rustfmt::skip]
+    let header = match language {
+        Language::English => [
+            "the set-up can", "X, mm", "Y, mm", "Z, mm", "RMS before, \u{b5}m", "after", "largest",
+            "add X, mm", "add Y", "add Z", "turn X, \u{b5}rad", "turn Y", "turn Z",
+        ],
+        Language::Russian => [
+            "при наладке можно", "X, мм", "Y, мм", "Z, мм", "СКЗ до, мкм", "после", "наиб.",
+            "к X, мм", "к Y", "к Z", "поворот X, мкрад", "поворот Y", "поворот Z",
+        ],
+    };
     html! {
-        p { "Axis commands of the box in which least is left after the set-up did what it can; turns are about its centre." }
-        (table(&header, &[4, 5, 6, 7, 8, 9, 10, 11, 12], &rows))
+        p {
+            (say!(
+                language,
+                "Axis commands of the box in which least is left after the set-up did what it can; turns are about its centre.",
+                "Координаты осей для габарита, в котором после наладки остаётся наименьшая погрешность; повороты — вокруг его центра."
+            ))
+        }
+        (table(language, &header, &[4, 5, 6, 7, 8, 9, 10, 11, 12], &rows))
     }
 }
 
-fn provenance(study: &Study, facts: &Facts) -> Markup {
+fn provenance(study: &Study, facts: &Facts, language: Language) -> Markup {
     let vector =
-        |v: &Vector, d: usize| v.iter().map(|v| number_of_digits(*v, d)).collect::<Vec<_>>().join(" ");
+        |v: &Vector, d: usize| v.iter().map(|v| language.digits(*v, d)).collect::<Vec<_>>().join(" ");
     html! {
         dl {
-            dt { "machine" } dd { (shown(&study.machine)) ", chain " (shown(&facts.chain)) }
-            dt { "profile and its tables" } dd { (shown(&facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
-            dt { "model" } dd { (study.engine.name()) }
-            dt { "grid" } dd {
+            dt { (say!(language, "machine", "станок")) }
+            dd { (shown(&study.machine)) (say!(language, ", chain ", ", цепь ")) (shown(&facts.chain)) }
+            dt { (say!(language, "profile and its tables", "профиль и его таблицы")) } dd { (shown(&facts.profile)) " " span.muted { "BLAKE3 " (facts.profile_hash) } }
+            dt { (say!(language, "model", "модель")) } dd { (study.engine.name()) }
+            dt { (say!(language, "grid", "сетка")) } dd {
                 @for (axis, nodes) in AXES.iter().zip(study.map.grid().axes()) {
-                    (axis) " " (number_of_digits(nodes.range_mm().low, 3)) " to " (number_of_digits(nodes.range_mm().high, 3)) " mm, "
-                    (nodes.places_mm().len()) " nodes. "
+                    @let [low, high] = [nodes.range_mm().low, nodes.range_mm().high].map(|v| language.digits(v, 3));
+                    @let count = nodes.places_mm().len();
+                    (say!(
+                        language,
+                        "{axis} {low} to {high} mm, {count} nodes. ",
+                        "{axis} от {low} до {high} мм, узлов {count}. "
+                    ))
                 }
             }
-            dt { "tool vector" } dd { (vector(&study.tool_mm, 3)) " mm" }
-            dt { "rotary axes" } dd { (vector(&study.rotary_rad.map(f64::to_degrees), 3)) "\u{b0}" }
+            dt { (say!(language, "tool vector", "вектор инструмента")) }
+            dd { (vector(&study.tool_mm, 3)) (say!(language, " mm", " мм")) }
+            dt { (say!(language, "rotary axes", "поворотные оси")) } dd { (vector(&study.rotary_rad.map(f64::to_degrees), 3)) "\u{b0}" }
             @for (name, value) in &facts.options { dt { (name) } dd { (shown(value)) } }
-            dt { "made by" } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.map/1" }
+            dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", vpost.map/1" }
         }
     }
 }
 
-fn um(mm: f64) -> String {
-    number_of_digits(mm * 1e3, if mm.abs() < 0.0995 { 1 } else { 0 })
+fn range_said(low: String, high: String, language: Language) -> String {
+    say!(language, "{low} to {high}", "от {low} до {high}")
+}
+
+fn um(mm: f64, language: Language) -> String {
+    language.digits(mm * 1e3, if mm.abs() < 0.0995 { 1 } else { 0 })
 }
 
 /// The tolerance as it was typed.
-fn within(study: &Study) -> String {
-    format!("{}", (study.within_mm * 1e6).round() * 1e-3)
+fn within(study: &Study, language: Language) -> String {
+    language.figures(format!("{}", (study.within_mm * 1e6).round() * 1e-3))
+}
+
+fn within_said(study: &Study, language: Language) -> String {
+    format!("\u{2264} {} {}", within(study, language), MICROMETRES.in_language(language))
 }
 
 /// A share as people compare them: small ones with a decimal.
-fn percent2(share: f64) -> String {
-    if share < 0.1 { format!("{} %", number_of_digits(100.0 * share, 1)) } else { percent(share) }
+fn percent2(share: f64, language: Language) -> String {
+    if share < 0.1 { format!("{} %", language.digits(100.0 * share, 1)) } else { language.percent(share) }
 }

@@ -1,6 +1,6 @@
 //! The map and everything that is found in it.
 
-use diagnostic::{Speaks, both};
+use diagnostic::{Speaks, Text, both};
 use error_map::diagonals::{Diagonal, body_diagonals};
 use error_map::placement::{self, Freedom, Place};
 use error_map::zero_point::{best_node, best_share, geometric_median, smallest_ball};
@@ -44,7 +44,7 @@ pub(super) struct Study {
 
 /// A part of the volume, its figures and its zero points.
 pub(super) struct Part {
-    pub name: String,
+    pub name: Text,
     pub box_mm: [Range; 3],
     pub figures: Statistics,
     pub zero_points: Vec<ZeroPoint>,
@@ -82,12 +82,12 @@ pub(super) enum Proof {
 }
 
 impl Kind {
-    pub(super) fn name(self) -> &'static str {
+    pub(super) fn name(self) -> Text {
         match self {
-            Self::Node => "best node",
-            Self::Median => "geometric median",
-            Self::Minimax => "minimax",
-            Self::Share => "best share",
+            Self::Node => Text::pair("best node", "лучший узел"),
+            Self::Median => Text::pair("geometric median", "геом. медиана"),
+            Self::Minimax => Text::pair("minimax", "минимакс"),
+            Self::Share => Text::pair("best share", "лучшая доля"),
         }
     }
 }
@@ -148,7 +148,7 @@ fn parts(
     error_mm: impl Fn(&Vector) -> Vector + Sync,
 ) -> Result<Vec<Part>, Failure> {
     let grid = map.grid();
-    let mut blocks = vec![("volume".to_owned(), grid.all())];
+    let mut blocks = vec![(Text::pair("volume", "объём"), grid.all())];
     for (name, ranges) in &asked.regions {
         let block = grid.region(ranges);
         if block.is_empty() {
@@ -163,7 +163,7 @@ fn parts(
                 ),
             ));
         }
-        blocks.push((name.clone(), block));
+        blocks.push((Text::same(name.as_str()), block));
     }
     for (plane, at) in &asked.planes {
         let places = grid.axes()[plane.normal()].places_mm();
@@ -178,19 +178,20 @@ fn parts(
             Nodes::over(range, count).expect("a range in order")
         });
         let own = evaluated(Grid::new(nodes).expect("few nodes"), error_mm);
-        parts.push(part("part box".to_owned(), &own, &own.grid().all(), asked.within_mm));
+        parts.push(part(Text::pair("part box", "деталь"), &own, &own.grid().all(), asked.within_mm));
     }
     Ok(parts)
 }
 
-fn layer(grid: &Grid, plane: Plane, at_mm: f64) -> (String, Block) {
+fn layer(grid: &Grid, plane: Plane, at_mm: f64) -> (Text, Block) {
     let block = grid.layer(plane, at_mm);
     let axis = plane.normal();
     let place = grid.axes()[axis].places_mm()[block.ranges()[axis].start];
-    (format!("{} at {} {place}", plane.name(), ['X', 'Y', 'Z'][axis]), block)
+    let (plane, axis) = (plane.name(), ['X', 'Y', 'Z'][axis]);
+    (both!("{plane} at {axis} {place}", "{plane} при {axis} {place}"), block)
 }
 
-fn part(name: String, map: &ErrorMap, block: &Block, within_mm: f64) -> Part {
+fn part(name: Text, map: &ErrorMap, block: &Block, within_mm: f64) -> Part {
     let errors = map.errors_of(block);
     let some = "a part has nodes: empty ones were refused";
     let answer = |kind: Kind, shift_mm: Vector, proof: Proof| ZeroPoint {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use diagnostic::{Language, Text, say};
 use error_map::Statistics;
 use error_map::placement::Freedom;
 use machine_model::Vector;
@@ -12,33 +13,36 @@ use super::study::{Kind, Part, Proof, Study, ZeroPoint};
 use crate::figures::{fixed, printable, triple, um};
 
 /// The page.
-pub(super) fn page(study: &Study) -> String {
-    let mut out = head(study);
-    figures(study, &mut out);
-    deformations(study, &mut out);
-    diagonals(study, &mut out);
+pub(super) fn page(study: &Study, language: Language) -> String {
+    let mut out = head(study, language);
+    figures(study, language, &mut out);
+    deformations(study, language, &mut out);
+    diagonals(study, language, &mut out);
     for part in &study.parts {
-        zero_points(study, part, &mut out);
+        zero_points(study, part, language, &mut out);
     }
-    places(study, &mut out);
+    places(study, language, &mut out);
     if let Some(found) = &study.second_order {
-        second_order(found, &mut out);
+        second_order(found, language, &mut out);
     }
     out
 }
 
-fn head(study: &Study) -> String {
+fn head(study: &Study, language: Language) -> String {
     let grid = study.map.grid();
     let axes: Vec<String> = ["X", "Y", "Z"]
         .iter()
         .zip(grid.axes())
         .map(|(name, nodes)| {
-            let range = nodes.range_mm();
-            format!("{name} {} to {} mm ({})", range.low, range.high, nodes.places_mm().len())
+            let (range, count) = (nodes.range_mm(), nodes.places_mm().len());
+            let (low, high) = (range.low, range.high);
+            say!(language, "{name} {low} to {high} mm ({count})", "{name} от {low} до {high} мм ({count})")
         })
         .collect();
-    format!(
+    say!(
+        language,
         "{}: {} nodes, {}\nengine {}, tool vector {}, rotary axes {}\n",
+        "{}: узлов {}, {}\nметод {}, вектор инструмента {}, поворотные оси {}\n",
         printable(&study.machine),
         grid.len(),
         axes.join(", "),
@@ -49,36 +53,42 @@ fn head(study: &Study) -> String {
 }
 
 /// What a field does to small boxes of commands.
-fn deformations(study: &Study, out: &mut String) {
+fn deformations(study: &Study, language: Language, out: &mut String) {
     let Some(figures) = deformation::figures(&study.cells) else { return };
-    let _ = writeln!(
-        out,
-        "\nof {:<27} {:>11} {:>11} {:>11}",
-        format!("{} cells", study.cells.len()),
-        "least",
-        "largest",
-        "rms"
-    );
+    let count = study.cells.len();
+    let heading = say!(language, "of {count} cells", "ячеек {count}");
+    let [least, largest, rms] = [
+        say!(language, "least", "наименьшее"),
+        say!(language, "largest", "наибольшее"),
+        say!(language, "rms", "СКЗ"),
+    ];
+    let _ = writeln!(out, "\n{heading:<30} {least:>11} {largest:>11} {rms:>11}");
     for (which, (range, rms)) in figures.iter().enumerate() {
-        let name = format!("{}, {}", deformation::WORDS[which], deformation::unit(which));
+        let name = format!(
+            "{}, {}",
+            deformation::WORDS[which].in_language(language),
+            deformation::unit(which, language)
+        );
         let numbers = [range.low, range.high, *rms].map(|v| fixed(v, 2));
         let _ = writeln!(out, "  {name:<28} {:>11} {:>11} {:>11}", numbers[0], numbers[1], numbers[2]);
     }
 }
 
-fn figures(study: &Study, out: &mut String) {
-    let _ = writeln!(
-        out,
-        "\nvolumetric error, um      nodes  range X  range Y  range Z      rms     95 %      max   <= {} um",
+fn figures(study: &Study, language: Language, out: &mut String) {
+    let heading = say!(
+        language,
+        "volumetric error, um      nodes  range X  range Y  range Z      rms     95 %      max   <= {} um",
+        "погрешность, мкм          узлов размах X размах Y размах Z      СКЗ     95 %    наиб.   <= {} мкм",
         fixed(study.within_mm * 1e3, 0)
     );
+    let _ = writeln!(out, "\n{heading}");
     for part in &study.parts {
         let f = &part.figures;
         let range = |axis: usize| um(f.component_mm[axis].high - f.component_mm[axis].low);
         let _ = writeln!(
             out,
             "  {:<22} {:>7} {:>8} {:>8} {:>8} {}",
-            printable(&part.name),
+            printable(part.name.in_language(language)),
             f.nodes,
             range(0),
             range(1),
@@ -88,11 +98,13 @@ fn figures(study: &Study, out: &mut String) {
     }
 }
 
-fn diagonals(study: &Study, out: &mut String) {
-    let _ = writeln!(
-        out,
-        "\nbody diagonals (ISO 230-6), um      systematic E     mean M  reversal B  length error"
+fn diagonals(study: &Study, language: Language, out: &mut String) {
+    let heading = say!(
+        language,
+        "body diagonals (ISO 230-6), um      systematic E     mean M  reversal B  length error",
+        "диагонали тела (ISO 230-6), мкм      систем. откл. E  среднее M    реверс B  погр. длины"
     );
+    let _ = writeln!(out, "\n{heading}");
     for diagonal in &study.diagonals {
         let signs: String = diagonal.signs.iter().map(|s| if *s > 0 { '+' } else { '-' }).collect();
         let _ = writeln!(
@@ -106,86 +118,102 @@ fn diagonals(study: &Study, out: &mut String) {
     }
 }
 
-fn zero_points(study: &Study, part: &Part, out: &mut String) {
-    let _ = writeln!(
-        out,
-        "\nzero point, {:<16} add to work offset, mm          rms     95 %      max   <= {} um",
-        printable(&part.name),
+fn zero_points(study: &Study, part: &Part, language: Language, out: &mut String) {
+    let heading = say!(
+        language,
+        "zero point, {:<16} add to work offset, mm          rms     95 %      max   <= {} um",
+        "нулевая точка, {:<13} прибавить к смещению нуля, мм   СКЗ     95 %    наиб.   <= {} мкм",
+        printable(part.name.in_language(language)),
         fixed(study.within_mm * 1e3, 0)
     );
-    let _ = writeln!(out, "  {:<18} {:>29}  {}", "as it is", "", row(&part.figures));
+    let as_it_is = say!(language, "as it is", "как есть");
+    let _ = writeln!(out, "\n{heading}\n  {as_it_is:<18} {:>29}  {}", "", row(&part.figures));
     for zero in &part.zero_points {
         let _ = writeln!(
             out,
             "  {:<18} {:>29}  {}",
-            zero.kind.name(),
+            zero.kind.name().in_language(language),
             triple(&zero.to_enter_mm(study), study.decimals()),
             row(&zero.figures)
         );
     }
     for zero in &part.zero_points {
-        let _ = writeln!(out, "  {}", proof(zero, part));
+        let _ = writeln!(out, "  {}", proof(zero, part, language));
     }
     let Some(median) = part.zero_points.iter().find(|zero| zero.kind == Kind::Median) else { return };
     let add = median.to_enter_mm(study);
-    let _ = writeln!(
-        out,
-        "  to enter the geometric median: change each work offset by X{:+.3} Y{:+.3} Z{:+.3}",
-        add.x, add.y, add.z
+    let (x, y, z) = (add.x, add.y, add.z);
+    let enter = say!(
+        language,
+        "to enter the geometric median: change each work offset by X{x:+.3} Y{y:+.3} Z{z:+.3}",
+        "чтобы ввести геометрическую медиану, измените каждое смещение нуля на X{x:+.3} Y{y:+.3} Z{z:+.3}"
     );
+    let _ = writeln!(out, "  {enter}");
     for (name, offset) in &study.work_offsets {
         let from = Vector::from(*offset);
-        let _ = writeln!(
-            out,
-            "    {name}: {} becomes {}",
-            triple(&from, study.decimals()),
-            triple(&(from + add), study.decimals())
-        );
+        let [from, to] = [from, from + add].map(|v| triple(&v, study.decimals()));
+        let becomes = say!(language, "{name}: {from} becomes {to}", "{name}: вместо {from} введите {to}");
+        let _ = writeln!(out, "    {becomes}");
     }
 }
 
-pub(super) fn proof(zero: &ZeroPoint, part: &Part) -> String {
+pub(super) fn proof(zero: &ZeroPoint, part: &Part, language: Language) -> String {
     let n = part.figures.nodes as f64;
     let name = zero.kind.name();
+    let name = name.in_language(language);
     match &zero.proof {
-        Proof::Node { place_mm, sum_mm, examined } => format!(
+        Proof::Node { place_mm, sum_mm, examined } => say!(
+            language,
             "{name}: at {}; mean distance {} um; {examined} of {} sums computed, the others are proven larger",
+            "{name}: в {}; среднее расстояние {} мкм; вычислено сумм: {examined} из {}, остальные доказано больше",
             triple(place_mm, 3),
             um(sum_mm / n),
             part.figures.nodes
         ),
         Proof::Sum { sum_mm, lower_bound_mm } => {
             let gap = (sum_mm - lower_bound_mm) / sum_mm.max(f64::MIN_POSITIVE);
-            format!(
+            say!(
+                language,
                 "{name}: mean distance {} um; no shift has a sum smaller by more than {gap:.0e} of it",
+                "{name}: среднее расстояние {} мкм; никакой сдвиг не уменьшит сумму больше чем на {gap:.0e} её долю",
                 um(sum_mm / n)
             )
         }
         Proof::Radius { radius_mm, support } => {
-            format!(
+            say!(
+                language,
                 "{name}: no shift has a smaller largest error than {} um ({support} nodes hold it)",
+                "{name}: ни при каком сдвиге наибольшая погрешность не меньше {} мкм (её держат узлы: {support})",
                 um(*radius_mm)
             )
         }
         Proof::Count { within, at_most } if within == at_most => {
-            format!("{name}: {within} nodes within, and no shift has more")
+            say!(
+                language,
+                "{name}: {within} nodes within, and no shift has more",
+                "{name}: в допуске узлов {within}, и больше не даёт никакой сдвиг"
+            )
         }
-        Proof::Count { within, at_most } => format!(
+        Proof::Count { within, at_most } => say!(
+            language,
             "{name}: {within} nodes within; no shift has more than {at_most} ({} %)",
+            "{name}: в допуске узлов {within}; больше {at_most} ({} %) не даёт никакой сдвиг",
             percent(*at_most as f64 / n)
         ),
     }
 }
 
-fn places(study: &Study, out: &mut String) {
+fn places(study: &Study, language: Language, out: &mut String) {
     if study.places.is_empty() {
         return;
     }
-    let _ = writeln!(
-        out,
-        "\nwhere to clamp, if the set-up can       box, mm                                       rms     95 %      max   <= {} um",
+    let heading = say!(
+        language,
+        "where to clamp, if the set-up can       box, mm                                       rms     95 %      max   <= {} um",
+        "где закрепить, если можно               габарит, мм                                   СКЗ     95 %    наиб.   <= {} мкм",
         fixed(study.within_mm * 1e3, 0)
     );
+    let _ = writeln!(out, "\n{heading}");
     for (freedom, place) in &study.places {
         let span: Vec<String> = ["X", "Y", "Z"]
             .iter()
@@ -193,45 +221,61 @@ fn places(study: &Study, out: &mut String) {
             .map(|(axis, range)| format!("{axis} {}..{}", fixed(range.low, 1), fixed(range.high, 1)))
             .collect();
         let name = freedom_name(*freedom);
+        let name = name.in_language(language);
         let _ = writeln!(out, "  {name:<33} {:<40}  {}", span.join(" "), row(&place.fit.after));
         let turn = place.fit.rotation_rad * 1e6;
-        let _ = writeln!(
-            out,
-            "    before {} um rms; add {} mm to the work offset, turn by {} urad about {}",
+        let how = say!(
+            language,
+            "before {} um rms; add {} mm to the work offset, turn by {} urad about {}",
+            "до этого СКЗ {} мкм; прибавить к смещению нуля {} мм, повернуть на {} мкрад вокруг {}",
             um(place.fit.before.rms_mm),
             triple(&-place.fit.shift_mm, study.decimals()),
             triple(&-turn, 1),
             triple(&place.fit.centre_mm, 1)
         );
+        let _ = writeln!(out, "    {how}");
     }
 }
 
-fn second_order(found: &SecondOrder, out: &mut String) {
-    let _ = writeln!(out, "\nsecond order of rotations, {} nodes", found.nodes);
-    for line in second_order_lines(found) {
+fn second_order(found: &SecondOrder, language: Language, out: &mut String) {
+    let nodes = found.nodes;
+    let heading =
+        say!(language, "second order of rotations, {nodes} nodes", "второй порядок поворотов, узлов {nodes}");
+    let _ = writeln!(out, "\n{heading}");
+    for line in second_order_lines(found, language) {
         let _ = writeln!(out, "  {line}");
     }
 }
 
 /// What products of errors do, in three sentences.
-pub(super) fn second_order_lines(found: &SecondOrder) -> [String; 3] {
+pub(super) fn second_order_lines(found: &SecondOrder, language: Language) -> [String; 3] {
     let limit = fixed(found.limit_mm * 1e3, 0);
     [
-        format!(
+        say!(
+            language,
             "whole chain: exact product and first-order sum differ by at most {} um, at {}",
+            "вся цепь: точное произведение и сумма первого порядка расходятся до {} мкм, в {}",
             fixed(found.chain_difference_mm * 1e3, 6),
             triple(&found.chain_place_mm, 3)
         ),
         match &found.threshold {
-            Some(threshold) => format!(
+            Some(threshold) => say!(
+                language,
                 "products of errors reach {limit} um where all angles are k = {} times as large (largest {} urad)",
+                "произведения погрешностей достигают {limit} мкм, если все углы увеличить в k = {} раз (наибольший {} мкрад)",
                 fixed(threshold.scale, 2),
                 fixed(threshold.angle_rad * 1e6, 1)
             ),
-            None => format!("products of errors stay below {limit} um for angles up to 0.1 rad"),
+            None => say!(
+                language,
+                "products of errors stay below {limit} um for angles up to 0.1 rad",
+                "произведения погрешностей меньше {limit} мкм при углах до 0.1 рад"
+            ),
         },
-        format!(
+        say!(
+            language,
             "nine rotations of the tool vector {} in any order, at {}: first order {} um, all plus {}, all minus {}, exact {} to {} ({} orders)",
+            "девять поворотов вектора инструмента {} в любом порядке, в {}: первый порядок {} мкм, все с плюсом {}, все с минусом {}, точно от {} до {} (порядков {})",
             triple(&found.tool_mm, 3),
             triple(&found.place_mm, 3),
             fixed(found.first_mm * 1e3, 6),
@@ -264,11 +308,11 @@ impl Study {
 }
 
 /// What the set-up can do, in words.
-pub(super) fn freedom_name(freedom: Freedom) -> &'static str {
+pub(super) fn freedom_name(freedom: Freedom) -> Text {
     match freedom {
-        Freedom::Shift => "shift the zero point",
-        Freedom::ShiftAndTurn => "shift, and turn about Z",
-        Freedom::Rigid => "shift, and turn about X, Y and Z",
+        Freedom::Shift => Text::pair("shift the zero point", "сдвинуть нулевую точку"),
+        Freedom::ShiftAndTurn => Text::pair("shift, and turn about Z", "сдвинуть и повернуть вокруг Z"),
+        Freedom::Rigid => Text::pair("shift, and turn about X, Y and Z", "сдвинуть и повернуть вокруг XYZ"),
     }
 }
 

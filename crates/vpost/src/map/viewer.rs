@@ -77,7 +77,7 @@ pub(super) fn write(
     });
     let page = Viewer {
         kind: Kind::Map,
-        language: viewer::language(messages),
+        language: messages.language(),
         scene: &scene,
         has_after: true,
         blocks: &BTreeMap::new(),

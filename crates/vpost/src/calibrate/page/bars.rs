@@ -3,6 +3,7 @@
 use calibration::circular_test::{Cause, CircularTest, Pattern, Sense, Trace};
 use calibration::linear_ballbar::{CircleCalibration, Term};
 use calibration::rotary_ballbar::RotaryCalibration;
+use diagnostic::{Text, both};
 use machine_model::Axis;
 use serde_json::{Value, json};
 
@@ -22,20 +23,22 @@ pub(in super::super) struct Bars<'b> {
 }
 
 /// A cause in words: `squareness EC0Y`.
-pub(super) fn cause_name(cause: Cause, plane: usize) -> String {
+pub(super) fn cause_name(cause: Cause, plane: usize) -> Text {
     match cause {
-        Cause::Squareness => format!("squareness {}", SQUARENESS[plane]),
-        Cause::Mismatch => format!("scale {}", super::super::bar_report::SCALES[plane]),
-        Cause::Backlash(axis) => format!("backlash {}", Axis::ALL[axis]),
+        Cause::Squareness => {
+            both!("squareness {}", "отклонение от перпендикулярности {}", SQUARENESS[plane])
+        }
+        Cause::Mismatch => both!("scale {}", "масштаб {}", super::super::bar_report::SCALES[plane]),
+        Cause::Backlash(axis) => both!("backlash {}", "люфт {}", Axis::ALL[axis]),
     }
 }
 
 /// Which way round, in words.
-pub(super) fn sense_name(sense: Sense) -> &'static str {
+pub(super) fn sense_name(sense: Sense) -> Text {
     match sense {
-        Sense::CounterClockwise => "counter-clockwise",
-        Sense::Clockwise => "clockwise",
-        Sense::Unknown => "direction not said",
+        Sense::CounterClockwise => Text::pair("counter-clockwise", "против часовой стрелки"),
+        Sense::Clockwise => Text::pair("clockwise", "по часовой стрелке"),
+        Sense::Unknown => Text::pair("direction not said", "направление не указано"),
     }
 }
 
@@ -88,7 +91,7 @@ fn plane(test: &CircularTest, names: &[String]) -> Value {
     let sum_mm = test.sum_of_patterns_mm();
     let pattern = |p: &Pattern| {
         json!({
-            "cause": cause_name(p.cause, test.plane),
+            "cause": cause_name(p.cause, test.plane).english(),
             "range_um": um(p.range_mm),
             "u95_um": um(p.half_width_95_mm),
             "share": round(if sum_mm > 0.0 { p.range_mm / sum_mm } else { 0.0 }, 6),
@@ -98,7 +101,7 @@ fn plane(test: &CircularTest, names: &[String]) -> Value {
     let trace = |t: &Trace| {
         json!({
             "run": names.get(t.run),
-            "direction": sense_name(t.sense),
+            "direction": sense_name(t.sense).english(),
             "readings": t.points.len(),
             "gap_deg": round(t.gap_rad.to_degrees(), 3),
             "G_um": um(t.circularity_mm),

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use diagnostic::Text;
+
 use crate::figures::fixed;
 
 use super::bars::{Bars, PLANES, cause_name, sense_name};
@@ -11,7 +13,7 @@ pub(super) fn csv(bars: &Bars<'_>) -> String {
     let mut out = String::from("plane,run,direction,angle_deg,series,value_um\n");
     let names = bars.circles.map_or(&[][..], |(_, names)| names);
     for test in bars.tests() {
-        let causes: Vec<String> = test.patterns.iter().map(|p| cause_name(p.cause, test.plane)).collect();
+        let causes: Vec<Text> = test.patterns.iter().map(|p| cause_name(p.cause, test.plane)).collect();
         for trace in &test.traces {
             let run = names.get(trace.run).map_or("", String::as_str);
             // A name may hold anything that a cell of the file held.
@@ -20,7 +22,7 @@ pub(super) fn csv(bars: &Bars<'_>) -> String {
             for point in &trace.points {
                 let own =
                     [("read", point.read_mm), ("deviation", point.deviation_mm), ("fitted", point.fitted_mm)];
-                let parts = causes.iter().map(String::as_str).zip(point.causes_mm.iter().copied());
+                let parts = causes.iter().map(Text::english).zip(point.causes_mm.iter().copied());
                 for (series, value_mm) in own.into_iter().chain(parts) {
                     // Writing to a String cannot fail.
                     let _ = writeln!(

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use diagnostic::{Language, say};
 use maud::{Markup, html};
-use report::text::shown;
+use report::text::{Numbers, shown};
 use serde_json::{Value, json};
 
 use crate::arguments::Shared;
@@ -111,12 +112,12 @@ impl Facts {
     }
 
     /// The section at the end of the page.
-    pub(super) fn section(&self) -> Markup {
+    pub(super) fn section(&self, language: Language) -> Markup {
         let said = |value: &Option<String>, option: &str| {
             html! {
                 @match value {
                     Some(value) => (shown(value)),
-                    None => span.muted { "not stated (" (option) ")" },
+                    None => span.muted { (say!(language, "not stated ({option})", "не указано ({option})")) },
                 }
             }
         };
@@ -126,27 +127,36 @@ impl Facts {
                 @if let Some(hash) = &f.hash { " " span.muted { "BLAKE3 " (hash) } }
             }
         };
-        let temperature = self.temperature_c.map(|t| format!("{} \u{b0}C", crate::number::short(t, 2)));
+        let temperature =
+            self.temperature_c.map(|t| language.figures(format!("{} \u{b0}C", crate::number::short(t, 2))));
         html! {
             dl {
-                @for file in &self.files { dt { "measurements" } dd { (named(file)) } }
+                @for file in &self.files { dt { (say!(language, "measurements", "измерения")) } dd { (named(file)) } }
                 @if let Some((machine, base)) = &self.base {
-                    dt { "machine" } dd { (shown(machine)) }
-                    dt { "base profile and its tables" } dd { (named(base)) }
+                    dt { (say!(language, "machine", "станок")) } dd { (shown(machine)) }
+                    dt { (say!(language, "base profile and its tables", "исходный профиль и его таблицы")) }
+                    dd { (named(base)) }
                 }
                 @if let (Some(path), Some(hash)) = (&self.written, &self.written_hash) {
-                    dt { "profile written, with its tables" }
+                    dt { (say!(language, "profile written, with its tables", "записанный профиль с таблицами")) }
                     dd { (shown(&file::name(path))) " " span.muted { "BLAKE3 " (hash) } }
                 }
-                dt { "instrument" } dd { (said(&self.instrument, "--instrument")) }
-                dt { "date" } dd { (said(&self.date, "--date")) }
-                dt { "temperature" } dd { (said(&temperature, "--temperature")) }
+                dt { (say!(language, "instrument", "прибор")) } dd { (said(&self.instrument, "--instrument")) }
+                dt { (say!(language, "date", "дата")) } dd { (said(&self.date, "--date")) }
+                dt { (say!(language, "temperature", "температура")) } dd { (said(&temperature, "--temperature")) }
                 @if let Some(u) = self.uncertainty_um {
-                    dt { "uncertainty" }
-                    dd { (report::text::number_of_digits(u, 3)) " \u{b5}m, which 95 % of the places of the volume keep" }
+                    dt { (say!(language, "uncertainty", "неопределённость")) }
+                    dd {
+                        (say!(
+                            language,
+                            "{} \u{b5}m, which 95 % of the places of the volume keep",
+                            "{} мкм, её выдерживают 95 % мест рабочего объёма",
+                            language.digits(u, 3)
+                        ))
+                    }
                 }
-                dt { "made by" } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", " (SCHEMA) }
-                dt { "command" } dd { code { (shown(&self.command)) } }
+                dt { (say!(language, "made by", "создано")) } dd { "vpost " (env!("CARGO_PKG_VERSION")) ", " (SCHEMA) }
+                dt { (say!(language, "command", "команда")) } dd { code { (shown(&self.command)) } }
             }
         }
     }

@@ -13,6 +13,7 @@ mod runs;
 use std::path::PathBuf;
 
 use clap::Args;
+use diagnostic::{Language, Text, say};
 use report::page::{Page, Section};
 
 pub(super) use bars::Bars;
@@ -20,9 +21,9 @@ pub(super) use runs::{Positions, Read};
 
 use super::output::Target;
 use crate::arguments::Shared;
-use crate::file;
 use crate::message::Failure;
 use crate::roles::Roles;
+use crate::{file, language};
 
 use facts::Facts;
 use found::Found;
@@ -72,23 +73,41 @@ impl Shown {
             Some(path) => file::write(path, &bytes()),
             None => Ok(()),
         };
+        let language = language::chosen(shared.messages.language.as_deref().copied());
         let json = || jobs::summary::json(&facts.with(found.json()));
         put(&self.csv, &|| found.csv().into_bytes())?;
         put(&self.json, &json)?;
-        put(&self.html, &|| html(found, facts, &String::from_utf8_lossy(&json())).into_bytes())
+        put(&self.html, &|| html(found, facts, &String::from_utf8_lossy(&json()), language).into_bytes())
     }
 }
 
-fn html(found: &dyn Found, facts: &Facts, json: &str) -> String {
-    let mut sections = found.sections();
-    sections.push(Section { id: "provenance", title: "Where this comes from", body: facts.section() });
+/// Where nothing was written.
+const NOT_WRITTEN: Text = Text::pair(
+    "No profile was written: add -o PROFILE.toml to correct by these readings.",
+    "Профиль не записан: чтобы исправлять по этим измерениям, добавьте -o PROFILE.toml.",
+);
+
+fn written_to(name: &str, language: Language) -> String {
+    say!(language, "Written to {}.", "Записано в {}.", report::text::shown(name))
+}
+
+fn html(found: &dyn Found, facts: &Facts, json: &str, language: Language) -> String {
+    let mut sections = found.sections(language);
+    sections.push(Section {
+        id: "provenance",
+        title: Text::pair("Where this comes from", "Откуда эти данные"),
+        body: facts.section(language),
+    });
     Page {
-        title: &found.title(),
-        head: found.head(facts),
+        language,
+        title: &found.title(language),
+        head: found.head(facts, language),
         sections,
         json,
-        foot: &format!(
+        foot: &say!(
+            language,
             "vpost {} calibrate. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON ({}).",
+            "vpost {} calibrate. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON ({}).",
             env!("CARGO_PKG_VERSION"),
             facts::SCHEMA
         ),

@@ -1,10 +1,11 @@
 //! The page of an interferometer's runs: the diagram of ISO 230-2 for each axis, and its figures.
 
 use calibration::iso230_2::{Evaluation, Target};
+use diagnostic::{Language, Text, both, say};
 use maud::{Markup, html};
 use report::chart::{Band, Bands, bands};
 use report::page::{Section, figure, table};
-use report::text::{number_of_digits, percent, shown};
+use report::text::{MICROMETRES, Numbers, shown};
 use serde_json::Value;
 
 use super::super::iso_report;
@@ -15,16 +16,16 @@ use crate::file;
 use crate::number::short;
 
 impl Found for Positions {
-    fn title(&self) -> String {
-        title(&self.0)
+    fn title(&self, language: Language) -> String {
+        title(&self.0, language)
     }
 
-    fn head(&self, facts: &Facts) -> Markup {
-        head(&self.0, facts)
+    fn head(&self, facts: &Facts, language: Language) -> Markup {
+        head(&self.0, facts, language)
     }
 
-    fn sections(&self) -> Vec<Section> {
-        sections(&self.0)
+    fn sections(&self, language: Language) -> Vec<Section> {
+        sections(&self.0, language)
     }
 
     fn json(&self) -> Value {
@@ -36,19 +37,27 @@ impl Found for Positions {
     }
 }
 
+/// Directions of the runs.
+const UP: Text = Text::pair("up", "вверх");
+const DOWN: Text = Text::pair("down", "вниз");
+
 /// As many digits as the command prints.
-fn um(mm: f64) -> String {
-    number_of_digits(mm * 1e3, 3)
+fn um(mm: f64, language: Language) -> String {
+    language.digits(mm * 1e3, 3)
 }
 
 /// A position with a real minus sign.
-fn position(mm: f64) -> String {
-    short(mm, 3).replacen('-', "\u{2212}", 1)
+fn position(mm: f64, language: Language) -> String {
+    language.figures(short(mm, 3).replacen('-', "\u{2212}", 1))
 }
 
-fn title(all: &[Read]) -> String {
+fn title(all: &[Read], language: Language) -> String {
     let names: Vec<&str> = positions(all).map(|r| r.name.as_str()).collect();
-    if names.is_empty() { "Error functions".to_owned() } else { format!("Positioning {}", names.join(", ")) }
+    if names.is_empty() {
+        say!(language, "Error functions", "Функции погрешностей")
+    } else {
+        say!(language, "Positioning {}", "Позиционирование {}", names.join(", "))
+    }
 }
 
 fn positions(all: &[Read]) -> impl Iterator<Item = &Read> {
@@ -58,7 +67,7 @@ fn positions(all: &[Read]) -> impl Iterator<Item = &Read> {
 /// What most of an axis' deviation is.
 enum Lead {
     /// Readings at one target and from one side scatter.
-    Scatter { r_mm: f64, at_mm: f64, from: &'static str },
+    Scatter { r_mm: f64, at_mm: f64, from: Text },
     /// Both directions differ.
     Reversal { b_mm: f64, at_mm: f64 },
     /// The mean wanders along the axis.
@@ -68,9 +77,11 @@ enum Lead {
 impl Lead {
     /// The largest of the three.
     fn of(e: &Evaluation) -> Self {
-        let mut scatter = (0.0, 0.0, "below");
+        let mut scatter = (0.0, 0.0, Text::pair("below", "снизу"));
         for t in &e.targets {
-            for (approach, from) in [(t.positive, "below"), (t.negative, "above")] {
+            for (approach, from) in
+                [(t.positive, Text::pair("below", "снизу")), (t.negative, Text::pair("above", "сверху"))]
+            {
                 if let Some(a) = approach.filter(|a| a.repeatability > scatter.0) {
                     scatter = (a.repeatability, t.position, from);
                 }
@@ -87,30 +98,36 @@ impl Lead {
         }
     }
 
-    fn word(&self) -> &'static str {
+    fn word(&self) -> Text {
         match self {
-            Self::Scatter { .. } => "SCATTER",
-            Self::Reversal { .. } => "REVERSAL",
-            Self::Curve { .. } => "REPEATABLE CURVE",
+            Self::Scatter { .. } => Text::pair("SCATTER", "РАЗБРОС"),
+            Self::Reversal { .. } => Text::pair("REVERSAL", "РЕВЕРС"),
+            Self::Curve { .. } => Text::pair("REPEATABLE CURVE", "ПОВТОРЯЮЩАЯСЯ КРИВАЯ"),
         }
     }
 
     /// What is wrong, and what to do about it.
-    fn says(&self) -> String {
+    fn says(&self, language: Language) -> String {
         match self {
-            Self::Scatter { r_mm, at_mm, from } => format!(
+            Self::Scatter { r_mm, at_mm, from } => say!(
+                language,
                 "Most of it does not repeat: at {} mm, reached from {from}, readings scatter by 4s = {} \u{b5}m. No table corrects that. Run that target again; look at fixture, scale, bearings and drive before correcting.",
-                position(*at_mm),
-                um(*r_mm)
+                "Большая часть не повторяется: на {} мм при подходе {from:#} разброс отсчётов 4s = {} мкм. Таблицей это не исправить. Пройдите эту цель ещё раз; прежде чем исправлять, проверьте закрепление, шкалу, подшипники и привод.",
+                position(*at_mm, language),
+                um(*r_mm, language)
             ),
-            Self::Reversal { b_mm, at_mm } => format!(
+            Self::Reversal { b_mm, at_mm } => say!(
+                language,
                 "Most of it is the direction: at {} mm the axis stands {} \u{b5}m apart by where it comes from. Look at nut, bearings and guideway; what repeats of it, tables of both directions correct.",
-                position(*at_mm),
-                um(*b_mm)
+                "Главное здесь — направление: на {} мм ось в зависимости от стороны подхода стоит с разницей {} мкм. Проверьте гайку, подшипники и направляющую; повторяющееся исправят таблицы для обоих направлений.",
+                position(*at_mm, language),
+                um(*b_mm, language)
             ),
-            Self::Curve { m_mm } => format!(
+            Self::Curve { m_mm } => say!(
+                language,
                 "Most of it repeats: the mean of the readings wanders by M = {} \u{b5}m along the axis. A table corrects it.",
-                um(*m_mm)
+                "Большая часть повторяется: среднее отсчётов меняется вдоль оси на M = {} мкм. Это исправит таблица.",
+                um(*m_mm, language)
             ),
         }
     }
@@ -127,36 +144,66 @@ fn evaluated(all: &[Read]) -> impl Iterator<Item = (&Read, &Evaluation)> {
 }
 
 /// The first screen.
-fn head(all: &[Read], facts: &Facts) -> Markup {
+fn head(all: &[Read], facts: &Facts, language: Language) -> Markup {
     let written = facts.written.as_ref().map(|path| file::name(path));
     html! {
-        p.muted { "Positioning after ISO 230-2: " (shown(&facts.names())) }
+        p.muted { (say!(language, "Positioning after ISO 230-2: ", "Позиционирование по ISO 230-2: ")) (shown(&facts.names())) }
         @match worst(all) {
             Some((read, e)) => {
                 @let lead = Lead::of(e);
-                p { span.verdict { (lead.word()) } }
+                p { span.verdict { (lead.word().in_language(language)) } }
                 h1 {
-                    (read.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} "
-                    (um(e.accuracy.expanded)) ", 95\u{a0}%)"
+                    (say!(
+                        language,
+                        "{} positions within A = {} \u{b5}m (\u{b1} {}, 95\u{a0}%)",
+                        "Точность позиционирования {}: A = {} мкм (\u{b1} {}, 95\u{a0}%)",
+                        read.axis,
+                        um(e.accuracy.value, language),
+                        um(e.accuracy.expanded, language)
+                    ))
                 }
-                p { (lead.says()) }
-                p { (correction(read)) }
+                p { (lead.says(language)) }
+                p { (correction(read, language)) }
                 @for (other, e) in evaluated(all).filter(|(other, _)| other.axis != read.axis) {
-                    p { (other.axis) " positions within A = " (um(e.accuracy.value)) " \u{b5}m (\u{b1} " (um(e.accuracy.expanded)) ")." }
+                    p {
+                        (say!(
+                            language,
+                            "{} positions within A = {} \u{b5}m (\u{b1} {}).",
+                            "Точность позиционирования {}: A = {} мкм (\u{b1} {}).",
+                            other.axis,
+                            um(e.accuracy.value, language),
+                            um(e.accuracy.expanded, language)
+                        ))
+                    }
                 }
             }
             None => {
-                p { span.verdict { "NOT EVALUATED" } }
-                h1 { "No runs were repeated: what was read is drawn, and nothing is said of repeatability or accuracy" }
-                p { "Repeat the runs, five in each direction as ISO 230-2 asks, in one file or several." }
+                p { span.verdict { (say!(language, "NOT EVALUATED", "НЕ ОЦЕНЕНО")) } }
+                h1 {
+                    (say!(
+                        language,
+                        "No runs were repeated: what was read is drawn, and nothing is said of repeatability or accuracy",
+                        "Проходы не повторялись: измеренное нарисовано, о повторяемости и точности ничего не сказано"
+                    ))
+                }
+                p {
+                    (say!(
+                        language,
+                        "Repeat the runs, five in each direction as ISO 230-2 asks, in one file or several.",
+                        "Повторите проходы, по пять в каждом направлении, как требует ISO 230-2, в одном файле или в нескольких."
+                    ))
+                }
             }
         }
         @for read in positions(all) {
-            @for missing in &read.missing { p.muted { "Not as the standard asks, " (read.name) ": " (shown(missing)) "." } }
+            @for missing in &read.missing { p.muted {
+                    (say!(language, "Not as the standard asks, {}: ", "Не так, как требует стандарт, {}: ", read.name))
+                    (shown(&language.prose(missing))) "."
+                } }
         }
         @match written {
-            Some(name) => p { "Written to " (shown(&name)) "." },
-            None => p.muted { "No profile was written: add -o PROFILE.toml to correct by these readings." },
+            Some(name) => p { (super::written_to(&name, language)) },
+            None => p.muted { (super::NOT_WRITTEN.in_language(language)) },
         }
     }
 }
@@ -167,73 +214,103 @@ const WORSE: f64 = 1.1;
 const WORTH: f64 = 0.8;
 
 /// What a correction will bring, by runs that it was not made of.
-fn correction(read: &Read) -> String {
+fn correction(read: &Read, language: Language) -> String {
     let Some(h) = read.held_out else {
-        return "What a correction will bring, one run in a direction cannot say: run it again.".to_owned();
+        return say!(
+            language,
+            "What a correction will bring, one run in a direction cannot say: run it again.",
+            "Что даст коррекция, один проход в направлении не скажет: пройдите ещё раз."
+        );
     };
-    let words = format!(
+    let words = say!(
+        language,
         "Each run of {} corrected by the mean of the others: readings spread over {} \u{b5}m instead of {} (RMS {} \u{b5}m)",
+        "Каждый проход {} исправлен по среднему остальных: размах отсчётов {} мкм вместо {} (СКЗ {} мкм)",
         read.axis,
-        um(h.after),
-        um(h.before),
-        um(h.after_rms)
+        um(h.after, language),
+        um(h.before, language),
+        um(h.after_rms, language)
     );
     if h.after < WORTH * h.before {
-        let gain = percent(1.0 - h.after / h.before);
-        format!("{words}. That is what a correction will bring: {gain} less.")
+        let gain = language.percent(1.0 - h.after / h.before);
+        say!(
+            language,
+            "{words}. That is what a correction will bring: {gain} less.",
+            "{words}. Это и даст коррекция: на {gain} меньше."
+        )
     } else if h.after < WORSE * h.before {
-        format!("{words}. A correction brings little.")
+        say!(language, "{words}. A correction brings little.", "{words}. Коррекция почти ничего не даст.")
     } else {
-        format!("{words}. A correction by these runs would make it worse.")
+        say!(
+            language,
+            "{words}. A correction by these runs would make it worse.",
+            "{words}. Коррекция по этим проходам сделала бы хуже."
+        )
     }
 }
 
-/// Ids and titles of the axes' sections.
-const OF_AXES: [(&str, &str); 3] =
-    [("x", "Positioning of X"), ("y", "Positioning of Y"), ("z", "Positioning of Z")];
+/// Ids of the axes' sections.
+const OF_AXES: [&str; 3] = ["x", "y", "z"];
 
-fn sections(all: &[Read]) -> Vec<Section> {
+fn sections(all: &[Read], language: Language) -> Vec<Section> {
     let mut out: Vec<Section> = positions(all)
         .map(|read| {
-            let (id, title) = OF_AXES[read.axis.direction()];
-            Section { id, title, body: axis(read) }
+            let title = both!("Positioning of {}", "Позиционирование {}", read.axis);
+            Section { id: OF_AXES[read.axis.direction()], title, body: axis(read, language) }
         })
         .collect();
     if all.iter().any(|r| !r.is_positioning) {
-        out.push(Section { id: "others", title: "Straightness and angles", body: others(all) });
+        out.push(Section {
+            id: "others",
+            title: Text::pair("Straightness and angles", "Прямолинейность и углы"),
+            body: others(all, language),
+        });
     }
     out
 }
 
-fn axis(read: &Read) -> Markup {
+fn axis(read: &Read, language: Language) -> Markup {
     html! {
-        (diagram(read))
+        (diagram(read, language))
         @if read.is_direction_unsaid {
-            p.muted { "The file does not say the direction of every reading: those without one are shown as up." }
+            p.muted {
+                (say!(
+                    language,
+                    "The file does not say the direction of every reading: those without one are shown as up.",
+                    "Файл называет направление не каждого отсчёта: отсчёты без направления показаны как «вверх»."
+                ))
+            }
         }
         @match &read.evaluation {
             Some(e) => {
                 @if e.runs.contains(&0) {
                     p {
-                        "Runs in one direction only: of the other, and of the reversal value B, nothing is known. "
-                        "A, E, M and R are those of the direction that was run."
+                        (say!(
+                            language,
+                            "Runs in one direction only: of the other, and of the reversal value B, nothing is known. A, E, M and R are those of the direction that was run.",
+                            "Проходы только в одном направлении: о другом и о величине реверса B ничего не известно. A, E, M и R относятся к пройденному направлению."
+                        ))
                     }
                 }
-                (results(e))
-                h3 { "By target" }
-                (targets(e))
+                (results(e, language))
+                h3 { (say!(language, "By target", "По целям")) }
+                (targets(e, language))
             }
             None => p {
-                "Each direction was run once: no scatter is known, so there are no limits in the drawing and no figures of ISO 230-2."
+                (say!(
+                    language,
+                    "Each direction was run once: no scatter is known, so there are no limits in the drawing and no figures of ISO 230-2.",
+                    "В каждом направлении один проход: разброс неизвестен, поэтому на рисунке нет границ, а величин ISO 230-2 нет."
+                ))
             },
         }
     }
 }
 
 /// Runs, means and the limits two standard deviations from them.
-fn diagram(read: &Read) -> Markup {
+fn diagram(read: &Read, language: Language) -> Markup {
     let micro = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v * 1e3).collect() };
-    let side = |(side, all, name): (usize, &Vec<Vec<f64>>, &str)| {
+    let side = |(side, all, name): (usize, &Vec<Vec<f64>>, Text)| {
         let runs: Vec<Vec<f64>> = all.iter().map(|run| micro(run)).collect();
         let count = all.len();
         let several = read.evaluation.as_ref().filter(|_| count > 1);
@@ -242,93 +319,115 @@ fn diagram(read: &Read) -> Markup {
             None => runs.first().cloned().unwrap_or_default(),
         };
         let plural = if count == 1 { "run" } else { "runs" };
+        let russian = diagnostic::russian_plural(count as u64, ["проход", "прохода", "проходов"]);
         Band {
-            name: format!("{name}: {count} {plural}"),
+            name: say!(language, "{name}: {count} {plural}", "{name:#}: {count} {russian}"),
             mean,
             limits: several.map(|e| [micro(&limits(e, side, -2.0)), micro(&limits(e, side, 2.0))]),
             runs,
         }
     };
-    let both = [(0, &read.runs.positive, "up"), (1, &read.runs.negative, "down")];
+    let both = [(0, &read.runs.positive, UP), (1, &read.runs.negative, DOWN)];
     let drawn = Bands {
-        label: format!("target position of {}, mm", read.axis),
+        label: say!(language, "target position of {}, mm", "положение цели {}, мм", read.axis),
         at: read.runs.targets.clone(),
         bands: both.into_iter().filter(|(_, all, _)| !all.is_empty()).map(side).collect(),
-        span: read.evaluation.as_ref().map(|e| format!("A {}", um(e.accuracy.value))),
+        span: read.evaluation.as_ref().map(|e| format!("A {}", um(e.accuracy.value, language))),
     };
     let caption = if read.evaluation.is_some() {
-        "Deviation, actual minus target. Thin: single runs; strong: their means; shaded: mean \u{b1} 2s; dashed: the limits between which A lies."
+        say!(
+            language,
+            "Deviation, actual minus target. Thin: single runs; strong: their means; shaded: mean \u{b1} 2s; dashed: the limits between which A lies.",
+            "Отклонение: действительное минус заданное. Тонкие линии — отдельные проходы; толстые — их средние; заливка — среднее \u{b1} 2s; штрих — границы, между которыми лежит A."
+        )
     } else {
-        "Deviation, actual minus target, as it was read once."
+        say!(
+            language,
+            "Deviation, actual minus target, as it was read once.",
+            "Отклонение: действительное минус заданное, по одному проходу."
+        )
     };
-    let name = format!("Positioning deviation {}", read.name);
-    figure(&bands(&name, &drawn, "\u{b5}m"), caption, Some(readings(read)))
+    let name = say!(language, "Positioning deviation {}", "Отклонение позиционирования {}", read.name);
+    let unit = MICROMETRES.in_language(language);
+    figure(language, &bands(language, &name, &drawn, unit), &caption, Some(readings(read, language)))
 }
 
 /// Every reading.
-fn readings(read: &Read) -> Markup {
+fn readings(read: &Read, language: Language) -> Markup {
     let runs = || {
-        let of = |all: &'_ [Vec<f64>], name: &'static str| {
+        let of = |all: &'_ [Vec<f64>], name: Text| {
+            let name = name.in_language(language).to_owned();
             (0..all.len()).map(|k| format!("{name} {}", k + 1)).collect::<Vec<_>>()
         };
-        [of(&read.runs.positive, "up"), of(&read.runs.negative, "down")].concat()
+        [of(&read.runs.positive, UP), of(&read.runs.negative, DOWN)].concat()
     };
     let names = runs();
-    let header: Vec<&str> = std::iter::once("target, mm").chain(names.iter().map(String::as_str)).collect();
+    let target = say!(language, "target, mm", "цель, мм");
+    let header: Vec<&str> =
+        std::iter::once(target.as_str()).chain(names.iter().map(String::as_str)).collect();
     let numbers: Vec<usize> = (0..header.len()).collect();
     let row = |(i, target): (usize, &f64)| {
-        let values = read.runs.positive.iter().chain(&read.runs.negative).map(|run| um(run[i]));
-        std::iter::once(position(*target)).chain(values).collect()
+        let values = read.runs.positive.iter().chain(&read.runs.negative).map(|run| um(run[i], language));
+        std::iter::once(position(*target, language)).chain(values).collect()
     };
     let rows: Vec<Vec<String>> = read.runs.targets.iter().enumerate().map(row).collect();
-    table(&header, &numbers, &rows)
+    table(language, &header, &numbers, &rows)
 }
 
-fn results(e: &Evaluation) -> Markup {
+fn results(e: &Evaluation, language: Language) -> Markup {
     let place = |at: [f64; 2]| {
-        let [a, b] = at.map(position);
-        if a == b { a } else { format!("{a} and {b}") }
+        let [a, b] = at.map(|mm| position(mm, language));
+        if a == b { a } else { say!(language, "{a} and {b}", "{a} и {b}") }
     };
     let row = |f: iso_report::Figure| {
         vec![
             f.symbol.to_owned(),
-            um(f.found.value),
-            um(f.found.expanded),
+            um(f.found.value, language),
+            um(f.found.expanded, language),
             place(f.found.at),
-            f.name.to_owned(),
+            f.name.in_language(language).to_owned(),
         ]
     };
     let mut rows: Vec<Vec<String>> = iso_report::figures(e).into_iter().map(row).collect();
     if let Some(mean) = e.mean_reversal {
-        let all = vec!["B\u{304}".to_owned(), um(mean), String::new(), String::new()];
-        rows.push([all, vec!["mean reversal value".to_owned()]].concat());
+        let name = say!(language, "mean reversal value", "средняя величина реверса");
+        rows.push(vec!["B\u{304}".to_owned(), um(mean, language), String::new(), String::new(), name]);
     }
-    table(&["", "\u{b5}m", "\u{b1} 95 %, \u{b5}m", "made at, mm", "ISO 230-2"], &[1, 2, 3], &rows)
+    let header = match language {
+        Language::English => ["", "\u{b5}m", "\u{b1} 95 %, \u{b5}m", "made at, mm", "ISO 230-2"],
+        Language::Russian => ["", "мкм", "\u{b1} 95 %, мкм", "получено на, мм", "ISO 230-2"],
+    };
+    table(language, &header, &[1, 2, 3], &rows)
 }
 
-fn targets(e: &Evaluation) -> Markup {
-    let cell = |value: Option<f64>| value.map_or_else(|| "\u{2014}".to_owned(), um);
+fn targets(e: &Evaluation, language: Language) -> Markup {
+    let cell = |value: Option<f64>| value.map_or_else(|| "\u{2014}".to_owned(), |mm| um(mm, language));
     let row = |t: &Target| {
         vec![
-            position(t.position),
+            position(t.position, language),
             cell(t.positive.map(|a| a.mean)),
             cell(t.negative.map(|a| a.mean)),
             cell(t.reversal),
             cell(t.positive.map(|a| a.deviation)),
             cell(t.negative.map(|a| a.deviation)),
-            um(t.repeatability),
+            um(t.repeatability, language),
         ]
     };
     let rows: Vec<Vec<String>> = e.targets.iter().map(row).collect();
-    let header = ["target, mm", "mean up, \u{b5}m", "mean down", "B", "s up", "s down", "R"];
-    table(&header, &[0, 1, 2, 3, 4, 5, 6], &rows)
+    let header = match language {
+        Language::English => ["target, mm", "mean up, \u{b5}m", "mean down", "B", "s up", "s down", "R"],
+        Language::Russian => {
+            ["цель, мм", "среднее вверх, мкм", "среднее вниз", "B", "s вверх", "s вниз", "R"]
+        }
+    };
+    table(language, &header, &[0, 1, 2, 3, 4, 5, 6], &rows)
 }
 
 /// What was read beside positions: ISO 230-2 does not evaluate it.
-fn others(all: &[Read]) -> Markup {
+fn others(all: &[Read], language: Language) -> Markup {
     let row = |read: &Read| {
-        let (scale, unit) = read.scale();
-        let value = |v: f64| number_of_digits(v * scale, 3);
+        let (scale, unit) = read.scale(language);
+        let value = |v: f64| language.digits(v * scale, 3);
         vec![
             read.name.clone(),
             read.runs.targets.len().to_string(),
@@ -336,10 +435,15 @@ fn others(all: &[Read]) -> Markup {
             value(read.mean[0]),
             value(read.mean[1]),
             read.scatter.map_or_else(|| "\u{2014}".to_owned(), value),
-            unit.to_owned(),
+            unit,
         ]
     };
     let rows: Vec<Vec<String>> = all.iter().filter(|r| !r.is_positioning).map(row).collect();
-    let header = ["function", "targets", "runs", "least mean", "largest mean", "scatter (s)", ""];
-    table(&header, &[1, 2, 3, 4, 5], &rows)
+    let header = match language {
+        Language::English => ["function", "targets", "runs", "least mean", "largest mean", "scatter (s)", ""],
+        Language::Russian => {
+            ["функция", "целей", "проходов", "наим. среднее", "наиб. среднее", "разброс (s)", ""]
+        }
+    };
+    table(language, &header, &[1, 2, 3, 4, 5], &rows)
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use calibration::functions::Function;
 use calibration::iso230_2::{Evaluation, HeldOut, Runs};
+use diagnostic::{Language, Text, say};
 use machine_model::Axis;
 use measurement_files::series::Series;
 use serde_json::{Value, json};
@@ -32,7 +33,7 @@ pub(in super::super) struct Read {
     /// ISO 230-2, where runs were repeated.
     pub(super) evaluation: Option<Evaluation>,
     /// What the standard asks and was not done.
-    pub(super) missing: Vec<String>,
+    pub(super) missing: Vec<Text>,
     /// What a correction leaves of runs that it was not made of.
     pub(super) held_out: Option<HeldOut>,
 }
@@ -60,10 +61,7 @@ impl Read {
             missing: evaluation
                 .as_ref()
                 .map(super::super::plausibility::missing_of_the_standard)
-                .unwrap_or_default()
-                .iter()
-                .map(|missing| missing.english().to_owned())
-                .collect(),
+                .unwrap_or_default(),
             held_out: calibration::iso230_2::held_out(&runs),
             evaluation,
             runs,
@@ -71,8 +69,12 @@ impl Read {
     }
 
     /// To µm or µrad.
-    pub(super) fn scale(&self) -> (f64, &'static str) {
-        if self.is_angle { (1e6, "\u{b5}rad") } else { (1e3, "\u{b5}m") }
+    pub(super) fn scale(&self, language: Language) -> (f64, String) {
+        if self.is_angle {
+            (1e6, say!(language, "\u{b5}rad", "мкрад"))
+        } else {
+            (1e3, say!(language, "\u{b5}m", "мкм"))
+        }
     }
 
     fn json(&self) -> Value {
@@ -91,7 +93,7 @@ impl Read {
             "down": lists(&self.runs.negative),
             "direction_said": !self.is_direction_unsaid,
             "iso230_2": self.evaluation.as_ref().map(|e| evaluation(e, &shown)),
-            "missing_of_the_standard": self.missing,
+            "missing_of_the_standard": self.missing.iter().map(Text::english).collect::<Vec<_>>(),
         });
         out[key("mean")] = json!(self.mean.map(shown));
         out[key("scatter")] = json!(self.scatter.map(shown));

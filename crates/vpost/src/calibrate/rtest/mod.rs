@@ -88,7 +88,8 @@ pub(super) fn run(arguments: &RTest, shared: &Shared, messages: &Messages) -> Re
         }
         None => None,
     };
-    file::print(report::text(&found, held.as_ref(), &rows).as_bytes())?;
+    let text = report::text(&found, held.as_ref(), &rows);
+    file::print(text.in_language(messages.language()).as_bytes())?;
     if let Some(path) = &arguments.json {
         let mut text = serde_json::to_string_pretty(&report::json(&found, held.as_ref(), &rows))
             .expect("plain values always serialise");
@@ -122,7 +123,7 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
             return match rows.refuse(
                 *point,
                 OUTLIER,
-                Text::english_only(error.to_string()),
+                error.text(),
                 both!("measure it again, or take the row out", "измерьте снова или уберите строку"),
             ) {
                 Some(refusal) => refusal,
@@ -148,7 +149,7 @@ fn refused(rows: &Rows, error: &calibration::CalibrationError) -> Failure {
         Unobservable(_) => OPEN,
         _ => CONTRADICTED,
     };
-    refusal(code, Text::english_only(error.to_string()), help)
+    refusal(code, error.text(), help)
 }
 
 fn refusal(code: diagnostic::Code, message: Text, help: Text) -> Failure {

@@ -1,167 +1,198 @@
 //! What `calibrate rtest` prints, and its JSON.
 
-use std::fmt::{Result, Write};
-
 use calibration::rtest::{
     Basis, FoundTerm, HeldOut, ON_AXIS_MM, RotaryTables, Term, TurnedAxis, WrittenTable,
 };
+use diagnostic::{Text, both};
 use serde_json::{Value, json};
 
 use crate::number::short;
 
+use super::super::micro;
 use super::rows::Rows;
 
 const FUNCTIONS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
-/// Factor to what is printed, and its unit.
+/// Factor to what is printed, and its unit as JSON has it.
 fn unit(is_length: bool) -> (f64, &'static str) {
     if is_length { (1e3, "um") } else { (1e6, "urad") }
 }
 
-pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) -> String {
-    let mut out = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_text(&mut out, found, held, rows);
-    out
+fn degree(own: &TurnedAxis, groups: usize) -> Text {
+    let per_turn = groups.saturating_sub(1);
+    match own.basis {
+        _ if groups == 0 => Text::pair("none", "нет"),
+        _ if groups == 1 => Text::pair("the mean alone", "только среднее"),
+        Basis::Turn => both!("{per_turn} a turn", "{per_turn} на оборот"),
+        Basis::Arc(_) if groups <= 2 => both!("{per_turn} a turn", "{per_turn} на оборот"),
+        Basis::Arc(_) => both!("degree {groups}", "степень {groups}"),
+    }
 }
 
-fn axis_line(out: &mut String, own: &TurnedAxis) -> Result {
+fn axis_line(own: &TurnedAxis) -> Text {
     let [low, high] = own.range_rad.map(|rad| short(rad.to_degrees(), 4));
-    write!(
-        out,
-        "axis {}: {} angles from {low} to {high} degrees, balls up to {:.0} mm from it; ",
-        own.axis, own.angles, own.arm_mm
-    )?;
-    if own.arm_mm < ON_AXIS_MM {
-        write!(out, "on the axis, which hides how it leans; ")?;
-    }
-    let degree = |groups: usize| match own.basis {
-        _ if groups == 0 => "none".to_owned(),
-        _ if groups == 1 => "the mean alone".to_owned(),
-        Basis::Turn => format!("{} a turn", groups - 1),
-        Basis::Arc(_) if groups <= 2 => format!("{} a turn", groups - 1),
-        Basis::Arc(_) => format!("degree {}", groups),
+    let hides = if own.arm_mm < ON_AXIS_MM {
+        Text::pair("on the axis, which hides how it leans; ", "на самой оси, что скрывает её наклон; ")
+    } else {
+        Text::EMPTY
     };
-    writeln!(
-        out,
-        "error functions to {} ({})",
-        degree(own.groups),
-        if own.groups < own.most_groups {
-            format!("{} allowed by the angles", degree(own.most_groups))
-        } else {
-            "all that the angles allow: more of them might show finer ones".to_owned()
-        }
+    let (used, allowed) = (degree(own, own.groups), degree(own, own.most_groups));
+    let more = if own.groups < own.most_groups {
+        both!("{allowed} allowed by the angles", "углы допускают: {allowed:#}")
+    } else {
+        Text::pair(
+            "all that the angles allow: more of them might show finer ones",
+            "всё, что допускают углы: с большим их числом видны были бы и более тонкие",
+        )
+    };
+    let (axis, angles, arm_mm) = (own.axis, own.angles, own.arm_mm);
+    both!(
+        "axis {axis}: {angles} angles from {low} to {high} degrees, balls up to {arm_mm:.0} mm from it; {hides}error functions to {used} ({more})\n",
+        "ось {axis}: углов {angles}, от {low} до {high} градусов, шары до {arm_mm:.0} мм от неё; {hides:#}функции погрешностей: {used:#} ({more:#})\n"
     )
 }
 
-fn write_text(out: &mut String, found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) -> Result {
-    write!(
-        out,
+pub(super) fn text(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) -> Text {
+    let mut out = both!(
         "{} rows in {} runs; noise {:.3} um",
+        "строк {} в сериях {}; шум {:.3} мкм",
         rows.readings.len(),
         rows.runs.len(),
         found.estimate.sigma * 1e3
-    )?;
+    );
     if let Some(free) = found.estimate.degrees_of_freedom {
-        write!(out, " with {free} degrees of freedom")?;
+        out.push(&both!(" with {free} degrees of freedom", " при {free} степенях свободы"));
     }
-    match found.repeats_mm {
-        Some((mm, free)) => writeln!(out, "; repeats within a run {:.3} um with {free}", mm * 1e3)?,
-        None => writeln!(out)?,
+    if let Some((mm, free)) = found.repeats_mm {
+        let um = mm * 1e3;
+        out.push(&both!(
+            "; repeats within a run {um:.3} um with {free}",
+            "; повторы внутри серии {um:.3} мкм при {free}"
+        ));
     }
+    out.push(&Text::pair("\n", "\n"));
     for own in &found.axes {
-        axis_line(out, own)?;
+        out.push(&axis_line(own));
     }
     for axis in &found.still {
-        writeln!(out, "axis {axis}: turns in no run, and stays as in the profile")?;
+        out.push(&both!(
+            "axis {axis}: turns in no run, and stays as in the profile\n",
+            "ось {axis}: не поворачивается ни в одной серии и остаётся как в профиле\n"
+        ));
     }
-    writeln!(out, "location errors     found        95 %     profile")?;
+    out.push(&Text::pair(
+        "location errors     found        95 %     profile\n",
+        "погрешн. положения  найдено      95 %     профиль\n",
+    ));
     for term in &found.terms {
-        let (scale, unit) = unit(term.term.is_length());
-        let value = (term.base + term.change) * scale;
-        match term.term {
-            Term::Location(_) if term.is_written => writeln!(
-                out,
-                "  {}  {value:>15.3} ± {:>8.3} {:>11.3} {unit}",
-                term.term.name(),
-                term.half_width_95 * scale,
-                term.base * scale
-            )?,
-            Term::Location(_) => writeln!(
-                out,
-                "  {}     not determined            {:>11.3} {unit}, stays",
-                term.term.name(),
-                term.base * scale
-            )?,
-            Term::Reversal(_) => writeln!(
-                out,
-                "  {}  {value:>9.3} ± {:>8.3} {unit} about the axis itself, from above less from below: taken off, not written",
-                term.term.name(),
-                term.half_width_95 * scale
-            )?,
-            Term::Coefficient { .. } => {}
-        }
+        out.push(&term_line(term));
     }
     for table in &found.tables {
-        write_functions(out, table)?;
+        out.push(&functions(table));
     }
     for set in &found.not_told_apart {
-        writeln!(out, "not told apart by these rows, not written: {}", set.join(", "))?;
+        let set = set.join(", ");
+        out.push(&both!(
+            "not told apart by these rows, not written: {set}\n",
+            "по этим строкам не различить, не записано: {set}\n"
+        ));
     }
     if !found.unseen.is_empty() {
-        writeln!(out, "not seen by these rows, not written: {}", found.unseen.join(", "))?;
+        let unseen = found.unseen.join(", ");
+        out.push(&both!(
+            "not seen by these rows, not written: {unseen}\n",
+            "по этим строкам не видно, не записано: {unseen}\n"
+        ));
     }
     for (part, owners) in &found.counted_as {
-        writeln!(out, "counted as {}, not told from it by these rows: {part}", owners.join(", "))?;
+        let owners = owners.join(", ");
+        out.push(&both!(
+            "counted as {owners}, not told from it by these rows: {part}\n",
+            "отнесено к {owners}, по этим строкам не отличить: {part}\n"
+        ));
     }
     if !(found.not_told_apart.is_empty() && found.unseen.is_empty() && found.counted_as.is_empty()) {
-        writeln!(out, "  a ball at three places not in one line, at two heights, tells them apart")?;
+        out.push(&Text::pair(
+            "  a ball at three places not in one line, at two heights, tells them apart\n",
+            "  их различит шар в трёх точках не на одной прямой, на двух высотах\n",
+        ));
     }
-    writeln!(
-        out,
-        "gauge  what turns with the workpiece is its mounting; means and once-per-turn parts are location errors where both look alike"
-    )?;
+    out.push(&Text::pair(
+        "gauge  what turns with the workpiece is its mounting; means and once-per-turn parts are location errors where both look alike\n",
+        "отсчёт что поворачивается вместе с деталью — её закрепление; средние и составляющие раз за оборот — погрешности положения, если их не различить\n",
+    ));
     let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-    writeln!(out, "fitted {before:.3} -> {after:.3} um RMS ({} readings)", found.estimate.residuals.len())?;
+    out.push(&both!(
+        "fitted {before:.3} -> {after:.3} um RMS ({} readings)\n",
+        "подгонка: СКЗ {before:.3} -> {after:.3} мкм (отсчётов {})\n",
+        found.estimate.residuals.len()
+    ));
     if let Some(judged) = held {
-        writeln!(
-            out,
-            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} readings, each run about its own offset)",
+        out.push(&both!(
+            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} readings, each run about its own offset)\n",
+            "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (отсчётов {}, каждая серия относительно своего смещения)\n",
             judged.rms_before_mm * 1e3,
             judged.rms_after_mm * 1e3,
             judged.max_after_mm * 1e3,
             judged.readings
-        )?;
+        ));
     }
-    writeln!(
-        out,
-        "field known to ±{:.2} um at 95 % of the places and angles, frames taken off{}",
-        found.field_u95_mm * 1e3,
-        if found.not_told_apart.is_empty() { "" } else { ", what is not written not counted" }
-    )
+    let less = if found.not_told_apart.is_empty() {
+        Text::EMPTY
+    } else {
+        Text::pair(", what is not written not counted", ", без учёта незаписанного")
+    };
+    out.push(&both!(
+        "field known to ±{:.2} um at 95 % of the places and angles, frames taken off{less}\n",
+        "поле известно с точностью ±{:.2} мкм в 95 % мест и углов, без систем координат{less:#}\n",
+        found.field_u95_mm * 1e3
+    ));
+    out
 }
 
-fn write_functions(out: &mut String, table: &WrittenTable) -> Result {
+fn term_line(own: &FoundTerm) -> Text {
+    let (scale, unit) = micro(own.term.is_length());
+    let (name, value, base) = (own.term.name(), (own.base + own.change) * scale, own.base * scale);
+    let half = own.half_width_95 * scale;
+    match own.term {
+        Term::Location(_) if own.is_written => {
+            let row = format!("  {name}  {value:>15.3} ± {half:>8.3} {base:>11.3}");
+            both!("{row} {unit}\n", "{row} {unit:#}\n")
+        }
+        Term::Location(_) => both!(
+            "  {name}     not determined            {base:>11.3} {unit}, stays\n",
+            "  {name}     не определено             {base:>11.3} {unit:#}, остаётся\n"
+        ),
+        Term::Reversal(_) => both!(
+            "  {name}  {value:>9.3} ± {half:>8.3} {unit} about the axis itself, from above less from below: taken off, not written\n",
+            "  {name}  {value:>9.3} ± {half:>8.3} {unit:#} вокруг самой оси, сверху минус снизу: вычтено, не записано\n"
+        ),
+        Term::Coefficient { .. } => Text::EMPTY,
+    }
+}
+
+fn functions(table: &WrittenTable) -> Text {
     let (first, last) = (table.angles_deg[0], table.angles_deg[table.angles_deg.len() - 1]);
-    writeln!(
-        out,
-        "error functions of {}, written from {} to {} degrees at {} nodes, {:.3} um and {:.3} urad between them",
+    let mut out = both!(
+        "error functions of {}, written from {} to {} degrees at {} nodes, {:.3} um and {:.3} urad between them\n",
+        "функции погрешностей {}, записаны от {} до {} градусов в узлах ({}), между ними {:.3} мкм и {:.3} мкрад\n",
         table.axis,
         short(first, 6),
         short(last, 6),
         table.angles_deg.len(),
         table.between_nodes[0] * 1e3,
         table.between_nodes[1] * 1e6
-    )?;
+    );
     for f in (0..6).filter(|f| table.changed[*f]) {
-        let (scale, unit) = unit(f < 3);
+        let (scale, unit) = micro(f < 3);
         let values = || table.rows.iter().map(|row| row[f] * scale);
         let (low, high) =
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
         let half = table.half_widths_95.iter().map(|row| row[f] * scale).fold(0.0, f64::max);
-        writeln!(out, "  E{}{}   {low:>9.3} … {high:>9.3} ± {half:.3} {unit}", FUNCTIONS[f], table.axis)?;
+        let row = format!("  E{}{}   {low:>9.3} … {high:>9.3} ± {half:.3}", FUNCTIONS[f], table.axis);
+        out.push(&both!("{row} {unit}\n", "{row} {unit:#}\n"));
     }
-    Ok(())
+    out
 }
 
 pub(super) fn json(found: &RotaryTables, held: Option<&HeldOut>, rows: &Rows) -> Value {

@@ -55,8 +55,8 @@ pub(super) fn print_next(
         return Err(Failure::option(
             both!(
                 "there is no next measurement: the verdict is {}",
-                "следующего измерения нет: заключение — {}",
-                diagnosis.verdict.name()
+                "следующего измерения нет: заключение — {:#}",
+                diagnosis.verdict.words()
             ),
             both!(
                 "leave out `--next`; `--plan` prints a measurement of the whole machine",
@@ -64,8 +64,8 @@ pub(super) fn print_next(
             ),
         ));
     };
-    print_lines(form, &proposed(next, model.profile.volume())?, &next.text, shared, messages)?;
-    messages.note(&Text::english_only(next.text.as_str()));
+    print_lines(form, &proposed(next, model.profile.volume())?, next.text.english(), shared, messages)?;
+    messages.note(&next.text);
     Ok(())
 }
 

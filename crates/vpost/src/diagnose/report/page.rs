@@ -1,9 +1,10 @@
 //! The diagnosis as one page, in the order in which people ask: what, how much, where, how sure, what next, from what.
 
+use diagnostic::{Language, Text, say};
 use gap_diagnosis::{Diagnosis, Measurements, Verdict};
 use maud::{Markup, html};
 use report::page::{Page, Section};
-use report::text::{number, shown};
+use report::text::{Numbers, shown};
 
 use super::facts::Facts;
 use super::rows::Rows;
@@ -24,61 +25,99 @@ pub(in crate::diagnose) struct Report<'a> {
     pub facts: &'a Facts,
     /// The JSON twin.
     pub json: &'a str,
+    /// The language of the page.
+    pub language: Language,
 }
 
 impl Report<'_> {
     /// The page.
     pub(in crate::diagnose) fn html(&self) -> String {
-        let d = self.diagnosis;
+        let (d, language) = (self.diagnosis, self.language);
         let rows = Rows::new(d, self.data);
         let sections = [
-            Some(Section { id: "waterfall", title: "How the gap shrinks", body: causes::waterfall(d) }),
-            Some(Section { id: "causes", title: "Causes", body: causes::causes(d, self.changes) }),
-            Some(Section { id: "where", title: "Where the gap lies", body: causes::places(d) }),
-            pictures::strips(d, self.data, &rows).map(|body| Section {
+            Some(Section {
+                id: "waterfall",
+                title: Text::pair("How the gap shrinks", "Как уменьшается расхождение"),
+                body: causes::waterfall(d, language),
+            }),
+            Some(Section {
+                id: "causes",
+                title: Text::pair("Causes", "Причины"),
+                body: causes::causes(d, self.changes, language),
+            }),
+            Some(Section {
+                id: "where",
+                title: Text::pair("Where the gap lies", "Где расхождение"),
+                body: causes::places(d, language),
+            }),
+            pictures::strips(d, self.data, &rows, language).map(|body| Section {
                 id: "strips",
-                title: "The gap over place, time and conditions",
+                title: Text::pair(
+                    "The gap over place, time and conditions",
+                    "Расхождение по месту, времени и условиям",
+                ),
                 body,
             }),
-            pictures::vectors(d, self.data, &rows).map(|body| Section {
+            pictures::vectors(d, self.data, &rows, language).map(|body| Section {
                 id: "vectors",
-                title: "Error vectors",
+                title: Text::pair("Error vectors", "Векторы погрешности"),
                 body,
             }),
-            pictures::heat(d, self.data, &rows).map(|body| Section {
+            pictures::heat(d, self.data, &rows, language).map(|body| Section {
                 id: "slices",
-                title: "Slices through the machine",
+                title: Text::pair("Slices through the machine", "Сечения рабочего объёма"),
                 body,
             }),
-            pictures::distribution(d, &rows, self.facts.tolerance_um).map(|body| Section {
+            pictures::distribution(d, &rows, self.facts.tolerance_um, language).map(|body| Section {
                 id: "distribution",
-                title: "Before and after",
+                title: Text::pair("Before and after", "До и после"),
                 body,
             }),
-            Some(Section { id: "confounding", title: "What looks alike", body: causes::confounding(d) }),
+            Some(Section {
+                id: "confounding",
+                title: Text::pair("What looks alike", "Что похоже друг на друга"),
+                body: causes::confounding(d, language),
+            }),
             Some(Section {
                 id: "unseen",
-                title: "Predicted and achieved",
-                body: unseen::unseen(d, self.holdout, self.facts),
+                title: Text::pair("Predicted and achieved", "Прогноз и результат"),
+                body: unseen::unseen(d, self.holdout, self.facts, language),
             }),
-            Some(Section { id: "next", title: "What to measure next", body: causes::next(d) }),
-            Some(Section { id: "outliers", title: "Rows left out", body: causes::outliers(d) }),
+            Some(Section {
+                id: "next",
+                title: Text::pair("What to measure next", "Что измерить дальше"),
+                body: causes::next(d, language),
+            }),
+            Some(Section {
+                id: "outliers",
+                title: Text::pair("Rows left out", "Отброшенные строки"),
+                body: causes::outliers(d, language),
+            }),
             Some(Section {
                 id: "provenance",
-                title: "Where this comes from",
-                body: provenance::body(d, self.facts),
+                title: Text::pair("Where this comes from", "Откуда эти данные"),
+                body: provenance::body(d, self.facts, language),
             }),
         ];
         // Where too little was measured there is nothing to draw.
         let drawn = d.verdict != Verdict::Underpowered || !d.residuals.is_empty();
         let kept = |s: &Section| drawn || matches!(s.id, "next" | "provenance");
         Page {
-            title: &format!("{} \u{2013} {}", d.verdict.name(), self.facts.machine),
-            head: head(d, self.facts),
+            language,
+            title: &say!(
+                language,
+                "{verdict} \u{2013} {}",
+                "{verdict:#} \u{2014} {}",
+                self.facts.machine,
+                verdict = d.verdict.words()
+            ),
+            head: head(d, self.facts, language),
             sections: sections.into_iter().flatten().filter(kept).collect(),
             json: self.json,
-            foot: &format!(
+            foot: &say!(
+                language,
                 "vpost {} diagnose. This page needs no network, holds no script and is the same for the same files. Its numbers are in it as JSON (vpost.diagnosis/1).",
+                "vpost {} diagnose. Странице не нужна сеть, сценариев в ней нет, для тех же файлов она та же. Её числа хранятся в ней как JSON (vpost.diagnosis/1).",
                 env!("CARGO_PKG_VERSION")
             ),
         }
@@ -86,45 +125,57 @@ impl Report<'_> {
     }
 }
 
-fn head(d: &Diagnosis, facts: &Facts) -> Markup {
+fn head(d: &Diagnosis, facts: &Facts, language: Language) -> Markup {
     let g = &d.gap;
+    let [rms, p95, largest, noise] = [g.rms_um, g.p95_um, g.max_um, g.noise_um].map(|um| language.number(um));
+    let rows = language.count(g.rows);
     html! {
-        p.muted { "Simulation against reality: " (shown(&facts.machine)) ", " (shown(&facts.measurements.name)) }
-        p { span.verdict { (d.verdict.name()) } }
-        h1 { (shown(&d.sentence)) }
-        p { (meaning(d.verdict)) }
+        p.muted { (say!(language, "Simulation against reality: ", "Модель и действительность: ")) (shown(&facts.machine)) ", " (shown(&facts.measurements.name)) }
+        p { span.verdict { (d.verdict.words().in_language(language)) } }
+        h1 { (shown(&language.prose(&d.sentence))) }
+        p { (meaning(d.verdict).in_language(language)) }
         @if g.rms_um > 0.0 {
             p.muted {
-                (number(g.rms_um)) " \u{b5}m RMS, 95 % below " (number(g.p95_um)) " \u{b5}m, largest " (number(g.max_um))
-                " \u{b5}m, noise of a reading " (number(g.noise_um)) " \u{b5}m, " (g.rows) " rows."
+                (say!(
+                    language,
+                    "{rms} \u{b5}m RMS, 95 % below {p95} \u{b5}m, largest {largest} \u{b5}m, noise of a reading {noise} \u{b5}m, {rows} rows.",
+                    "СКЗ {rms} мкм, 95 % ниже {p95} мкм, наибольшее {largest} мкм, шум отсчёта {noise} мкм, строк {rows}."
+                ))
             }
         }
     }
 }
 
 /// What a verdict asks of its reader.
-fn meaning(verdict: Verdict) -> &'static str {
+fn meaning(verdict: Verdict) -> Text {
     match verdict {
-        Verdict::NoGap => {
-            "The model may be used as it is. What this measurement could not have seen is listed below."
-        }
-        Verdict::Named => {
-            "The causes below explain the gap, and nothing else in the library does. Put them into the profile with --write-profile, or remove them at the machine."
-        }
-        Verdict::Ambiguous => {
-            "The gap is explained, but a cause has a double that these rows cannot tell from it. A correction may use it where it was measured; before repairing anything, measure what is proposed below."
-        }
-        Verdict::Partial => {
-            "The causes below are real, and something else is there that the library has no name for. Correct with care: what is left is no noise."
-        }
-        Verdict::Unknown => {
-            "Something moves the machine that the library has no name for. Do not correct by this; look at where and when the gap is largest."
-        }
-        Verdict::NoiseModelSuspect => {
-            "Look at the instrument and its set-up before the machine: the scatter is not what the file says, or the instrument itself moved."
-        }
-        Verdict::Underpowered => {
-            "No cause is named, because none could be named safely. What is missing is said below."
-        }
+        Verdict::NoGap => Text::pair(
+            "The model may be used as it is. What this measurement could not have seen is listed below.",
+            "Моделью можно пользоваться как есть. Чего это измерение увидеть не могло, перечислено ниже.",
+        ),
+        Verdict::Named => Text::pair(
+            "The causes below explain the gap, and nothing else in the library does. Put them into the profile with --write-profile, or remove them at the machine.",
+            "Причины ниже объясняют расхождение, и больше в библиотеке его не объясняет ничто. Внесите их в профиль ключом --write-profile или устраните на станке.",
+        ),
+        Verdict::Ambiguous => Text::pair(
+            "The gap is explained, but a cause has a double that these rows cannot tell from it. A correction may use it where it was measured; before repairing anything, measure what is proposed below.",
+            "Расхождение объяснено, но у причины есть двойник, которого эти строки от неё не отличают. Для коррекции там, где измерено, её можно использовать; прежде чем ремонтировать, измерьте предложенное ниже.",
+        ),
+        Verdict::Partial => Text::pair(
+            "The causes below are real, and something else is there that the library has no name for. Correct with care: what is left is no noise.",
+            "Причины ниже действительны, но есть и что-то ещё, чему в библиотеке нет названия. Исправляйте осторожно: остаток — не шум.",
+        ),
+        Verdict::Unknown => Text::pair(
+            "Something moves the machine that the library has no name for. Do not correct by this; look at where and when the gap is largest.",
+            "Станок смещает что-то, чему в библиотеке нет названия. По этому не исправляйте; посмотрите, где и когда расхождение наибольшее.",
+        ),
+        Verdict::NoiseModelSuspect => Text::pair(
+            "Look at the instrument and its set-up before the machine: the scatter is not what the file says, or the instrument itself moved.",
+            "Прежде станка проверьте прибор и его установку: разброс не тот, что назван в файле, или сдвинулся сам прибор.",
+        ),
+        Verdict::Underpowered => Text::pair(
+            "No cause is named, because none could be named safely. What is missing is said below.",
+            "Причина не названа, потому что надёжно назвать её нельзя. Чего не хватает, сказано ниже.",
+        ),
     }
 }

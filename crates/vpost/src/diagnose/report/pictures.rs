@@ -1,11 +1,12 @@
 //! The rows themselves: over place, time and conditions, as vectors, as slices, as a distribution.
 
+use diagnostic::{Language, Text, say};
 use gap_diagnosis::{Diagnosis, Measurements, Row as Measured};
 use maud::{Markup, html};
 use report::chart::{Arrow, Panel, Points, Slice, View, cumulative, panels, slices, views};
 use report::page::{figure, table};
 use report::scale::nice;
-use report::text::{number, number_of_digits, percent};
+use report::text::{MICROMETRES, Numbers};
 
 use super::rows::Rows;
 
@@ -21,24 +22,38 @@ const CUTS: usize = 3;
 const NAMES: [&str; 3] = ["X", "Y", "Z"];
 
 /// What the residuals may go with.
-type Variable = (&'static str, fn(&Measured) -> Option<f64>);
+type Variable = (Text, fn(&Measured) -> Option<f64>);
 const VARIABLES: [Variable; 11] = [
-    ("X, mm", |r| Some(r.command.linear_mm.x)),
-    ("Y, mm", |r| Some(r.command.linear_mm.y)),
-    ("Z, mm", |r| Some(r.command.linear_mm.z)),
-    ("A, degrees", |r| Some(r.command.rotary_rad.x.to_degrees())),
-    ("B, degrees", |r| Some(r.command.rotary_rad.y.to_degrees())),
-    ("C, degrees", |r| Some(r.command.rotary_rad.z.to_degrees())),
-    ("time, min", |r| r.conditions.time_s.map(|t| t / 60.0)),
-    ("feed, mm/min", |r| r.conditions.feed_mm_min),
-    ("temperature, \u{b0}C", |r| r.conditions.temp_c.iter().flatten().next().copied()),
-    ("load, kg", |r| r.conditions.load_kg),
-    ("tool vector Z, mm", |r| Some(r.command.tool_mm.z)),
+    (Text::pair("X, mm", "X, мм"), |r| Some(r.command.linear_mm.x)),
+    (Text::pair("Y, mm", "Y, мм"), |r| Some(r.command.linear_mm.y)),
+    (Text::pair("Z, mm", "Z, мм"), |r| Some(r.command.linear_mm.z)),
+    (Text::pair("A, degrees", "A, градусы"), |r| Some(r.command.rotary_rad.x.to_degrees())),
+    (Text::pair("B, degrees", "B, градусы"), |r| Some(r.command.rotary_rad.y.to_degrees())),
+    (Text::pair("C, degrees", "C, градусы"), |r| Some(r.command.rotary_rad.z.to_degrees())),
+    (Text::pair("time, min", "время, мин"), |r| r.conditions.time_s.map(|t| t / 60.0)),
+    (Text::pair("feed, mm/min", "подача, мм/мин"), |r| r.conditions.feed_mm_min),
+    (Text::pair("temperature, \u{b0}C", "температура, \u{b0}C"), |r| {
+        r.conditions.temp_c.iter().flatten().next().copied()
+    }),
+    (Text::pair("load, kg", "нагрузка, кг"), |r| r.conditions.load_kg),
+    (Text::pair("tool vector Z, mm", "вектор инструмента Z, мм"), |r| {
+        Some(r.command.tool_mm.z)
+    }),
 ];
-const COMPONENTS: [(&str, &str); 4] = [("k0", "dx"), ("k1", "dy"), ("k2", "dz"), ("k3", "along the reading")];
+const COMPONENTS: [(&str, Text); 4] = [
+    ("k0", Text::pair("dx", "dx")),
+    ("k1", Text::pair("dy", "dy")),
+    ("k2", Text::pair("dz", "dz")),
+    ("k3", Text::pair("along the reading", "вдоль отсчёта")),
+];
 
 /// Residuals over everything that varies.
-pub(super) fn strips(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Option<Markup> {
+pub(super) fn strips(
+    d: &Diagnosis,
+    data: &Measurements,
+    rows: &Rows<'_>,
+    language: Language,
+) -> Option<Markup> {
     let drawn = rows.thinned(MOST_DOTS);
     let equations = || drawn.iter().flat_map(|r| r.equations);
     let reach = equations().map(|r| r.before_um.abs().max(r.after_um.abs())).fold(0.0, f64::max);
@@ -62,28 +77,53 @@ pub(super) fn strips(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Opt
                 });
                 Points { series: *class, at: at.collect() }
             };
-            Panel { label: label.to_owned(), range, points: classes.iter().map(points).collect() }
+            Panel {
+                label: label.in_language(language).to_owned(),
+                range,
+                points: classes.iter().map(points).collect(),
+            }
         };
         all.push(if both { vec![panel(false), panel(true)] } else { vec![panel(false)] });
     }
-    let columns: &[&str] = if both { &["before", "after"] } else { &["gap"] };
-    let legend: Vec<(&str, &str)> = classes.iter().map(|c| COMPONENTS[*c]).collect();
-    let drawing = panels("Gap over place, time and conditions", columns, &all, reach, &legend, "\u{b5}m");
-    Some(figure(&drawing, &thinning(drawn.len(), rows), None))
+    let columns: &[Text] = if both {
+        &[Text::pair("before", "до"), Text::pair("after", "после")]
+    } else {
+        &[Text::pair("gap", "расхождение")]
+    };
+    let columns: Vec<&str> = columns.iter().map(|text| text.in_language(language)).collect();
+    let components = COMPONENTS;
+    let legend: Vec<(&str, &str)> = classes
+        .iter()
+        .map(|c| &components[*c])
+        .map(|(class, words)| (*class, words.in_language(language)))
+        .collect();
+    let title =
+        say!(language, "Gap over place, time and conditions", "Расхождение по месту, времени и условиям");
+    let unit = MICROMETRES.in_language(language);
+    let drawing = panels(language, &title, &columns, &all, reach, &legend, unit);
+    Some(figure(language, &drawing, &thinning(drawn.len(), rows, language), None))
 }
 
-fn thinning(drawn: usize, rows: &Rows<'_>) -> String {
-    let all = rows.all.len();
-    if drawn == all {
-        return format!("All {all} rows that were used.");
+fn thinning(drawn: usize, rows: &Rows<'_>, language: Language) -> String {
+    let (is_whole, drawn, all) =
+        (drawn == rows.all.len(), language.count(drawn), language.count(rows.all.len()));
+    if is_whole {
+        return say!(language, "All {all} rows that were used.", "Все использованные строки: {all}.");
     }
-    format!(
-        "{drawn} of {all} rows are drawn, those with the largest gap among them; all numbers on this page are of all rows."
+    say!(
+        language,
+        "{drawn} of {all} rows are drawn, those with the largest gap among them; all numbers on this page are of all rows.",
+        "Нарисовано строк: {drawn} из {all}, в том числе с наибольшим расхождением; все числа на странице — по всем строкам."
     )
 }
 
 /// Error vectors in three views.
-pub(super) fn vectors(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Option<Markup> {
+pub(super) fn vectors(
+    d: &Diagnosis,
+    data: &Measurements,
+    rows: &Rows<'_>,
+    language: Language,
+) -> Option<Markup> {
     let drawn = rows.thinned(MOST_ARROWS);
     let mut lengths: Vec<f64> = drawn.iter().map(|r| r.vectors_um().0.norm()).collect();
     lengths.sort_by(f64::total_cmp);
@@ -114,12 +154,14 @@ pub(super) fn vectors(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Op
     if all.is_empty() {
         return None;
     }
-    let caption = format!(
-        "Errors are drawn {} times their size. {}",
-        number(magnification),
-        thinning(drawn.len(), rows)
+    let (times, thinning) = (language.number(magnification), thinning(drawn.len(), rows, language));
+    let caption = say!(
+        language,
+        "Errors are drawn {times} times their size. {thinning}",
+        "Погрешности увеличены в {times} раз. {thinning}"
     );
-    Some(figure(&views("Error vectors", &all, magnification), &caption, None))
+    let title = say!(language, "Error vectors", "Векторы погрешности");
+    Some(figure(language, &views(language, &title, &all, magnification), &caption, None))
 }
 
 /// The largest of 1, 2, 5, 10 … that is not above a value.
@@ -129,7 +171,12 @@ fn below(value: f64) -> f64 {
 }
 
 /// Mean gap over slices, before and after, on one scale.
-pub(super) fn heat(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Option<Markup> {
+pub(super) fn heat(
+    d: &Diagnosis,
+    data: &Measurements,
+    rows: &Rows<'_>,
+    language: Language,
+) -> Option<Markup> {
     let planes: Vec<(usize, usize, usize)> = [(0, 1, 2), (0, 2, 1), (1, 2, 0)]
         .into_iter()
         .filter(|(a, b, _)| rows.moves(*a) && rows.moves(*b))
@@ -141,6 +188,8 @@ pub(super) fn heat(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Optio
         let (low, high) = rows.ranges_mm[axis];
         if high > low { (((value - low) / (high - low) * count as f64) as usize).min(count - 1) } else { 0 }
     };
+    let before_title = say!(language, ", before", ", до");
+    let after_title = say!(language, ", after", ", после");
     let mut pairs: Vec<[Slice; 2]> = Vec::new();
     for (right, up, through) in planes {
         let cuts = if rows.moves(through) { CUTS } else { 1 };
@@ -158,11 +207,12 @@ pub(super) fn heat(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Optio
                 continue;
             }
             let (low, high) = rows.ranges_mm[through];
-            let edge = |j: usize| number_of_digits(low + (high - low) * j as f64 / cuts as f64, 0);
+            let edge = |j: usize| language.digits(low + (high - low) * j as f64 / cuts as f64, 0);
             let place = if cuts > 1 {
-                format!("{} {} to {}", NAMES[through], edge(k), edge(k + 1))
+                let (axis, from, to) = (NAMES[through], edge(k), edge(k + 1));
+                say!(language, "{axis} {from} to {to}", "{axis} от {from} до {to}")
             } else {
-                format!("{} {}", NAMES[through], number_of_digits(low, 0))
+                format!("{} {}", NAMES[through], language.digits(low, 0))
             };
             let slice = |when: &str, value: &dyn Fn(&(f64, f64, f64)) -> f64| Slice {
                 title: format!("{place}{when}"),
@@ -171,7 +221,7 @@ pub(super) fn heat(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Optio
                 cells: [CELLS, CELLS],
                 values: sums.iter().map(|s| (s.2 > 0.5).then(|| (value(s) / s.2).sqrt())).collect(),
             };
-            pairs.push([slice(", before", &|s| s.0), slice(", after", &|s| s.1)]);
+            pairs.push([slice(&before_title, &|s| s.0), slice(&after_title, &|s| s.1)]);
         }
     }
     if pairs.is_empty() {
@@ -183,20 +233,39 @@ pub(super) fn heat(d: &Diagnosis, data: &Measurements, rows: &Rows<'_>) -> Optio
         .iter()
         .zip(&after)
         .map(|(b, a)| {
-            let worst = |s: &Slice| number(s.values.iter().flatten().copied().fold(0.0, f64::max));
-            vec![b.title.trim_end_matches(", before").to_owned(), worst(b), worst(a)]
+            let worst = |s: &Slice| language.number(s.values.iter().flatten().copied().fold(0.0, f64::max));
+            vec![b.title.trim_end_matches(&before_title).to_owned(), worst(b), worst(a)]
         })
         .collect();
     let shown = if d.causes.is_empty() { before } else { before.into_iter().chain(after).collect() };
+    let title = say!(
+        language,
+        "RMS of the gap over slices through the machine",
+        "СКЗ расхождения в сечениях рабочего объёма"
+    );
+    let header = match language {
+        Language::English => ["slice", "worst cell before, \u{b5}m", "worst cell after, \u{b5}m"],
+        Language::Russian => ["сечение", "худшая клетка до, мкм", "худшая клетка после, мкм"],
+    };
     Some(figure(
-        &slices("RMS of the gap over slices through the machine", &shown, largest, "\u{b5}m"),
-        "RMS of the gap in each cell, one scale for all slices. Cells without rows were not measured; nothing is filled in between.",
-        Some(table(&["slice", "worst cell before, \u{b5}m", "worst cell after, \u{b5}m"], &[1, 2], &numbers)),
+        language,
+        &slices(language, &title, &shown, largest, MICROMETRES.in_language(language)),
+        &say!(
+            language,
+            "RMS of the gap in each cell, one scale for all slices. Cells without rows were not measured; nothing is filled in between.",
+            "СКЗ расхождения в каждой клетке, шкала для всех сечений одна. Клетки без строк не измерялись; между ними ничего не достроено."
+        ),
+        Some(table(language, &header, &[1, 2], &numbers)),
     ))
 }
 
 /// How many rows lie below an amount.
-pub(super) fn distribution(d: &Diagnosis, rows: &Rows<'_>, tolerance_um: f64) -> Option<Markup> {
+pub(super) fn distribution(
+    d: &Diagnosis,
+    rows: &Rows<'_>,
+    tolerance_um: f64,
+    language: Language,
+) -> Option<Markup> {
     let sorted = |which: &dyn Fn((f64, f64)) -> f64| {
         let mut all: Vec<f64> = rows.all.iter().map(|r| which(r.sizes_um())).collect();
         all.sort_by(f64::total_cmp);
@@ -208,23 +277,42 @@ pub(super) fn distribution(d: &Diagnosis, rows: &Rows<'_>, tolerance_um: f64) ->
         return None;
     }
     let within = |all: &[f64]| all.iter().filter(|v| **v <= tolerance_um).count() as f64 / all.len() as f64;
-    let quantile = |all: &[f64], share: f64| number(all[((all.len() - 1) as f64 * share).round() as usize]);
-    let numbers: Vec<Vec<String>> = [("median", 0.5), ("95 %", 0.95), ("largest", 1.0)]
+    let quantile =
+        |all: &[f64], share: f64| language.number(all[((all.len() - 1) as f64 * share).round() as usize]);
+    let names =
+        [say!(language, "median", "медиана"), "95 %".to_owned(), say!(language, "largest", "наибольшее")];
+    let numbers: Vec<Vec<String>> = names
         .into_iter()
-        .map(|(name, share)| vec![name.to_owned(), quantile(&before, share), quantile(&after, share)])
+        .zip([0.5, 0.95, 1.0])
+        .map(|(name, share)| vec![name, quantile(&before, share), quantile(&after, share)])
         .collect();
     let drawing = cumulative(
-        "Share of rows below an amount",
+        language,
+        &say!(language, "Share of rows below an amount", "Доля строк ниже величины"),
         &before,
         &after,
-        Some((tolerance_um, "tolerance")),
-        "\u{b5}m",
+        Some((tolerance_um, &say!(language, "tolerance", "допуск"))),
+        MICROMETRES.in_language(language),
     );
+    let header = match language {
+        Language::English => ["", "before, \u{b5}m", "after, \u{b5}m"],
+        Language::Russian => ["", "до, мкм", "после, мкм"],
+    };
+    let caption = say!(
+        language,
+        "Share of the rows whose gap is smaller than the amount below.",
+        "Доля строк, расхождение в которых меньше величины внизу."
+    );
+    let [share, share_after] = [&before, &after].map(|all| language.percent(within(all)));
+    let tolerance = language.number(tolerance_um);
     Some(html! {
         p {
-            (percent(within(&before))) " of the rows lie within the tolerance of " (number(tolerance_um)) " \u{b5}m before, "
-            (percent(within(&after))) " after. Noise is in both."
+            (say!(
+                language,
+                "{share} of the rows lie within the tolerance of {tolerance} \u{b5}m before, {share_after} after. Noise is in both.",
+                "В допуске {tolerance} мкм до {share} строк, после {share_after}. Шум входит в то и другое."
+            ))
         }
-        (figure(&drawing, "Share of the rows whose gap is smaller than the amount below.", Some(table(&["", "before, \u{b5}m", "after, \u{b5}m"], &[1, 2], &numbers))))
+        (figure(language, &drawing, &caption, Some(table(language, &header, &[1, 2], &numbers))))
     })
 }

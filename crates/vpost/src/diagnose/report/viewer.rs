@@ -83,7 +83,7 @@ impl Report<'_> {
         let count = scene.of.to_string();
         let page = Viewer {
             kind: Kind::Diagnosis,
-            language: viewer::language(messages),
+            language: messages.language(),
             scene: &scene,
             has_after: !d.causes.is_empty(),
             blocks: &blocks,
