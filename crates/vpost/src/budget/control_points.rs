@@ -90,7 +90,9 @@ fn over_the_volume(
     let axes = Text::join(&axes.collect::<Vec<_>>(), ", ");
     let approach = match directions.len() {
         1 => Text::EMPTY,
-        sides => both!(", each approached from all {sides} sides", ", подход к каждой со всех {sides} сторон"),
+        sides => {
+            both!(", each approached from all {sides} sides", ", подход к каждой со всех {sides} сторон")
+        }
     };
     let what = both!(
         "{}{approach}\ntool vector {}, rotary axes {}",
@@ -193,9 +195,10 @@ fn on_a_ball(
             ),
         );
     }
-    let what = format!(
-        "a ball at R {radius_mm} mm, {height_mm} mm above the centre of {spin}, in steps of {BALL_STEP_DEG} degrees, {lead} leading\ntool vector {}",
-        triple(&tool_mm, 3)
+    let tool = triple(&tool_mm, 3);
+    let what = both!(
+        "a ball at R {radius_mm} mm, {height_mm} mm above the centre of {spin}, in steps of {BALL_STEP_DEG} degrees, {lead} leading\ntool vector {tool}",
+        "шар на радиусе {radius_mm} мм, на {height_mm} мм выше центра {spin}, с шагом {BALL_STEP_DEG}°, ведущая ось {lead}\nвектор инструмента {tool}"
     );
     Ok(ControlPoints { commands, what })
 }
