@@ -30,6 +30,85 @@ pub struct Page<'a> {
     pub foot: &'a str,
 }
 
+/// What a page says by itself, in the language of its texts.
+///
+/// ```
+/// use report::page::Furniture;
+///
+/// let numbers = maud::html! { "1" };
+/// assert!(Furniture::RUSSIAN.folded(&numbers).into_string().contains("Числа"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Furniture {
+    lang: &'static str,
+    skip: &'static str,
+    sections: &'static str,
+    table: &'static str,
+    drawing: &'static str,
+    numbers: &'static str,
+}
+
+impl Furniture {
+    /// English.
+    pub const ENGLISH: Self = Self {
+        lang: "en",
+        skip: "Skip to the content",
+        sections: "Sections",
+        table: "Table",
+        drawing: "Drawing",
+        numbers: "Numbers",
+    };
+
+    /// Russian.
+    pub const RUSSIAN: Self = Self {
+        lang: "ru",
+        skip: "К содержанию",
+        sections: "Разделы",
+        table: "Таблица",
+        drawing: "Чертёж",
+        numbers: "Числа",
+    };
+
+    /// A table of texts; the columns named in `numbers` are set as numbers.
+    #[must_use]
+    pub fn table(&self, header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
+        html! {
+            div.scroll tabindex="0" role="region" aria-label=(self.table) {
+                table {
+                    thead { tr { @for cell in header { th scope="col" { (cell) } } } }
+                    tbody {
+                        @for row in rows {
+                            tr {
+                                @for (at, cell) in row.iter().enumerate() {
+                                    td.n[numbers.contains(&at)] { (shown(cell)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A drawing with its words, and its numbers behind a fold.
+    #[must_use]
+    pub fn figure(&self, drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
+        html! {
+            figure {
+                div.scroll tabindex="0" role="region" aria-label=(self.drawing) { (drawing) }
+                figcaption { (shown(caption)) }
+                @if let Some(numbers) = numbers { (self.folded(&numbers)) }
+            }
+        }
+    }
+
+    /// The numbers of drawings, behind a fold.
+    #[must_use]
+    pub fn folded(&self, numbers: &Markup) -> Markup {
+        html! { details { summary { (self.numbers) } (numbers) } }
+    }
+}
+
 /// Nothing may be loaded and nothing may run, whatever stands in the page.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
@@ -39,12 +118,18 @@ const POLICY: &str =
 const STYLE: &str = include_str!("page.css");
 
 impl Page<'_> {
-    /// The file.
+    /// The file, in English.
     #[must_use]
     pub fn into_html(self) -> String {
+        self.furnished(&Furniture::ENGLISH)
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn furnished(self, furniture: &Furniture) -> String {
         let mut text = html! {
             (DOCTYPE)
-            html lang="en" {
+            html lang=(furniture.lang) {
                 head {
                     meta charset="utf-8";
                     meta http-equiv="Content-Security-Policy" content=(POLICY);
@@ -55,9 +140,9 @@ impl Page<'_> {
                     style { (PreEscaped(STYLE)) }
                 }
                 body {
-                    a.skip href="#content" { "Skip to the content" }
+                    a.skip href="#content" { (furniture.skip) }
                     header { (self.head) }
-                    nav aria-label="Sections" {
+                    nav aria-label=(furniture.sections) {
                         ol { @for section in &self.sections { li { a href={ "#" (section.id) } { (section.title) } } } }
                     }
                     main #content tabindex="-1" {
@@ -79,41 +164,20 @@ impl Page<'_> {
     }
 }
 
-/// A table of texts; the columns named in `numbers` are set as numbers.
+/// [`Furniture::table`] in English.
 #[must_use]
 pub fn table(header: &[&str], numbers: &[usize], rows: &[Vec<String>]) -> Markup {
-    html! {
-        div.scroll tabindex="0" role="region" aria-label="Table" {
-            table {
-                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            @for (at, cell) in row.iter().enumerate() {
-                                td.n[numbers.contains(&at)] { (shown(cell)) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
+    Furniture::ENGLISH.table(header, numbers, rows)
 }
 
-/// A drawing with its words, and its numbers behind a fold.
+/// [`Furniture::figure`] in English.
 #[must_use]
 pub fn figure(drawing: &Markup, caption: &str, numbers: Option<Markup>) -> Markup {
-    html! {
-        figure {
-            div.scroll tabindex="0" role="region" aria-label="Drawing" { (drawing) }
-            figcaption { (shown(caption)) }
-            @if let Some(numbers) = numbers { (folded(&numbers)) }
-        }
-    }
+    Furniture::ENGLISH.figure(drawing, caption, numbers)
 }
 
-/// The numbers of drawings, behind a fold.
+/// [`Furniture::folded`] in English.
 #[must_use]
 pub fn folded(numbers: &Markup) -> Markup {
-    html! { details { summary { "Numbers" } (numbers) } }
+    Furniture::ENGLISH.folded(numbers)
 }

@@ -17,10 +17,10 @@ use maud::{Markup, html};
 pub use bands::{Band, Bands, bands};
 pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
-pub use curves::{Curves, Histogram, curves, histogram};
+pub use curves::{Curves, Histogram, curves, curves_with, histogram};
 pub use dots::{Panel, Points, panels};
 pub use lines::{Arrow, View, cumulative, views};
-pub use polar::{Magnification, Polar, Round, polar};
+pub use polar::{Magnification, Polar, Round, polar, polar_with};
 
 use crate::scale::{Scale, px};
 use crate::text::shown;

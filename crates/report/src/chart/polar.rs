@@ -70,6 +70,12 @@ impl Magnification {
 /// Curves about the circle of no deviation, with rings at round deviations.
 #[must_use]
 pub fn polar(title: &str, described: &str, p: &Polar, m: Magnification, unit: &str) -> Markup {
+    polar_with(title, described, p, m, &format!("rings in {unit}"))
+}
+
+/// [`polar`] with what is said of its rings, in any language.
+#[must_use]
+pub fn polar_with(title: &str, described: &str, p: &Polar, m: Magnification, said_of_rings: &str) -> Markup {
     let rings = rings(m, p.radius);
     let digits = usize::from(m.ring < 0.999) + usize::from(m.ring < 0.0999) + usize::from(m.ring < 0.009_99);
     let out = MIDDLE - 18.0;
@@ -89,7 +95,7 @@ pub fn polar(title: &str, described: &str, p: &Polar, m: Magnification, unit: &s
             // Up to the left, where neither axis runs.
             (text(MIDDLE - 0.707 * radius, MIDDLE - 0.707 * radius + 4.0, "m c halo", &label))
         }
-        (text(4.0, SIDE - 6.0, "m", &format!("rings in {unit}")))
+        (text(4.0, SIDE - 6.0, "m", said_of_rings))
         @for (row, (class, words)) in p.keys.iter().enumerate() {
             (legend(4.0, SIDE + 14.0 + KEY * row as f64, &[(class, words.as_str())]))
         }
