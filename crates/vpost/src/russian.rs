@@ -296,6 +296,8 @@ const TEXTS: &[(&str, &str)] = &[
     ("Which share: the I-th of N, I from 1; or `auto/N`: I from `HQ_TASK_ID`, `SLURM_ARRAY_TASK_ID` (both from 1) or `JOB_COMPLETION_INDEX` (from 0), the first that is set. Default: all", "Какая часть: I-я из N, I от 1; или `auto/N`: I из `HQ_TASK_ID`, `SLURM_ARRAY_TASK_ID` (оба от 1) или `JOB_COMPLETION_INDEX` (от 0), первая из заданных. Иначе — все"),
     ("Which unmodelled effect explains the measurements", "Какой неучтённый эффект объясняет измерения"),
     ("With --lathe: distance of the places along Z, mm", "С --lathe: расстояние между местами вдоль Z, мм"),
+    ("With --html: Z from the chuck of a cross section to draw, mm (repeatable)", "С --html: Z сечения от торца патрона, которое начертить, мм (можно несколько раз)"),
+    ("With --lathe: write a page with the outline, its roundness, and what a correction will bring", "С --lathe: записать страницу: контур, круглость и что даст исправление"),
     ("With --lathe: the result as JSON on standard output", "С --lathe: результат как JSON в стандартный вывод"),
     ("With --lathe: the tool cuts a bore, so that the largest radius counts", "С --lathe: резец растачивает, так что считается наибольший радиус"),
     ("Write a page in which the error moves", "Записать страницу, на которой погрешность движется"),

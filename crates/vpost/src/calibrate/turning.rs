@@ -1,5 +1,7 @@
 //! `vpost calibrate turning`.
 
+mod shown;
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -16,11 +18,14 @@ use measurement_files::{Row, Sheet, numbered};
 
 use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
 use super::output::{Output, Target};
+use super::page::Shown;
 use super::sources;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
+
+use shown::Pieces;
 
 /// `vpost calibrate turning PARTS… -m LATHE -o PROFILE`
 #[derive(Debug, Args)]
@@ -36,6 +41,21 @@ pub struct Turning {
     /// Write what was found as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write what was found as one page for a browser: drawings, their numbers, no network, no script.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+}
+
+/// What was found of the parts, and what that rests on.
+struct Outcome<'a> {
+    found: &'a TurningCalibration,
+    holdout: Option<HeldOut>,
+    base: &'a TurningBase,
+    parts: &'a Parts,
+    /// Readings that the adjustment saw.
+    rows: &'a [TurnedReading],
+    /// All diameters say when they were cut.
+    timed: bool,
 }
 
 const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_c note";
@@ -288,14 +308,24 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
     let holdout = holdout.map_err(|error| parts.refused(&error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
-    file::print(report(&found, holdout.as_ref(), &base, &parts, timed).as_bytes())?;
+    let outcome = Outcome { found: &found, holdout, base: &base, parts: &parts, rows, timed };
+    file::print(outcome.report().as_bytes())?;
     if let Some(path) = &arguments.json {
-        let mut text = serde_json::to_string_pretty(&json(&found, holdout.as_ref(), &base, &parts, trained))
-            .expect("plain values always serialise");
+        let mut text = serde_json::to_string_pretty(&outcome.json()).expect("plain values always serialise");
         text.push('\n');
         file::write(path, text.as_bytes())?;
     }
-    if let Some(judged) = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9) {
+    let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
+    let page = |target: &Target, uncertainty_mm: Option<f64>| {
+        let page = Pieces::new(&outcome, held, messages.language(), refuted.is_some());
+        let page = page.map_err(|error| failure("", &[], &CalibrationError::Axes(error.to_string())))?;
+        let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
+        let mut files = arguments.files.clone();
+        files.extend(arguments.holdout.clone());
+        shown.write(&page, &files, target, shared, mean(&parts.temperatures), uncertainty_mm)
+    };
+    if let Some(judged) = refuted {
+        page(&Target { output: None, ..arguments.target.clone() }, None)?;
         let message = both!(
             "{} held-out diameters get worse: {:.2} um RMS before, {:.2} um after",
             "контрольных диаметров {}, и они становятся хуже: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
@@ -311,7 +341,6 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         return Err(Failure::Refused(vec![Report { source: None, diagnostics }]));
     }
     write(&mut output, &found, &base);
-    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
     let measured = Calibrated {
         temperature_c: mean(&parts.temperatures),
@@ -320,7 +349,12 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         ..Calibrated::default()
     };
     output.calibrated(&arguments.target, messages, measured)?;
-    output.write(&arguments.target, messages)
+    output.write(&arguments.target, messages)?;
+    page(&arguments.target, Some(uncertainty_mm))
+}
+
+fn mean(all: &[f64]) -> Option<f64> {
+    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
 }
 
 /// What the profile's effects do of each reading: the whole lathe less its tables and spindle.
@@ -390,132 +424,125 @@ fn owner(found: &calibration::turning::Offset, parts: &Parts) -> String {
     }
 }
 
-fn report(
-    found: &TurningCalibration,
-    holdout: Option<&HeldOut>,
-    base: &TurningBase,
-    parts: &Parts,
-    timed: bool,
-) -> String {
-    let mut out = String::new();
-    let mut line = |text: std::fmt::Arguments<'_>| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{text}");
-    };
-    line(format_args!(
-        "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}",
-        found.noise_mm * 1e3,
-        match found.shared_mm {
-            Some(shared_mm) => format!("by {:.3} um beyond that", shared_mm * 1e3),
-            None => "are too few to tell by how much they differ".to_owned(),
-        }
-    ));
-    let mut term = |own: &FoundTerm| {
-        let (name, before, scale) = named(own.term, base);
-        let said = match (own.is_significant, own.term.is_geometry()) {
-            (false, _) => "not significant, not written",
-            (true, true) => "written",
-            (true, false) => "in the report only",
+impl Outcome<'_> {
+    fn report(&self) -> String {
+        let Self { found, holdout, base, parts, timed, rows: _ } = *self;
+        let mut out = String::new();
+        let mut line = |text: std::fmt::Arguments<'_>| {
+            // Writing to a String cannot fail.
+            let _ = writeln!(out, "{text}");
         };
         line(format_args!(
-            "  {:<10} {name} {:.3} ± {:.3}, {said}",
-            own.term.name(),
-            (before + own.value) * scale,
-            own.u.half_width_95() * scale
-        ));
-    };
-    for own in found.terms.iter().chain(&found.not_there) {
-        term(own);
-    }
-    line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
-    for [a, b] in &found.not_told_apart {
-        let help = match (*a, *b) {
-            ("growth", "wear") | ("wear", "growth") if !timed => ": add the column time_s",
-            ("growth", "wear") | ("wear", "growth") => {
-                ": measure a second part with a new edge while warm, or cut the first size again when warm"
+            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}",
+            found.noise_mm * 1e3,
+            match found.shared_mm {
+                Some(shared_mm) => format!("by {:.3} um beyond that", shared_mm * 1e3),
+                None => "are too few to tell by how much they differ".to_owned(),
             }
-            (_, "what else differs from part to part") => ": measure a further part",
-            _ => "",
+        ));
+        let mut term = |own: &FoundTerm| {
+            let (name, before, scale) = named(own.term, base);
+            let said = match (own.is_significant, own.term.is_geometry()) {
+                (false, _) => "not significant, not written",
+                (true, true) => "written",
+                (true, false) => "in the report only",
+            };
+            line(format_args!(
+                "  {:<10} {name} {:.3} ± {:.3}, {said}",
+                own.term.name(),
+                (before + own.value) * scale,
+                own.u.half_width_95() * scale
+            ));
         };
-        line(format_args!("  {a} and {b} cannot be told apart by these parts{help}"));
+        for own in found.terms.iter().chain(&found.not_there) {
+            term(own);
+        }
+        line(format_args!("  level of the F tests: {} %; intervals are 95 %", LEVEL * 100.0));
+        for [a, b] in &found.not_told_apart {
+            let help = match (*a, *b) {
+                ("growth", "wear") | ("wear", "growth") if !timed => ": add the column time_s",
+                ("growth", "wear") | ("wear", "growth") => {
+                    ": measure a second part with a new edge while warm, or cut the first size again when warm"
+                }
+                (_, "what else differs from part to part") => ": measure a further part",
+                _ => "",
+            };
+            line(format_args!("  {a} and {b} cannot be told apart by these parts{help}"));
+        }
+        for offset in &found.offsets {
+            let interval =
+                offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
+            line(format_args!(
+                "  size of {}: {:.3}{interval} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
+                owner(offset, parts),
+                offset.radius_mm * 1e3,
+                -2.0 * offset.radius_mm
+            ));
+        }
+        if found.unseen_blunder_mm > 0.0 {
+            line(format_args!(
+                "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it",
+                found.unseen_blunder_mm * 1e3
+            ));
+        }
+        let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
+        line(format_args!("fitted {before:.3} -> {after:.3} um RMS on the diameter"));
+        if let Some(judged) = holdout {
+            line(format_args!(
+                "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)",
+                judged.rms_before_mm * 1e3,
+                judged.rms_after_mm * 1e3,
+                judged.max_after_mm * 1e3,
+                judged.rows
+            ));
+        }
+        out
     }
-    for offset in &found.offsets {
-        let interval = offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
-        line(format_args!(
-            "  size of {}: {:.3}{interval} um on the radius; with this profile enter {:.4} mm as wear of X on the diameter",
-            owner(offset, parts),
-            offset.radius_mm * 1e3,
-            -2.0 * offset.radius_mm
-        ));
-    }
-    if found.unseen_blunder_mm > 0.0 {
-        line(format_args!(
-            "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it",
-            found.unseen_blunder_mm * 1e3
-        ));
-    }
-    let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-    line(format_args!("fitted {before:.3} -> {after:.3} um RMS on the diameter"));
-    if let Some(judged) = holdout {
-        line(format_args!(
-            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)",
-            judged.rms_before_mm * 1e3,
-            judged.rms_after_mm * 1e3,
-            judged.max_after_mm * 1e3,
-            judged.rows
-        ));
-    }
-    out
-}
 
-fn json(
-    found: &TurningCalibration,
-    holdout: Option<&HeldOut>,
-    base: &TurningBase,
-    parts: &Parts,
-    rows: usize,
-) -> serde_json::Value {
-    use serde_json::json;
-    let known = |u: Uncertainty, scale: f64| {
-        let freedom = u.freedom.is_finite().then_some(u.freedom);
-        (u.standard * scale, freedom, u.half_width_95() * scale)
-    };
-    let term = |own: &FoundTerm| {
-        let (name, before, scale) = named(own.term, base);
-        let (u, freedom, u95) = known(own.u, scale);
-        json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
-                "f": own.f, "significant": own.is_significant,
-                "written": own.is_significant && own.term.is_geometry() })
-    };
-    let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
-    let row =
-        |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
-    let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
-    let offset = |own: &calibration::turning::Offset| {
-        let known = own.u.map(|u| known(u, 1e3));
-        json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
-                "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
-    };
-    let mut counted: Vec<usize> = parts.rows[..rows].iter().map(|row| row.part).collect();
-    counted.sort_unstable();
-    counted.dedup();
-    let mut out = json!({
-        "schema": "vpost.turning/1",
-        "parts": counted.len(),
-        "rows": rows,
-        "noise_um": found.noise_mm * 1e3,
-        "level": LEVEL,
-        "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
-        "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
-        "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
-        "covariance": covariance,
-        "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
-        "not_told_apart": found.not_told_apart,
-        "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
-    });
-    if let Some(judged) = holdout {
-        out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
-            "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
+    fn json(&self) -> serde_json::Value {
+        let Self { found, holdout, base, parts, rows, timed: _ } = *self;
+        use serde_json::json;
+        let known = |u: Uncertainty, scale: f64| {
+            let freedom = u.freedom.is_finite().then_some(u.freedom);
+            (u.standard * scale, freedom, u.half_width_95() * scale)
+        };
+        let term = |own: &FoundTerm| {
+            let (name, before, scale) = named(own.term, base);
+            let (u, freedom, u95) = known(own.u, scale);
+            json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
+                    "f": own.f, "significant": own.is_significant,
+                    "written": own.is_significant && own.term.is_geometry() })
+        };
+        let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
+        let row =
+            |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
+        let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
+        let offset = |own: &calibration::turning::Offset| {
+            let known = own.u.map(|u| known(u, 1e3));
+            json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
+                    "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
+        };
+        let mut counted: Vec<usize> = rows.iter().map(|row| row.part).collect();
+        counted.sort_unstable();
+        counted.dedup();
+        let mut out = json!({
+            "schema": "vpost.turning/1",
+            "parts": counted.len(),
+            "rows": rows.len(),
+            "noise_um": found.noise_mm * 1e3,
+            "level": LEVEL,
+            "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
+            "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
+            "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
+            "covariance": covariance,
+            "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
+            "not_told_apart": found.not_told_apart,
+            "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
+        });
+        if let Some(judged) = holdout {
+            out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
+                "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
+        }
+        out
     }
-    out
 }

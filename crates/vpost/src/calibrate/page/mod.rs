@@ -16,6 +16,8 @@ use clap::Args;
 use report::page::{Page, Section};
 
 pub(super) use bars::Bars;
+pub(super) use facts::Facts;
+pub(super) use found::Found;
 pub(super) use runs::{Positions, Read};
 
 use super::output::Target;
@@ -23,9 +25,6 @@ use crate::arguments::Shared;
 use crate::file;
 use crate::message::Failure;
 use crate::roles::Roles;
-
-use facts::Facts;
-use found::Found;
 
 /// Where what was found is shown.
 #[derive(Debug, Clone, Default, Args)]
