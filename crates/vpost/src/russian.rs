@@ -297,6 +297,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("Which unmodelled effect explains the measurements", "Какой неучтённый эффект объясняет измерения"),
     ("With --lathe: distance of the places along Z, mm", "С --lathe: расстояние между местами вдоль Z, мм"),
     ("With --html: Z from the chuck of a cross section to draw, mm (repeatable)", "С --html: Z сечения от торца патрона, которое начертить, мм (можно несколько раз)"),
+    ("With --lathe: what to add to the wear offsets of X, by tool and cylinder, for who may change offsets only", "С --lathe: что прибавить к износу X, по инструментам и цилиндрам, — для тех, кому можно менять только коррекции"),
     ("With --lathe: write a page with the outline, its roundness, and what a correction will bring", "С --lathe: записать страницу: контур, круглость и что даст исправление"),
     ("With --lathe: the result as JSON on standard output", "С --lathe: результат как JSON в стандартный вывод"),
     ("With --lathe: the tool cuts a bore, so that the largest radius counts", "С --lathe: резец растачивает, так что считается наибольший радиус"),

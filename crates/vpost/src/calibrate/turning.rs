@@ -13,7 +13,7 @@ use calibration::turning::{
 use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, PathModel, Vector};
-use machine_profile::{Calibrated, Profile};
+use machine_profile::{Calibrated, LatheParts, Profile};
 use measurement_files::{Row, Sheet, numbered};
 
 use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
@@ -62,7 +62,7 @@ const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_
 const EXPECTED: Text =
     Text::pair("expected: part,z_mm,diameter_mm,d_um", "ожидалось: part,z_mm,diameter_mm,d_um");
 /// No lathe turns so wrong, µm.
-const MOST_UM: f64 = 2000.0;
+pub(crate) const MOST_UM: f64 = 2000.0;
 
 #[derive(Default)]
 struct Parts {
@@ -76,7 +76,7 @@ struct Parts {
 
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
 /// else what the user can do. Any name where the profile has no tools.
-fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
+pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
     if profile.tools.is_empty() {
         return Ok(Vector::from(profile.default_tool_mm));
     }
@@ -272,13 +272,7 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
             ),
         ));
     };
-    let base = TurningBase {
-        description: profile.description.clone(),
-        interpolation: profile.interpolation,
-        spindle: lathe.spindle,
-        bending: lathe.bending,
-        tip: lathe.tip,
-    };
+    let base = base_of(&profile, &lathe);
     let ignore = &arguments.target.ignore_column;
     let mut parts = Parts::default();
     for path in &arguments.files {
@@ -357,8 +351,19 @@ fn mean(all: &[f64]) -> Option<f64> {
     (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
 }
 
+/// The lathe as its profile knows it.
+pub(crate) fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
+    TurningBase {
+        description: profile.description.clone(),
+        interpolation: profile.interpolation,
+        spindle: lathe.spindle.clone(),
+        bending: lathe.bending.clone(),
+        tip: lathe.tip,
+    }
+}
+
 /// What the profile's effects do of each reading: the whole lathe less its tables and spindle.
-fn by_effects(
+pub(crate) fn by_effects(
     rows: &mut [TurnedReading],
     profile: &Profile,
     base: &TurningBase,

@@ -4,6 +4,7 @@ mod cuts;
 pub(crate) mod judged;
 mod page;
 mod surface;
+mod wear;
 
 use std::fmt::Write;
 
@@ -68,7 +69,11 @@ pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> 
         let html = page::html(&facts, (&surface, &turned), &correction, &lathe, messages.language())?;
         file::write(path, html.as_bytes())?;
     }
-    let out = if arguments.json { json(&turned) } else { csv(&turned) };
+    let out = match (arguments.wear, arguments.json) {
+        (true, _) => wear::list(&surface, &turned, &settings),
+        (false, true) => json(&turned),
+        (false, false) => csv(&turned),
+    };
     file::print(out.as_bytes())
 }
 
