@@ -70,6 +70,8 @@ fn turned(fault: Fault, seed: u64) -> (Vec<CauseRow>, Bar) {
     let clamping = match dice.random_range(0..3) {
         0 => Clamping::Chuck,
         1 => Clamping::ChuckAndTailstock { at_mm: LENGTH_MM },
+        // Jaws press where there are any.
+        _ if fault == Fault::Jaws => Clamping::Chuck,
         _ => Clamping::Centres { at_mm: LENGTH_MM },
     };
     let is_round = matches!(fault, Fault::Runout | Fault::Jaws) || dice.random_bool(0.15);
@@ -245,5 +247,54 @@ fn what_is_no_fault_of_a_lathe_gets_no_name() {
     for fault in [Fault::Curve, Fault::Clampings, Fault::Jaws] {
         let found = tally(fault, CASES, 6000);
         assert!(found.wrong <= 2 && found.misled <= 6, "{fault:?}: {found:?}");
+    }
+}
+
+/// Fourteen parts of one edge, some right after each other, some after a rest: the order goes another way than the time.
+fn rested(fault: Fault, seed: u64) -> Vec<CauseRow> {
+    let mut dice = ChaCha8Rng::seed_from_u64(seed);
+    let mut rows = Vec::new();
+    let mut clock_h = 0.1;
+    for part in 0..14u8 {
+        let seat = 0.2 * noise(&mut dice);
+        for place in 0..6u8 {
+            let share = f64::from(place) / 5.0;
+            let time_h = clock_h + 0.05 * (1.0 - share);
+            let um = match fault {
+                Fault::Growth => 15.0 * (1.0 - (-time_h / 2.0).exp()),
+                _ => 2.0 * (f64::from(part) + 1.0 - share),
+            };
+            rows.push(CauseRow {
+                part: usize::from(part),
+                tool: Some(0),
+                z_mm: 100.0 + 50.0 * f64::from(place),
+                diameter_mm: if part % 2 == 0 { 40.0 } else { 60.0 },
+                gap_mm: (um + seat + 0.2 * noise(&mut dice)) * 1e-3,
+                time_s: Some(time_h * 3600.0),
+                angle_rad: None,
+                uncertainty_mm: None,
+            });
+        }
+        clock_h += if part < 7 { 0.15 } else { dice.random_range(0.6..2.0) };
+    }
+    rows
+}
+
+#[test]
+fn wear_and_growth_are_told_apart_where_the_machine_rests() {
+    for (fault, cause) in [(Fault::Wear, Cause::Wear), (Fault::Growth, Cause::Growth)] {
+        let mut told = 0;
+        for seed in 0..20 {
+            let found = lathe_causes(&rested(fault, seed), &[], None).expect("no bar");
+            let own = found.causes.iter().find(|own| own.cause == cause);
+            let sure = own.is_some_and(|own| own.rivals.is_empty());
+            let other = found.causes.iter().any(|other| {
+                other.rivals.is_empty() && !matches!(other.cause, Cause::Taper) && other.cause != cause
+            });
+            assert!(!other, "{fault:?} {seed}: {found:?}");
+            told += u32::from(sure);
+        }
+        println!("{fault:?}: {told} of 20");
+        assert!(told >= 15, "{fault:?}: {told} of 20");
     }
 }
