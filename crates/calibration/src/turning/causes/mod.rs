@@ -166,6 +166,8 @@ const LEAST_PARTS: usize = 2;
 const LEAST_FREEDOM: usize = 6;
 /// A taper is sure where it is so many times the curve beside it.
 const MOSTLY: f64 = 3.0;
+/// Wear or growth of less than this share of the other is not sure beside it.
+const LITTLE_DRIFT: f64 = 0.5;
 /// A column of which less is its own is one of the others.
 const OWN: f64 = 1e-6;
 
@@ -462,9 +464,18 @@ impl<'a> Asked<'a> {
         let is_timed = self.columns.times.is_some();
         let is = |own: Cause| self.all.iter().any(|(known, _)| *known == own);
         let mut rivals: Vec<&'static str> = Vec::new();
+        // No spindle grows quite as the columns do: a little of the one beside much of the other may be its shape.
+        let is_little = |own: Cause, other: Cause| {
+            let [own, other] = [own, other].map(|cause| self.extent_mm(cause, selected, found));
+            own < LITTLE_DRIFT * other
+        };
         match cause {
-            Cause::Wear if !is_timed => rivals.push("spindle.growth"),
-            Cause::Growth if !is(Cause::Wear) => rivals.push("tool.wear"),
+            Cause::Wear if !is_timed || is_little(Cause::Wear, Cause::Growth) => {
+                rivals.push("spindle.growth")
+            }
+            Cause::Growth if !is(Cause::Wear) || is_little(Cause::Growth, Cause::Wear) => {
+                rivals.push("tool.wear");
+            }
             Cause::Straightness if bar.is_none() => rivals.push("lathe.bending"),
             Cause::Jaws => rivals.push("spindle.runout"),
             Cause::Bending => rivals.extend(self.within_the_cut(cause, selected)),
@@ -478,6 +489,21 @@ impl<'a> Asked<'a> {
             _ => {}
         }
         rivals.into_iter().map(str::to_owned).collect()
+    }
+
+    /// How much a cause that was found changes the radius, from least to most, mm.
+    fn extent_mm(&self, cause: Cause, selected: &[usize], found: &Fitted) -> f64 {
+        let mut place = 0;
+        let mut sum = DVector::zeros(self.weights.len());
+        for k in selected {
+            let (own, columns) = &self.all[*k];
+            for (i, column) in columns.iter().enumerate().filter(|_| *own == cause) {
+                let value = found.values[place + i];
+                sum += DVector::from_fn(column.len(), |row, _| column[row] * self.weights[row] * value);
+            }
+            place += columns.len();
+        }
+        sum.max() - sum.min()
     }
 
     /// The curve that was found beside a taper is nearly as large: a part of it that these places do not resolve may be all
