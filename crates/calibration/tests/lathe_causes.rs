@@ -4,10 +4,13 @@
 //! wears goes on while a part is cut, clampings differ from part to part. A name is wrong where a cause is told that is not
 //! there and the fault is no rival of it.
 
+#![expect(clippy::print_stdout, reason = "with --nocapture the tallies are the figures of docs/diagnosis.md")]
+
 use calibration::turning::{Bar, Cause, CauseRow, LatheDiagnosis, Verdict, lathe_causes};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use turning::Clamping;
+use units::math;
 
 /// What is hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,8 +95,9 @@ fn turned(fault: Fault, seed: u64) -> (Vec<CauseRow>, Bar) {
     let growth_um = sign(&mut dice) * dice.random_range(4.0..15.0);
     let tau_h = dice.random_range(0.2..2.0);
     let wear_um = dice.random_range(1.0..4.0);
-    let waves: Vec<(f64, f64, f64)> =
-        [2.0, 3.0, 4.0].map(|k| (k, dice.random_range(0.5..2.5), dice.random_range(0.0..6.28))).to_vec();
+    let waves: Vec<(f64, f64, f64)> = [2.0, 3.0, 4.0]
+        .map(|k| (k, dice.random_range(0.5..2.5), dice.random_range(0.0..std::f64::consts::TAU)))
+        .to_vec();
     let curve_um = sign(&mut dice) * dice.random_range(3.0..10.0);
     let mut rows = Vec::new();
     let mut clock_h = dice.random_range(0.02..0.3);
@@ -117,7 +121,7 @@ fn turned(fault: Fault, seed: u64) -> (Vec<CauseRow>, Bar) {
             match fault {
                 Fault::Taper => um += 0.5 * taper_um * u,
                 Fault::Bending => um += 1e3 * force_n * flexibility(clamping, z, diameter_mm),
-                Fault::Growth => um += growth_um * (1.0 - (-time_h / tau_h).exp()),
+                Fault::Growth => um += growth_um * (1.0 - math::exp(-time_h / tau_h)),
                 Fault::Wear => um += wear_um * (on_tool + 1.0 - share),
                 Fault::Curve => um += curve_um * (63.0 * u.powi(5) - 70.0 * u.powi(3) + 15.0 * u) / 8.0,
                 Fault::Clampings => um += lean * u,
@@ -131,9 +135,10 @@ fn turned(fault: Fault, seed: u64) -> (Vec<CauseRow>, Bar) {
                         Fault::Jaws => *order == 3.0,
                         _ => false,
                     };
-                    if is_there { size * (order * angle + phase).cos() } else { 0.0 }
+                    if is_there { size * math::cos(order * angle + phase) } else { 0.0 }
                 });
-                let aside = if is_round { centre.0 * angle.cos() + centre.1 * angle.sin() } else { 0.0 };
+                let aside =
+                    if is_round { centre.0 * math::cos(angle) + centre.1 * math::sin(angle) } else { 0.0 };
                 let read = um + round.sum::<f64>() + aside + reading_um * noise(&mut dice);
                 rows.push(CauseRow {
                     part,
@@ -261,7 +266,7 @@ fn rested(fault: Fault, seed: u64) -> Vec<CauseRow> {
             let share = f64::from(place) / 5.0;
             let time_h = clock_h + 0.05 * (1.0 - share);
             let um = match fault {
-                Fault::Growth => 15.0 * (1.0 - (-time_h / 2.0).exp()),
+                Fault::Growth => 15.0 * (1.0 - math::exp(-time_h / 2.0)),
                 _ => 2.0 * (f64::from(part) + 1.0 - share),
             };
             rows.push(CauseRow {

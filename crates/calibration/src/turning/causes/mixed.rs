@@ -71,8 +71,7 @@ impl Mixed {
         let whitening = Whitening::new(&self.shared, theta);
         let design = whitening.apply_to(&DMatrix::from_columns(&all));
         let white = whitening.apply(self.readings.clone());
-        let inverse =
-            design.clone().pseudo_inverse(1e-10).unwrap_or_else(|_| DMatrix::zeros(all.len(), rows));
+        let inverse = design.pseudo_inverse(1e-10).unwrap_or_else(|_| DMatrix::zeros(all.len(), rows));
         let values = &inverse * &white;
         // What a reading does to an unknown: the whitening of the reading is part of it.
         let gains = whitening.apply_to(&inverse.transpose()).transpose();
