@@ -60,3 +60,68 @@ fn test_pieces_become_a_profile_that_predicts_and_one_that_is_refuted_is_not_wri
     assert!(messages(&by_tool("T0102")).contains("add its length"), "{}", messages(&by_tool("T0102")));
     assert!(by_tool("T0101-2").status.success(), "{}", messages(&by_tool("T0101-2")));
 }
+
+/// Parts of a lathe that wears its tip by 2 µm a part on the radius, or leans, or both.
+fn diagnosed(taper_urad: f64, wear_um: f64, is_timed: bool) -> String {
+    let mut text = String::from("part,z_mm,diameter_mm,d_um,tool");
+    text.push_str(if is_timed { ",time_s\n" } else { "\n" });
+    for part in 0..8u32 {
+        for (place, z) in (80..=360).step_by(40).enumerate() {
+            let noise = 0.1 * f64::from((part * 5 + place as u32 * 3) % 7) - 0.3;
+            let d = 2.0 * (taper_urad * 1e-3 * f64::from(z) + wear_um * f64::from(part)) + noise;
+            // Two parts are cut soon after each other, then the machine rests: time does not go with the order.
+            let time = 600.0 * f64::from(part % 2) + 20_000.0 * f64::from(part / 2).sqrt();
+            let diameter = if part % 2 == 0 { 40 } else { 60 };
+            text += &format!("P{part},{z},{diameter},{d:.2},T1");
+            text += &if is_timed { format!(",{time}\n") } else { "\n".to_owned() };
+        }
+    }
+    text
+}
+
+#[test]
+fn diagnose_names_a_taper_and_never_a_wear_that_may_be_growth() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path.to_str().expect("a plain name").to_owned()
+    };
+    let bar = "[tailstock]\nat_mm = 400.0\n[workpiece]\ndiameters_mm = [[0, 40], [400, 40]]\ne_gpa = 210.0\nclamping = \"chuck-tailstock\"\nradial_force_n = 0.0\n";
+    let lathe = file("lathe.toml", &format!("{LATHE}{bar}"));
+    let json = folder.path().join("d.json").to_str().expect("a plain name").to_owned();
+    let answer = |text: &str| -> (serde_json::Value, String) {
+        let parts = file("parts.csv", text);
+        let output = run(&["diagnose", &parts, "-m", &lathe, "--json", &json]);
+        assert!(output.status.success(), "{}", messages(&output));
+        let read = std::fs::read_to_string(&json).expect("written");
+        (serde_json::from_str(&read).expect("JSON"), String::from_utf8(output.stdout).expect("UTF-8"))
+    };
+    let ids = |found: &serde_json::Value| -> Vec<String> {
+        let causes = found["causes"].as_array().expect("causes").iter();
+        causes.map(|cause| cause["effect"].as_str().expect("an id").to_owned()).collect()
+    };
+    let (found, said) = answer(&diagnosed(-30.0, 0.0, true));
+    assert_eq!(found["schema"], "vpost.diagnosis/1");
+    assert_eq!(
+        (found["verdict"].as_str(), ids(&found)),
+        (Some("NAMED"), vec!["lathe.taper".to_owned()]),
+        "{said}"
+    );
+    let taper = found["causes"][0]["parameters"][0]["value"].as_f64().expect("a number");
+    assert!((taper + 30.0).abs() < 0.5, "{taper}");
+    assert!(said.contains("tailstock") || said.contains("offset_um"), "{said}");
+    // Without the time nothing tells wear from growth.
+    let (found, said) = answer(&diagnosed(0.0, 2.0, false));
+    assert_eq!(
+        (found["verdict"].as_str(), ids(&found)),
+        (Some("AMBIGUOUS"), vec!["tool.wear".to_owned()]),
+        "{said}"
+    );
+    assert!(said.contains("cannot be told from spindle.growth") && said.contains("measure next"), "{said}");
+    let (found, said) = answer(&diagnosed(0.0, 0.0, true));
+    assert_eq!((found["verdict"].as_str(), ids(&found).len()), (Some("NO GAP"), 0), "{said}");
+    let refused =
+        run(&["diagnose", &file("p.csv", &diagnosed(0.0, 0.0, true)), "-m", &lathe, "--html", &json]);
+    assert!(!refused.status.success() && messages(&refused).contains("--html"), "{}", messages(&refused));
+}

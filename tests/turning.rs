@@ -283,3 +283,71 @@ fn a_thread_of_linuxcnc_keeps_its_lead() {
     assert!(corrected.contains("G33") && corrected.contains("K1.5"), "{corrected}");
     assert!(bench.refused(&program("G33 Z-20"), &profile).contains("K"));
 }
+
+#[test]
+fn wear_offsets_leave_half_of_what_a_cylinder_differs_by() {
+    let bench = Bench::new();
+    let input = bench.file("shaft.nc", SHAFT);
+    let output = run(&["predict", "--lathe", &input, "-m", PROFILE, "--wear"]);
+    assert!(output.status.success(), "{}", messages(&output));
+    let text = String::from_utf8(output.stdout).expect("ASCII");
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let shaft = rows.iter().find(|row| row[3] == "40.000").unwrap_or_else(|| panic!("{text}"));
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let offset_mm = number(shaft[4]);
+    assert!(offset_mm.abs() > 0.9e-3 && (number(shaft[5]) - 2.0 * offset_mm).abs() <= 1.01e-3, "{text}");
+    // What a wear offset does: the axis is told so much more.
+    let worn = bench.profile(&[("G54 = [0, 0, 360.0]", &format!("G54 = [{offset_mm}, 0, 360.0]"))]);
+    let along = |profile: &str| -> Vec<f64> {
+        let rows = bench.turned(SHAFT, profile);
+        let shaft = rows.iter().filter(|row| row[0] > 182.0 && row[0] < 297.0);
+        shaft.map(|row| (row[1] - 20.0) * 1e3).collect()
+    };
+    let largest = |all: &[f64]| all.iter().map(|um| um.abs()).fold(0.0, f64::max);
+    let (before, after) = (along(PROFILE), along(&worn));
+    assert!(largest(&before) <= number(shaft[6]) + 1e-3, "{text} {before:?}");
+    // The step of 1 µm is rounded to.
+    assert!(largest(&after) <= number(shaft[7]) + 0.5 + 1e-3, "{text} {after:?}");
+    assert!(largest(&after) < largest(&before), "{text}");
+}
+
+#[test]
+fn a_lathe_is_exported_by_its_own_axes_only() {
+    let bench = Bench::new();
+    let folder = bench.folder.path().join("tables");
+    let into = folder.to_str().expect("a plain path");
+    let export = |format: &str| run(&["profile", "export", PROFILE, "--format", format, "-O", into]);
+    let output = export("linuxcnc");
+    assert!(output.status.success(), "{}", messages(&output));
+    let said = messages(&output);
+    assert!(said.contains("VP1112") && said.contains("what the workpiece gives way"), "{said}");
+    let mut names: Vec<String> = std::fs::read_dir(&folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["x.comp", "z.comp"]);
+    // Nominal, forward, reverse: what the table of the profile says at that place.
+    let table = std::fs::read_to_string(crate::common::root().join("machine-profiles/generic_lathe/z.csv"));
+    let table = table.expect("the table");
+    let header: Vec<&str> =
+        table.lines().find(|line| line.starts_with("position")).expect("a header").split(',').collect();
+    let column = header.iter().position(|name| *name == "EZZ_um").expect("EZZ");
+    let rows = table.lines().skip_while(|line| !line.starts_with("position")).skip(1);
+    let known: Vec<(f64, f64)> = rows
+        .map(|line| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+            (cells[0], cells[column])
+        })
+        .collect();
+    let written = std::fs::read_to_string(folder.join("z.comp")).expect("written");
+    let read: Vec<Vec<f64>> =
+        written.lines().map(|line| line.split(' ').map(|v| v.parse().expect("a number")).collect()).collect();
+    assert_eq!(read.len(), known.len());
+    for (row, (z, um)) in read.iter().zip(&known) {
+        assert!((row[0] - z).abs() < 1e-6 && (row[1] - z - um * 1e-3).abs() < 1e-6, "{row:?} {z} {um}");
+    }
+    assert!(export("isg").status.success());
+    let refused = export("lattice");
+    assert!(!refused.status.success() && messages(&refused).contains("--wear"), "{}", messages(&refused));
+}

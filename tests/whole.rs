@@ -18,6 +18,7 @@ mod batch_kill;
 mod batch_shop;
 mod browser;
 mod browser_calibrate;
+mod browser_lathe;
 mod browser_viewer;
 mod budget;
 mod calibrate;

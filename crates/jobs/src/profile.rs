@@ -34,8 +34,8 @@ pub fn load_mill(path: &Path) -> Result<Loaded, Failure> {
                 lathe.chain
             ),
             both!(
-                "of lathes `vpost correct`, `batch`, `check` and `predict --lathe PROGRAM` know",
-                "токарные станки знают `vpost correct`, `batch`, `check` и `predict --lathe PROGRAM`"
+                "of lathes `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` and `profile export` know",
+                "токарные станки знают `vpost correct`, `batch`, `check`, `predict --lathe PROGRAM`, `calibrate turning`, `diagnose` и `profile export`"
             ),
         )),
     }

@@ -174,7 +174,7 @@ impl Loader<'_> {
             ));
             self.refuse(at, diagnostic, both!("expected above 0", "ожидалось больше 0"));
         }
-        let (bending, bears) = self.workpiece(document, tailstock);
+        let (bending, bears, bar) = self.workpiece(document, tailstock);
         let spindle = Spindle {
             centre_mm: Vector::new(x, y, number(written.face_mm)),
             shift_mm: Vector::new(
@@ -193,12 +193,18 @@ impl Loader<'_> {
             gamma_rad: urad(document.tool.gamma_urad),
             omega_rad: urad(document.tool.omega_urad),
         };
-        LatheParts { chain: document.chain.get_ref().clone(), spindle, bending, tip, noses: Vec::new() }
+        LatheParts { chain: document.chain.get_ref().clone(), spindle, bending, bar, tip, noses: Vec::new() }
     }
 
-    /// How far the workpiece bends, and whether the tailstock bears it.
-    fn workpiece(&mut self, document: &Document, tailstock: Option<Tailstock>) -> (Bending, bool) {
-        let Some(spanned) = &document.workpiece else { return (Bending::default(), tailstock.is_some()) };
+    /// How far the workpiece bends, whether the tailstock bears it, and the bar itself.
+    fn workpiece(
+        &mut self,
+        document: &Document,
+        tailstock: Option<Tailstock>,
+    ) -> (Bending, bool, Option<Workpiece>) {
+        let Some(spanned) = &document.workpiece else {
+            return (Bending::default(), tailstock.is_some(), None);
+        };
         let written = spanned.get_ref();
         let force = match (&written.radial_force_n, written.specific_force_n_mm2) {
             (Some(force), None) => Force::Radial { newton: force.get_ref().0 },
@@ -255,7 +261,7 @@ impl Loader<'_> {
                 tail(self).map(|at_mm| Clamping::ChuckAndTailstock { at_mm })
             }
             Some(ClampingName::Centres) => tail(self).map(|at_mm| Clamping::Centres { at_mm }),
-            None if force.newton() == 0.0 => return (Bending::default(), tailstock.is_some()),
+            None if force.newton() == 0.0 => return (Bending::default(), tailstock.is_some(), None),
             None => {
                 let diagnostic = Diagnostic::error(
                     KEY,
@@ -269,7 +275,7 @@ impl Loader<'_> {
                 None
             }
         };
-        let Some(clamping) = clamping else { return (Bending::default(), false) };
+        let Some(clamping) = clamping else { return (Bending::default(), false, None) };
         let bears = !matches!(clamping, Clamping::Chuck);
         let (Some(diameters), Some(modulus)) = (&written.diameters_mm, &written.e_gpa) else {
             if force.newton() != 0.0 {
@@ -286,7 +292,7 @@ impl Loader<'_> {
                 ));
                 self.refuse(spanned, diagnostic, both!("how stiff is it?", "какова её жёсткость?"));
             }
-            return (Bending::default(), bears);
+            return (Bending::default(), bears, None);
         };
         let bar = Workpiece {
             diameters_mm: diameters.get_ref().iter().map(|row| row.map(|Finite(mm)| mm)).collect(),
@@ -295,7 +301,7 @@ impl Loader<'_> {
             steady_rests_mm: written.steady_mm.iter().map(|Finite(mm)| *mm).collect(),
         };
         match Bending::new(&bar, force) {
-            Ok(bending) => (bending, bears),
+            Ok(bending) => (bending, bears, Some(bar)),
             Err(error) => {
                 let help = match error {
                     WorkpieceError::BeyondTheBar { .. } => {
@@ -315,7 +321,7 @@ impl Loader<'_> {
                 };
                 let diagnostic = Diagnostic::error(VALUE, error.text()).help(help);
                 self.refuse(spanned, diagnostic, both!("this workpiece", "эта деталь"));
-                (Bending::default(), bears)
+                (Bending::default(), bears, None)
             }
         }
     }

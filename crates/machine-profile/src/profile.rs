@@ -183,6 +183,8 @@ pub struct LatheParts {
     pub spindle: turning::Spindle,
     /// How far the workpiece bends away from the tool.
     pub bending: turning::Bending,
+    /// The bar in its clamping, where the profile says both.
+    pub bar: Option<turning::Workpiece>,
     /// How the tool's holder stands.
     pub tip: turning::Tip,
     /// By H number.

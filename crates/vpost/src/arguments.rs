@@ -115,6 +115,15 @@ pub struct Predict {
     /// With --lathe: the result as JSON on standard output.
     #[arg(long, requires = "lathe")]
     pub json: bool,
+    /// With --lathe: what to add to the wear offsets of X, by tool and cylinder, for who may change offsets only.
+    #[arg(long, requires = "lathe", conflicts_with = "json")]
+    pub wear: bool,
+    /// With --lathe: write a page with the outline, its roundness, and what a correction will bring.
+    #[arg(long, value_name = "FILE", requires = "lathe")]
+    pub html: Option<PathBuf>,
+    /// With --html: Z from the chuck of a cross section to draw, mm (repeatable).
+    #[arg(long, value_name = "Z", requires = "html", allow_negative_numbers = true)]
+    pub section: Vec<f64>,
 }
 
 /// `vpost solve`

@@ -139,7 +139,19 @@ fn curves_lost(profile: &Profile, format: Format) -> Option<Text> {
 
 /// `vpost profile export`
 pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure> {
-    let profile = profile::load_mill(&arguments.profile)?.profile;
+    let profile = profile::load(&arguments.profile)?.profile;
+    if profile.lathe.is_some() && arguments.format == Format::Lattice {
+        return Err(Failure::option(
+            both!(
+                "a lathe's errors are those of a radius about the spindle: no lattice of vectors holds them",
+                "погрешности токарного станка — погрешности радиуса вокруг шпинделя: решётка векторов их не вмещает"
+            ),
+            both!(
+                "write `--format linuxcnc`, `isg` or `csv`; the wear of X is in `vpost predict --lathe PROGRAM --wear`",
+                "напишите `--format linuxcnc`, `isg` или `csv`; износ X даёт `vpost predict --lathe PROGRAM --wear`"
+            ),
+        ));
+    }
     if !(arguments.step > 0.0 && arguments.step.is_finite()) {
         return Err(Failure::option(
             both!("a step is above zero", "шаг больше нуля"),
@@ -166,6 +178,12 @@ pub(crate) fn run(arguments: &Export, messages: &Messages) -> Result<(), Failure
     let mut lost = lost;
     lost.extend(curves_lost(&profile, arguments.format));
     lost.extend(rotary_lost(&profile, arguments.format));
+    if profile.lathe.is_some() {
+        lost.push(both!(
+            "the spindle, head- and tailstock, the tool's height and what the workpiece gives way; X is a radius in it",
+            "шпинделя, передней и задней бабок, высоты резца и отжима детали; X в ней — радиус"
+        ));
+    }
     if !profile.effects.is_empty() {
         lost.push(both!("the profile's [[effect]] entries", "разделов [[effect]] профиля"));
     }

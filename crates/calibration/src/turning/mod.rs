@@ -5,6 +5,7 @@
 //! counted as EB0S. Faces see how square X is to that axis: EB0S alone, for X is straight along itself; with both,
 //! EB0Z is told as well.
 
+mod causes;
 mod equations;
 mod estimate;
 mod readings;
@@ -12,6 +13,7 @@ mod rows;
 mod strata;
 mod term;
 
+pub use causes::{Bar, Cause, CauseRow, FoundCause, LatheDiagnosis, Number, Unseen, Verdict, lathe_causes};
 pub use equations::{Change, Stretch, TurningBase};
 pub use estimate::{FoundTerm, HeldOut, LEVEL, Offset, TurningCalibration, calibrate};
 pub use rows::{Feature, TurnedReading};

@@ -46,8 +46,32 @@ pub fn curves(
     series: &[(&str, &str)],
     unit: &str,
 ) -> Markup {
+    let (low, high) = reach(panels);
+    let [low, high] = [low, high].map(|v| language.number(v));
+    let described = say!(
+        language,
+        "from {low} to {high} {unit}, one scale for all",
+        "от {low} до {high} {unit}, общая шкала"
+    );
+    curves_with(language, title, &described, panels, series)
+}
+
+/// Least and largest value, zero among them.
+fn reach(panels: &[Curves]) -> (f64, f64) {
     let all = || panels.iter().flat_map(|p| p.values.iter().flatten()).copied().filter(|v| v.is_finite());
-    let (low, high) = (all().fold(0.0, f64::min), all().fold(0.0, f64::max));
+    (all().fold(0.0, f64::min), all().fold(0.0, f64::max))
+}
+
+/// [`curves`] with a description of one's own.
+#[must_use]
+pub fn curves_with(
+    language: Language,
+    title: &str,
+    described: &str,
+    panels: &[Curves],
+    series: &[(&str, &str)],
+) -> Markup {
+    let (low, high) = reach(panels);
     let margin = 0.06 * (high - low);
     let keys: Vec<(String, &str)> =
         series.iter().map(|(class, words)| (class.replace('s', "k"), *words)).collect();
@@ -69,21 +93,20 @@ pub fn curves(
             (text(0.5 * (LEFT + RIGHT), top + HEIGHT + 30.0, "m c", &panel.label))
         }
     };
-    let [low, high] = [low, high].map(|v| language.number(v));
-    let described = say!(
-        language,
-        "from {low} to {high} {unit}, one scale for all",
-        "от {low} до {high} {unit}, общая шкала"
-    );
-    svg(TOP + STEP * panels.len() as f64, title, &described, &body)
+    svg(TOP + STEP * panels.len() as f64, title, described, &body)
 }
 
+/// A line through the values; where one is not known it is broken.
 fn path(at: &[f64], values: &[f64], x: &Scale, y: &Scale) -> String {
-    at.iter().zip(values).filter(|(_, v)| v.is_finite()).fold(String::new(), |mut path, (at, value)| {
-        path.push(if path.is_empty() { 'M' } else { 'L' });
-        path.push_str(&format!("{} {}", px(x.at(*at)), px(y.at(*value))));
-        path
-    })
+    let (mut path, mut joined) = (String::new(), false);
+    for (at, value) in at.iter().zip(values) {
+        if value.is_finite() {
+            path.push(if joined { 'L' } else { 'M' });
+            path.push_str(&format!("{} {}", px(x.at(*at)), px(y.at(*value))));
+        }
+        joined = value.is_finite();
+    }
+    path
 }
 
 /// Columns: filled before, outlined after.
@@ -124,4 +147,17 @@ pub fn histogram(
     let described =
         say!(language, "{before} values before, {after} after", "значений до: {before}, после: {after}");
     svg(bottom + 38.0, title, &described, &body)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_known_is_not_bridged() {
+        let scale = Scale::new((0.0, 10.0), (0.0, 10.0));
+        let at: Vec<f64> = (0..6).map(f64::from).collect();
+        let drawn = path(&at, &[1.0, 2.0, f64::NAN, f64::NAN, 3.0, 4.0], &scale, &scale);
+        assert_eq!(drawn, "M0 1L1 2M4 3L5 4");
+    }
 }

@@ -79,7 +79,7 @@ pub fn panels(
 }
 
 /// Dots as one path: strokes of no length with round ends.
-fn dots(at: &[(f64, f64)], x: &Scale, y: &Scale) -> String {
+pub(super) fn dots(at: &[(f64, f64)], x: &Scale, y: &Scale) -> String {
     let known = at.iter().filter(|(a, b)| a.is_finite() && b.is_finite());
     known.fold(String::new(), |mut path, (a, b)| {
         path.push_str(&format!("M{} {}h0", px(x.at(*a)), px(y.at(*b))));

@@ -8,6 +8,7 @@ mod bars;
 mod cells;
 mod curves;
 mod dots;
+mod fitted;
 mod lines;
 mod polar;
 pub mod solid;
@@ -18,8 +19,9 @@ use maud::{Markup, html};
 pub use bands::{Band, Bands, bands};
 pub use bars::{Bar, Interval, Range, bars, interval, ranges, waterfall};
 pub use cells::{Matrix, Slice, matrix, slices};
-pub use curves::{Curves, Histogram, curves, histogram};
+pub use curves::{Curves, Histogram, curves, curves_with, histogram};
 pub use dots::{Panel, Points, panels};
+pub use fitted::{Fitted, fitted};
 pub use lines::{Arrow, View, cumulative, views};
 pub use polar::{Magnification, Polar, Round, polar};
 
@@ -101,7 +103,7 @@ fn legend(x: f64, y: f64, entries: &[(&str, &str)]) -> Markup {
         @for (class, words) in entries {
             (rect(class, (at, y - 9.0), 10.0, 10.0))
             (text(at + 14.0, y, "", words))
-            @let () = at += 24.0 + 6.6 * words.chars().count() as f64;
+            @let () = at += 26.0 + 7.6 * words.chars().count() as f64;
         }
     }
 }

@@ -5,25 +5,25 @@ use diagnostic::{Code, Diagnostic, Speaks, Text, both};
 
 use crate::message::Failure;
 
-pub(super) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
+pub(crate) use measurement_files::codes::{AXES, CELL, OPEN, QUESTION, RUNS};
 
 /// Numbers in another unit than they claim.
-pub(super) const UNITS: Code = Code(1102);
+pub(crate) const UNITS: Code = Code(1102);
 /// Measurements that cannot carry a correction.
-pub(super) const UNFIT: Code = Code(1103);
+pub(crate) const UNFIT: Code = Code(1103);
 /// A reading that does not belong to the others.
-pub(super) const OUTLIER: Code = Code(1107);
+pub(crate) const OUTLIER: Code = Code(1107);
 /// Warning: runs or targets are missing.
-pub(super) const MISSING: Code = Code(1108);
+pub(crate) const MISSING: Code = Code(1108);
 /// Warning: the uncertainty is more than half of what it corrects.
-pub(super) const DOUBTFUL: Code = Code(1109);
+pub(crate) const DOUBTFUL: Code = Code(1109);
 /// Warning: something the profile should say is not known.
-pub(super) const UNSAID: Code = Code(1110);
+pub(crate) const UNSAID: Code = Code(1110);
 /// Readings that contradict one another, the base, or every machine of this kind.
-pub(super) const CONTRADICTED: Code = Code(1113);
+pub(crate) const CONTRADICTED: Code = Code(1113);
 
 /// What to say of measurements that give no profile, and what to do.
-pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
+pub(crate) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Failure {
     let (code, help) = match error {
         CalibrationError::Axes(_) => (
             AXES,
@@ -76,6 +76,6 @@ pub(super) fn failure(file: &str, bytes: &[u8], error: &CalibrationError) -> Fai
 }
 
 /// A question that stays open.
-pub(super) fn question(message: Text, help: Text) -> Failure {
+pub(crate) fn question(message: Text, help: Text) -> Failure {
     Failure::usage(Diagnostic::error(QUESTION, message).help(help))
 }

@@ -12,7 +12,7 @@ use crate::file;
 use crate::message::Failure;
 
 /// Reads a table of one of the instruments.
-pub(super) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
+pub(crate) fn sheet(path: &Path, columns: &str, expected: Text, ignore: &[String]) -> Result<Sheet, Failure> {
     let kind = Kind {
         columns,
         expected,

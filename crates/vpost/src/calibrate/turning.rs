@@ -1,5 +1,7 @@
 //! `vpost calibrate turning`.
 
+mod shown;
+
 use std::path::{Path, PathBuf};
 
 use calibration::CalibrationError;
@@ -10,16 +12,19 @@ use calibration::turning::{
 use clap::Args;
 use diagnostic::{Diagnostic, Speaks, Text, both};
 use machine_model::{Axis, Command, PathModel, Vector};
-use machine_profile::{Calibrated, Profile};
+use machine_profile::{Calibrated, LatheParts, Profile};
 use measurement_files::{Row, Sheet, numbered};
 
 use super::codes::{AXES, CELL, OUTLIER, UNFIT, UNITS, failure, question};
 use super::output::{Output, Target};
+use super::page::Shown;
 use super::sources;
 use crate::arguments::Shared;
 use crate::conditions::conditions;
 use crate::file;
 use crate::message::{Failure, Messages, Report};
+
+use shown::Pieces;
 
 /// `vpost calibrate turning PARTS… -m LATHE -o PROFILE`
 #[derive(Debug, Args)]
@@ -35,13 +40,28 @@ pub struct Turning {
     /// Write what was found as JSON.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Write what was found as one page for a browser: drawings, their numbers, no network, no script.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+}
+
+/// What was found of the parts, and what that rests on.
+struct Outcome<'a> {
+    found: &'a TurningCalibration,
+    holdout: Option<HeldOut>,
+    base: &'a TurningBase,
+    parts: &'a Parts,
+    /// Readings that the adjustment saw.
+    rows: &'a [TurnedReading],
+    /// All diameters say when they were cut.
+    timed: bool,
 }
 
 const COLUMNS: &str = "part feature z_mm diameter_mm d_um time_s tool u_um temp_c note";
 const EXPECTED: Text =
     Text::pair("expected: part,z_mm,diameter_mm,d_um", "ожидалось: part,z_mm,diameter_mm,d_um");
 /// No lathe turns so wrong, µm.
-const MOST_UM: f64 = 2000.0;
+pub(crate) const MOST_UM: f64 = 2000.0;
 
 #[derive(Default)]
 struct Parts {
@@ -55,7 +75,7 @@ struct Parts {
 
 /// From the gauge point to the tip of the tool of this name, mm: `H1`, or `T0101` whose offset is H1, an edge's name behind it;
 /// else what the user can do. Any name where the profile has no tools.
-fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
+pub(crate) fn vector_mm(profile: &Profile, tool: &str) -> Result<Vector, Text> {
     if profile.tools.is_empty() {
         return Ok(Vector::from(profile.default_tool_mm));
     }
@@ -257,13 +277,7 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
             ),
         ));
     };
-    let base = TurningBase {
-        description: profile.description.clone(),
-        interpolation: profile.interpolation,
-        spindle: lathe.spindle,
-        bending: lathe.bending,
-        tip: lathe.tip,
-    };
+    let base = base_of(&profile, &lathe);
     let ignore = &arguments.target.ignore_column;
     let mut parts = Parts::default();
     for path in &arguments.files {
@@ -293,15 +307,24 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
     let holdout = (!held.is_empty()).then(|| found.held_out(held, &base)).transpose();
     let holdout = holdout.map_err(|error| parts.refused(&error))?;
     let timed = rows.iter().all(|row| row.feature != Feature::Diameter || row.time_s.is_some());
-    let text = report(&found, holdout.as_ref(), &base, &parts, timed);
-    file::print(text.in_language(messages.language()).as_bytes())?;
+    let outcome = Outcome { found: &found, holdout, base: &base, parts: &parts, rows, timed };
+    file::print(outcome.report().in_language(messages.language()).as_bytes())?;
     if let Some(path) = &arguments.json {
-        let mut text = serde_json::to_string_pretty(&json(&found, holdout.as_ref(), &base, &parts, trained))
-            .expect("plain values always serialise");
+        let mut text = serde_json::to_string_pretty(&outcome.json()).expect("plain values always serialise");
         text.push('\n');
         file::write(path, text.as_bytes())?;
     }
-    if let Some(judged) = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9) {
+    let refuted = holdout.filter(|judged| judged.rms_after_mm > judged.rms_before_mm + 1e-9);
+    let page = |target: &Target, uncertainty_mm: Option<f64>| {
+        let page = Pieces::new(&outcome, held, messages.language(), refuted.is_some());
+        let page = page.map_err(|error| failure("", &[], &CalibrationError::Axes(error.text())))?;
+        let shown = Shown { html: arguments.html.clone(), ..Shown::default() };
+        let mut files = arguments.files.clone();
+        files.extend(arguments.holdout.clone());
+        shown.write(&page, &files, target, shared, mean(&parts.temperatures), uncertainty_mm)
+    };
+    if let Some(judged) = refuted {
+        page(&Target { output: None, ..arguments.target.clone() }, None)?;
         let message = both!(
             "{} held-out diameters get worse: {:.2} um RMS before, {:.2} um after",
             "контрольных диаметров {}, и они становятся хуже: {:.2} мкм до, {:.2} мкм после (среднеквадратичное)",
@@ -317,7 +340,6 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         return Err(Failure::Refused(vec![Report { source: None, diagnostics }]));
     }
     write(&mut output, &found, &base);
-    let mean = |all: &[f64]| (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
     let uncertainty_mm = output.with_base_mm(found.field_u95_mm, messages);
     let measured = Calibrated {
         temperature_c: mean(&parts.temperatures),
@@ -326,11 +348,27 @@ pub(super) fn run(arguments: &Turning, shared: &Shared, messages: &Messages) -> 
         ..Calibrated::default()
     };
     output.calibrated(&arguments.target, messages, measured)?;
-    output.write(&arguments.target, messages)
+    output.write(&arguments.target, messages)?;
+    page(&arguments.target, Some(uncertainty_mm))
+}
+
+fn mean(all: &[f64]) -> Option<f64> {
+    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+}
+
+/// The lathe as its profile knows it.
+pub(crate) fn base_of(profile: &Profile, lathe: &LatheParts) -> TurningBase {
+    TurningBase {
+        description: profile.description.clone(),
+        interpolation: profile.interpolation,
+        spindle: lathe.spindle.clone(),
+        bending: lathe.bending.clone(),
+        tip: lathe.tip,
+    }
 }
 
 /// What the profile's effects do of each reading: the whole lathe less its tables and spindle.
-fn by_effects(
+pub(crate) fn by_effects(
     rows: &mut [TurnedReading],
     profile: &Profile,
     base: &TurningBase,
@@ -396,143 +434,137 @@ fn owner(found: &calibration::turning::Offset, parts: &Parts) -> String {
     }
 }
 
-fn report(
-    found: &TurningCalibration,
-    holdout: Option<&HeldOut>,
-    base: &TurningBase,
-    parts: &Parts,
-    timed: bool,
-) -> Text {
-    let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
-    let mut out = both!(
-        "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
-        "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {:#}\n",
-        found.noise_mm * 1e3,
-        match shared {
-            Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
-            None => Text::pair("are too few to tell by how much they differ", "неизвестно: их слишком мало",),
+impl Outcome<'_> {
+    fn report(&self) -> Text {
+        let Self { found, holdout, base, parts, timed, rows: _ } = *self;
+        let shared = found.shared_mm.map(|shared_mm| shared_mm * 1e3);
+        let mut out = both!(
+            "test pieces: diameters scatter by {:.3} um (standard deviation), parts {}\n",
+            "образцы: разброс диаметров {:.3} мкм (стандартное отклонение), между образцами {:#}\n",
+            found.noise_mm * 1e3,
+            match shared {
+                Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
+                None =>
+                    Text::pair("are too few to tell by how much they differ", "неизвестно: их слишком мало",),
+            }
+        );
+        for own in found.terms.iter().chain(&found.not_there) {
+            let (key, before, scale) = named(own.term, base);
+            let said = match (own.is_significant, own.term.is_geometry()) {
+                (false, _) => Text::pair("not significant, not written", "незначимо, не записано"),
+                (true, true) => Text::pair("written", "записано"),
+                (true, false) => Text::pair("in the report only", "только в отчёте"),
+            };
+            let (value, half) = ((before + own.value) * scale, own.u.half_width_95() * scale);
+            let name = own.term.words();
+            out.push(&both!(
+                "  {name:<10} {key} {value:.3} ± {half:.3}, {said}\n",
+                "  {name:<#10} {key} {value:.3} ± {half:.3}, {said:#}\n"
+            ));
         }
-    );
-    for own in found.terms.iter().chain(&found.not_there) {
-        let (key, before, scale) = named(own.term, base);
-        let said = match (own.is_significant, own.term.is_geometry()) {
-            (false, _) => Text::pair("not significant, not written", "незначимо, не записано"),
-            (true, true) => Text::pair("written", "записано"),
-            (true, false) => Text::pair("in the report only", "только в отчёте"),
-        };
-        let (value, half) = ((before + own.value) * scale, own.u.half_width_95() * scale);
-        let name = own.term.words();
         out.push(&both!(
-            "  {name:<10} {key} {value:.3} ± {half:.3}, {said}\n",
-            "  {name:<#10} {key} {value:.3} ± {half:.3}, {said:#}\n"
+            "  level of the F tests: {} %; intervals are 95 %\n",
+            "  уровень F-критериев: {} %; интервалы 95-процентные\n",
+            LEVEL * 100.0
         ));
-    }
-    out.push(&both!(
-        "  level of the F tests: {} %; intervals are 95 %\n",
-        "  уровень F-критериев: {} %; интервалы 95-процентные\n",
-        LEVEL * 100.0
-    ));
-    for [a, b] in &found.not_told_apart {
-        let help = match (a.english(), b.english()) {
-            ("growth", "wear") | ("wear", "growth") if !timed => {
-                Text::pair(": add the column time_s", "; добавьте столбец time_s")
-            }
-            ("growth", "wear") | ("wear", "growth") => Text::pair(
-                ": measure a second part with a new edge while warm, or cut the first size again when warm",
-                "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
-            ),
-            (_, "what else differs from part to part") => {
-                Text::pair(": measure a further part", "; измерьте ещё один образец")
-            }
-            _ => Text::EMPTY,
-        };
+        for [a, b] in &found.not_told_apart {
+            let help = match (a.english(), b.english()) {
+                ("growth", "wear") | ("wear", "growth") if !timed => {
+                    Text::pair(": add the column time_s", "; добавьте столбец time_s")
+                }
+                ("growth", "wear") | ("wear", "growth") => Text::pair(
+                    ": measure a second part with a new edge while warm, or cut the first size again when warm",
+                    "; измерьте второй образец с новой кромкой на прогретом станке или проточите первый размер снова после прогрева",
+                ),
+                (_, "what else differs from part to part") => {
+                    Text::pair(": measure a further part", "; измерьте ещё один образец")
+                }
+                _ => Text::EMPTY,
+            };
+            out.push(&both!(
+                "  {a} and {b} cannot be told apart by these parts{help}\n",
+                "  по этим образцам не различить {a:#} и {b:#}{help:#}\n"
+            ));
+        }
+        for offset in &found.offsets {
+            let interval =
+                offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
+            let (owner, radius_um) = (owner(offset, parts), offset.radius_mm * 1e3);
+            let wear_mm = -2.0 * offset.radius_mm;
+            out.push(&both!(
+                "  size of {owner}: {radius_um:.3}{interval} um on the radius; with this profile enter {wear_mm:.4} mm as wear of X on the diameter\n",
+                "  размер {owner}: {radius_um:.3}{interval} мкм на радиус; с этим профилем введите износ по X {wear_mm:.4} мм на диаметр\n"
+            ));
+        }
+        if found.unseen_blunder_mm > 0.0 {
+            out.push(&both!(
+                "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it\n",
+                "  мог пройти один отсчёт с ошибкой меньше {:.1} мкм: его показали бы другие места или образцы\n",
+                found.unseen_blunder_mm * 1e3
+            ));
+        }
+        let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
         out.push(&both!(
-            "  {a} and {b} cannot be told apart by these parts{help}\n",
-            "  по этим образцам не различить {a:#} и {b:#}{help:#}\n"
+            "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
+            "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
         ));
+        if let Some(judged) = holdout {
+            out.push(&both!(
+                "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)\n",
+                "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (диаметров {}, каждый образец по своему размеру)\n",
+                judged.rms_before_mm * 1e3,
+                judged.rms_after_mm * 1e3,
+                judged.max_after_mm * 1e3,
+                judged.rows
+            ));
+        }
+        out
     }
-    for offset in &found.offsets {
-        let interval = offset.u.map_or_else(String::new, |u| format!(" ± {:.3}", u.half_width_95() * 1e3));
-        let (owner, radius_um) = (owner(offset, parts), offset.radius_mm * 1e3);
-        let wear_mm = -2.0 * offset.radius_mm;
-        out.push(&both!(
-            "  size of {owner}: {radius_um:.3}{interval} um on the radius; with this profile enter {wear_mm:.4} mm as wear of X on the diameter\n",
-            "  размер {owner}: {radius_um:.3}{interval} мкм на радиус; с этим профилем введите износ по X {wear_mm:.4} мм на диаметр\n"
-        ));
-    }
-    if found.unseen_blunder_mm > 0.0 {
-        out.push(&both!(
-            "  one reading that is wrong by less than {:.1} um may have passed: more places or parts would show it\n",
-            "  мог пройти один отсчёт с ошибкой меньше {:.1} мкм: его показали бы другие места или образцы\n",
-            found.unseen_blunder_mm * 1e3
-        ));
-    }
-    let [before, after] = found.rms_mm.map(|mm| mm * 1e3);
-    out.push(&both!(
-        "fitted {before:.3} -> {after:.3} um RMS on the diameter\n",
-        "подгонка: СКЗ {before:.3} -> {after:.3} мкм на диаметр\n"
-    ));
-    if let Some(judged) = holdout {
-        out.push(&both!(
-            "held out {:.3} -> {:.3} um RMS, at most {:.3} um ({} diameters, each part at its own size)\n",
-            "контрольные: СКЗ {:.3} -> {:.3} мкм, не больше {:.3} мкм (диаметров {}, каждый образец по своему размеру)\n",
-            judged.rms_before_mm * 1e3,
-            judged.rms_after_mm * 1e3,
-            judged.max_after_mm * 1e3,
-            judged.rows
-        ));
-    }
-    out
-}
 
-fn json(
-    found: &TurningCalibration,
-    holdout: Option<&HeldOut>,
-    base: &TurningBase,
-    parts: &Parts,
-    rows: usize,
-) -> serde_json::Value {
-    use serde_json::json;
-    let known = |u: Uncertainty, scale: f64| {
-        let freedom = u.freedom.is_finite().then_some(u.freedom);
-        (u.standard * scale, freedom, u.half_width_95() * scale)
-    };
-    let term = |own: &FoundTerm| {
-        let (name, before, scale) = named(own.term, base);
-        let (u, freedom, u95) = known(own.u, scale);
-        json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
-                "f": own.f, "significant": own.is_significant,
-                "written": own.is_significant && own.term.is_geometry() })
-    };
-    let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
-    let row =
-        |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
-    let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
-    let offset = |own: &calibration::turning::Offset| {
-        let known = own.u.map(|u| known(u, 1e3));
-        json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
-                "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
-    };
-    let mut counted: Vec<usize> = parts.rows[..rows].iter().map(|row| row.part).collect();
-    counted.sort_unstable();
-    counted.dedup();
-    let mut out = json!({
-        "schema": "vpost.turning/1",
-        "parts": counted.len(),
-        "rows": rows,
-        "noise_um": found.noise_mm * 1e3,
-        "level": LEVEL,
-        "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
-        "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
-        "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
-        "covariance": covariance,
-        "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
-        "not_told_apart": found.not_told_apart.iter().map(|pair| pair.each_ref().map(Text::english)).collect::<Vec<_>>(),
-        "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
-    });
-    if let Some(judged) = holdout {
-        out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
-            "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
+    fn json(&self) -> serde_json::Value {
+        let Self { found, holdout, base, parts, rows, timed: _ } = *self;
+        use serde_json::json;
+        let known = |u: Uncertainty, scale: f64| {
+            let freedom = u.freedom.is_finite().then_some(u.freedom);
+            (u.standard * scale, freedom, u.half_width_95() * scale)
+        };
+        let term = |own: &FoundTerm| {
+            let (name, before, scale) = named(own.term, base);
+            let (u, freedom, u95) = known(own.u, scale);
+            json!({ "name": name, "value": (before + own.value) * scale, "u": u, "degrees_of_freedom": freedom, "u95": u95,
+                    "f": own.f, "significant": own.is_significant,
+                    "written": own.is_significant && own.term.is_geometry() })
+        };
+        let scales: Vec<f64> = found.terms.iter().map(|own| named(own.term, base).2).collect();
+        let row =
+            |i: usize| (0..scales.len()).map(|k| found.covariance[(i, k)] * scales[i] * scales[k]).collect();
+        let covariance: Vec<Vec<f64>> = (0..scales.len()).map(row).collect();
+        let offset = |own: &calibration::turning::Offset| {
+            let known = own.u.map(|u| known(u, 1e3));
+            json!({ "tool": owner(own, parts), "radius_um": own.radius_mm * 1e3, "u_um": known.map(|u| u.0),
+                    "degrees_of_freedom": known.and_then(|u| u.1), "u95_um": known.map(|u| u.2) })
+        };
+        let mut counted: Vec<usize> = rows.iter().map(|row| row.part).collect();
+        counted.sort_unstable();
+        counted.dedup();
+        let mut out = json!({
+            "schema": "vpost.turning/1",
+            "parts": counted.len(),
+            "rows": rows.len(),
+            "noise_um": found.noise_mm * 1e3,
+            "level": LEVEL,
+            "part_to_part_um": found.shared_mm.map(|mm| mm * 1e3),
+            "unseen_blunder_um": found.unseen_blunder_mm * 1e3,
+            "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
+            "covariance": covariance,
+            "not_significant": found.not_there.iter().map(term).collect::<Vec<_>>(),
+            "not_told_apart": found.not_told_apart.iter().map(|pair| pair.each_ref().map(Text::english)).collect::<Vec<_>>(),
+            "offsets": found.offsets.iter().map(offset).collect::<Vec<_>>(),
+        });
+        if let Some(judged) = holdout {
+            out["holdout"] = json!({ "rows": judged.rows, "rms_before_um": judged.rms_before_mm * 1e3,
+                "rms_after_um": judged.rms_after_mm * 1e3, "max_after_um": judged.max_after_mm * 1e3 });
+        }
+        out
     }
-    out
 }

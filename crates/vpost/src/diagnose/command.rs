@@ -63,6 +63,15 @@ pub struct Diagnose {
 
 /// `vpost diagnose MEASUREMENTS.csv -m PROFILE`
 pub(crate) fn run(arguments: &Diagnose, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let whole = crate::profile::load(machine(&shared.job)?)?;
+    if let Some(parts) = &whole.profile.lathe {
+        let roles = Roles::default()
+            .reads_all(&both!("the measurements", "измерения"), &arguments.measurements)
+            .reads_all(&both!("the hold-out", "контрольные измерения"), &arguments.holdout)
+            .reads_all(&both!("read by the profile", "файл, который читает профиль"), &whole.files);
+        roles.writes("--json", arguments.json.as_deref()).are_apart()?;
+        return super::lathe::run(arguments, &whole.profile, parts, shared, messages);
+    }
     let model = Model::load(&shared.job)?;
     let Some(measurements) = &arguments.measurements else {
         return plan::print(arguments.plan.unwrap_or(Form::Points), &model, shared, messages);

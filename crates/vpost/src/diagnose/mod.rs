@@ -1,6 +1,7 @@
 //! `vpost diagnose`: files in, the answer of `gap-diagnosis` out.
 
 mod command;
+mod lathe;
 mod plan;
 mod report;
 mod summary;

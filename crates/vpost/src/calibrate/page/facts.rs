@@ -29,7 +29,7 @@ pub(in super::super) struct Facts {
     files: Vec<Named>,
     base: Option<(String, Named)>,
     /// The profile that was written.
-    pub(super) written: Option<PathBuf>,
+    pub(in super::super) written: Option<PathBuf>,
     written_hash: Option<String>,
     instrument: Option<String>,
     date: Option<String>,
@@ -83,7 +83,7 @@ impl Facts {
     }
 
     /// Names of the files, without their folders.
-    pub(super) fn names(&self) -> String {
+    pub(in super::super) fn names(&self) -> String {
         let last = |f: &Named| f.name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
         let names: Vec<String> = self.files.iter().map(last).collect();
         names.join(", ")

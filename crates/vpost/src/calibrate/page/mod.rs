@@ -17,6 +17,8 @@ use diagnostic::{Language, Text, say};
 use report::page::{Page, Section};
 
 pub(super) use bars::Bars;
+pub(super) use facts::Facts;
+pub(super) use found::Found;
 pub(super) use runs::{Positions, Read};
 
 use super::output::Target;
@@ -24,9 +26,6 @@ use crate::arguments::Shared;
 use crate::message::Failure;
 use crate::roles::Roles;
 use crate::{file, language};
-
-use facts::Facts;
-use found::Found;
 
 /// Where what was found is shown.
 #[derive(Debug, Clone, Default, Args)]

@@ -1,0 +1,154 @@
+//! Forward for a lathe: what a program leaves of the workpiece.
+
+mod cuts;
+pub(crate) mod judged;
+mod page;
+mod surface;
+mod wear;
+
+use std::fmt::Write;
+
+use diagnostic::{Code, Diagnostic, both};
+use machine_profile::Profile;
+use rewrite::Manner;
+use turning::Lathe;
+
+use crate::arguments::{Predict, Shared};
+use crate::conditions::{conditions, failure};
+use crate::figures::fixed;
+use crate::message::{Failure, Messages};
+use crate::roles::Roles;
+use crate::settings::Settings;
+use crate::{expand, file};
+
+use cuts::{Cut, cuts};
+use page::{Correction, Facts};
+use surface::{HIGHEST_WAVE, Surface, Turned};
+
+/// Nothing is turned, or too much is asked.
+const NOTHING_TURNED: Code = Code(908);
+
+/// `vpost predict --lathe PROGRAM -m PROFILE`
+pub(crate) fn run(arguments: &Predict, shared: &Shared, messages: &Messages) -> Result<(), Failure> {
+    let settings = crate::settings::load(shared, messages)?;
+    Roles::default()
+        .reads(both!("the program", "программа"), &arguments.points)
+        .reads_all(&both!("read by the profile", "файл, который читает профиль"), &settings.files)
+        .writes("--html", arguments.html.as_deref())
+        .are_apart()?;
+    let lathe = settings.profile.lathe(&conditions(&shared.job)?).map_err(|error| failure(&error))?;
+    let lathe = lathe.ok_or_else(|| no_lathe(&settings.profile_name, &settings.profile))?;
+    if !(arguments.step > 0.0 && arguments.step.is_finite()) {
+        return Err(Failure::option(
+            both!("`--step {}` is no distance", "`--step {}` — не расстояние", arguments.step),
+            both!("write millimetres, like `--step 0.5`", "напишите миллиметры, например `--step 0.5`"),
+        ));
+    }
+    let name = file::name(&arguments.points);
+    let text = file::read_program(&arguments.points)?;
+    let cuts = read(&text, &name, &settings)?;
+    let mut surface = Surface::over(&cuts, &lathe, arguments).ok_or_else(|| {
+        let diagnostic = Diagnostic::error(
+            NOTHING_TURNED,
+            both!(
+                "the program turns nothing that could be predicted",
+                "программа ничего не точит, предсказывать нечего"
+            ),
+        )
+        .help(both!(
+            "feeds (G1, G2, G3) that move along Z are needed; with `--step` there may be up to 200000 places",
+            "нужны рабочие ходы (G1, G2, G3) вдоль Z; мест с шагом `--step` может быть до 200000"
+        ));
+        Failure::refused(&name, &text, vec![diagnostic])
+    })?;
+    cuts.iter().for_each(|cut| surface.cut(cut, &lathe));
+    let turned = surface.turned(&lathe, &settings, &cuts);
+    if let Some(path) = &arguments.html {
+        let correction = correction((&name, &text), (&surface, &lathe), &settings)?;
+        let facts = Facts { name: &name, text: &text, settings: &settings, at_mm: &arguments.section };
+        let html = page::html(&facts, (&surface, &turned), &correction, &lathe, messages.language())?;
+        file::write(path, html.as_bytes())?;
+    }
+    let out = match (arguments.wear, arguments.json) {
+        (true, _) => wear::list(&surface, &turned, &settings),
+        (false, true) => json(&turned),
+        (false, false) => csv(&turned),
+    };
+    file::print(out.as_bytes())
+}
+
+fn no_lathe(name: &str, profile: &Profile) -> Failure {
+    Failure::option(
+        both!(
+            "{name} is no lathe: its chain is {}",
+            "{name} — не токарный станок: его цепь — {}",
+            profile.chain()
+        ),
+        both!(
+            "leave `--lathe` out, or give the profile of a lathe",
+            "уберите `--lathe` или дайте профиль токарного станка"
+        ),
+    )
+}
+
+/// The feeds of a program, its flow executed.
+fn read(text: &[u8], name: &str, settings: &Settings) -> Result<Vec<Cut>, Failure> {
+    let expanded = expand::expanded(text, name, settings)?;
+    cuts(expanded.text(), settings)
+        .map_err(|diagnostics| Failure::Refused(expand::reports(&expanded, name, text, diagnostics)))
+}
+
+/// What the main job makes of the program, and what the lathe turns by that. A refusal is an answer.
+fn correction(
+    (name, text): (&str, &[u8]),
+    (surface, lathe): (&Surface, &Lathe),
+    settings: &Settings,
+) -> Result<Correction, Failure> {
+    let manner = Manner { force: false, threads: 1, hashes: false };
+    match jobs::correct::text(text, name, settings, manner, |_| Ok(())) {
+        Ok((_, program)) if !program.changed => Ok(Correction::Unchanged),
+        Ok((corrected, _)) => {
+            let cuts = read(&corrected, name, settings)?;
+            Ok(Correction::Turned(surface.corrected(&cuts, lathe).turned(lathe, settings, &cuts)))
+        }
+        Err(failure @ Failure::Refused(_)) => Ok(Correction::Refused(failure)),
+        Err(failure) => Err(failure),
+    }
+}
+
+fn json(turned: &Turned) -> String {
+    let mut text = serde_json::to_string_pretty(turned).expect("plain values always serialise");
+    text.push('\n');
+    text
+}
+
+fn csv(turned: &Turned) -> String {
+    let mut out = String::from(
+        "z_mm,radius_mm,diameter_mm,nominal_radius_mm,radius_error_um,roundness_um,roundness_zone_um,roughness_um,roughness_usual_um",
+    );
+    let mut line = |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("a string takes all");
+    for order in 2..=HIGHEST_WAVE {
+        line(format_args!(",wave_{order}_um"));
+    }
+    line(format_args!("\n"));
+    let or_nothing = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 6));
+    for place in &turned.places {
+        line(format_args!(
+            "{},{},{},{},{},{},{},{},{}",
+            fixed(place.z_mm, 6),
+            fixed(place.radius_mm, 9),
+            fixed(place.diameter_mm, 9),
+            fixed(place.nominal_radius_mm, 9),
+            fixed(place.radius_error_um, 6),
+            fixed(place.roundness_um, 6),
+            fixed(place.roundness_zone_um, 6),
+            or_nothing(place.roughness_um),
+            or_nothing(place.roughness_usual_um),
+        ));
+        for wave in &place.waves_um {
+            line(format_args!(",{}", fixed(*wave, 6)));
+        }
+        line(format_args!("\n"));
+    }
+    out
+}
