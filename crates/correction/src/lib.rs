@@ -25,19 +25,21 @@ mod hole;
 mod line;
 mod motion;
 mod options;
+mod orientation;
 mod play;
+mod pointing;
 mod remembered;
 mod short_line;
 #[cfg(test)]
 mod testing;
 mod turning;
 
-pub use corrected::{Corrected, Correction, Turned};
+pub use corrected::{Corrected, Correction, Directed, Turned};
 pub use corrector::Corrector;
 pub use curve::Curve;
 pub use error::CorrectionError;
 pub use grid::{Block, Goal, Stated};
-pub use options::{Options, Outside};
+pub use options::{Options, Orientation, Outside};
 pub use short_line::{Run, ShortLines, ShortRun};
 
 /// One block of output, in whole output steps.
@@ -83,6 +85,8 @@ pub enum PieceKind {
     },
     /// G4 with the cycle's P.
     Dwell,
+    /// What the block itself does, but for its rotary words.
+    AsStated,
 }
 
 /// How an arc's centre is given.

@@ -244,6 +244,10 @@ impl Profile {
             if !rule.is_empty() {
                 writeln!(out, "tilted plane {}", rule.join(", "))?;
             }
+            if let Some(circle) = kinematics.great_circle {
+                let how = if circle { "along a great circle" } else { "each rotary axis evenly" };
+                writeln!(out, "vectors      {how}")?;
+            }
         }
         Ok(())
     }

@@ -40,6 +40,7 @@ mod circular;
 pub mod codes;
 mod cycle;
 mod delete;
+mod direction;
 mod evidence;
 mod frames;
 mod interpreter;
@@ -58,8 +59,9 @@ mod transform;
 mod turning;
 mod words;
 
+pub use direction::DirectionWords;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
 pub use plain::{PlainEnd, PlainFeeds};
-pub use setup::{AfterChange, Setup, TipControl};
+pub use setup::{AfterChange, BetweenVectors, Setup, TipControl};
