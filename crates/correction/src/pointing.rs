@@ -168,7 +168,8 @@ mod tests {
         let at = |s: f64| Some(1e-5 * (0.5 - s).abs());
         let bound = |s0: f64, s1: f64| 8e-5 * (s1 - s0) * (s1 - s0);
         assert!(matches!(proven(at, bound, 2e-5), Leans::Within(rad) if rad <= 2e-5));
-        assert!(matches!(proven(|s| Some(s * (1.0 - s)), bound, 0.2), Leans::Beyond { s, .. } if s == 0.5));
+        let bends = |s0: f64, s1: f64| 0.25 * (s1 - s0) * (s1 - s0);
+        assert!(matches!(proven(|s| Some(s * (1.0 - s)), bends, 0.2), Leans::Beyond { s, .. } if s == 0.5));
         assert!(matches!(proven(|_| Some(f64::NAN), bound, 0.2), Leans::Beyond { .. }));
     }
 }
