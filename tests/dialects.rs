@@ -221,6 +221,9 @@ fn named(row: &Row) -> Option<&'static str> {
     {
         return Some("`the_tip_goes_where_the_program_says` in tests/five_axis.rs");
     }
+    if row.treatment == Treatment::Followed && row.code == "G43.5" {
+        return Some("`vectors_are_cut_as_the_angles_are` in tests/orientation.rs");
+    }
     if row.treatment == Treatment::Refused && !row.note.starts_with("with more than") {
         return Some(BY_ITS_ROW);
     }

@@ -50,6 +50,7 @@ mod large;
 mod map;
 mod on_a_terminal;
 mod one_block;
+mod orientation;
 mod points;
 mod profile_new;
 mod real_machines;

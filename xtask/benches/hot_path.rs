@@ -78,6 +78,7 @@ fn hot_path(c: &mut Criterion) {
         outside: Outside::Refuse,
         minimum_segment_mm: 0.0,
         orientation_rad: 5e-5,
+        orientation: correction::Orientation::Tip,
     };
     let info = Info { stated: Stated { axes: [true; 3], ..Stated::default() }, ..Info::default() };
     let at = |linear_mm: [f64; 3]| Position { linear_mm, rotary_deg: [0.0; 3] };

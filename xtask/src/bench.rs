@@ -206,6 +206,7 @@ fn budget_page(options: &Options) -> anyhow::Result<String> {
             outside: correction::Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
+            orientation: correction::Orientation::Tip,
         },
         decimals_mm: [3; 3],
         force: false,

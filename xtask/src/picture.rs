@@ -145,6 +145,7 @@ fn corrected(
             outside: Outside::Refuse,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
+            orientation: correction::Orientation::Tip,
         },
         decimals_mm: [3; 3],
         force: false,

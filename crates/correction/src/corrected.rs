@@ -41,6 +41,19 @@ pub struct Correction {
     pub unknown_side_mm: f64,
     /// Rotary axes turned on the way.
     pub turned: Option<Turned>,
+    /// Where the tool points, on a machine that turns it.
+    pub directed: Option<Directed>,
+}
+
+/// The tool's direction along a feed, against that of an ideal machine at the programmed place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Directed {
+    /// Largest angle without correction, at both ends and in the middle, rad.
+    pub before_rad: f64,
+    /// The same with it where the rotary words stay as they are; else a proven upper bound.
+    pub after_rad: f64,
+    /// Directions were to be corrected, and near a singularity, or at the end of an axis' travel, were not.
+    pub held: bool,
 }
 
 /// What a feed motion with rotary axes comes to, for those who know what F means.
@@ -54,8 +67,6 @@ pub struct Turned {
     pub rounding_mm: f64,
     /// Way of the rotary axes, degrees: the root of the sum of their squares.
     pub turned_deg: f64,
-    /// Largest angle between the tool's real and its ideal direction at both ends and in the middle, rad.
-    pub tilt_rad: f64,
 }
 
 /// One block, which stays as it is where its words do.

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use machine_model::{Command, Everywhere, LANES, Models, PathModel, Play, Vector};
 use toolpath::Kinematics;
 
+use crate::Piece;
 use crate::deviation::Machine;
 use crate::direction::heading;
 use crate::error::CorrectionError;
 use crate::grid::{Block, Goal};
 use crate::options::{Options, Outside};
+use crate::orientation::Directions;
 use crate::remembered::Remembered;
 
 /// Corrects motions in the order of the program.
@@ -38,6 +40,10 @@ pub struct Corrector<'m> {
     pub(crate) remembered: Option<Remembered>,
     /// What the model does anywhere, for the tool vector and the rotary axes in force.
     pub(crate) everywhere: Option<(Vector, [f64; 3], Option<Arc<Everywhere>>)>,
+    /// How the rotary axes stand against the program's; as they are programmed where directions are not corrected.
+    pub(crate) directions: Directions,
+    /// A turn that was put before the motion under way.
+    pub(crate) lead: Option<Piece>,
 }
 
 /// Which axes a block of output may have words for, and how.
@@ -92,6 +98,8 @@ impl<'m> Corrector<'m> {
             expanding: false,
             remembered: None,
             everywhere: None,
+            directions: Directions::default(),
+            lead: None,
         }
     }
 
@@ -267,15 +275,18 @@ impl<'m> Corrector<'m> {
             expanding,
             remembered,
             kinematics,
+            directions,
             model: _,
             models: _,
             options: _,
             approached: _,
             known: _,
             everywhere: _,
+            lead: _,
         } = self;
         *standing == other.standing
             && *kinematics == other.kinematics
+            && *directions == other.directions
             && *direction == other.direction
             && *play == other.play
             && *last == other.last

@@ -152,6 +152,14 @@ impl Curve {
         }
     }
 
+    /// How far the rotary axes turn, all together, rad.
+    pub(crate) fn turned_rad(&self) -> f64 {
+        match self {
+            Self::Turn { rotary_rad: [from, to], .. } => (to - from).abs().sum(),
+            Self::Line(..) | Self::Arc { .. } => 0.0,
+        }
+    }
+
     /// Length of the linear axes' way, mm.
     pub(crate) fn linear_mm(&self) -> f64 {
         match self {

@@ -65,6 +65,19 @@ pub enum CorrectionError {
         /// What was asked for, µrad.
         allowed_urad: f64,
     },
+    /// The tool cannot be pointed where it shall finely enough.
+    #[error(
+        "the tool would point {leans_urad:.1} urad away from its direction; {allowed_urad:.1} urad are allowed"
+    )]
+    Leans {
+        /// By how much, µrad.
+        leans_urad: f64,
+        /// What was asked for, µrad.
+        allowed_urad: f64,
+    },
+    /// In a tilted plane the control knows the rotary angles by itself.
+    #[error("the tool's direction cannot be corrected in a tilted plane")]
+    DirectionInPlane,
     /// Splitting does not help: a jump of the model, or the shortest piece allowed.
     #[error(
         "the path would be {distance_um:.2} um off however short its pieces; the tolerance is {tolerance_um} um"
@@ -116,6 +129,12 @@ impl Speaks for CorrectionError {
             Self::Direction { slip_urad, allowed_urad } => format!(
                 "для деления нужны слова поворотных осей, которые отвернут инструмент от направления на {slip_urad:.1} мкрад; допускается {allowed_urad:.1} мкрад"
             ),
+            Self::Leans { leans_urad, allowed_urad } => format!(
+                "инструмент отклонился бы от направления на {leans_urad:.1} мкрад; допускается {allowed_urad:.1} мкрад"
+            ),
+            Self::DirectionInPlane => {
+                "в наклонной плоскости направление инструмента не исправить".to_owned()
+            }
             Self::NotWithinTolerance { distance_um, tolerance_um } => format!(
                 "путь отошёл бы на {distance_um:.2} мкм при сколь угодно мелком делении; допуск {tolerance_um} мкм"
             ),

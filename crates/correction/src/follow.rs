@@ -1,6 +1,6 @@
 //! What following a motion needs besides the corrector.
 
-use machine_model::Vector;
+use machine_model::{Singularity, Vector};
 use toolpath::{Division, Feed};
 
 use crate::corrected::Corrected;
@@ -38,11 +38,40 @@ pub(crate) struct Turning {
     pub(crate) end_deg: [f64; 3],
     /// Of each axis that a piece has turned, in steps of [`Block::rotary_decimals`] from where its words count from.
     pub(crate) written: [Option<i64>; 3],
+    /// Where directions are corrected: how the axes stand.
+    pub(crate) directed: Option<Standing>,
 }
 
 impl Turning {
     pub(crate) fn of(feed: &Feed) -> Self {
-        Self { start_deg: feed.start.rotary_deg, end_deg: feed.end.rotary_deg, written: [None; 3] }
+        let (start_deg, end_deg) = (feed.start.rotary_deg, feed.end.rotary_deg);
+        Self { start_deg, end_deg, written: [None; 3], directed: None }
+    }
+}
+
+/// How the rotary axes stand while a motion is written whose directions are corrected.
+#[derive(Clone, Copy)]
+pub(crate) struct Standing {
+    /// A, B, C in the output, degrees.
+    pub(crate) output_deg: [f64; 3],
+    /// The tool points there where it shall.
+    pub(crate) reached: bool,
+    pub(crate) limits: Singularity,
+}
+
+impl Turning {
+    /// Whether the tool points where it shall, where directions are corrected.
+    pub(crate) fn reached(&mut self, reached: bool) {
+        if let Some(standing) = &mut self.directed {
+            standing.reached = reached;
+        }
+    }
+}
+
+impl Standing {
+    /// The same, rad.
+    pub(crate) fn rotary_rad(&self) -> Vector {
+        self.output_deg.map(f64::to_radians).into()
     }
 }
 
@@ -67,6 +96,8 @@ pub(crate) struct Follow<'a, 'm> {
     pub(crate) turning: Option<Turning>,
     /// Way of the linear axes that was written so far, mm: of turns only.
     pub(crate) commanded_mm: f64,
+    /// By how much the last line that was tried turned the tool too far from its direction, rad.
+    pub(crate) leans_rad: Option<f64>,
     pub(crate) corrected: &'a mut Corrected,
 }
 

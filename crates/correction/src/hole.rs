@@ -501,6 +501,7 @@ fn follow<'a, 'm>(
         solved: None,
         enclosed: None,
         foreseen: false,
+        leans_rad: None,
         turning: None,
         commanded_mm: 0.0,
         corrected,

@@ -25,7 +25,9 @@ mod hole;
 mod line;
 mod motion;
 mod options;
+mod orientation;
 mod play;
+mod pointing;
 mod remembered;
 mod rotary_play;
 mod short_line;
@@ -33,12 +35,12 @@ mod short_line;
 mod testing;
 mod turning;
 
-pub use corrected::{Corrected, Correction, Turned};
+pub use corrected::{Corrected, Correction, Directed, Turned};
 pub use corrector::Corrector;
 pub use curve::Curve;
 pub use error::CorrectionError;
 pub use grid::{Block, Goal, Stated};
-pub use options::{Options, Outside};
+pub use options::{Options, Orientation, Outside};
 pub use short_line::{Run, ShortLines, ShortRun};
 
 /// One block of output, in whole output steps.
@@ -84,6 +86,8 @@ pub enum PieceKind {
     },
     /// G4 with the cycle's P.
     Dwell,
+    /// What the block itself does, but for its rotary words.
+    AsStated,
 }
 
 /// How an arc's centre is given.

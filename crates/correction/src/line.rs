@@ -2,6 +2,7 @@
 
 use machine_model::{Command, Vector};
 
+use crate::corrected::Directed;
 use crate::corrector::Corrector;
 use crate::curve::Curve;
 use crate::deviation::{Pair, Verdict};
@@ -9,6 +10,7 @@ use crate::error::CorrectionError;
 use crate::follow::Follow;
 use crate::grid::{Block, Goal};
 use crate::play::{Creep, Tried};
+use crate::pointing::Pointing;
 use crate::{Centre, Piece, PieceKind};
 
 /// A piece shorter than this many output steps cannot be split further to any use.
@@ -30,6 +32,10 @@ impl<'m> Corrector<'m> {
         let length = part.length_mm();
         // No split helps an axis that must stay where it is.
         self.require_named(follow, part, self.limit_mm(follow.block))?;
+        if let Some(rad) = follow.leans_rad.filter(|_| !follow.may_split || length < SHORTEST_STEPS * step) {
+            let allowed_urad = self.options.orientation_rad * 1e6;
+            return Err(CorrectionError::Leans { leans_urad: rad * 1e6, allowed_urad });
+        }
         if !follow.may_split {
             self.require_named(follow, part, 0.5 * step)?;
             return Err(self.not_to_be_split(follow, distance_mm));
@@ -62,7 +68,11 @@ impl<'m> Corrector<'m> {
         part: &Curve,
         creep: Creep,
     ) -> Result<Tried, CorrectionError> {
-        let rotary = follow.rotary_words(part);
+        let directed = follow.turning.and_then(|turning| turning.directed);
+        let mut rotary = match &directed {
+            Some(standing) => self.directed_words(follow, part, standing)?,
+            None => follow.rotary_words(part),
+        };
         let mut at_end = follow.machine.clone();
         if let Some(rotary) = &rotary {
             at_end.state.rotary_rad = rotary.end_rad;
@@ -102,19 +112,34 @@ impl<'m> Corrector<'m> {
             in_step: follow.whole.in_step,
             begun: self.begun(follow, part),
         };
-        if let Some(turn) = pair.turn(&machine, 0.0, 1.0) {
+        if let (Some(turn), None) = (pair.turn(&machine, 0.0, 1.0), &directed) {
             self.require_direction(&turn)?;
         }
         let solved =
             if follow.foreseen { self.solved_line(&follow.machine.state, part, wanted) } else { None };
         let limit_mm = self.limit_mm(follow.block);
         let verdict = pair.line_verdict_by(&machine, solved.as_ref(), limit_mm);
+        follow.leans_rad = None;
         let verdict = self.verdict_with_play(&machine, &pair, verdict, limit_mm);
         let corners_mm = swing
             .as_ref()
             .map_or(0.0, |swing| self.beside_corners_mm(follow, part, swing, at_end.state.rotary_rad));
         match verdict.further_by(corners_mm, limit_mm) {
             Verdict::Within(bound) => {
+                if let (Some(standing), Some(rotary)) = (&directed, &mut rotary) {
+                    let may_lean = !(standing.reached && rotary.reached);
+                    match self.piece_leans(&pair, &machine, may_lean)? {
+                        Pointing::Holds(found) => {
+                            follow.note_direction(&found);
+                            rotary.turning.reached(!found.held);
+                        }
+                        Pointing::Leans { s, rad } => {
+                            self.standing = before;
+                            follow.leans_rad = Some(rad);
+                            return Ok(Tried::Beyond { distance_mm: bound, s });
+                        }
+                    }
+                }
                 let words = rotary.as_ref().map(|rotary| rotary.words);
                 follow.finish(
                     Piece { kind: PieceKind::Line, axes, rotary: words, share: follow.share(part) },
@@ -151,6 +176,13 @@ impl Corrector<'_> {
 }
 
 impl Follow<'_, '_> {
+    /// Takes note of where the tool points on a piece.
+    fn note_direction(&mut self, found: &Directed) {
+        let known = self.corrected.correction.directed.get_or_insert_default();
+        known.after_rad = known.after_rad.max(found.after_rad);
+        known.held |= found.held;
+    }
+
     /// Adds a piece that was proven, unless it is the block as it stands or moves nothing.
     pub(crate) fn finish(&mut self, piece: Piece, bound_mm: f64, correction_mm: f64) {
         let figures = &mut self.corrected.correction;

@@ -4,12 +4,13 @@ use machine_model::{Command, LANES, Vector};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, Kinematics, Motion, Partial, Shape};
 
-use crate::corrected::{Corrected, Correction, one};
+use crate::corrected::{Corrected, Correction, Directed, one};
 use crate::corrector::{Corrector, Freedom, MOST_TURNS};
 use crate::curve::Curve;
 use crate::error::CorrectionError;
 use crate::follow::{Follow, Turning, Whole};
 use crate::grid::{Block, Goal};
+use crate::options::Orientation;
 use crate::short_line::Run;
 use crate::{Piece, PieceKind};
 
@@ -40,10 +41,39 @@ impl Corrector<'_> {
                 self.swung_to(&hole.at_r.into());
                 self.heed(block, hole.at_r.rotary_deg);
             }
-            Motion::Uncorrected { end } => self.swung_to(end),
+            Motion::Uncorrected { end, .. } => self.swung_to(end),
         }
         self.approached = None;
+        self.lead = None;
+        match self.options.orientation {
+            Orientation::Full(limits) => self.correct_directed(motion, block, &limits),
+            Orientation::Tip => {
+                let mut corrected = self.correct_plain(motion, block)?;
+                if let Motion::Feed(feed) = motion
+                    && self.turns_the_tool()
+                {
+                    let leans_rad = self.leans_rad(feed, block);
+                    corrected.correction.directed =
+                        Some(Directed { before_rad: leans_rad, after_rad: leans_rad, held: false });
+                }
+                Ok(corrected)
+            }
+        }
+    }
+
+    /// Corrects a motion whose rotary words stay as they are, but for those of [`Corrector::directed_words`].
+    pub(crate) fn correct_plain(
+        &mut self,
+        motion: &Motion,
+        block: &Block,
+    ) -> Result<Corrected, CorrectionError> {
         self.correct_in_state(motion, block).map_err(|error| self.as_turned(error, block))
+    }
+
+    /// True where a direction of the tool is to be reported: of a machine whose rotary axes have errors or carry the tool.
+    fn turns_the_tool(&self) -> bool {
+        let plain = self.everywhere.as_ref().is_some_and(|known| known.2.is_some());
+        !plain && self.model.rotary_axes() != [false; 3]
     }
 
     /// From here on X, Y and Z are something else. Where they still say the same, the motions tell.
@@ -80,7 +110,7 @@ impl Corrector<'_> {
                 corrected.correction.unknown_side_mm = self.unknown_side_mm(block, &hole.at_r);
                 Ok(corrected)
             }
-            Motion::Uncorrected { end } => {
+            Motion::Uncorrected { end, .. } => {
                 for axis in 0..3 {
                     // An axis that the block does not name stays where the output has brought it.
                     if end.linear_mm[axis].is_none()
@@ -169,6 +199,7 @@ impl Corrector<'_> {
 
     fn feed(&mut self, feed: &Feed, block: &Block) -> Result<Corrected, CorrectionError> {
         if matches!(feed.shape, Shape::Line)
+            && self.lead.is_none()
             && feed.start.rotary_deg == feed.end.rotary_deg
             && let Some(lines) = self.short_lines(block, feed.end.rotary_deg)
             && let names = block.stated.axes
@@ -193,7 +224,10 @@ impl Corrector<'_> {
         } else {
             Curve::new(feed.start.linear_mm.into(), feed.end.linear_mm.into(), &feed.shape)
         };
-        let mut corrected = Corrected { pieces: SmallVec::new(), correction: Correction::default() };
+        let lead = self.lead.take();
+        let mut corrected =
+            Corrected { pieces: lead.into_iter().collect(), correction: Correction::default() };
+        corrected.correction.approach = !corrected.pieces.is_empty();
         let motion = Whole {
             start: whole.at(0.0),
             rotary_rad: whole.rotary_rad(0.0),
@@ -215,6 +249,9 @@ impl Corrector<'_> {
             if turning {
                 // Until the first piece is written it stands where the motion begins.
                 machine.state = self.state(block, feed.start.rotary_deg);
+                if let Some(standing) = self.standing_at(feed) {
+                    machine.state.rotary_rad = standing.rotary_rad();
+                }
                 (machine.everywhere, machine.turns) = (None, true);
             }
             self.approach(&mut machine, &part, block, &motion, &mut corrected)?;
@@ -228,8 +265,9 @@ impl Corrector<'_> {
                 solved: None,
                 enclosed: None,
                 foreseen: false,
-                turning: turning.then(|| Turning::of(feed)),
+                turning: turning.then(|| Turning { directed: self.standing_at(feed), ..Turning::of(feed) }),
                 commanded_mm: 0.0,
+                leans_rad: None,
                 corrected: &mut corrected,
             };
             match feed.shape {
@@ -245,6 +283,9 @@ impl Corrector<'_> {
             }
             own_words &= follow.alone;
             commanded_mm += follow.commanded_mm;
+            if let Some(standing) = follow.turning.and_then(|turning| turning.directed) {
+                self.stand_at(&standing, feed.end.rotary_deg);
+            }
             let state = follow.machine.state;
             self.settle(&state, block);
         }

@@ -1,5 +1,7 @@
 //! What the user may choose of a correction.
 
+use machine_model::Singularity;
+
 /// What happens to feed motion outside the calibrated volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
@@ -18,6 +20,19 @@ pub struct Options {
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.
     pub minimum_segment_mm: f64,
-    /// Largest angle by which the rotary words of a split motion may turn the tool away from its programmed direction, rad.
+    /// Largest angle between the tool's direction and the programmed one, rad: what the rotary words of a split motion may turn
+    /// it by, and under [`Orientation::Full`] what is left of it in all.
     pub orientation_rad: f64,
+    /// What of the tool is brought to where the program says.
+    pub orientation: Orientation,
+}
+
+/// What of the tool is brought to where the program says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Orientation {
+    /// Its tip (`--orientation xyz`): rotary words stay as they are.
+    #[default]
+    Tip,
+    /// Its tip and its direction (`--orientation full`), but near a singularity.
+    Full(Singularity),
 }

@@ -1,8 +1,8 @@
 //! Rotary axes that turn while the tool feeds: their words where a motion is split, and what the motion comes to.
 //!
 //! The path of such a motion is what an ideal machine of the chain makes of it ([`crate::Curve::Turn`]); all else is as for a
-//! line. Rotary words are never corrected. Where a motion is split they are rounded, and the linear axes are told what
-//! brings the tip to its place with the angles as they are written.
+//! line. Rotary words are corrected under [`crate::Orientation::Full`] alone ([`crate::orientation`]). Where a motion is split
+//! they are rounded, and the linear axes are told what brings the tip to its place with the angles as they are written.
 
 use machine_model::{Command, Move, Turn, Vector};
 use toolpath::Feed;
@@ -22,11 +22,13 @@ pub(crate) struct RotaryWords {
     pub(crate) words: [Goal; 3],
     pub(crate) end_rad: Vector,
     pub(crate) turning: Turning,
+    /// With them the tool points where it shall, but for rounding, or nobody asked for that.
+    pub(crate) reached: bool,
 }
 
 impl Block {
     /// Steps of [`Block::rotary_decimals`] in a degree.
-    fn per_degree(&self, axis: usize) -> f64 {
+    pub(crate) fn per_degree(&self, axis: usize) -> f64 {
         f64::from(10u32.pow(u32::from(self.rotary_decimals[axis].min(9))))
     }
 
@@ -36,7 +38,7 @@ impl Block {
     }
 
     /// True under G91.
-    fn rotary_increments(&self) -> bool {
+    pub(crate) fn rotary_increments(&self) -> bool {
         self.incremental == [true; 3]
     }
 
@@ -81,7 +83,7 @@ impl Follow<'_, '_> {
             turning.written[axis] = Some(counts);
             end_rad[axis] = (origin + counts as f64 / per_degree).to_radians();
         }
-        Some(RotaryWords { words, end_rad, turning })
+        Some(RotaryWords { words, end_rad, turning, reached: true })
     }
 }
 
@@ -109,18 +111,12 @@ impl Corrector<'_> {
         commanded_mm: f64,
         pieces: usize,
     ) -> Turned {
-        let state = self.state(block, feed.end.rotary_deg);
-        let tilt = |s: f64| {
-            let rotary_rad = whole.rotary_rad(s).unwrap_or(state.rotary_rad);
-            self.model.tilt_rad(&Command { linear_mm: whole.at(s), rotary_rad, ..state })
-        };
         let turned_deg = [0, 1, 2].map(|axis| feed.end.rotary_deg[axis] - feed.start.rotary_deg[axis]);
         Turned {
             programmed_mm: whole.linear_mm(),
             commanded_mm,
             rounding_mm: 2.0 * block.rounding_mm() * pieces.max(1) as f64,
             turned_deg: Vector::from(turned_deg).norm(),
-            tilt_rad: [0.0, 0.5, 1.0].map(tilt).into_iter().fold(0.0, f64::max),
         }
     }
 

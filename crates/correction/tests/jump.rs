@@ -43,6 +43,7 @@ fn correct(start: Vector, end: Vector) -> Result<usize, CorrectionError> {
         outside: Outside::Refuse,
         minimum_segment_mm: 0.0,
         orientation_rad: 5e-5,
+        orientation: correction::Orientation::Tip,
     };
     let mut corrector = Corrector::new(engine.path_model().expect("it is a path model"), options);
     corrector.correct(&Motion::Rapid { start: Partial::default(), end: position(start).into() }, &block)?;

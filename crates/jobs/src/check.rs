@@ -3,7 +3,7 @@
 use diagnostic::{Text, both};
 use machine_model::Models;
 use nc_expand::Expanded;
-use path_comparison::{Comparison, Course, Traces};
+use path_comparison::{Comparison, Course, Lean, Traces};
 use rewrite::Checked;
 use serde::Serialize;
 
@@ -37,6 +37,18 @@ pub struct Outcome {
     pub deviation_after_um: f64,
     /// Where.
     pub deviation_after_line: u64,
+    /// How far the tool leans at most, on a machine that turns it, by the program as posted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_before_urad: Option<f64>,
+    /// Where.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_before_line: Option<u64>,
+    /// The same by the corrected program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_after_urad: Option<f64>,
+    /// Where.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_after_line: Option<u64>,
     /// What is wrong.
     #[serde(serialize_with = "in_english")]
     pub findings: Vec<Text>,
@@ -46,7 +58,14 @@ impl Outcome {
     /// What a comparison says.
     #[must_use]
     pub fn new(settings: &Settings, comparison: &Comparison, findings: Vec<Text>) -> Self {
+        let [before, after] = [comparison.leans_before, comparison.leans_after];
+        let leans = before.largest_rad > 0.0 || after.largest_rad > 0.0;
+        let urad = |lean: Lean| leans.then(|| (lean.largest_rad * 1e9).round() / 1e3);
         Self {
+            tilt_before_urad: urad(before),
+            tilt_before_line: leans.then_some(before.line),
+            tilt_after_urad: urad(after),
+            tilt_after_line: leans.then_some(after.line),
             schema: "vpost.check/1",
             passed: findings.is_empty(),
             tolerance_um: um(settings.options.tolerance_mm),
@@ -82,6 +101,14 @@ impl Outcome {
             self.deviation_after_line,
             self.limit_um,
         );
+        if let (Some(before), Some(after)) = (self.tilt_before_urad, self.tilt_after_urad) {
+            text.push(&both!(
+                "the tool leans by up to {before:.1} urad before (line {}), {after:.1} urad after (line {})\n",
+                "инструмент наклонён не больше чем на {before:.1} мкрад до (строка {}), на {after:.1} мкрад после (строка {})\n",
+                self.tilt_before_line.unwrap_or_default(),
+                self.tilt_after_line.unwrap_or_default(),
+            ));
+        }
         for finding in &self.findings {
             text.push(&both!("- {finding}\n", "- {finding:#}\n"));
         }

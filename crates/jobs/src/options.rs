@@ -128,6 +128,19 @@ pub struct JobOptions {
         allow_hyphen_values = true
     )]
     pub at: Vec<Given<Conditions>>,
+    /// What is corrected on five axes: xyz or full.
+    ///
+    /// The tip alone, its rotary words as they are (xyz), or the tool's direction too (full); default: the profile's, else xyz.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "AXES",
+        global = true,
+        hide_possible_values = true,
+        help_heading = "Program"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<Orientation>,
     /// Beyond the volume: refuse, or clamp to its edge.
     ///
     /// Feed motion outside the calibrated volume: refuse it, or take the nearest point's correction.
@@ -185,6 +198,16 @@ pub enum Decimal {
     Increments,
     /// The unit in force.
     Millimetres,
+}
+
+/// What is corrected on five axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Orientation {
+    /// The tip alone.
+    Xyz,
+    /// The tool's direction too.
+    Full,
 }
 
 /// A number of an option: neither `inf` nor `NaN`, which would pass every check of a range from one side.

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use correction::{Options, Outside};
+use correction::{Options, Orientation, Outside};
 use diagnostic::both;
-use machine_model::{Engine, EngineId, Models, PathModel, TipControl};
+use machine_model::{Command, Engine, EngineId, Models, PathModel, TipControl, Vector};
 use machine_profile::{BareLengths, Profile, TurningRules};
-use nc_program::{AfterChange, Questions, Setup};
+use nc_program::{AfterChange, BetweenVectors, Questions, Setup};
 use nc_syntax::Dialect;
 use nc_syntax::dialect::{DrillPecks, FlankFrom, MCode, Macros, PointFree, TipSwitch, TurningParameters};
 use rewrite::{Guards, Job};
@@ -98,6 +98,11 @@ impl Settings {
                 ),
             ));
         }
+        let orientation = orientation(&profile, options, engine.as_ref())?;
+        if orientation != Orientation::Tip {
+            // Linear axes turn the tool too.
+            setup.rotary_matters |= profile.has_errors();
+        }
         let warning = conditions::temperature(&profile, options, tolerance_um)?;
         let doubts = conditions::doubts(&profile, engine_id);
         let outside = match (options.outside, profile.correction.outside) {
@@ -109,6 +114,7 @@ impl Settings {
             outside,
             minimum_segment_mm: profile.correction.minimum_segment_mm,
             orientation_rad: profile.correction.orientation_urad * 1e-6,
+            orientation,
         };
         let guards = guards(options, &dialect)?;
         let profile_name = lines::name(path);
@@ -385,6 +391,57 @@ fn declare_harmless(profile: &Profile, dialect: &mut Dialect) -> Result<(), Fail
     Ok(())
 }
 
+/// Whether directions are corrected.
+///
+/// # Errors
+/// The machine has not two rotary axes, or nothing is proven of its directions: another engine, effects, lost motion.
+fn orientation(profile: &Profile, options: &JobOptions, engine: &dyn Engine) -> Result<Orientation, Failure> {
+    let full = match options.orientation {
+        Some(options::Orientation::Full) => true,
+        Some(options::Orientation::Xyz) => false,
+        None => profile.correction.directions,
+    };
+    if !full {
+        return Ok(Orientation::Tip);
+    }
+    let help = || {
+        both!("correct the tip alone: `--orientation xyz`", "исправляйте только вершину: `--orientation xyz`")
+    };
+    if profile.has_rotary().iter().filter(|has| **has).count() != 2 {
+        return Err(Failure::option(
+            both!(
+                "directions cannot be corrected on a machine with other than two rotary axes: {}",
+                "направления нельзя исправлять на станке, у которого не две поворотные оси: {}",
+                profile.chain()
+            ),
+            help(),
+        ));
+    }
+    let proven = engine.path_model().is_some_and(|model| {
+        let at = Command {
+            linear_mm: Vector::zeros(),
+            rotary_rad: Vector::zeros(),
+            tool_mm: Vector::zeros(),
+            direction: [0; 3],
+            rotary_play: Default::default(),
+        };
+        model.tool_directions(&at, &at.rotary_rad).is_some()
+            && model.follows_turns()
+            && !model.depends_on_direction()
+            && !model.has_rotary_play()
+    });
+    if !proven {
+        return Err(Failure::option(
+            both!(
+                "directions are corrected by engine `rigid-body` alone, without [[effect]] entries and lost motion of axes",
+                "направления исправляет только метод `rigid-body`, без разделов [[effect]] и без люфта осей"
+            ),
+            help(),
+        ));
+    }
+    Ok(Orientation::Full(profile.correction.singularity))
+}
+
 /// Puts the M codes by which the machine switches tool centre point control into the dialect.
 fn declare_switches(profile: &Profile, dialect: &mut Dialect) {
     let Some(kinematics) = &profile.kinematics else { return };
@@ -496,6 +553,11 @@ fn setup(options: &JobOptions, profile: &Profile, stored: &Stored) -> Result<Set
         tip_control: nc_program::TipControl::default(),
         rotary_chain: profile.rotary_chain(),
         tilt_rule: profile.kinematics.as_ref().map(|kinematics| kinematics.tilt_rule).unwrap_or_default(),
+        vectors: profile
+            .kinematics
+            .as_ref()
+            .and_then(|kinematics| kinematics.great_circle)
+            .map(|circle| if circle { BetweenVectors::GreatCircle } else { BetweenVectors::Axes }),
         tip_at_start: profile.kinematics.as_ref().is_some_and(|kinematics| kinematics.at_start),
         diameters: profile.program.diameters,
         lengths_settled: false,

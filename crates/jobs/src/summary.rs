@@ -34,6 +34,14 @@ pub struct Summary<'a> {
     tilt_urad: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tilt_line: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    orientation: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tilt_before_urad: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tilt_before_line: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    directions_held: Option<DirectionsHeld>,
     warnings: Vec<Warning>,
 }
 
@@ -49,6 +57,16 @@ struct Profile<'a> {
     name: &'a str,
     machine: &'a str,
     blake3: String,
+}
+
+/// Motions whose directions were to be corrected and could not.
+#[derive(Debug, Serialize)]
+struct DirectionsHeld {
+    motions: u64,
+    largest_urad: f64,
+    largest_line: u64,
+    /// First and last of lines that follow each other.
+    lines: Vec<[u64; 2]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -78,7 +96,21 @@ pub fn json(values: &impl Serialize) -> Vec<u8> {
     text
 }
 
-/// What is left of the tool's direction where rotary axes turned.
+/// Microradians with three decimals.
+fn urad(rad: f64) -> f64 {
+    (rad * 1e9).round() / 1e3
+}
+
+fn corrects_directions(settings: &Settings) -> bool {
+    settings.options.orientation != correction::Orientation::Tip
+}
+
+/// How far the tool leans uncorrected.
+fn before(figures: &Figures) -> Option<(f64, u64)> {
+    Some(figures.tilt_before).filter(|(rad, _)| *rad > 0.0)
+}
+
+/// How far it leans in what was written.
 fn tilt(figures: &Figures) -> Option<(f64, u64)> {
     Some(figures.tilt).filter(|(rad, _)| *rad > 0.0)
 }
@@ -113,8 +145,21 @@ impl<'a> Summary<'a> {
             deviation_before_line: figures.before.1,
             deviation_after_um: um(figures.after.0),
             deviation_after_line: figures.after.1,
-            tilt_urad: tilt(figures).map(|(rad, _)| (rad * 1e9).round() / 1e3),
+            tilt_urad: tilt(figures).map(|(rad, _)| urad(rad)),
             tilt_line: tilt(figures).map(|(_, line)| line),
+            orientation: settings
+                .profile
+                .has_rotary()
+                .contains(&true)
+                .then(|| if corrects_directions(settings) { "full" } else { "xyz" }),
+            tilt_before_urad: before(figures).map(|(rad, _)| urad(rad)),
+            tilt_before_line: before(figures).map(|(_, line)| line),
+            directions_held: (figures.held.motions > 0).then(|| DirectionsHeld {
+                motions: figures.held.motions,
+                largest_urad: urad(figures.held.largest.0),
+                largest_line: figures.held.largest.1,
+                lines: figures.held.lines.clone(),
+            }),
             warnings: figures
                 .warnings
                 .iter()
@@ -136,12 +181,23 @@ impl<'a> Summary<'a> {
     /// The same in one line for people.
     #[must_use]
     pub fn line(figures: &Figures) -> Text {
+        let (before_rad, before_line) = figures.tilt_before;
         let tilt = tilt(figures).map_or(Text::EMPTY, |(rad, line)| {
-            both!(
-                "; tool leans by {:.1} urad (line {line})",
-                "; инструмент наклонён на {:.1} мкрад (строка {line})",
-                rad * 1e6
-            )
+            // Where directions are corrected what is left is a bound, and another number.
+            if rad == before_rad {
+                both!(
+                    "; tool leans by {:.1} urad (line {line})",
+                    "; инструмент наклонён на {:.1} мкрад (строка {line})",
+                    rad * 1e6
+                )
+            } else {
+                both!(
+                    "; tool leans by {:.1} urad before (line {before_line}), at most {:.1} urad after (line {line})",
+                    "; инструмент наклонён на {:.1} мкрад до (строка {before_line}), не больше чем на {:.1} мкрад после (строка {line})",
+                    before_rad * 1e6,
+                    rad * 1e6
+                )
+            }
         });
         both!(
             "{} blocks in, {} out, {} split; largest correction {:.1} um (line {}); path off by at most {:.1} um before, {:.2} um after{tilt}",

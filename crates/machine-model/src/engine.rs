@@ -321,6 +321,30 @@ pub trait PathModel: Engine {
         0.0
     }
 
+    /// The tool's direction as the workpiece sees it, unit vectors: that of an ideal machine with the programmed angles, and the
+    /// real one for the command. `None` where the model knows of none.
+    ///
+    /// * `programmed_rad` – A, B, C of the ideal machine
+    fn tool_directions(&self, _command: &Command, _programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        None
+    }
+
+    /// Upper bound, rad, of how far the difference of the two [`PathModel::tool_directions`] leaves the chord of its ends on a
+    /// stretch, seen from the directions of the ideal machine's linear axes. Equation (120).
+    fn direction_bound_rad(&self, _stretch: &Move) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Which of A, B, C the machine has.
+    fn rotary_axes(&self) -> [bool; 3] {
+        [false; 3]
+    }
+
+    /// True where every rotary axis stands inside its travel and its tables.
+    fn may_turn_to(&self, _command: &Command) -> bool {
+        true
+    }
+
     /// `∂e_c/∂q_a` of [`PathModel::error_mm`] in row c and column a, mm per mm, where the model is one of places and not of
     /// axes.
     fn jacobian(&self, _command: &Command) -> Option<Matrix3<f64>> {

@@ -3,6 +3,7 @@
 //! Millimetres and radians throughout; `docs/equations.md` numbers the equations and names sources.
 //! No text, no files, no clock.
 
+mod aside;
 mod axis_tables;
 mod chain;
 mod chord_bound;
@@ -18,6 +19,7 @@ mod lanes;
 mod length;
 mod link;
 mod newton;
+mod orientation;
 mod play;
 mod real;
 mod rigid_body;
@@ -31,6 +33,7 @@ mod traverse;
 mod turning_bound;
 mod with_effects;
 
+pub use aside::Aside;
 pub use axis_tables::{AxisTables, Six, SixBounds};
 pub use chain::{Axis, Chain, ChainError};
 pub use command::{Command, Matrix, Move, Range, RotaryPlay, Turn, Vector, Volume};
@@ -38,6 +41,7 @@ pub use description::{Description, LinearAxis, RotaryAxis, Squareness, Tilt};
 pub use engine::{Engine, EngineId, LANES, Models, PathModel, Solution, SolveError};
 pub use everywhere::Everywhere;
 pub use first_order::first_order_error_mm;
+pub use orientation::{Aim, Held, Singularity, aim, singular_sin};
 pub use play::{Play, SAME_PLACE_MM, SAME_PLACE_RAD, turned_by_mm};
 pub use rigid_body::{Prediction, RigidBody, Unusable};
 pub use solve::{TOLERANCE_MM, solve};

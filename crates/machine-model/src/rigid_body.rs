@@ -357,13 +357,9 @@ impl RigidBody {
     /// Linear axes turn what they carry by their angles, in the order of the chain; squareness does not turn it.
     #[must_use]
     pub fn directions(&self, command: &Command) -> [Vector; 2] {
-        let turned_by_head = |machine| {
-            self.description.chain.head().iter().rev().fold(Vector::z(), |tool, axis| {
-                self.swivels[axis.direction()].moved(command, machine).0 * tool
-            })
-        };
         let q = self.volume.nearest(&command.linear_mm);
-        let linear = self.links.iter().rev().fold(turned_by_head(Machine::Real), |tool, link| {
+        let carried = self.head_direction(command, Machine::Real);
+        let linear = self.links.iter().rev().fold(carried, |tool, link| {
             match link.tables(command.direction[link.axis]) {
                 Some(tables) => {
                     let [.., a, b, c] = tables.at(q[link.axis]);
@@ -372,8 +368,22 @@ impl RigidBody {
                 None => tool,
             }
         });
-        let table = |machine| self.table_transform(command, machine).0;
-        [table(Machine::Ideal) * turned_by_head(Machine::Ideal), table(Machine::Real) * linear]
+        [self.ideal_direction(command), self.table_transform(command, Machine::Real).0 * linear]
+    }
+
+    /// The first of [`RigidBody::directions`].
+    pub(crate) fn ideal_direction(&self, command: &Command) -> Vector {
+        self.table_transform(command, Machine::Ideal).0 * self.head_direction(command, Machine::Ideal)
+    }
+
+    /// Z of the spindle, turned by the rotary axes that carry it.
+    fn head_direction(&self, command: &Command, machine: Machine) -> Vector {
+        self.description
+            .chain
+            .head()
+            .iter()
+            .rev()
+            .fold(Vector::z(), |tool, axis| self.swivels[axis.direction()].moved(command, machine).0 * tool)
     }
 
     /// That every rotary axis stands inside its travel and its tables.

@@ -96,6 +96,17 @@ impl Course {
     }
 }
 
+/// How the rotary axes turn on a stretch; `None` where they stand.
+fn turning(stretch: &Move) -> Option<Turn> {
+    stretch.turn.filter(|turn| turn.commanded_rad[0] != turn.commanded_rad[1])
+}
+
+/// A stretch on which the rotary axes stand, with its state saying where.
+fn as_it_stands(stretch: &Move) -> Move {
+    let rotary_rad = stretch.turn.map_or(stretch.state.rotary_rad, |turn| turn.commanded_rad[0]);
+    Move { state: Command { rotary_rad, ..stretch.state }, turn: None, ..*stretch }
+}
+
 impl TipControl {
     /// Puts a machine under the control.
     ///
@@ -267,12 +278,12 @@ impl PathModel for TipControl {
     }
 
     fn chord_bound_mm(&self, stretch: &Move) -> f64 {
-        let Some(turn) = &stretch.turn else {
+        let Some(turn) = turning(stretch) else {
             // What turns nothing changes no length, and with standing axes other centres are a shift.
-            return self.core.machine.chord_bound_mm(&self.standing(stretch));
+            return self.core.machine.chord_bound_mm(&self.standing(&as_it_stands(stretch)));
         };
         // The tip asked for is the same wherever the rotary axes stand.
-        let turn = Turn { programmed_rad: turn.commanded_rad, ..*turn };
+        let turn = Turn { programmed_rad: turn.commanded_rad, ..turn };
         let Some(axes) = self.turning(stretch, &turn) else { return f64::INFINITY };
         if !lies_inside(&self.core.machine, &axes) {
             return f64::INFINITY;
@@ -301,6 +312,29 @@ impl PathModel for TipControl {
 
     fn tilt_rad(&self, command: &Command) -> f64 {
         self.core.machine.tilt_rad(&self.axis_command(command))
+    }
+
+    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        self.core.machine.tool_directions(&self.axis_command(command), programmed_rad)
+    }
+
+    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
+        let axes = match turning(stretch) {
+            Some(turn) => match self.turning(stretch, &turn) {
+                Some(axes) => axes,
+                None => return f64::INFINITY,
+            },
+            None => Move { turn: stretch.turn, ..self.standing(&as_it_stands(stretch)) },
+        };
+        self.core.machine.direction_bound_rad(&axes)
+    }
+
+    fn rotary_axes(&self) -> [bool; 3] {
+        self.core.machine.rotary_axes()
+    }
+
+    fn may_turn_to(&self, command: &Command) -> bool {
+        self.core.machine.may_turn_to(command)
     }
 
     fn in_plane(&self, plane: &TiltedPlane) -> Option<&dyn PathModel> {

@@ -7,6 +7,7 @@
 use crate::axis_tables::SixBounds;
 use crate::chord_bound::linear_error;
 use crate::length::{Carried, Length};
+use crate::link::Link;
 use crate::rotary::{Swivel, ideally_turned};
 use crate::{Axis, Command, Move, Range, RigidBody, RotaryPlay, Tilt, Turn, Vector};
 
@@ -127,4 +128,51 @@ pub(crate) fn error_in_turn(model: &RigidBody, stretch: &Move, turn: &Turn) -> (
         turned += wobble.speed;
     }
     (total, turned)
+}
+
+/// How far the angles of a linear axis turn what it carries along a stretch, `‖R(ε) - I‖`.
+fn leans(link: &Link, model: &RigidBody, stretch: &Move) -> Option<Length> {
+    let tables = link.tables(stretch.state.direction[link.axis])?;
+    let (known, asked) = (model.volume.0[link.axis], stretch.range_mm[link.axis]);
+    let range =
+        Range { low: asked.low.clamp(known.low, known.high), high: asked.high.clamp(known.low, known.high) };
+    let bounds = tables.bounds(range);
+    let (speed, acceleration) = (stretch.speed_mm[link.axis], stretch.acceleration_mm[link.axis]);
+    let even = acceleration == 0.0 && (asked.high - asked.low - speed).abs() <= 1e-9 * speed;
+    let mut leans = of_three(&bounds, 3, speed);
+    if !even {
+        let norm = |six: &[f64; 6]| Vector::from_column_slice(&six[3..]).norm();
+        leans.second += norm(&bounds.slope) * acceleration;
+        leans.jumps = norm(&bounds.kinks) * speed * f64::from(stretch.passes);
+    }
+    leans.second += leans.first * leans.first;
+    Some(leans)
+}
+
+/// The tool's real direction less that of an ideal machine with the programmed angles, over a stretch, in the directions of
+/// that machine's linear axes: equation (120), the recursions of (60) for a vector of length 1 that nothing shifts.
+pub(crate) fn direction_in_turn(model: &RigidBody, stretch: &Move, turn: &Turn) -> Length {
+    let chain = &model.description.chain;
+    let (mut nominal, mut error) = (Length::constant(1.0), Length::default());
+    for axis in chain.head().iter().rev() {
+        let wobble = Wobble::of(&model.swivels[axis.direction()], *axis, turn, &stretch.state.rotary_play);
+        let real = nominal.plus(error).turned(wobble.speed);
+        error = wobble.turn.times(real).plus(error.turned(wobble.speed));
+        nominal = nominal.turned(wobble.speed);
+    }
+    for link in model.links.iter().rev() {
+        if let Some(leans) = leans(link, model, stretch) {
+            error = error.plus(leans.times(nominal.plus(error)));
+        }
+    }
+    let (mut total, mut turned) = (error, 0.0);
+    for axis in chain.table().iter().rev() {
+        let wobble = Wobble::of(&model.swivels[axis.direction()], *axis, turn, &stretch.state.rotary_play);
+        let own = wobble.turn.times(nominal.plus(error));
+        total = total.plus(own.turned(turned));
+        error = error.plus(own).turned(wobble.speed);
+        nominal = nominal.turned(wobble.speed);
+        turned += wobble.speed;
+    }
+    total
 }

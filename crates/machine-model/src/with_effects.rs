@@ -219,6 +219,23 @@ impl PathModel for WithEffects {
         self.base.tilt_rad(command)
     }
 
+    /// Nothing is said of what effects turn the tool by.
+    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        if self.terms.is_empty() { self.base.tool_directions(command, programmed_rad) } else { None }
+    }
+
+    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
+        if self.terms.is_empty() { self.base.direction_bound_rad(stretch) } else { f64::INFINITY }
+    }
+
+    fn rotary_axes(&self) -> [bool; 3] {
+        self.base.rotary_axes()
+    }
+
+    fn may_turn_to(&self, command: &Command) -> bool {
+        self.base.may_turn_to(command)
+    }
+
     /// Those of the tables, and of every effect over the whole volume: equation (24) grows with the range. `None` on a machine
     /// with play: there the room that a stretch's own bound leaves decides.
     fn everywhere(&self, state: &Command) -> Option<Everywhere> {

@@ -439,10 +439,30 @@ pub(crate) struct Correction {
     /// No piece is made shorter than this; 0 for no limit.
     #[schemars(with = "Option<f64>")]
     pub(crate) minimum_segment_mm: Option<Spanned<Finite>>,
-    /// Largest angle by which rounded rotary words may turn the tool away from its direction where a motion is split; 50 where
-    /// left out.
+    /// Largest angle of the tool from its direction: by rounded rotary words where a motion is split, in all where directions
+    /// are corrected; 50 where left out.
     #[schemars(with = "Option<f64>")]
     pub(crate) orientation_urad: Option<Spanned<Finite>>,
+    /// What is corrected on five axes: the tip alone, "xyz" (default), or the tool's direction too, "full".
+    #[serde(default)]
+    pub(crate) orientation: OrientationName,
+    /// Under "full": no direction is corrected where the sine of the tool's tilt is below this; 0.02 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) singular_sin: Option<Spanned<Finite>>,
+    /// No rotary axis is corrected by more, degrees; 0.5 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) singular_turn_deg: Option<Spanned<Finite>>,
+    /// What a rotary axis is corrected by changes by no more than this share of what the rotary axes turn; 0.1 where left out.
+    #[schemars(with = "Option<f64>")]
+    pub(crate) singular_share: Option<Spanned<Finite>>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum OrientationName {
+    #[default]
+    Xyz,
+    Full,
 }
 
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -599,6 +619,9 @@ pub(crate) struct Kinematics {
     /// Which of the angles that differ by whole turns: "shortest" from where the axis stands, or "principal", above -180 and
     /// up to 180 degrees.
     pub(crate) turn: Option<TurnName>,
+    /// How the control turns the tool between directions that are given as vectors (G43.5; A3, B3, C3): "axes", each rotary axis
+    /// running evenly, or "great-circle".
+    pub(crate) vectors: Option<VectorsName>,
     /// It is on when a program begins.
     #[serde(default)]
     pub(crate) at_start: bool,
@@ -610,6 +633,13 @@ pub(crate) struct Kinematics {
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub(crate) off: Vec<Spanned<String>>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum VectorsName {
+    Axes,
+    GreatCircle,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use diagnostic::{Diagnostic, Speaks, Text, both, of_system};
 use machine_model::effects::EffectTerm;
 use machine_model::{
-    Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Squareness,
-    Tilt, Traverse, Vector,
+    Axis, Chain, Description, EngineId, Interpolation, LinearAxis, Range, RigidBody, RotaryAxis, Singularity,
+    Squareness, Tilt, Traverse, Vector,
 };
 use toml::Spanned;
 use toolpath::{TiltRule, WholeTurns};
@@ -326,6 +326,7 @@ impl Loader<'_> {
         Some(Kinematics {
             centres_mm: centres_mm.map(Option::unwrap_or_default),
             tilt_rule: TiltRule { branch, turns },
+            great_circle: section.vectors.map(|vectors| matches!(vectors, format::VectorsName::GreatCircle)),
             at_start: section.at_start,
             on,
             off,
@@ -1047,6 +1048,21 @@ impl Loader<'_> {
             },
             minimum_segment_mm: positive(&written.minimum_segment_mm, "minimum_segment_mm", 0.0, true),
             orientation_urad: positive(&written.orientation_urad, "orientation_urad", 50.0, false),
+            directions: matches!(written.orientation, format::OrientationName::Full),
+            singularity: {
+                let usual = Singularity::default();
+                Singularity {
+                    least_sin: positive(&written.singular_sin, "singular_sin", usual.least_sin, false),
+                    most_turn_rad: positive(
+                        &written.singular_turn_deg,
+                        "singular_turn_deg",
+                        usual.most_turn_rad.to_degrees(),
+                        false,
+                    )
+                    .to_radians(),
+                    most_share: positive(&written.singular_share, "singular_share", usual.most_share, false),
+                }
+            },
         }
     }
 

@@ -2,7 +2,7 @@
 
 use machine_model::engines::{EngineInputs, ParametricTable};
 use machine_model::{
-    Chain, Description, EngineId, Interpolation, RigidBody, TipControl, Traverse, Vector, Volume,
+    Chain, Description, EngineId, Interpolation, RigidBody, Singularity, TipControl, Traverse, Vector, Volume,
 };
 use toolpath::{RotaryChain, RotaryLink, TiltRule};
 
@@ -45,8 +45,13 @@ pub struct CorrectionOptions {
     pub outside: Outside,
     /// No piece is made shorter than this, mm; 0 for no limit.
     pub minimum_segment_mm: f64,
-    /// Largest angle by which rounded rotary words may turn the tool where a motion is split, µrad.
+    /// Largest angle of the tool from its direction: by rounded rotary words where a motion is split, in all where directions
+    /// are corrected, µrad.
     pub orientation_urad: f64,
+    /// The tool's direction is corrected too (`orientation = "full"`).
+    pub directions: bool,
+    /// Where it is not.
+    pub singularity: Singularity,
 }
 
 /// What a length without a decimal point is, where a parameter of the control decides.
@@ -137,6 +142,9 @@ pub struct Kinematics {
     pub centres_mm: [[f64; 3]; 3],
     /// How the control turns the tool to a tilted plane.
     pub tilt_rule: TiltRule,
+    /// Between directions that are given as vectors the tool turns along a great circle, or each rotary axis runs evenly; `None`:
+    /// not said.
+    pub great_circle: Option<bool>,
     /// It is on when a program begins.
     pub at_start: bool,
     /// Numbers of the machine's M codes that switch it on.
@@ -268,6 +276,15 @@ impl Profile {
             has[axis.direction()] = true;
         }
         has
+    }
+
+    /// True where the machine has errors of any kind.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.description.squareness != machine_model::Squareness::default()
+            || self.rows.iter().any(Option::is_some)
+            || !self.effects.is_empty()
+            || self.rotary_matters()
     }
 
     /// True where what the linear axes must be told depends on where the rotary axes stand: a rotary axis

@@ -426,6 +426,10 @@ impl Profile {
             if !rule.is_empty() {
                 tell!(out, language, "tilted plane {}", "наклонная плоскость {:#}", Text::join(&rule, ", "))?;
             }
+            if let Some(circle) = kinematics.great_circle {
+                let how = if circle { "along a great circle" } else { "each rotary axis evenly" };
+                writeln!(out, "vectors      {how}")?;
+            }
         }
         Ok(())
     }

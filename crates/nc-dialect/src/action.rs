@@ -5,7 +5,7 @@ use nc_syntax::dialect::{
 };
 
 /// Every word that `does` takes, in the order of the manual.
-pub const ACTION_NAMES: [&str; 100] = [
+pub const ACTION_NAMES: [&str; 101] = [
     "rapid",
     "line",
     "arc-clockwise",
@@ -27,6 +27,7 @@ pub const ACTION_NAMES: [&str; 100] = [
     "length-on-negative",
     "length-off",
     "tip-length-on",
+    "tip-length-on-vectors",
     "tip-on",
     "tip-off",
     "tilted-plane",
@@ -133,6 +134,7 @@ pub fn action_named(name: &str, code: GCode) -> Option<Action> {
         "length-on-negative" => Action::LengthOnNegative,
         "length-off" => Action::LengthOff,
         "tip-length-on" => Action::TipLengthOn,
+        "tip-length-on-vectors" => Action::TipLengthOnVectors,
         "tilted-plane" => Action::TiltedPlane,
         "align-tool" => Action::AlignTool,
         "tip-on" => Action::Tip(TipSwitch::On),

@@ -70,6 +70,15 @@ pub const COMBINATION: Code = Code(226);
 pub const FRAME: Code = Code(227);
 /// Motion stands behind the end of the program: a second program in the same file, say. Remedy: a file for each.
 pub const AFTER_END: Code = Code(228);
+/// A direction as a vector where none can stand: without tool centre point control, beside rotary words, in an arc. Remedy: in
+/// the message.
+pub const DIRECTION_WORDS: Code = Code(260);
+/// What the control does between two directions is not said, or is a great circle. Remedy: `vectors` under `[kinematics]`.
+pub const DIRECTION_BETWEEN: Code = Code(261);
+/// A direction of no length. Remedy: a vector.
+pub const NO_DIRECTION: Code = Code(262);
+/// Where a direction turns the rotary axes is not certain. Remedy: in the message.
+pub const DIRECTION_ANGLES: Code = Code(263);
 /// The program was made for a lathe. Remedy: none yet, vpost corrects mills.
 pub const LATHE: Code = Code(240);
 /// Tool centre point control whose centres nobody said, or what does not go together with it. Remedy: `[kinematics]` in the

@@ -154,6 +154,15 @@ fn difference(skipped: &Modal, executed: &Modal) -> Option<(Text, Text)> {
         })
     })
     .or_else(|| {
+        pair(&with.vectors, &without.vectors, |v| {
+            if *v {
+                both!("directions by I, J, K", "направления словами I, J, K")
+            } else {
+                both!("no directions by I, J, K", "направления не словами I, J, K")
+            }
+        })
+    })
+    .or_else(|| {
         pair(&with.plane_begun, &without.plane_begun, |v| {
             if v.is_some() {
                 both!("the beginning of a tilted plane", "начало наклонной плоскости")

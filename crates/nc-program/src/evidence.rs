@@ -116,7 +116,10 @@ impl Evidence {
         for item in &block.items {
             match item.kind {
                 ItemKind::Word { letter, value } if letter.is_ascii_uppercase() => {
-                    letters = letters.or(Letters::of(&[letter]));
+                    // A3, B3, C3 are read as U, V, W and are no increments.
+                    let own = block.text(item.span).first().map(u8::to_ascii_uppercase);
+                    let direction = matches!(letter, b'U' | b'V' | b'W') && own != Some(letter);
+                    letters = if direction { letters } else { letters.or(Letters::of(&[letter])) };
                     let word = Word { letter, value, span: item.span };
                     match (letter, value) {
                         (b'G', _) => seen.code(&word, questions.dialect),

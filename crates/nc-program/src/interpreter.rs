@@ -4,10 +4,11 @@ use diagnostic::{Diagnostic, both};
 use nc_syntax::dialect::{Action, GCode, MCode, Side};
 use nc_syntax::{Block, Dialect, ItemKind, Span, Value};
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Frame, Kinematics, Motion, Plane};
+use toolpath::{Frame, Kinematics, Motion, Mover, Plane};
 
 use crate::codes;
 use crate::delete;
+use crate::direction::DirectionWords;
 use crate::modal::{
     ArcCentres, Aside, Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Naming,
     Progress, ReturnLevel, Shifts, Stated, ToolLength, Transform, Units, Why, WorkOffset, XWords,
@@ -65,6 +66,8 @@ pub struct Context {
     pub thread: bool,
     /// What X, Y and Z are.
     pub kinematics: Kinematics,
+    /// The block says where the tool points by a vector, and by which words.
+    pub direction: Option<DirectionWords>,
     /// The block is an arc with R.
     pub arc_by_radius: bool,
     /// Cutter compensation is in force before or after the block.
@@ -126,6 +129,7 @@ impl<'d> Interpreter<'d> {
             compensation: Compensation::Off,
             return_level: ReturnLevel::Initial,
             tool_length: ToolLength::Off,
+            vectors: false,
             plane_begun: None,
             kinematics: if setup.tip_at_start { Kinematics::Tip } else { Kinematics::Axes },
             work_offset: WorkOffset { code: None, number: None, zero_mm: None, rewritten: false },
@@ -274,7 +278,7 @@ fn run<'d>(
     let switched = turned && state.axes.linear.iter().all(nowhere);
     if switched && moved.motions.is_empty() {
         // The axes stand, in coordinates that nobody knows.
-        moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+        moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other }];
     }
     if env.dialect.turning.is_some() {
         turning::check_motions(words, state, &moved.motions)?;
@@ -321,7 +325,7 @@ fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> Sm
     for i in (0..3).filter(|i| moved[*i]) {
         state.axes.linear[i] = Axis::Unknown(Lost { why, line });
     }
-    let mut motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+    let mut motions = smallvec![Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other }];
     let mut arrives = false;
     for i in (0..3).filter(|i| moved[*i]) {
         if let AfterChange::At(place_mm) = known(i) {
@@ -331,7 +335,7 @@ fn leave(env: &Environment<'_>, row: &MCode, line: u64, state: &mut Modal) -> Sm
     }
     if arrives {
         // Two motions, since the words name no axis: the first takes them from where they stood, whoever follows.
-        motions.push(Motion::Uncorrected { end: state.axes.partial() });
+        motions.push(Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other });
     }
     motions
 }
@@ -405,6 +409,7 @@ pub(crate) fn context(env: &Environment<'_>, before: &Modal, state: &Modal, move
         kinematics: state.kinematics,
         motion_code: state.motion_code(),
         thread: matches!(state.motion, MotionMode::Thread(_)),
+        direction: moved.direction,
         arc_by_radius: moved.arc_by_radius,
         compensation: state.compensation.side().or(before.compensation.side()),
         may_not_set_levels: state.aside.as_ref().is_some_and(|aside| aside.skipped.cycle.is_some()),

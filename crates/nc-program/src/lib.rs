@@ -41,6 +41,7 @@ mod circular;
 pub mod codes;
 mod cycle;
 mod delete;
+mod direction;
 mod evidence;
 mod frames;
 mod interpreter;
@@ -60,8 +61,9 @@ mod turning;
 mod words;
 
 pub use alike::looks_like;
+pub use direction::DirectionWords;
 pub use evidence::{Evidence, Finding, Place, Questions};
 pub use interpreter::{Context, Interpreter, Step};
 pub use modal::{Compensation, Modal, ToolLength, WorkOffset};
 pub use plain::{PlainEnd, PlainFeeds};
-pub use setup::{AfterChange, Setup, TipControl};
+pub use setup::{AfterChange, BetweenVectors, Setup, TipControl};

@@ -441,6 +441,8 @@ pub struct Modal {
     pub tool_length: ToolLength,
     /// G43.4, TRAORI, G68.2.
     pub kinematics: Kinematics,
+    /// G43.5: I, J, K of a line are the tool's direction.
+    pub vectors: bool,
     /// A tilted plane of several blocks that is not whole yet.
     pub plane_begun: Option<crate::tilted::Begun>,
     /// G54–G59, G54.1.

@@ -3,11 +3,12 @@
 use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::Span;
 use smallvec::{SmallVec, smallvec};
-use toolpath::{Division, Feed, FeedRate, Motion, Shape};
+use toolpath::{Division, Feed, FeedRate, Motion, Mover, Shape};
 
 use crate::circular::circular;
 use crate::codes;
 use crate::cycle;
+use crate::direction::{self, DirectionWords};
 use crate::frames::{self, settle};
 use crate::modal::{Axes, Axis, Compensation, Distance, FeedMode, Lost, Modal, MotionMode, Units, Why};
 use crate::position::{end, known_axes, require_frame, require_known, require_rotary};
@@ -29,6 +30,7 @@ pub(crate) type Motions = SmallVec<[Motion; 1]>;
 pub(crate) struct Moved {
     pub(crate) motions: Motions,
     pub(crate) arc_by_radius: bool,
+    pub(crate) direction: Option<DirectionWords>,
     pub(crate) repeats: u32,
     pub(crate) states_position: bool,
     /// X, Y, Z that U, V or W stands for.
@@ -48,6 +50,8 @@ pub(crate) fn execute(
 ) -> Outcome<()> {
     match demand.owner {
         Owner::Motion => {
+            moved.direction = direction::words_of(words, state);
+            direction::check(env, words, state, moved.direction)?;
             known_axes(env, words)?;
             if words.has(AXIS_LETTERS.or(ARC_LETTERS)) {
                 tool_length::edge_is_said(words, state)?;
@@ -74,7 +78,7 @@ pub(crate) fn execute(
             untransformed(words, state, demand, true)?;
             lose(env, words, state, Why::Reference);
             tip::lose(words, state, Why::Reference);
-            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other }];
         }
         Owner::Probe => {
             known_axes(env, words)?;
@@ -82,7 +86,7 @@ pub(crate) fn execute(
             untransformed(words, state, demand, false)?;
             lose(env, words, state, Why::Probe);
             tip::lose(words, state, Why::Probe);
-            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+            moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other }];
         }
         Owner::MachineCoordinates => {
             known_axes(env, words)?;
@@ -92,7 +96,8 @@ pub(crate) fn execute(
             if words.has(AXIS_LETTERS) {
                 machine_coordinates(env, words, state, demand)?;
                 tip::lose(words, state, Why::MachineWords);
-                moved.motions = smallvec![Motion::Uncorrected { end: state.axes.partial() }];
+                moved.motions =
+                    smallvec![Motion::Uncorrected { end: state.axes.partial(), by: Mover::Other }];
             }
         }
     }
@@ -195,12 +200,13 @@ fn by_mode(
     }
     match state.motion {
         MotionMode::Rapid(_) | MotionMode::Line(_) => {
-            if words.has(ARC_LETTERS) {
+            let strays = if moved.direction.is_some() { Letters::of(b"R") } else { ARC_LETTERS };
+            if words.has(strays) {
                 return Err(stray(words, both!("this block is no arc", "этот кадр не дуга")));
             }
-            if words.has(AXIS_LETTERS) {
+            if words.has(AXIS_LETTERS) || moved.direction.is_some() {
                 let rapid = matches!(state.motion, MotionMode::Rapid(_));
-                straight(env, words, before, state, rapid, &mut moved.motions)?;
+                straight(env, words, before, state, rapid, moved)?;
             }
         }
         MotionMode::Thread(_) => {
@@ -209,7 +215,7 @@ fn by_mode(
             }
             turning::require_lead(env, words)?;
             if words.has(AXIS_LETTERS) {
-                straight(env, words, before, state, false, &mut moved.motions)?;
+                straight(env, words, before, state, false, moved)?;
                 for motion in &mut moved.motions {
                     if let Motion::Feed(feed) = motion {
                         // The control finds the angle of the spindle anew in each block.
@@ -278,19 +284,23 @@ fn straight(
     before: &Modal,
     state: &mut Modal,
     rapid: bool,
-    motions: &mut Motions,
+    moved: &mut Moved,
 ) -> Outcome<()> {
     settle(words, state)?;
     let start = state.axes;
-    let end = end(words, state, require_frame(env, words, state)?)?;
+    let mut end = end(words, state, require_frame(env, words, state)?)?;
+    if let Some(named) = moved.direction {
+        end.rotary = direction::angles(env, words, state, named)?.map(Axis::At);
+    }
+    let motions = &mut moved.motions;
     state.axes = end;
-    let turns = words.has(ROTARY_LETTERS);
+    let turns = words.has(ROTARY_LETTERS) || moved.direction.is_some();
     // While a rotary axis feeds, the tool cuts: along its real path, which the linear axes have to follow.
     let cuts = !rapid && env.setup.rotary_matters && end.rotary != start.rotary;
     let alone = !words.has(LINEAR_LETTERS) || (end.linear == start.linear && end.rotary != start.rotary);
     if turns && alone && !cuts {
         // Rotary axes position, or their place does not matter: the linear axes stay where they are.
-        motions.push(Motion::Uncorrected { end: end.partial() });
+        motions.push(Motion::Uncorrected { end: end.partial(), by: Mover::RotaryWords });
         return Ok(());
     }
     require_rotary(words, &end)?;

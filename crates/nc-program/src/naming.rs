@@ -144,11 +144,13 @@ fn length(
     before: &Modal,
     state: &mut Modal,
 ) {
-    use Action::{LengthOff, LengthOn, LengthOnNegative, TipLengthOn};
-    let says = words
-        .codes
-        .iter()
-        .any(|code| matches!(code.entry.action, LengthOn | LengthOnNegative | LengthOff | TipLengthOn));
+    use Action::{LengthOff, LengthOn, LengthOnNegative, TipLengthOn, TipLengthOnVectors};
+    let says = words.codes.iter().any(|code| {
+        matches!(
+            code.entry.action,
+            LengthOn | LengthOnNegative | LengthOff | TipLengthOn | TipLengthOnVectors
+        )
+    });
     let by_turret = env.dialect.turning.as_ref().is_some_and(|turning| {
         (turning.offset_in_t && words.has(Letters::of(b"T")))
             || (turning.offset_in_d && words.has(Letters::of(b"DT")))

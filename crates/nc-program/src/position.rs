@@ -62,7 +62,7 @@ fn no_frame(env: &Environment<'_>, words: &Words<'_, '_, '_>, state: &Modal) -> 
 /// Refuses words for rotary axes that the machine does not have, and U V W.
 #[inline]
 pub(crate) fn known_axes(env: &Environment<'_>, words: &Words<'_, '_, '_>) -> Outcome<()> {
-    if words.has(crate::words::SECONDARY_LETTERS) {
+    if words.has(crate::words::SECONDARY_LETTERS) && !words.names_direction() {
         let letters = crate::words::SECONDARY_LETTERS;
         let message =
             both!("{} cannot be resolved", "{}: как это понимать, неизвестно", words.names(letters));

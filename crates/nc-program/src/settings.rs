@@ -515,7 +515,7 @@ fn set<'d>(
             wanted.compensation_off = Some(span);
         }
         Action::Compensation(side) => state.compensation = Compensation::On(*side),
-        Action::LengthOn | Action::TipLengthOn => {
+        Action::LengthOn | Action::TipLengthOn | Action::TipLengthOnVectors => {
             wanted.length = Some((Length::On { negative: false }, span))
         }
         Action::LengthOnNegative => wanted.length = Some((Length::On { negative: true }, span)),

@@ -56,6 +56,15 @@ impl TipControl {
     }
 }
 
+/// How a control turns the tool between two directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BetweenVectors {
+    /// Each rotary axis runs evenly from its angle to the next.
+    Axes,
+    /// The tool turns in the plane of both, evenly.
+    GreatCircle,
+}
+
 /// What the program cannot say of itself: the profile's and the command line's part, plain numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
@@ -93,6 +102,8 @@ pub struct Setup {
     pub rotary_chain: RotaryChain,
     /// By which rule the control turns the tool to a tilted plane.
     pub tilt_rule: TiltRule,
+    /// How the control turns the tool between two directions that are given as vectors; `None`: not said.
+    pub vectors: Option<BetweenVectors>,
     /// Tool centre point control is on when the program begins.
     pub tip_at_start: bool,
     /// X words of a lathe's program are diameters, or radii; `None`: not said.

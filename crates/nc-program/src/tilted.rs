@@ -450,7 +450,7 @@ pub(crate) fn align(
                 both!("two pairs of angles stand the tool upright on the plane", "инструмент перпендикулярен плоскости при двух парах углов"),
                 both!("say which one the control takes: `branch = \"A+\"` under `[kinematics]` in the profile, where A is above 0 then", "скажите, какую берёт стойка: `branch = \"A+\"` в разделе `[kinematics]` профиля, если тогда A больше 0"),
             ),
-            NoAngles::Free(axis) => (
+            NoAngles::Free(axis) | NoAngles::Start(axis, _) => (
                 both!("the tool stands along {}, which may stand anywhere then", "инструмент стоит вдоль {}, и эта ось может быть где угодно", name(axis)),
                 both!("turn {} by its own word before G68.2, with `turn = \"shortest\"` under `[kinematics]` where the control then leaves it there", "поверните {} её собственным словом до G68.2; если стойка там её и оставит, впишите `turn = \"shortest\"` в раздел `[kinematics]`", name(axis)),
             ),

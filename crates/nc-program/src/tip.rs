@@ -18,7 +18,7 @@ fn wanted(env: &Environment<'_>, words: &Words<'_, '_, '_>, before: &Modal) -> O
         TipSwitch::Off => Kinematics::Axes,
     };
     let by_code = words.codes.iter().find_map(|code| match code.entry.action {
-        Action::TipLengthOn => Some((Kinematics::Tip, code.span)),
+        Action::TipLengthOn | Action::TipLengthOnVectors => Some((Kinematics::Tip, code.span)),
         Action::Tip(switch) => Some((of(switch), code.span)),
         // A code of its group ends G43.4.
         _ if before.kinematics == Kinematics::Tip && code.entry.group != 0 => {
@@ -52,6 +52,8 @@ pub(crate) fn switch(
     state: &mut Modal,
 ) -> Outcome<()> {
     let Some((kinematics, span)) = wanted(env, words, before) else { return Ok(()) };
+    state.vectors = kinematics == Kinematics::Tip
+        && words.codes.iter().any(|code| code.entry.action == Action::TipLengthOnVectors);
     let unknown = env.setup.tip_control.unknown(
         &both!("no path under it", "при нём"),
         &both!("tool centre point control", "управления по вершине инструмента"),

@@ -199,6 +199,17 @@ impl<'b, 'a, 'd> Words<'b, 'a, 'd> {
         Ok(())
     }
 
+    /// True where A3, B3 or C3 stands in the block, which are read as U, V, W.
+    pub(crate) fn names_direction(&self) -> bool {
+        let long = |letter: &u8| {
+            self.number(*letter).is_some_and(|(_, span)| {
+                let text = self.block.text(span);
+                text.len() > 1 && text[1] == b'3' && text[0].to_ascii_uppercase() == letter - b'U' + b'A'
+            })
+        };
+        self.has(SECONDARY_LETTERS) && b"UVW".iter().any(long)
+    }
+
     /// True in a lathe's program.
     pub(crate) fn turns(&self) -> bool {
         self.dialect.turning.is_some()

@@ -66,7 +66,7 @@ fn assert_sound(motion: &Motion) {
             finite(&[hole.bottom_mm, hole.initial_mm]);
             assert_eq!(hole.end().rotary_deg, hole.start.rotary_deg);
         }
-        Motion::Rapid { end, .. } | Motion::Uncorrected { end } => {
+        Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => {
             finite(&end.linear_mm.map(|v| v.unwrap_or(0.0)));
         }
     }
@@ -111,7 +111,7 @@ proptest! {
                     Motion::Rapid { start, end } => (start.linear_mm, end.linear_mm),
                     Motion::Feed(feed) => (feed.start.linear_mm.map(Some), feed.end.linear_mm.map(Some)),
                     Motion::Hole(hole) => (hole.start.linear_mm.map(Some), hole.end().linear_mm.map(Some)),
-                    Motion::Uncorrected { end } => (at, end.linear_mm),
+                    Motion::Uncorrected { end, .. } => (at, end.linear_mm),
                 };
                 // A tool length that changes may move its axis: nobody knows where it is then.
                 prop_assert_eq!(start, forgetting(at, start));

@@ -179,6 +179,8 @@ pub enum Action {
     LengthOff,
     /// G43.4: a tool length, and from here on the control moves the tool's tip.
     TipLengthOn,
+    /// G43.5: the same, and I, J, K of a line are the tool's direction at its end, a vector in the workpiece.
+    TipLengthOnVectors,
     /// G68.2: a tilted working plane by its words; X, Y and Z are its coordinates from here on, until G69.
     TiltedPlane,
     /// G53.1, G53.6: the rotary axes turn until the tool stands upright on the tilted plane.

@@ -186,11 +186,30 @@ impl<'d> Lexer<'d> {
         if !self.has_letter(letter) {
             return (ItemKind::Invalid(Invalid::Text), self.end_of_text(line, at));
         }
+        if let Some(found) = self.numbered_word(line, at) {
+            return found;
+        }
         let numbered = self.numbered(line, at).unwrap_or(at + 1);
         match self.value(line, numbered) {
             (Ok(value), end) => (ItemKind::Word { letter, value }, end),
             (Err(why), end) => (ItemKind::Invalid(why), end),
         }
+    }
+
+    /// `A3=0.5`: a long word with a digit in its name.
+    fn numbered_word(&self, line: &[u8], at: usize) -> Option<(ItemKind, usize)> {
+        if !line.get(at + 1).is_some_and(u8::is_ascii_digit) {
+            return None;
+        }
+        let named = |name: &str| {
+            line.get(at..at + name.len()).is_some_and(|text| text.eq_ignore_ascii_case(name.as_bytes()))
+                && line.get(skip_spaces(line, at + name.len())) == Some(&b'=')
+        };
+        let (name, letter) = self.long_words.iter().find(|(name, _)| named(name))?;
+        Some(match self.value(line, at + name.len()) {
+            (Ok(value), end) => (ItemKind::Word { letter: *letter, value }, end),
+            (Err(why), end) => (ItemKind::Invalid(why), end),
+        })
     }
 
     /// `M1=3` and `S2=500` are M3 of the first spindle and S500 of the second: where their `=` stands.

@@ -19,6 +19,23 @@ impl Deviation {
     }
 }
 
+/// An angle of the tool and where it is largest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lean {
+    /// The largest angle, rad.
+    pub largest_rad: f64,
+    /// Line of the programmed motion.
+    pub line: u64,
+}
+
+impl Lean {
+    pub(crate) fn note(&mut self, rad: f64, line: u64) {
+        if rad > self.largest_rad {
+            *self = Self { largest_rad: rad, line };
+        }
+    }
+}
+
 /// Why two programs do not cut alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mismatch {
@@ -43,6 +60,8 @@ pub enum What {
     Extra,
     /// The rotary axes stand elsewhere.
     Turned,
+    /// The tool points so far from where it shall, rad.
+    Leans(f64),
     /// A programmed positioning move (G0, a reference return) is not made.
     NotPositioned,
     /// A positioning move ends where no programmed one ends.
@@ -72,6 +91,10 @@ pub struct Comparison {
     pub before: Deviation,
     /// The corrected path.
     pub after: Deviation,
+    /// The tool's direction uncorrected, against that of an ideal machine, on a machine that turns it.
+    pub leans_before: Lean,
+    /// The same of the corrected program.
+    pub leans_after: Lean,
     /// The largest of the limits, mm.
     pub limit_mm: f64,
     /// The first differences.

@@ -95,7 +95,8 @@ fn between(wanted: &Item, made: &Item) -> Option<What> {
     match (wanted, made) {
         (Item::Feed(wanted), Item::Feed(made)) => apart(wanted, made),
         (Item::Position(wanted), Item::Position(made)) if !ends_alike(wanted, made) => {
-            Some(if wanted.end.rotary_deg == made.end.rotary_deg {
+            let near = |(a, b): (&f64, f64)| (a - b).abs() <= wanted.aside_deg;
+            Some(if wanted.end.rotary_deg.iter().zip(made.end.rotary_deg).all(near) {
                 What::PositionedElsewhere
             } else {
                 What::Turned

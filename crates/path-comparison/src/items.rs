@@ -11,7 +11,8 @@ use toolpath::{
 };
 
 use crate::course::{Course, Others};
-use crate::stretch::{LEVER_MM, Place, Span, Stretch};
+use crate::step::Pointing;
+use crate::stretch::{LEVER_MM, Place, Span, Stretch, TURN_LEVER_MM};
 use crate::way::Way;
 use crate::{Act, Step};
 
@@ -126,6 +127,12 @@ pub(crate) struct Feeding {
     pub(crate) made: Vec<[f64; 3]>,
     /// The errors along it, where they are asked for.
     pub(crate) course: Option<Box<Course>>,
+    /// How far the tip and the direction may be off, where directions are compared.
+    pub(crate) pointing: Option<(f64, Pointing)>,
+    /// Largest angle of the tool from the ideal direction at its own angles, rad.
+    pub(crate) leans_rad: f64,
+    /// The largest of what was made of it, rad.
+    pub(crate) made_leans_rad: f64,
 }
 
 impl Feeding {
@@ -164,6 +171,36 @@ impl Feeding {
         Some((self.end() - self.stretches[last].at(span.high)).norm())
     }
 
+    /// How far a place is beside the tip's path, mm, and the tool from its direction, rad, where both hold best: being late by
+    /// less than the tip may be off is no deviation of a direction either.
+    pub(crate) fn off(&self, place: &Place, limit_mm: f64, limit_rad: f64) -> (f64, f64) {
+        /// So many places are looked at on either side of the nearest.
+        const LOOKS: i32 = 24;
+        let (mut best, mut least_rad) = ((f64::INFINITY, 0.0, f64::INFINITY), f64::INFINITY);
+        for stretch in &self.stretches {
+            let foot = stretch.foot(place);
+            let away_mm = (place - stretch.at(foot)).fixed_rows::<6>(0).norm();
+            if away_mm > 4.0 * self.limit_mm && best.0.is_finite() {
+                continue;
+            }
+            let reach = 2.0 * self.limit_mm / stretch.length_mm().max(self.limit_mm);
+            for k in -LOOKS..=LOOKS {
+                let s = (foot + reach * f64::from(k) / f64::from(LOOKS)).clamp(0.0, 1.0);
+                let off = place - stretch.at(s);
+                let (off_mm, leans_rad) =
+                    (off.fixed_rows::<3>(0).norm(), off.fixed_rows::<3>(3).norm() / LEVER_MM);
+                if off_mm <= limit_mm {
+                    least_rad = least_rad.min(leans_rad);
+                }
+                let share = (off_mm / limit_mm).max(leans_rad / limit_rad);
+                if share < best.0 {
+                    best = (share, off_mm, leans_rad);
+                }
+            }
+        }
+        (best.1, least_rad.min(best.2))
+    }
+
     /// Distance of a place, mm, and how far along the motion the nearest lies, 0 to 1.
     pub(crate) fn nearest(&self, place: &Place) -> (f64, f64) {
         let mut nearest = (f64::INFINITY, 0.0);
@@ -197,6 +234,8 @@ pub(crate) struct Positioning {
     pub(crate) rapid: bool,
     /// Made by a cycle.
     pub(crate) of_cycle: bool,
+    /// How far a rotary axis may stand aside, degrees.
+    pub(crate) aside_deg: f64,
     pub(crate) line: u64,
     pub(crate) process: Process,
     pub(crate) limit_mm: f64,
@@ -269,6 +308,8 @@ pub(crate) struct Items<'m, I> {
     ready: VecDeque<Item>,
     /// Machines that go the same way, and how densely: [`crate::courses`].
     others: Option<Others<'m>>,
+    /// Directions are compared, and may be off so far.
+    pointing: Option<Pointing>,
     /// Feeds in a row under cutter compensation.
     compensated: u32,
     /// Feed motions so far, a hole being one.
@@ -321,6 +362,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             counted,
             ready: VecDeque::new(),
             others: None,
+            pointing: None,
             compensated: 0,
             feeds: 0,
             limit_mm: 0.0,
@@ -373,6 +415,9 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             made_off_mm: 0.0,
             made: Vec::new(),
             course: None,
+            pointing: None,
+            leans_rad: 0.0,
+            made_leans_rad: 0.0,
         }));
         true
     }
@@ -383,7 +428,8 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
     }
 
     fn take(&mut self, step: &Step) {
-        let Step { act, line, process: number, limit_mm, compensated } = *step;
+        let Step { act, line, process: number, limit_mm, compensated, pointing } = *step;
+        self.pointing = pointing;
         let (motion, tool_mm, kinematics, feed, dwell) = match act {
             Act::Deed(deed) => {
                 let process = Process::of_number(number);
@@ -405,7 +451,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         match motion {
             Motion::Feed(feed) => self.feeding(&common, Way::of(&feed), feed.rate, [false; 2]),
             Motion::Rapid { start, end } => self.positioning(&common, start, end, Kind::Rapid),
-            Motion::Uncorrected { end } => self.positioning(&common, self.at, end, Kind::Uncorrected),
+            Motion::Uncorrected { end, .. } => self.positioning(&common, self.at, end, Kind::Uncorrected),
             Motion::Hole(hole) => self.hole(&common, &hole),
         }
     }
@@ -473,6 +519,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             turns_mm,
             rapid: kind != Kind::Uncorrected,
             of_cycle: kind == Kind::OfCycle,
+            aside_deg: self.pointing.map_or(0.0, |pointing| pointing.aside_deg),
             line: common.line,
             process: Process::of_number(common.process.number),
             limit_mm: common.limit_mm,
@@ -489,8 +536,15 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
 
     /// Where the tool is with its linear axes here, errors included.
     fn place(&self, command: &Command) -> Place {
-        let (tip, rotary) = (self.model.tip_mm(&command.linear_mm, command), command.rotary_rad * LEVER_MM);
-        Place::from_row_slice(&[tip.x, tip.y, tip.z, rotary.x, rotary.y, rotary.z])
+        let (tip, rotary) = (self.model.tip_mm(&command.linear_mm, command), command.rotary_rad);
+        let role = usize::from(self.role == Role::Commanded);
+        let directions = || self.model.tool_directions(command, &command.rotary_rad);
+        let (turned, coarse) = match self.pointing.and_then(|_| directions()) {
+            Some(both) => (both[role] * LEVER_MM, rotary * TURN_LEVER_MM),
+            None => (rotary * LEVER_MM, Vector::zeros()),
+        };
+        let all = [tip, turned, coarse].map(Into::<[f64; 3]>::into);
+        Place::from_row_slice(all.as_flattened())
     }
 
     fn feeding(&mut self, common: &Common, way: Way, rate: FeedRate, airy: [bool; 2]) {
@@ -506,6 +560,16 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         };
         let real = self.real(common, &way, samples.ceil().clamp(1.0, MOST_SAMPLES));
         let course = self.course(common, &way, &real);
+        let leans = |(s, _): &(f64, Vector)| {
+            let command = common.command(way.at(*s), way.rotary_rad(*s));
+            let both = self.model.tool_directions(&command, &command.rotary_rad);
+            both.map_or(0.0, |[ideal, real]| (real - ideal).norm())
+        };
+        let leans_rad = if self.model.rotary_axes() == [false; 3] {
+            0.0
+        } else {
+            real.iter().map(leans).fold(0.0, f64::max)
+        };
         let seen =
             |s: f64, error_mm: &Vector| self.place(&common.command(way.at(s) + error_mm, way.rotary_rad(s)));
         let nominal = |s: f64| seen(s, &Vector::zeros());
@@ -537,6 +601,9 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
         let far = || stretches.iter().map(|stretch| (stretch.at(1.0) - start).norm()).fold(0.0, f64::max);
         let reach_mm = if length_mm < 1.0 { far() } else { length_mm };
         self.limit_mm = self.limit_mm.max(common.limit_mm);
+        // Tip and direction are found together, and judged apart.
+        let leans_mm = self.pointing.map_or(0.0, |pointing| LEVER_MM * pointing.leans_rad);
+        let limit_mm = (common.limit_mm * common.limit_mm + leans_mm * leans_mm).sqrt();
         self.at = Partial {
             linear_mm: Into::<[f64; 3]>::into(way.at(1.0)).map(Some),
             rotary_deg: way.end_rotary_deg(),
@@ -553,7 +620,7 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
                 FeedRate::InverseTime(f) if reach_mm > common.limit_mm => Some(1.0 / f),
                 _ => None,
             },
-            limit_mm: common.limit_mm,
+            limit_mm,
             reach_mm,
             airy,
             way: Some(way),
@@ -561,6 +628,9 @@ impl<'m, I: Iterator<Item = Step>> Items<'m, I> {
             made_off_mm: 0.0,
             made: Vec::new(),
             course,
+            pointing: self.pointing.map(|pointing| (common.limit_mm, pointing)),
+            leans_rad,
+            made_leans_rad: 0.0,
         })));
     }
 
@@ -743,14 +813,27 @@ pub(crate) fn ends_alike(wanted: &Positioning, made: &Positioning) -> bool {
     const LIMITS: f64 = 4.0;
     /// Where an axis was left by its last correction the machine was off by no more, mm; or by twice what it is off here.
     const LEFT_MM: f64 = 1.0;
-    if wanted.rapid != made.rapid || wanted.end.rotary_deg != made.end.rotary_deg {
+    /// No tip is farther from a rotary axis, mm.
+    const ARM_MM: f64 = 1000.0;
+    /// Angles of directions that are vectors have last digits of their own, degrees.
+    const SAME_DEG: f64 = 1e-5;
+    let mut aside_rad = 0.0;
+    for (wanted_deg, made_deg) in wanted.end.rotary_deg.iter().zip(made.end.rotary_deg) {
+        let aside_deg = (wanted_deg - made_deg).abs();
+        if aside_deg.is_nan() || aside_deg > wanted.aside_deg.max(SAME_DEG) {
+            return false;
+        }
+        aside_rad += aside_deg.to_radians();
+    }
+    if wanted.rapid != made.rapid {
         return false;
     }
     // A control does not correct the moves of a cycle: they are off by the machine's errors, there and where it began.
     let of_cycle_mm = if made.of_cycle { 2.0 * made.error_mm } else { 0.0 };
     // Written as moves they stand as the next feed will want them, from whichever side they come.
     let turns_mm = if wanted.of_cycle { made.turns_mm } else { made.aside_mm };
-    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm;
+    // With its rotary axes aside the tool ends with linear axes that follow them.
+    let near_mm = LIMITS * wanted.limit_mm + turns_mm + of_cycle_mm + ARM_MM * aside_rad;
     (0..3).all(|axis| {
         let [(w_from, w_to), (from, to)] =
             [wanted, made].map(|p| (p.start.linear_mm[axis], p.end.linear_mm[axis]));

@@ -30,9 +30,9 @@ mod way;
 use machine_model::Models;
 use toolpath::PeckRetreats;
 
-pub use comparison::{Comparison, Deviation, Mismatch, Trace, Traces, What};
+pub use comparison::{Comparison, Deviation, Lean, Mismatch, Trace, Traces, What};
 pub use course::{Course, TURN_RAD, courses};
-pub use step::{Act, Step};
+pub use step::{Act, Pointing, Step};
 pub use stretch::LEVER_MM;
 pub use way::Way;
 

@@ -187,9 +187,12 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         let Some(piece) = self.commanded.feed(0) else { return false };
         let short = piece.is_short();
         let way_mm = piece.way.as_ref().map_or(0.0, Way::length_mm);
-        let Feeding { line, process, minutes, .. } = *piece;
+        let Feeding { line, process, minutes, leans_rad, .. } = *piece;
         let stretches = std::mem::take(&mut piece.stretches);
         let reached = self.stretches(&stretches, line, process);
+        if let Reached::At(ahead, _) = reached {
+            self.note_lean(ahead, leans_rad);
+        }
         if let Some(piece) = self.commanded.feed(0) {
             piece.stretches = stretches;
         }
@@ -222,7 +225,9 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
                 Reached::Nowhere => return last,
                 Reached::OnTheWay => {}
                 Reached::At(ahead, distance_mm) => {
-                    self.note(ahead, distance_mm);
+                    if !self.judge(stretch, ahead, line) {
+                        self.note(ahead, distance_mm);
+                    }
                     self.remember(stretch, ahead);
                 }
             }
@@ -250,6 +255,31 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
             // What is known of the programmed motion until it is dropped.
             feed.made_off_mm = feed.made_off_mm.max(distance_mm);
         }
+    }
+
+    /// The angle of the tool on what was made of the feed so many ahead, where rotary axes are compared by their angles.
+    fn note_lean(&mut self, ahead: usize, leans_rad: f64) {
+        if let Some(feed) = self.alignment.wanted.feed(ahead).filter(|feed| feed.pointing.is_none()) {
+            feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
+        }
+    }
+
+    /// Tip and direction each by its own limit at the end of a stretch, where directions are compared; false where not.
+    fn judge(&mut self, stretch: &Stretch, ahead: usize, line: u64) -> bool {
+        let place = stretch.at(1.0);
+        let Some(feed) = self.alignment.wanted.feed(ahead) else { return false };
+        let Some((limit_mm, pointing)) = feed.pointing else { return false };
+        let (off_mm, leans_rad) = feed.off(&place, limit_mm, pointing.leans_rad);
+        feed.made_off_mm = feed.made_off_mm.max(off_mm);
+        feed.made_leans_rad = feed.made_leans_rad.max(leans_rad);
+        let wanted_line = feed.line;
+        if off_mm > limit_mm {
+            self.mismatch(What::TooFar(off_mm), wanted_line, line);
+        }
+        if leans_rad > pointing.leans_rad {
+            self.mismatch(What::Leans(leans_rad), wanted_line, line);
+        }
+        true
     }
 
     /// Under G93 a motion is known by what it takes.
@@ -320,6 +350,8 @@ impl<'m, W: Iterator<Item = Step>, C: Iterator<Item = Step>> Matcher<'m, W, C> {
         let Item::Feed(feed) = item else { return };
         let Feeding { line, way, off_mm: before_mm, made_off_mm: after_mm, minutes, made: made_mm, .. } =
             *feed;
+        self.result.leans_before.note(feed.leans_rad, line);
+        self.result.leans_after.note(feed.made_leans_rad, line);
         self.result.before.note(before_mm, line);
         self.result.after.note(after_mm, line);
         if let (Traces::Kept | Traces::WithPlaces, Some(way)) = (self.traces, way) {

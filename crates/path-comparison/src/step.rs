@@ -15,6 +15,17 @@ pub struct Step {
     pub limit_mm: f64,
     /// G41 or G42 is in force before or after it: the control offsets block by block.
     pub compensated: bool,
+    /// How far its direction may be off where directions are compared; `None` where rotary axes are by their angles.
+    pub pointing: Option<Pointing>,
+}
+
+/// How far a direction may be off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointing {
+    /// The tool's real direction from the programmed one, rad.
+    pub leans_rad: f64,
+    /// A rotary axis from its programmed angle, degrees.
+    pub aside_deg: f64,
 }
 
 /// What a step does.

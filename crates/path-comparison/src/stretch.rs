@@ -2,8 +2,13 @@
 
 use nalgebra::SVector;
 
-/// The tip as the workpiece sees it, mm; A, B, C in radians times [`LEVER_MM`].
-pub(crate) type Place = SVector<f64, 6>;
+/// The tip as the workpiece sees it, mm; A, B, C in radians times [`LEVER_MM`] and zeros, or where directions are compared
+/// that of the tool times [`LEVER_MM`] and A, B, C in radians times [`TURN_LEVER_MM`].
+pub(crate) type Place = SVector<f64, 9>;
+
+/// Where directions are compared, a whole turn and another branch of the inverse kinematics are seen by this, mm a radian,
+/// and what a direction is corrected by is not.
+pub(crate) const TURN_LEVER_MM: f64 = 0.01;
 
 /// A turn counts as a way of so many mm a radian, besides what it moves the tip by: a step of 0.001° is seen, what angles are
 /// rounded by where a motion is split is not.
@@ -154,7 +159,7 @@ mod tests {
     use super::*;
 
     fn place(x: f64, y: f64) -> Place {
-        Place::from_row_slice(&[x, y, 0.0, 0.0, 0.0, 0.0])
+        Place::from_row_slice(&[x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     }
 
     #[test]

@@ -35,7 +35,7 @@ fn step(feed: Feed, line: usize) -> Step {
         feed: Some(100.0),
         dwell: None,
     };
-    Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM, compensated: false }
+    Step { act, line: line as u64, process: 0, limit_mm: LIMIT_MM, compensated: false, pointing: None }
 }
 
 fn compared(wanted: &[Feed], made: &[Feed]) -> Comparison {

@@ -40,6 +40,12 @@ pub const NO_BOUNDS_FOR_TURNS: Code = Code(530);
 pub const DIRECTION: Code = Code(531);
 /// F would mean another speed in the corrected block.
 pub const ROTARY_FEED: Code = Code(532);
+/// Near a singularity, or at the end of an axis' travel, directions were not corrected.
+pub const DIRECTION_HELD: Code = Code(534);
+/// The tool cannot be pointed where it shall.
+pub const LEANS: Code = Code(540);
+/// Directions cannot be corrected in a tilted plane.
+pub const DIRECTION_IN_PLANE: Code = Code(541);
 /// Another tool than the one with which a field was measured.
 pub const OTHER_TOOL: Code = Code(533);
 /// Lost motion moves the tool sideways where an axis turns, by more than can be hidden.
@@ -92,12 +98,65 @@ pub struct Figures {
     pub before: (f64, u64),
     /// Proven bound of the path deviation after, mm, and its line.
     pub after: (f64, u64),
-    /// Largest angle between the tool's real and its ideal direction while rotary axes turn, rad, and its line.
+    /// Largest angle between the tool's real and its ideal direction in a feed uncorrected, rad, and its line.
+    pub tilt_before: (f64, u64),
+    /// The same of what was written, but where directions were held.
     pub tilt: (f64, u64),
+    /// Motions whose directions were to be corrected and were not.
+    pub held: Held,
     /// Short moves to a corrected start that were put in.
     pub approaches: u64,
     /// What the user should know.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// Motions whose directions could not be corrected.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Held {
+    /// How many.
+    pub motions: u64,
+    /// Largest angle that is left there, rad, and its line.
+    pub largest: (f64, u64),
+    /// Their lines, first to last of lines that follow each other; no more than [`Held::MOST`] of such.
+    pub lines: Vec<[u64; 2]>,
+}
+
+impl Held {
+    /// So many stretches of lines are kept.
+    pub const MOST: usize = 1000;
+
+    /// One more in a line, with the angle that is left.
+    pub(crate) fn see(&mut self, line: u64, rad: f64) {
+        self.motions += 1;
+        crate::tally::raise(&mut self.largest, (rad, line));
+        self.extend([line; 2]);
+    }
+
+    pub(crate) fn add(&mut self, later: &Self) {
+        self.motions += later.motions;
+        crate::tally::raise(&mut self.largest, later.largest);
+        later.lines.iter().for_each(|lines| self.extend(*lines));
+    }
+
+    fn extend(&mut self, [first, last]: [u64; 2]) {
+        let count = self.lines.len();
+        match self.lines.last_mut() {
+            Some([_, end]) if first <= *end + 1 => *end = (*end).max(last),
+            _ if count < Self::MOST => self.lines.push([first, last]),
+            _ => {}
+        }
+    }
+
+    /// `12-15, 20` and how many more.
+    pub(crate) fn names(&self) -> String {
+        const MOST: usize = 12;
+        let name = |[first, last]: &[u64; 2]| {
+            if first == last { first.to_string() } else { format!("{first}-{last}") }
+        };
+        let names: Vec<String> = self.lines.iter().take(MOST).map(name).collect();
+        let more = if self.lines.len() > MOST { ", …" } else { "" };
+        names.join(", ") + more
+    }
 }
 
 /// A corrected program.

@@ -21,7 +21,7 @@
 //!         ..Default::default()
 //!     },
 //!     models: Models { axes: engine.path_model().expect("it corrects programs"), tip: None },
-//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 },
+//!     options: Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
 //!     decimals_mm: [3; 3],
 //!     rotary_steps: [(3, 1); 3],
 //!     force: false,

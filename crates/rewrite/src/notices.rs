@@ -10,9 +10,9 @@ use nc_syntax::Block;
 use toolpath::{AXIS_NAMES, Motion};
 
 use crate::job::{
-    COMPENSATED, DIRECTION, LEANING_CYCLE, MUST_NOT_SPLIT, NO_BOUNDS_FOR_TURNS, NOT_CONVERGED,
-    NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS, SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE,
-    UNNAMED,
+    COMPENSATED, DIRECTION, DIRECTION_HELD, DIRECTION_IN_PLANE, Held, LEANING_CYCLE, LEANS, MUST_NOT_SPLIT,
+    NO_BOUNDS_FOR_TURNS, NOT_CONVERGED, NOT_WITHIN_TOLERANCE, OTHER_TOOL, OUTSIDE, RAPID_OUTSIDE, SIDEWAYS,
+    SPIRAL, TOO_MANY_PECKS, UNKNOWN_SIDE, UNNAMED,
 };
 
 /// Things that happen more than once and are told once.
@@ -23,6 +23,7 @@ pub(crate) struct Notices {
     pub(crate) compensated: Notice,
     pub(crate) unknown_side: Notice,
     pub(crate) spirals: Notice,
+    pub(crate) held: Notice,
 }
 
 /// One kind of them.
@@ -81,9 +82,10 @@ impl Notices {
         self.compensated.add(&later.compensated);
         self.unknown_side.add(&later.unknown_side);
         self.spirals.add(&later.spirals);
+        self.held.add(&later.held);
     }
 
-    pub(crate) fn warnings(&self) -> Vec<Warning> {
+    pub(crate) fn warnings(&self, held: &Held) -> Vec<Warning> {
         let clamped = self.clamped.warning(
             RAPID_OUTSIDE,
             |count, _| {
@@ -126,7 +128,14 @@ impl Notices {
             both!("the largest; the control cuts a spiral from the one radius to the other, and that is the path", "наибольшее; стойка режет спираль от одного радиуса к другому, и это и есть путь"),
             both!("post with more decimals where that matters", "где это важно, выводите с большим числом знаков"),
         );
-        [clamped, leaning, compensated, unknown_side, spirals].into_iter().flatten().collect()
+        let lines = held.names();
+        let directions = self.held.warning(
+            DIRECTION_HELD,
+            |count, _| both!("the tool's direction is not corrected in {count} motion(s), lines {lines}: it leans by up to {:.1} urad (line {})", "направление инструмента не исправлено, движений: {count}, строки {lines}; наклон до {:.1} мкрад (строка {})", held.largest.0 * 1e6, held.largest.1),
+            both!("the first; near a singularity a rotary axis would have to turn far for little, or its travel ends: the tip alone is corrected there", "первое; у особого положения поворотной оси пришлось бы повернуться далеко ради малого, или кончается её ход: здесь исправлена только вершина"),
+            both!("tilt the workpiece in the CAM so that the tool passes further from the axis that turns about it, or take `singular_sin`, `singular_turn_deg`, `singular_share` under [correction] for what the machine bears", "наклоните деталь в CAM, чтобы инструмент проходил дальше от оси, вращающей вокруг него, или задайте `singular_sin`, `singular_turn_deg`, `singular_share` в разделе [correction] по возможностям станка"),
+        );
+        [clamped, leaning, compensated, unknown_side, spirals, directions].into_iter().flatten().collect()
     }
 }
 
@@ -143,7 +152,7 @@ fn stands_at(axis: usize, motion: &Motion, context: &Context) -> String {
     let start_mm = match motion {
         Motion::Feed(feed) => feed.start.linear_mm,
         Motion::Hole(hole) => hole.start.linear_mm,
-        Motion::Rapid { start, .. } | Motion::Uncorrected { end: start } => {
+        Motion::Rapid { start, .. } | Motion::Uncorrected { end: start, .. } => {
             start.linear_mm.map(Option::unwrap_or_default)
         }
     };
@@ -241,6 +250,12 @@ pub(crate) fn refusal(
         CorrectionError::Direction { .. } => Diagnostic::error(DIRECTION, error.text())
             .at(whole, both!("this motion", "это движение"))
             .help(both!("give the rotary axes a finer `resolution_deg` in the profile, if the control takes it; or raise `orientation_urad` under [correction]", "задайте поворотным осям в профиле меньший `resolution_deg`, если стойка его принимает; или увеличьте `orientation_urad` в разделе [correction]")),
+        CorrectionError::Leans { .. } => Diagnostic::error(LEANS, error.text())
+            .at(whole, both!("this motion", "это движение"))
+            .help(both!("turn the rotary axes in a rapid that names both of them where the tool begins to cut; give them a finer `resolution_deg`, if the control takes it; raise `orientation_urad` under [correction]; or correct the tip alone with `--orientation xyz`", "поверните поворотные оси быстрым ходом, в котором названы обе, там, где инструмент начинает резать; задайте им меньший `resolution_deg`, если стойка его принимает; увеличьте `orientation_urad` в разделе [correction] или исправляйте только вершину: `--orientation xyz`")),
+        CorrectionError::DirectionInPlane => Diagnostic::error(DIRECTION_IN_PLANE, error.text())
+            .at(whole, both!("the control brings the tip to places of a plane on which the tool stands upright by the angles as they are", "стойка ведёт вершину по плоскости, на которой инструмент стоит перпендикулярно при углах, какие они есть"))
+            .help(both!("correct the tip alone with `--orientation xyz`, or post without tilted planes", "исправляйте только вершину: `--orientation xyz`; или выводите без наклонных плоскостей")),
         CorrectionError::NotWithinTolerance { .. } => Diagnostic::error(NOT_WITHIN_TOLERANCE, error.text())
             .at(whole, both!("this motion", "это движение"))
             .help(both!("the engine's model jumps here (interval methods do at their nodes) or the profile's minimum_segment_mm is too long: use `--engine rigid-body` or `tracker`, or raise `--tolerance`", "модель метода здесь скачет (интервальные — в узлах) или minimum_segment_mm профиля слишком велик: возьмите `--engine rigid-body` или `tracker` или увеличьте `--tolerance`")),

@@ -13,7 +13,7 @@ use crate::nose::{nose_mm, reserved_mm};
 use crate::notices::{hole_skipped, refusal};
 use crate::state::State;
 use crate::tally::{Tally, raise};
-use crate::words::{Editing, MotionCodes, Original, letters, retreats, stated};
+use crate::words::{Editing, MotionCodes, Original, direction_goals, letters, retreats, stated};
 
 /// What stands for a block; a hole written as moves has four.
 type Pieces = SmallVec<[nc_emit::Piece; 4]>;
@@ -115,6 +115,7 @@ impl Pass<'_> {
         let mut corrections: SmallVec<[Correction; 1]> = SmallVec::new();
         let mut untouched = true;
         for motion in motions {
+            let mut at_deg = self.rotary_start_deg(motion);
             let modal = self.state.interpreter.modal();
             info.reserved_mm = reserved_mm(self.job, modal, motion, block, context)?;
             let mut corrected = self
@@ -133,6 +134,12 @@ impl Pass<'_> {
                 editing.rotary_decimals = info.rotary_decimals;
                 let only = corrected.pieces.len() == 1;
                 for (k, piece) in corrected.pieces.iter().enumerate() {
+                    if let (Some(named), Some(goals)) = (context.direction, piece.rotary) {
+                        let written = named.letters().map(|letter| letters.contains(letter));
+                        let (chain, own) = (&self.job.setup.rotary_chain, (rotary_end_deg(motion), written));
+                        let goals = direction_goals(chain, goals, &info, &mut at_deg, own);
+                        editing.direction = Some((named, goals));
+                    }
                     pieces.push(editing.edit(piece, k == 0, only));
                 }
             }
@@ -260,7 +267,8 @@ impl Pass<'_> {
                 named[*axis] |= info.stated.axes[*axis];
             }
             corrections.push(corrected.correction);
-            let editing = self.editing(context, letters, motion);
+            let mut editing = self.editing(context, letters, motion);
+            editing.rotary_decimals = info.rotary_decimals;
             if corrected.pieces.is_empty() {
                 pieces.push(nc_emit::Piece { motion: context.motion_code, words: nc_emit::WordEdits::new() });
             }
@@ -284,6 +292,18 @@ impl Pass<'_> {
         Ok(())
     }
 
+    /// Where the rotary axes stand in the output before a motion, degrees.
+    fn rotary_start_deg(&self, motion: &Motion) -> [f64; 3] {
+        let aside_deg = self.state.corrector.aside_deg();
+        let program_deg = match motion {
+            Motion::Feed(feed) => feed.start.rotary_deg,
+            Motion::Rapid { start, .. } => start.rotary_deg,
+            Motion::Hole(hole) => hole.start.rotary_deg,
+            Motion::Uncorrected { end, .. } => end.rotary_deg,
+        };
+        [0, 1, 2].map(|axis| program_deg[axis] + aside_deg[axis])
+    }
+
     fn info(&self, context: &Context, letters: Letters) -> correction::Block {
         info(self.job, context, letters)
     }
@@ -301,6 +321,7 @@ impl Pass<'_> {
             original: Original::of(motion),
             decimals: decimals(self.job, context),
             rotary_decimals: [0; 3],
+            direction: None,
             inverse_time: match motion {
                 Motion::Feed(Feed { rate: FeedRate::InverseTime(f), .. }) => Some(*f),
                 _ => None,
@@ -329,7 +350,15 @@ impl Pass<'_> {
         let span = block.file_range();
         for (motion, correction) in motions.iter().zip(corrections) {
             figures.raise(correction, line);
-            raise(&mut figures.tilt, (correction.turned.map_or(0.0, |turned| turned.tilt_rad), line));
+            if let Some(directed) = &correction.directed {
+                raise(&mut figures.tilt_before, (directed.before_rad, line));
+                if directed.held {
+                    figures.held.see(line, directed.after_rad);
+                    notices.held.see(&span, line, 0.0);
+                } else {
+                    raise(&mut figures.tilt, (directed.after_rad, line));
+                }
+            }
             figures.approaches += u64::from(correction.approach);
             if correction.clamped {
                 notices.clamped.see(&span, line, 0.0);
@@ -371,20 +400,37 @@ fn decimals(job: &Job<'_>, context: &Context) -> [u8; 3] {
     if inch { [job.dialect.output.decimals_inch; 3] } else { job.decimals_mm }
 }
 
+/// Where the rotary axes stand behind a motion by the program, degrees.
+fn rotary_end_deg(motion: &Motion) -> [f64; 3] {
+    match motion {
+        Motion::Feed(feed) => feed.end.rotary_deg,
+        Motion::Hole(hole) => hole.at_r.rotary_deg,
+        Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => end.rotary_deg,
+    }
+}
+
+/// Decimals of a degree to which a direction is corrected that is written as a vector.
+const OF_A_VECTOR: u8 = 6;
+
 /// What correction must know of a block.
 pub(crate) fn info(job: &Job<'_>, context: &Context, letters: Letters) -> correction::Block {
     let output = &job.dialect.output;
+    let by_vector = context.direction.is_some();
+    let mut stated = stated(letters);
+    if by_vector {
+        stated.rotary = job.setup.has_rotary;
+    }
     correction::Block {
         frame: context.frame.clone(),
         kinematics: context.kinematics,
         unit_mm: context.unit_mm,
         diameters: context.diameters,
         decimals: decimals(job, context),
-        rotary_decimals: job.rotary_steps.map(|(decimals, _)| decimals),
-        rotary_step: job.rotary_steps.map(|(_, steps)| i64::from(steps)),
+        rotary_decimals: job.rotary_steps.map(|(decimals, _)| if by_vector { OF_A_VECTOR } else { decimals }),
+        rotary_step: job.rotary_steps.map(|(_, steps)| if by_vector { 1 } else { i64::from(steps) }),
         incremental: context.incremental,
         arc_centres_absolute: context.arc_centres_absolute,
-        stated: stated(letters),
+        stated,
         whole: context.whole,
         named: context.unnamed.map(|lost| lost.is_none()),
         reframed: [false; 3],

@@ -407,7 +407,8 @@ mod tests {
         };
         sink.finish(|| Ok(text)).unwrap();
         let mut figures = tally.figures;
-        figures.warnings = tally.notices.warnings().into_iter().map(|(warning, _)| warning).collect();
+        figures.warnings =
+            tally.notices.warnings(&figures.held).into_iter().map(|(warning, _)| warning).collect();
         Ok((out, figures))
     }
 
@@ -436,7 +437,7 @@ mod tests {
                 dialect: nc_dialect::builtin("fanuc").unwrap(),
                 setup: &setup,
                 models: machine_model::Models { axes: engine.path_model().unwrap(), tip: None },
-                options: Options { tolerance_mm: 1e-3, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5 },
+                options: Options { tolerance_mm: 1e-3, outside: Outside::Clamp, minimum_segment_mm: 0.0, orientation_rad: 5e-5, orientation: correction::Orientation::Tip },
                 decimals_mm: [3; 3],
                 rotary_steps: [(3, 1); 3],
                 force: true,

@@ -26,6 +26,8 @@ impl Tally {
         raise(&mut figures.before, more.before);
         raise(&mut figures.after, more.after);
         raise(&mut figures.tilt, more.tilt);
+        raise(&mut figures.tilt_before, more.tilt_before);
+        figures.held.add(&more.held);
         self.notices.add(&later.notices);
         self.evidence.add(&later.evidence);
     }

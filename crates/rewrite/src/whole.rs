@@ -87,7 +87,7 @@ pub(crate) fn pass<E: From<Vec<Diagnostic>>>(
         Err(Ended::Failed(error)) => return Err(error),
     }
     let Pass { out, tally: Tally { mut figures, notices, evidence }, .. } = pass;
-    figures.warnings = notices.warnings().into_iter().map(|(warning, _)| warning).collect();
+    figures.warnings = notices.warnings(&figures.held).into_iter().map(|(warning, _)| warning).collect();
     Ok(Some(Corrected { text: out, figures, evidence }))
 }
 

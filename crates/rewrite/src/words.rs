@@ -2,10 +2,10 @@
 
 use correction::{Centre, Goal, PieceKind, Stated};
 use nc_emit::{Piece, WordEdit, WordEdits};
-use nc_program::Context;
+use nc_program::{Context, DirectionWords};
 use nc_syntax::dialect::{Action, Dialect, GCode};
 use nc_syntax::{Block, Letters};
-use toolpath::{Feed, Motion, PeckRetreats, Shape};
+use toolpath::{Feed, Motion, PeckRetreats, RotaryChain, Shape};
 use units::decimal::Decimal;
 
 /// The dialect's own codes for the motions that correction writes.
@@ -76,6 +76,40 @@ impl Original {
     }
 }
 
+/// Decimals of a direction that is written as a vector: a tenth of a microradian.
+pub(crate) const VECTOR_DECIMALS: u8 = 7;
+
+/// The words of a direction that stand for rotary words of a piece.
+///
+/// * `goals` – of A, B, C, of which `at_deg` is where they stand, and then where the piece leads
+/// * `own` – where the block's own direction leads, degrees, and which of its words are written
+pub(crate) fn direction_goals(
+    chain: &RotaryChain,
+    goals: [Goal; 3],
+    block: &correction::Block,
+    at_deg: &mut [f64; 3],
+    own: ([f64; 3], [bool; 3]),
+) -> [Goal; 3] {
+    let (own_deg, written) = own;
+    for axis in 0..3 {
+        let step_deg = 1.0 / f64::from(10u32.pow(u32::from(block.rotary_decimals[axis].min(9))));
+        at_deg[axis] = match goals[axis] {
+            Goal::Stays => at_deg[axis],
+            Goal::AsStated => own_deg[axis],
+            Goal::Steps(counts) if block.incremental == [true; 3] => at_deg[axis] + counts as f64 * step_deg,
+            Goal::Steps(counts) => counts as f64 * step_deg,
+        };
+    }
+    if goals.contains(&Goal::AsStated) && !goals.iter().any(|goal| matches!(goal, Goal::Steps(_))) {
+        return written.map(|written| if written { Goal::AsStated } else { Goal::Stays });
+    }
+    if goals == [Goal::Stays; 3] {
+        return goals;
+    }
+    let scale = f64::from(10u32.pow(u32::from(VECTOR_DECIMALS)));
+    chain.tool_direction(*at_deg).map(|part| Goal::Steps(units::decimal::round(part * scale)))
+}
+
 /// Writes pieces of one motion as edits of its block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Editing<'a> {
@@ -89,6 +123,8 @@ pub(crate) struct Editing<'a> {
     pub decimals: [u8; 3],
     /// Those of A, B, C words that a piece has of its own.
     pub rotary_decimals: [u8; 3],
+    /// What stands for the rotary words where the block says where the tool points by a vector.
+    pub direction: Option<(DirectionWords, [Goal; 3])>,
     /// F under G93 and the decimals it is written with.
     pub inverse_time: Option<f64>,
     pub decimals_feed: u8,
@@ -116,8 +152,14 @@ impl Editing<'_> {
                 push(names[axis], piece.axes[axis], self.decimals[axis]);
             }
         }
-        for (axis, word) in piece.rotary.into_iter().flatten().enumerate() {
-            push(b"ABC"[axis], word, self.rotary_decimals[axis]);
+        if let Some((named, goals)) = self.direction.filter(|_| piece.rotary.is_some()) {
+            for (letter, goal) in named.letters().into_iter().zip(goals) {
+                push(letter, goal, VECTOR_DECIMALS);
+            }
+        } else {
+            for (axis, word) in piece.rotary.into_iter().flatten().enumerate() {
+                push(b"ABC"[axis], word, self.rotary_decimals[axis]);
+            }
         }
         let [u, v, n] = self.context.plane.axes();
         edited.motion = match piece.kind {
@@ -154,6 +196,7 @@ impl Editing<'_> {
                 push(b'R', r, self.decimals[n]);
                 self.context.motion_code
             }
+            PieceKind::AsStated => self.context.motion_code,
             PieceKind::Dwell => {
                 push(b'G', Goal::Steps(i64::from(self.codes.dwell.0 / 10)), 0);
                 if let Some(p) = self.dwell {

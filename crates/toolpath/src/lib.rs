@@ -15,7 +15,7 @@ mod tilted;
 pub use feed_rate::FeedRate;
 pub use frame::{Frame, Similarity};
 pub use hole::{Cycle, CycleKind, Hole, HoleMove, MOST_PECKS, PeckRetreats, whole_pecks};
-pub use motion::{Arc, Division, Feed, Kinematics, Motion, Shape};
+pub use motion::{Arc, Division, Feed, Kinematics, Motion, Mover, Shape};
 pub use plane::Plane;
 pub use position::{Partial, Position};
 pub use tilted::{NoAngles, RotaryChain, RotaryLink, TiltRule, TiltedPlane, WholeTurns, unit};

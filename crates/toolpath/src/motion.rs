@@ -131,11 +131,11 @@ pub enum Division {
 /// What one block, or one turn of a repeated block, makes the axes do.
 ///
 /// ```
-/// use toolpath::{Motion, Partial, Position};
+/// use toolpath::{Motion, Mover, Partial, Position};
 ///
 /// // Where the axes are known to end, whatever moves them.
 /// let end = |motion: &Motion| match motion {
-///     Motion::Rapid { end, .. } | Motion::Uncorrected { end } => end.complete(),
+///     Motion::Rapid { end, .. } | Motion::Uncorrected { end, .. } => end.complete(),
 ///     Motion::Feed(feed) => Some(feed.end),
 ///     Motion::Hole(hole) => Some(hole.end()),
 /// };
@@ -143,7 +143,7 @@ pub enum Division {
 /// assert_eq!(end(&Motion::Rapid { start: Partial::default(), end: there.into() }), Some(there));
 /// // Behind a probe X stands anywhere.
 /// let probed = Partial { linear_mm: [None, Some(2.0), Some(3.0)], ..Partial::default() };
-/// assert_eq!(end(&Motion::Uncorrected { end: probed }), None);
+/// assert_eq!(end(&Motion::Uncorrected { end: probed, by: Mover::Other }), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
@@ -158,9 +158,26 @@ pub enum Motion {
     Feed(Feed),
     /// G73, G74, G76, G81–G89.
     Hole(Hole),
-    /// G28, G30, G53, G31, M6…: never corrected; the axes end here as far as known.
+    /// G28, G30, G53, G31, M6…: never corrected; the axes end here as far as known. Also rotary axes that position alone.
     Uncorrected {
         /// Where the axes end.
         end: Partial,
+        /// What moves them.
+        by: Mover,
     },
+}
+
+/// What moves axes whose linear places are not corrected.
+///
+/// ```
+/// use toolpath::Mover;
+///
+/// assert_ne!(Mover::RotaryWords, Mover::Other);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mover {
+    /// The motion code in force, by the block's rotary words alone: the linear axes stay where they are.
+    RotaryWords,
+    /// Anything else: a reference return, machine coordinates, a probe, a tool change, a change of frame.
+    Other,
 }

@@ -160,7 +160,14 @@ pub enum NoAngles {
     Turns(usize),
     /// Where this axis stands nobody knows, and the rule asks for it.
     Unknown(usize),
+    /// The tool stands along this axis, which would have to turn before the other tilts the tool: by so many degrees.
+    Start(usize, i32),
 }
+
+/// Whether two ways are told apart by how far they are, degrees.
+const NEARER_DEG: f64 = 1e-3;
+/// A tool nearer to an axis than this stands along it, rad.
+const ALONG_RAD: f64 = 1e-3;
 
 /// Directions nearer than this are one, rad.
 const SAME_RAD: f64 = 1e-9;
@@ -261,6 +268,63 @@ impl RotaryChain {
             .iter()
             .rev()
             .fold(UP, |tool, link| turned(tool, link.direction, link.sense() * rotary_deg[link.axis]))
+    }
+
+    /// A, B, C, degrees, that bring the tool from where the axes stand to a direction in the workpiece: of both ways and of all
+    /// whole turns within travel those that are nearest, all axes together. Where two are as near `rule` has to say which one.
+    /// Angles that point there already stay to the last bit.
+    ///
+    /// * `direction` – unit vector, workpiece
+    ///
+    /// # Errors
+    /// [`NoAngles`] where not one pair is certain; [`NoAngles::Start`] where the tool stands along the first axis, which would have
+    /// to turn before the tool tilts.
+    pub fn angles_near(
+        &self,
+        direction: [f64; 3],
+        rule: &TiltRule,
+        stand_deg: [f64; 3],
+    ) -> Result<[f64; 3], NoAngles> {
+        let [first, second] = self.0.as_slice() else { return Err(NoAngles::NotTwoAxes) };
+        if size(plus(self.tool_direction(stand_deg), -1.0, direction)) < SAME_RAD {
+            return Ok(stand_deg);
+        }
+        let mut found: Vec<[f64; 3]> = Vec::new();
+        for positive in [true, false] {
+            let branch = Some((second.axis, positive));
+            let one = TiltRule { branch, turns: Some(WholeTurns::Shortest) };
+            match self.angles_for(direction, &one, stand_deg.map(Some)) {
+                Ok(angles) => found.push(angles),
+                Err(NoAngles::OutOfReach) => {}
+                Err(why) => return Err(why),
+            }
+        }
+        let far = |angles: &[f64; 3]| -> f64 { (0..3).map(|i| (angles[i] - stand_deg[i]).abs()).sum() };
+        let along = cross(self.tool_direction(stand_deg), first.direction);
+        found.sort_by(|a, b| far(a).total_cmp(&far(b)));
+        // Along the first axis the two ways are one.
+        found.dedup_by(|a, b| (0..3).all(|i| (a[i] - b[i]).abs() < NEARER_DEG));
+        let chosen = match found.as_slice() {
+            [] => return Err(NoAngles::OutOfReach),
+            [one] => *one,
+            [one, other, ..] if far(other) - far(one) > NEARER_DEG => *one,
+            all => {
+                let on_branch = |angles: &&[f64; 3]| match rule.branch {
+                    Some((axis, positive)) => (angles[axis] > 0.0) == positive,
+                    None => false,
+                };
+                let mut fitting = all.iter().filter(on_branch);
+                match (fitting.next(), fitting.next()) {
+                    (Some(one), None) => *one,
+                    _ => return Err(NoAngles::TwoWays),
+                }
+            }
+        };
+        let turn_deg = chosen[first.axis] - stand_deg[first.axis];
+        if size(along) < ALONG_RAD && turn_deg.abs() > NEARER_DEG {
+            return Err(NoAngles::Start(first.axis, turn_deg.round() as i32));
+        }
+        Ok(chosen)
     }
 
     /// A, B, C, degrees, that bring the tool to a direction in the workpiece; axes that the chain does not have at 0.

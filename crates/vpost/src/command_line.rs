@@ -70,7 +70,7 @@ pub enum Command {
 
 /// Ids of the options in [`Shared`] that say something of the machine or the program: who reads which.
 const OF_MACHINE: [&str; 3] = ["machine", "engine", "at"];
-const OF_PROGRAM: [&str; 12] = [
+const OF_PROGRAM: [&str; 13] = [
     "dialect",
     "tolerance",
     "work_offset",
@@ -82,6 +82,7 @@ const OF_PROGRAM: [&str; 12] = [
     "include",
     "decimal",
     "strict",
+    "orientation",
     "outside",
 ];
 /// Of the corrections alone.

@@ -285,6 +285,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("What a positive squareness means to the instrument", "Что значит у прибора положительная перпендикулярность"),
     ("What became of each program (JSON Lines)", "Что стало с каждой программой (JSON Lines)"),
     ("What each deviation of the machine costs", "Во что обходится каждое отклонение станка"),
+    ("What is corrected on five axes: xyz or full", "Что исправлять на пяти осях: xyz или full"),
     ("What it was measured with", "Чем измерено"),
     ("What the numbers of a control's table are", "Что такое числа таблицы стойки"),
     ("What to command so that the tool reaches points", "Что задать, чтобы инструмент пришёл в точки"),

@@ -16,6 +16,10 @@ from reader import sample
 
 WEIGHT = 4.0
 TURNED = 0.05
+# Where directions are corrected: a rotary axis goes no further aside, and within this sine of a singularity, which is where the
+# last of what it was turned aside by has been taken back, directions need not hold.
+ASIDE = 0.55
+NEAR = 0.02 + math.radians(0.5) / 0.1
 
 
 class Structure(Exception):
@@ -25,9 +29,10 @@ class Structure(Exception):
 class Curve:
     """Places (n, 3) of the tip, directions (n, 3), angles (n, k) and the motion's number (n,) along one stretch."""
 
-    def __init__(self, tip, way, rot, number, share, q):
+    def __init__(self, tip, way, rot, number, share, q, directed=False):
         self.tip, self.way, self.rot, self.number, self.share, self.q = tip, way, rot, number, share, q
-        self.place = np.concatenate([tip, WEIGHT * np.radians(rot)], axis=1)
+        # Where directions are corrected, rotary axes stand aside of their angles on purpose.
+        self.place = np.concatenate([tip, WEIGHT * (way if directed else np.radians(rot))], axis=1)
         self.run = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.place, axis=0), axis=1))])
 
 
@@ -48,7 +53,7 @@ def stretches(motions):
     return out
 
 
-def curves(spec, motions, perfect):
+def curves(spec, motions, perfect, directed=False):
     """A curve for each stretch of feeds."""
     control = Machine(spec, perfect=True, centres=spec.get("control_centres"))
     machine = Machine(spec, perfect=perfect)
@@ -75,7 +80,7 @@ def curves(spec, motions, perfect):
         rows = np.flatnonzero((number >= numbers[0]) & (number <= numbers[-1]))
         if kind == "feed" and numbers[0] > 0 and rows[0] > 0:
             pass  # the first feed's own start is its share 0
-        out.append((kind, numbers, Curve(tip[rows], way[rows], rot[rows], number[rows], share[rows], q[rows])))
+        out.append((kind, numbers, Curve(tip[rows], way[rows], rot[rows], number[rows], share[rows], q[rows], directed)))
     return out
 
 
@@ -132,15 +137,49 @@ def arms(spec, curve, tool):
     return float(np.linalg.norm(steps))
 
 
-def compare(spec, wanted, taken):
-    """A dictionary: worst `ratio`, its `um`, `line`, `limit_um`; `before_um`; `tilt_urad` (direction), `turned` (degrees of
-    rotary command apart), `stretches`; raises Structure."""
-    ideal = curves(spec, wanted, True)
-    before = curves(spec, wanted, False)
-    real = curves(spec, taken, False)
+def aside(b, first, a, limit):
+    """The motion of `b` that begins at `first` turns rotary axes by less than ASIDE, with the tip at the start of `a`, and is not
+    the last."""
+    rows = np.flatnonzero(b.number == b.number[first])
+    rows = rows[rows >= first]
+    ends = np.concatenate([rows, [min(rows[-1] + 1, len(b.tip) - 1)]])
+    still = np.linalg.norm(b.tip[ends] - a.tip[0], axis=1).max() <= limit and np.linalg.norm(b.tip[rows[-1]] - b.tip[rows[0]]) <= 2 * limit
+    small = np.abs(b.rot[ends] - a.rot[0]).max(initial=0.0) <= ASIDE and np.ptp(b.rot[rows], axis=0).max(initial=0.0) > 0
+    goes = np.ptp(a.rot, axis=0).max(initial=0.0) > ASIDE or np.ptp(a.tip, axis=0).max() > 4 * limit
+    return bool(still and small and goes and rows[-1] + 1 < len(b.tip))
+
+
+def late(a, i, b, rows, limit):
+    """Angle (n,), urad, between the directions at these rows of `b` and the best place of `a` around their feet whose tip is within
+    the limit: where both turn fast, a tip that is late by less than it may be has the direction of where it is."""
+    out = np.full(len(rows), np.inf)
+    for n, row in enumerate(rows):
+        # As far along the way as the tip may be late.
+        low = min(int(np.searchsorted(a.run, a.run[i[row]] - 3 * limit)) - 1, i[row] - 6)
+        high = max(int(np.searchsorted(a.run, a.run[i[row]] + 3 * limit)) + 1, i[row] + 7)
+        for k in range(max(low, 0), min(high, len(a.tip) - 1)):
+            along = a.tip[k + 1] - a.tip[k]
+            square = max(float(along @ along), 1e-24)
+            foot_, reach = float((b.tip[row] - a.tip[k]) @ along) / square, limit / math.sqrt(square)
+            grid = np.linspace(np.clip(foot_ - reach, 0, 1), np.clip(foot_ + reach, 0, 1), 81)[:, None]
+            tip = a.tip[k] + grid * along
+            way = a.way[k] + grid * (a.way[k + 1] - a.way[k])
+            fits = np.linalg.norm(tip - b.tip[row], axis=1) <= limit
+            if fits.any():
+                out[n] = min(out[n], float(np.linalg.norm(np.cross(way[fits], b.way[row]), axis=1).min()) * 1e6)
+    return out
+
+
+def compare(spec, wanted, taken, directed=False):
+    """A dictionary: worst `ratio`, its `um`, `line`, `limit_um`; `before_um`; `tilt_urad` (direction), `far_tilt_urad` the same away
+    from singularities, with its `far_line`, `worse_tilt_urad` by how much it is above the largest of the stretch uncorrected near
+    one, `tilt_before_urad`; `turned` (degrees of rotary command apart), `stretches`; raises Structure."""
+    ideal = curves(spec, wanted, True, directed)
+    before = curves(spec, wanted, False, directed)
+    real = curves(spec, taken, False, directed)
     if [k for k, _, _ in ideal] != [k for k, _, _ in real]:
         raise Structure(f"{len(real)} stretches of rapids and feeds for {len(ideal)}")
-    out = {"ratio": 0.0, "um": 0.0, "line": None, "limit_um": 0.0, "before_um": 0.0, "tilt_urad": 0.0, "turned": 0.0, "turned_line": None, "feeds": 0, "share": [], "samples": 0}
+    out = {"ratio": 0.0, "um": 0.0, "line": None, "limit_um": 0.0, "before_um": 0.0, "tilt_urad": 0.0, "far_tilt_urad": 0.0, "far_line": None, "worse_tilt_urad": 0.0, "tilt_before_urad": 0.0, "near": 0, "turned": 0.0, "turned_line": None, "feeds": 0, "share": [], "samples": 0}
     for (kind, numbers, a), (_, taken_numbers, b), (_, _, c) in zip(ideal, real, before):
         if kind == "rapid":
             d = float(np.abs(a.rot[-1] - b.rot[-1]).max(initial=0.0))
@@ -155,10 +194,16 @@ def compare(spec, wanted, taken):
         first = int(np.argmax(away <= limit)) if (away <= limit).any() else 0
         if first and np.linalg.norm(np.diff(b.tip[: first + 1], axis=0), axis=1).sum() > 2.0:
             first = 0
-        b = Curve(b.tip[first:], b.way[first:], b.rot[first:], b.number[first:], b.share[first:], b.q[first:])
+        # So may a turn that points the tool where it shall, its tip at rest.
+        while directed and first < len(b.tip) and aside(b, first, a, limit):
+            first = int(np.flatnonzero(b.number == b.number[first])[-1]) + 1
+        b = Curve(b.tip[first:], b.way[first:], b.rot[first:], b.number[first:], b.share[first:], b.q[first:], directed)
         i, t = follow(a, b.place, limit)
         one = np.linalg.norm(foot(a, i, t, "tip") - b.tip, axis=1)
         tilt = np.linalg.norm(np.cross(foot(a, i, t, "way"), b.way), axis=1) * 1e6
+        if directed:
+            off = np.flatnonzero(tilt > spec.get("orientation_urad", 20.0))
+            tilt[off] = np.minimum(tilt[off], late(a, i, b, off, limit + 4e-5))
         turned = np.abs(foot(a, i, t, "rot") - b.rot).max(axis=1)
         j, s = follow(b, a.place, limit)
         other = np.linalg.norm(foot(b, j, s, "tip") - a.tip, axis=1)
@@ -169,6 +214,14 @@ def compare(spec, wanted, taken):
             if d[k] / limit > out["ratio"]:
                 out.update(ratio=float(d[k] / limit), um=float(d[k]) * 1e3, line=wanted[int(row[k])].line, limit_um=limit * 1e3)
         out["tilt_urad"] = max(out["tilt_urad"], float(tilt.max()))
+        tilt_before = float(np.linalg.norm(np.cross(a.way, c.way), axis=1).max()) * 1e6
+        out["tilt_before_urad"] = max(out["tilt_before_urad"], tilt_before)
+        near = Machine(spec, perfect=True).singular(foot(a, i, t, "rot")) < NEAR
+        out["near"] += int(near.sum())
+        far = np.where(near, 0.0, tilt)
+        if far.max() > out["far_tilt_urad"]:
+            out["far_tilt_urad"], out["far_line"] = float(far.max()), wanted[int(a.number[i[int(np.argmax(far))]])].line
+        out["worse_tilt_urad"] = max(out["worse_tilt_urad"], float(np.where(near, tilt, 0.0).max()) - tilt_before)
         k = int(np.argmax(turned))
         for d, line in ((float(turned[k]), wanted[int(a.number[i[k]])].line), (float(ends), wanted[numbers[-1]].line)):
             if d > out["turned"]:

@@ -25,6 +25,8 @@ CHAINS = {
 KINDS = ["indexed", "indexed-arcs", "cam", "cam-tcp", "long", "long-tcp", "rotary-only", "g93", "g93-tcp", "winding", "singular-tcp"]
 # Asked for by name: tilted working planes.
 PLANE_KINDS = ["plane", "plane-g53"]
+# Directions as vectors: I J K under G43.5, A3 B3 C3 under TRAORI.
+VECTOR_KINDS = ["cam-vector-tcp", "long-vector-tcp", "g93-vector-tcp"]
 
 
 def smooth(rng, nodes, size, period):
@@ -110,6 +112,7 @@ class Writer:
         self.length = spec["lengths"].get("H1", 0.0)
         self.vector = np.array([0, 0, -self.length]) if spec["lengths"] else np.array(spec["tool"], float)
         self.last = {}
+        self.vectors = False
 
     def command(self, tip, rot):
         return self.ideal.joints(np.array(tip), np.array(rot), self.vector)[0]
@@ -117,11 +120,22 @@ class Writer:
     def numbers(self, tip, rot):
         offset = np.array(self.spec["offset"])
         x = np.array(tip) - offset if self.tcp else self.command(tip, rot) - offset - [0, 0, self.length]
+        if self.vectors:
+            names = ("A3", "B3", "C3") if self.spec["control"] == "sinumerik" else "IJK"
+            return {**dict(zip("XYZ", x)), **dict(zip(names, self.ideal.place(np.zeros((1, 3)), np.array([rot], float), np.zeros(3))[1][0]))}
         return {**dict(zip("XYZ", x)), **dict(zip(self.ideal.rotary, rot))}
 
     def block(self, code, tip, rot, only=None, more="", repeat=False):
         words = []
-        for k, v in self.numbers(tip, rot).items():
+        numbers = self.numbers(tip, rot)
+        vector = [k for k in numbers if k not in "XYZABC"]
+        turned = any(self.last.get(k) != f"{numbers[k]:.9f}" for k in vector)
+        for k, v in numbers.items():
+            if k in vector:
+                if turned and only is None:
+                    words.append(f"{k}={v:.9f}" if k in ("A3", "B3", "C3") else f"{k}{v:.9f}")
+                    self.last[k] = f"{v:.9f}"
+                continue
             text = f"{v:.3f}".rstrip("0").rstrip(".") if self.spec["control"] != "fanuc" else f"{v:.3f}".rstrip("0")
             text = "0" + ("." if self.spec["control"] == "fanuc" else "") if text.strip("-.0") == "" else text
             if (only is None or k in only) and (repeat or self.last.get(k) != text):
@@ -145,6 +159,10 @@ def on(w, tip, rot):
     zero = [0.0] * len(names)
     length = "" if c == "sinumerik" else ("G43 H1 " if c == "linuxcnc" or not tcp else "")
     far = np.array(tip) + [-90, -80, 120]
+    if w.vectors:
+        # From where a direction says all: not along the axis that turns about the tool.
+        zero = [float(v) for v in rot]
+    vectors, w.vectors = w.vectors, False
     w.block(f"G0 {length}".strip(), far, zero, repeat=True) if length else w.block("G0", far, zero, repeat=True)
     if c == "fanuc" and tcp:
         # Without G43 the command is word + offset; G43.4 keeps the axes standing.
@@ -154,10 +172,10 @@ def on(w, tip, rot):
         w.last = {}
         w.block("G0", far, zero, repeat=True)
         w.length = short
-    w.tcp = tcp
+    w.tcp, w.vectors = tcp, vectors
     w.last = {}
     if tcp:
-        w.lines.append({"linuxcnc": "M428", "fanuc": w.spec.get("tcp_code", "G43.4") + " H1", "sinumerik": "TRAORI"}[c])
+        w.lines.append({"linuxcnc": "M428", "fanuc": ("G43.5" if vectors else w.spec.get("tcp_code", "G43.4")) + " H1", "sinumerik": "TRAORI"}[c])
     w.lines.append("M8")
     up = np.array(tip) + [30, 25, 60]
     w.block("G0", up, rot, repeat=True)
@@ -278,6 +296,7 @@ def cut(w, rng, dot):
 def program(rng, spec, kind):
     tcp = kind.endswith("tcp")
     w = Writer(spec, tcp)
+    w.vectors = kind in VECTOR_KINDS
     start(w)
     if kind in PLANE_KINDS:
         tilted(w, rng, kind)
@@ -448,6 +467,7 @@ def kinematics(spec):
     own = ['on = ["M428"]', 'off = ["M429"]'] if spec["control"] == "linuxcnc" else []
     own += ["at_start = true"] if spec.get("tcp_at_start") else []
     text = ", ".join(f"{k} = {v}" for k, v in centres.items())
+    own += ['vectors = "axes"'] if spec.get("vectors") else []
     own += [f'branch = "{spec["branch"]}"', f'turn = "{spec["turn"]}"'] if "branch" in spec else []
     return ["[kinematics]", 'straight = "tip"', f"centres_mm = {{ {text} }}"] + own
 
@@ -460,7 +480,13 @@ def pair(seed, number, has, chains=tuple(CHAINS), kinds=tuple(KINDS)):
         control = rng.choice(["linuxcnc", "fanuc"] + (["sinumerik"] if chain.startswith("table-table") else []))
     elif rng.random() < 0.3 or kind in PLANE_KINDS:
         control = "fanuc"
+    if kind in VECTOR_KINDS:
+        control = rng.choice(["fanuc", "sinumerik"] if chain.startswith("table-table") else ["fanuc"])
     spec = machine(rng, chain, control, has)
+    if kind in VECTOR_KINDS:
+        spec["vectors"] = True
+        for one in spec["axes"].values():
+            one.pop("backlash_um", None)
     if kind in PLANE_KINDS:
         for one in spec["axes"].values():
             one.pop("backlash_um", None)  # no path is proven with play

@@ -203,6 +203,23 @@ class Machine:
             t = self.centre[name] + times(r, t - self.centre[name])
         return x - t
 
+    def singular(self, rot):
+        """How far no turn tips the tool to one side (n,): |n . (a x b)|, the tool's direction and the lines of the two rotary axes
+        as the workpiece sees them; the sine of the tilt where these are at right angles. 1 without two rotary axes."""
+        rot = np.atleast_2d(np.asarray(rot, float))
+        if len(self.rotary) != 2:
+            return np.ones(len(rot))
+
+        def seen(v, carried):
+            """A direction of what the rotary axes from `carried` on carry, as the workpiece sees it."""
+            v = np.broadcast_to(np.asarray(v, float), (len(rot), 3)).copy()
+            for name in reversed(carried):
+                v = times(about(self.direction[name], (-1 if name in self.table else 1) * rot[:, self.rotary.index(name)]), v)
+            return v
+
+        a, b = (seen(self.direction[name], self.rotary[:k]) for k, name in enumerate(self.rotary))
+        return np.abs((seen([0, 0, 1.0], self.rotary) * np.cross(a, b)).sum(axis=1))
+
     def reach(self, q, rot, tool):
         """Arm of each rotary axis (n, k), mm: distance of the tip from the axis' line; what a step of it moves the tip by."""
         q, rot = np.atleast_2d(np.asarray(q, float)), np.atleast_2d(np.asarray(rot, float))

@@ -100,23 +100,26 @@ def nearest(machine, wanted, now, travel):
     wanted = wanted / size
     best = None
     zero = np.zeros((1, 3))
-    for a in range(-180, 180, 20):
-        for b in range(-180, 180, 20):
-            x = np.array([a, b], float)
-            for _ in range(40):
-                d = machine.place(zero, x[None, :], zero[0])[1][0] - wanted
-                if np.linalg.norm(d) < 1e-13:
-                    break
-                jac = np.stack([(machine.place(zero, (x + e)[None, :], zero[0])[1][0] - machine.place(zero, (x - e)[None, :], zero[0])[1][0]) / 2e-3
-                                for e in np.eye(2) * 1e-3], axis=1)
-                x = x - np.linalg.lstsq(jac, d, rcond=1e-9)[0]
-            if np.linalg.norm(machine.place(zero, x[None, :], zero[0])[1][0] - wanted) > 1e-10:
-                continue
-            x = x + 360 * np.round((now - x) / 360)
-            if all(low - 1e-6 <= v <= high + 1e-6 for v, (low, high) in zip(x, travel)):
-                cost = np.abs(x - now).sum()
-                if best is None or cost < best[0] - 1e-9:
-                    best = (cost, x)
+    # The ways differ by half a turn of one axis: what is this near from where the axes stand is the nearest.
+    starts = [now] + [np.array([a, b], float) for a in range(-180, 180, 20) for b in range(-180, 180, 20)]
+    for x in starts:
+        if best is not None and best[0] < 60:
+            break
+        x = np.array(x, float)
+        for _ in range(40):
+            d = machine.place(zero, x[None, :], zero[0])[1][0] - wanted
+            if np.linalg.norm(d) < 1e-13:
+                break
+            rows = np.concatenate([x + np.eye(2) * 1e-3, x - np.eye(2) * 1e-3])
+            way = machine.place(np.zeros((4, 3)), rows, zero[0])[1]
+            x = x - np.linalg.lstsq(((way[:2] - way[2:]) / 2e-3).T, d, rcond=1e-9)[0]
+        if np.linalg.norm(machine.place(zero, x[None, :], zero[0])[1][0] - wanted) > 1e-10:
+            continue
+        x = x + 360 * np.round((now - x) / 360)
+        if all(low - 1e-6 <= v <= high + 1e-6 for v, (low, high) in zip(x, travel)):
+            cost = np.abs(x - now).sum()
+            if best is None or cost < best[0] - 1e-9:
+                best = (cost, x)
     if best is None:
         raise Unreadable(f"no angles for the direction {wanted}")
     return best[1]

@@ -30,8 +30,13 @@ pub(crate) fn block(text: &str, incremental: bool) -> Block {
     }
 }
 
-pub(crate) const OPTIONS: Options =
-    Options { tolerance_mm: 1e-3, outside: Outside::Refuse, minimum_segment_mm: 0.0, orientation_rad: 5e-5 };
+pub(crate) const OPTIONS: Options = Options {
+    tolerance_mm: 1e-3,
+    outside: Outside::Refuse,
+    minimum_segment_mm: 0.0,
+    orientation_rad: 5e-5,
+    orientation: correction::Orientation::Tip,
+};
 /// What the promise allows at 0.001 mm: 1 µm and half a step on each axis.
 pub(crate) const ALLOWED_MM: f64 = 1e-3 + 0.000_866_1;
 

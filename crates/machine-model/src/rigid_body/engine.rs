@@ -5,9 +5,9 @@ use std::sync::PoisonError;
 use super::{RigidBody, TOOLS_KEPT};
 use crate::chord_bound::{chord_bound_mm, everywhere, lies_inside};
 use crate::solve::solve;
-use crate::turning_bound::error_in_turn;
+use crate::turning_bound::{direction_in_turn, error_in_turn};
 use crate::{
-    Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Solution, SolveError, Vector, Volume,
+    Command, Engine, EngineId, Everywhere, LANES, Move, PathModel, Solution, SolveError, Turn, Vector, Volume,
 };
 
 impl Engine for RigidBody {
@@ -80,6 +80,39 @@ impl PathModel for RigidBody {
         let [ideal, real] = self.directions(command);
         // Unit vectors: as good for small angles as for large ones.
         2.0 * units::math::asin((0.5 * (real - ideal).norm()).min(1.0))
+    }
+
+    fn tool_directions(&self, command: &Command, programmed_rad: &Vector) -> Option<[Vector; 2]> {
+        if command.rotary_rad == *programmed_rad {
+            return Some(self.directions(command));
+        }
+        let programmed = Command { rotary_rad: *programmed_rad, ..*command };
+        Some([self.ideal_direction(&programmed), self.directions(command)[1]])
+    }
+
+    fn direction_bound_rad(&self, stretch: &Move) -> f64 {
+        let stands = [stretch.state.rotary_rad; 2];
+        let stands = Turn { programmed_rad: stands, commanded_rad: stands, lag_rad: [Vector::zeros(); 2] };
+        let turn = stretch.turn.unwrap_or(stands);
+        if lies_inside(self, stretch) {
+            direction_in_turn(self, stretch, &turn).leaves_chord_mm()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn rotary_axes(&self) -> [bool; 3] {
+        let mut has = [false; 3];
+        self.description
+            .chain
+            .axes()
+            .filter(|axis| !axis.is_linear())
+            .for_each(|axis| has[axis.direction()] = true);
+        has
+    }
+
+    fn may_turn_to(&self, command: &Command) -> bool {
+        self.rotary_inside(command).is_ok()
     }
 
     fn everywhere(&self, state: &Command) -> Option<Everywhere> {

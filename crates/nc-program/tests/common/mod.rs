@@ -116,5 +116,5 @@ pub(crate) fn centre(motion: &Motion) -> [f64; 2] {
 }
 
 pub(crate) fn uncorrected(motion: &Motion) -> &Partial {
-    if let Motion::Uncorrected { end } = motion { end } else { panic!("{motion:?} is corrected") }
+    if let Motion::Uncorrected { end, .. } = motion { end } else { panic!("{motion:?} is corrected") }
 }

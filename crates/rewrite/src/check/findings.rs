@@ -51,6 +51,11 @@ fn sentences(mismatch: &Mismatch, numbers: &Numbers, said: &mut Vec<[Text; 2]>) 
             "the rotary axes stand elsewhere in line {made} of the corrected program than in line {wanted}",
             "в строке {made} исправленной программы поворотные оси стоят не там, где в строке {wanted}"
         ),
+        What::Leans(rad) => both!(
+            "in line {made} of the corrected program the tool points {:.1} urad away from its direction in line {wanted}",
+            "в строке {made} исправленной программы инструмент отклонён от направления строки {wanted} на {:.1} мкрад",
+            rad * 1e6
+        ),
         What::NotPositioned => {
             both!(
                 "the positioning of line {wanted} is missing from the corrected program",

@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
+use correction::Orientation;
 use diagnostic::Diagnostic;
-use machine_model::{Command, SolveError, Vector};
+use machine_model::{Command, SolveError, Vector, singular_sin};
 use nc_expand::Expanded;
 use nc_program::process::{BlockSays, Deed, Process, Said, said};
 use nc_program::{Context, Interpreter};
 use nc_syntax::dialect::{Action, GCode};
 use nc_syntax::{Block, Reader};
-use path_comparison::{Act, LEVER_MM, Step};
+use path_comparison::{Act, LEVER_MM, Pointing, Step};
 use smallvec::SmallVec;
 use toolpath::{Division, Feed, FeedRate, Motion, Position, Shape};
 
@@ -206,7 +207,9 @@ impl<'a, 'n> Program<'a, 'n> {
             };
             let (tool_mm, kinematics) = (context.tool_mm, context.kinematics);
             let act = Act::Motion { motion: *motion, tool_mm, kinematics, feed, dwell };
-            let turned_mm = self.turn_rounding_mm(motion);
+            let pointing = self.pointing(motion, context);
+            // Where directions are compared they are by themselves.
+            let turned_mm = if pointing.is_some() { 0.0 } else { self.turn_rounding_mm(motion) };
             let limit_mm = (limit_mm * limit_mm + turned_mm * turned_mm).sqrt();
             self.ready.push(Step {
                 act,
@@ -214,6 +217,7 @@ impl<'a, 'n> Program<'a, 'n> {
                 process,
                 limit_mm,
                 compensated: context.compensation.is_some(),
+                pointing,
             });
         }
         says.behind.into_iter().for_each(|said| self.say(said, line, limit_mm));
@@ -229,9 +233,43 @@ impl<'a, 'n> Program<'a, 'n> {
             Said::Deed(deed) => {
                 let process = self.number();
                 let act = Act::Deed(self.numbers.borrow_mut().of_deed(&deed));
-                self.ready.push(Step { act, line, process, limit_mm, compensated: false });
+                self.ready.push(Step { act, line, process, limit_mm, compensated: false, pointing: None });
             }
         }
+    }
+
+    /// How far a direction may be off, where directions are corrected: so far as it is uncorrected near a singularity, and
+    /// where rotary axes lag behind one.
+    fn pointing(&self, motion: &Motion, context: &Context) -> Option<Pointing> {
+        /// Last bits, and what a direction changes by between the places that are looked at.
+        const ROOM: f64 = 1.05;
+        let Orientation::Full(limits) = self.job.options.orientation else { return None };
+        let mut leans_rad = self.job.options.orientation_rad + 1e-9;
+        let model = self.job.models.of(context.kinematics).unwrap_or(self.job.models.axes);
+        if let Motion::Feed(feed) = motion {
+            // So far from it the last of what an axis is turned aside by is taken back.
+            let lags = limits.least_sin + limits.most_turn_rad / limits.most_share;
+            let mix = |a: [f64; 3], b: [f64; 3], s: f64| Vector::from(a) * (1.0 - s) + Vector::from(b) * s;
+            let turns = feed.start.rotary_deg != feed.end.rotary_deg;
+            let places = if turns { 16 } else { 2 };
+            let (mut least_sin, mut most_rad) = (f64::INFINITY, 0.0_f64);
+            for k in 0..=places {
+                let s = f64::from(k) / f64::from(places);
+                let at = Command {
+                    linear_mm: mix(feed.start.linear_mm, feed.end.linear_mm, s),
+                    rotary_rad: mix(feed.start.rotary_deg, feed.end.rotary_deg, s).map(f64::to_radians),
+                    tool_mm: context.tool_mm.into(),
+                    direction: [0; 3],
+                    rotary_play: Default::default(),
+                };
+                least_sin = least_sin.min(singular_sin(model, &at).unwrap_or(f64::INFINITY));
+                most_rad = most_rad.max(model.tilt_rad(&at));
+            }
+            if least_sin < lags {
+                leans_rad += ROOM * most_rad;
+            }
+        }
+        Some(Pointing { leans_rad, aside_deg: limits.most_turn_rad.to_degrees() * ROOM })
     }
 
     /// The number of the process in force.
@@ -276,7 +314,7 @@ impl<'a, 'n> Program<'a, 'n> {
         before: &nc_program::modal::Axes,
         context: &Context,
     ) -> Option<Motion> {
-        let Motion::Uncorrected { end } = motion else { return None };
+        let Motion::Uncorrected { end, .. } = motion else { return None };
         let code = self.job.dialect.code(context.motion_code?)?;
         let start = before.partial().complete()?;
         let end = end.complete()?;

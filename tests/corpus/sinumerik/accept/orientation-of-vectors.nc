@@ -1,0 +1,10 @@
+%_N_PART_MPF
+;how vectors would be read: nothing moves
+G17 G40 G54 G71 G90
+ORIWKS
+ORIAXES
+G0 X10 Y10 Z60
+G1 Z50 F200
+X20
+G0 Z60
+M30
