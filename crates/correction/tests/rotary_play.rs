@@ -100,11 +100,13 @@ fn furthest(
         let pieces = if untouched { vec![own] } else { answer.pieces.to_vec() };
         lines += pieces.len();
         let mut gone = 0.0;
+        // What pieces have over the whole motion is that of an approach.
+        let mut before = pieces.iter().map(|piece| piece.share).sum::<f64>() - 1.0;
         for piece in &pieces {
             let to = run(&at, piece, &words, &end);
             // An approach leads from where the last motion has left the tool to where this one begins.
-            let turns = to.rotary_deg != at.rotary_deg || start.rotary_deg == end.rotary_deg;
-            let share = if turns { piece.share } else { 0.0 };
+            let share = if before > 1e-9 { 0.0 } else { piece.share };
+            before -= piece.share;
             for k in 0..=400 {
                 let mix = |a: f64, b: f64, s: f64| a + (b - a) * s;
                 let s = f64::from(k) / 400.0;
