@@ -404,10 +404,7 @@ fn report(
         found.noise_mm * 1e3,
         match shared {
             Some(um) => both!("by {um:.3} um beyond that", "сверх того {um:.3} мкм"),
-            None => Text::pair(
-                "are too few to tell by how much they differ",
-                "неизвестно: их слишком мало",
-            ),
+            None => Text::pair("are too few to tell by how much they differ", "неизвестно: их слишком мало",),
         }
     );
     for own in found.terms.iter().chain(&found.not_there) {
