@@ -355,7 +355,7 @@ fn rows_of_two_machines_and_a_blunder_are_refused_by_what_they_are() {
     rows[321].deviation_mm[1] = rows[321].deviation_mm[1].map(|mm| mm + 0.03);
     match found(&rows, &base).unwrap_err() {
         CalibrationError::Outlier { point, message } => {
-            assert!(point == 321 && message.contains("this row's Y"), "{point} {message}");
+            assert!(point == 321 && message.english().contains("this row's Y"), "{point} {message}");
         }
         error => panic!("{error}"),
     }
@@ -473,7 +473,7 @@ fn a_head_is_found_as_a_table_is() {
     }
     let error = found(&axial, &base).unwrap_err();
     assert!(
-        matches!(&error, CalibrationError::Unobservable(why) if why.contains("beside one line")),
+        matches!(&error, CalibrationError::Unobservable(why) if why.english().contains("beside one line")),
         "{error}"
     );
 }

@@ -289,7 +289,7 @@ fn refused_is_what_gives_no_machine() {
         rows.push(again);
     });
     assert!(
-        matches!(&twice, Err(CalibrationError::Outlier { point: 21, message }) if message.contains("six"))
+        matches!(&twice, Err(CalibrationError::Outlier { point: 21, message }) if message.english().contains("six"))
     );
     let blunder = made(pieces(3, false), &|rows| rows[9].deviation_mm += 0.02);
     assert!(matches!(blunder, Err(CalibrationError::Outlier { point: 9, .. })), "{blunder:?}");
