@@ -58,9 +58,9 @@ pub(crate) fn too_few(readings: usize, unknowns: usize) -> Result<(), Calibratio
 }
 
 /// Names of what is not told apart: `EXX from EYX`.
-pub(crate) fn from_one_another<'t>(names: impl IntoIterator<Item = &'t Text> + Clone) -> Text {
+pub(crate) fn from_one_another(names: &[Text]) -> Text {
     let of = |language, between: &str| {
-        let names: Vec<&str> = names.clone().into_iter().map(|name| name.in_language(language)).collect();
+        let names: Vec<&str> = names.iter().map(|name| name.in_language(language)).collect();
         names.join(between)
     };
     Text::new(of(Language::English, " from "), of(Language::Russian, " и "))
@@ -75,13 +75,13 @@ pub(crate) fn open_error(estimate: &Estimate, names: &[Text]) -> Result<(), Cali
         .open
         .iter()
         .map(|combination| {
-            let mut own: Vec<&Text> = Vec::new();
+            let mut own: Vec<Text> = Vec::new();
             for (name, share) in names.iter().zip(combination) {
-                if share.abs() > 0.05 && !own.contains(&name) {
-                    own.push(name);
+                if share.abs() > 0.05 && !own.contains(name) {
+                    own.push(name.clone());
                 }
             }
-            from_one_another(own)
+            from_one_another(&own)
         })
         .collect();
     Err(CalibrationError::Unobservable(Text::join(&texts, "; ")))

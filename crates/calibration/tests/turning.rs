@@ -37,7 +37,6 @@ fn reading(part: usize, feature: Feature, radius: f64, z: f64) -> TurnedReading 
             rotary_rad: Vector::zeros(),
             tool_mm: Vector::zeros(),
             direction: [0; 3],
-            rotary_play: Default::default(),
         },
         deviation_mm: 0.0,
         by_effects_mm: 0.0,
@@ -257,8 +256,7 @@ fn what_may_be_something_else_is_not_called_wear() {
     let untimed = machine(false, [60.0, 40.0, 40.0, 60.0]);
     assert_eq!(pairs(&untimed.not_told_apart), [["wear", "growth"]]);
     let sized = machine(true, [40.0, 44.0, 48.0, 52.0]);
-    let pairs = sized.not_told_apart.iter().map(|pair| pair.each_ref().map(|name| name.english()));
-    assert!(pairs.eq([["wear", "an error of X that goes with the diameter"]]));
+    assert_eq!(pairs(&sized.not_told_apart), [["wear", "an error of X that goes with the diameter"]]);
     for found in [untimed, sized] {
         assert!(!has_wear(&found), "{found:?}");
         assert!((found.change.axis - 60e-6).abs() < 1e-9, "{found:?}");

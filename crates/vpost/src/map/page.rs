@@ -548,7 +548,7 @@ fn places(study: &Study, language: Language) -> Markup {
                 place
                     .box_mm
                     .iter()
-                    .map(|r| range_said(language.digits(r.low, 1), language.digits(r.high, 1), language)),
+                    .map(|r| range_said(&language.digits(r.low, 1), &language.digits(r.high, 1), language)),
             );
             let fit = &place.fit;
             row.extend(
@@ -611,7 +611,7 @@ fn provenance(study: &Study, facts: &Facts, language: Language) -> Markup {
     }
 }
 
-fn range_said(low: String, high: String, language: Language) -> String {
+fn range_said(low: &str, high: &str, language: Language) -> String {
     say!(language, "{low} to {high}", "от {low} до {high}")
 }
 
