@@ -67,6 +67,7 @@ const PHRASES: &[(&str, &str)] = &[
     ("copies a subprogram along a line", "повторяет подпрограмму вдоль прямой"),
     ("copies a subprogram in a circle", "повторяет подпрограмму по окружности"),
     ("correct such programs with `--dialect fanuc`", "исправляйте такие программы с ключом `--dialect fanuc`"),
+    ("correct the main program with the moves written out", "исправляйте главную программу, в которой движения расписаны"),
     ("correct the main program with the moves written out; at the end of a main program write M2", "исправляйте главную программу, в которой движения расписаны; в конце главной программы напишите M2"),
     ("correct the main program with the moves written out; at the end of a main program write M30", "исправляйте главную программу, в которой движения расписаны; в конце главной программы напишите M30"),
     ("correct the operations of each tool apart, without T and M6, the length given in the profile's tool.default_mm", "исправляйте переходы каждого инструмента отдельно, без T и M6, задав длину ключом tool.default_mm профиля"),
