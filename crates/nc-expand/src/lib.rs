@@ -108,6 +108,8 @@ pub struct Expanded<'a> {
     /// From there to the program without corners, polar words and cycles of lathes.
     shorthand: Option<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
+    /// Bytes of the program without flow that are contours of cycles.
+    routines: Vec<Range<u64>>,
 }
 
 /// A place in a source file.
@@ -176,6 +178,14 @@ impl Expanded<'_> {
         place
     }
 
+    /// A program that cannot be written out, by what is wrong with its plain text.
+    fn refusal(&self, fault: Diagnostic) -> Refusal {
+        let settled = self.settle(vec![fault]);
+        let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
+        let file = self.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
+        Refusal { diagnostics, file }
+    }
+
     /// Puts the places of diagnostics about the plain program into the source files: by file, in order.
     #[must_use]
     pub fn settle(&self, diagnostics: Vec<Diagnostic>) -> Vec<(usize, Vec<Diagnostic>)> {
@@ -209,22 +219,18 @@ pub fn expand<'a>(
         flow: None,
         shorthand: None,
         warnings: Vec::new(),
+        routines: Vec::new(),
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
-        let write_out = if dialect.turning.is_some() {
-            turning::write_out
+        let written = if dialect.turning.is_some() {
+            turning::write_out(&expanded.text, dialect, &expanded.routines)
         } else if dialect.flow.called {
-            called::write_out
+            called::write_out(&expanded.text, dialect)
         } else {
-            shorthand::write_out
+            shorthand::write_out(&expanded.text, dialect)
         };
-        let (text, segments) = write_out(&expanded.text, dialect).map_err(|fault| {
-            let settled = expanded.settle(vec![*fault]);
-            let (file, diagnostics) = settled.into_iter().next().unwrap_or_default();
-            let file = expanded.file(file).map(|(name, text)| (name.to_owned(), text.to_vec()));
-            Refusal { diagnostics, file }
-        })?;
+        let (text, segments) = written.map_err(|fault| expanded.refusal(*fault))?;
         (expanded.text, expanded.shorthand) = (Cow::Owned(text), Some(segments));
     }
     Ok(expanded)

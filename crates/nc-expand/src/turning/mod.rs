@@ -9,6 +9,7 @@
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself.
 //! * [`pecks`]: grooves and holes; [`drill`]: a hole on the axis.
+//! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
 //! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
@@ -20,9 +21,13 @@ mod drill;
 mod emit;
 mod pass;
 mod pecks;
+mod profile;
 mod rough;
+mod routine;
 mod state;
 mod threads;
+
+use std::ops::Range;
 
 use diagnostic::{Diagnostic, Text, both};
 use nc_syntax::dialect::{Action, Turning, TurningCycle};
@@ -59,7 +64,13 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
 }
 
 /// The program with its cycles written out, and where each stretch of it comes from.
-pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+///
+/// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
+pub(crate) fn write_out(
+    text: &[u8],
+    dialect: &Dialect,
+    routines: &[Range<u64>],
+) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
     let Some(turning) = &dialect.turning else { return Ok((text.to_vec(), Vec::new())) };
     let mut blocks = Vec::new();
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
@@ -73,6 +84,7 @@ pub(crate) fn write_out(text: &[u8], dialect: &Dialect) -> Result<(Vec<u8>, Vec<
         out: Output::new(dialect, text),
         state: State::initial(dialect, turning),
         pass: None,
+        routines,
         first_blocks: rough::FirstBlocks::default(),
         unsure_feed: false,
     };
@@ -92,6 +104,8 @@ struct Writer<'b, 'a> {
     state: State,
     /// The single pass in force.
     pass: Option<Pass>,
+    /// Where contours stand that are subroutines.
+    routines: &'b [Range<u64>],
     /// What the blocks without P and Q said, which hold for those with them.
     first_blocks: rough::FirstBlocks,
     /// The last F stood in a roughing block: whether it holds behind that the manual leaves open.
@@ -150,6 +164,9 @@ impl<'b, 'a> Writer<'b, 'a> {
             TurningCycle::RoughTurn | TurningCycle::RoughFace | TurningCycle::RoughPattern => {
                 self.rough(at, cycle, span)
             }
+            TurningCycle::FinishRoutine
+            | TurningCycle::RoughTurnRoutine(_)
+            | TurningCycle::RoughFaceRoutine(_) => self.routine(at, cycle, span),
             TurningCycle::PeckFace | TurningCycle::PeckGroove => {
                 self.pecks(at, cycle, span)?;
                 Ok(at + 1)
