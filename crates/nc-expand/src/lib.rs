@@ -105,6 +105,8 @@ pub struct Expanded<'a> {
     files: Vec<(String, Vec<u8>)>,
     /// From the source to the program without flow; `None` where it has none.
     flow: Option<Vec<Segment>>,
+    /// From there to the program without corners and angles of a lathe's drawing.
+    drawing: Option<Vec<Segment>>,
     /// From there to the program without corners, polar words and cycles of lathes.
     shorthand: Option<Vec<Segment>>,
     warnings: Vec<Diagnostic>,
@@ -162,7 +164,7 @@ impl Expanded<'_> {
     #[must_use]
     pub fn origin(&self, span: &Range<u64>) -> Origin {
         let mut origin = Origin { file: 0, span: span.clone() };
-        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+        for segments in [&self.shorthand, &self.drawing, &self.flow].into_iter().flatten() {
             origin = output::origin(segments, &origin.span);
         }
         origin
@@ -172,7 +174,7 @@ impl Expanded<'_> {
     #[must_use]
     pub fn source_line(&self, line: u64) -> (usize, u64) {
         let mut place = (0, line);
-        for segments in [&self.shorthand, &self.flow].into_iter().flatten() {
+        for segments in [&self.shorthand, &self.drawing, &self.flow].into_iter().flatten() {
             place = output::source_line(segments, place.1);
         }
         place
@@ -217,12 +219,19 @@ pub fn expand<'a>(
         text: Cow::Borrowed(text),
         files: Vec::new(),
         flow: None,
+        drawing: None,
         shorthand: None,
         warnings: Vec::new(),
         routines: Vec::new(),
     };
     let mut expanded = if work.flow { run::run(text, dialect, environment)? } else { plain };
     if work.shorthand || (work.flow && Work::of(&expanded.text, dialect).shorthand) {
+        if dialect.turning.is_some()
+            && let Some((text, segments)) =
+                turning::draw(&expanded.text, dialect).map_err(|fault| expanded.refusal(*fault))?
+        {
+            (expanded.text, expanded.drawing) = (Cow::Owned(text), Some(segments));
+        }
         let written = if dialect.turning.is_some() {
             turning::write_out(&expanded.text, dialect, &expanded.routines)
         } else if dialect.flow.called {

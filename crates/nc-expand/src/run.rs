@@ -516,6 +516,7 @@ impl<'a> Run<'a, '_> {
             text: Cow::Owned(text),
             files,
             flow: Some(segments),
+            drawing: None,
             shorthand: None,
             warnings,
             routines,

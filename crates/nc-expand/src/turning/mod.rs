@@ -5,6 +5,7 @@
 //! "Canned cycle", "Multiple repetitive cycle"), and by parameters of the control, which the profile has to say
 //! ([`nc_syntax::dialect::TurningParameters`]).
 //!
+//! * [`drawing`]: corners and angles of drawings, before all else.
 //! * [`pass`]: one pass there and back, repeated by each block that names a place.
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself.
@@ -17,6 +18,7 @@
 
 mod compound;
 mod contour;
+mod drawing;
 mod drill;
 mod emit;
 mod pass;
@@ -61,6 +63,11 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
         Action::Turning(cycle) => Some((*cycle, span)),
         _ => None,
     })
+}
+
+/// The program with its corners and angles written out, where it has some.
+pub(crate) fn draw(text: &[u8], dialect: &Dialect) -> Result<Option<(Vec<u8>, Vec<Segment>)>, Fault> {
+    drawing::write_out(text, dialect)
 }
 
 /// The program with its cycles written out, and where each stretch of it comes from.
