@@ -270,7 +270,8 @@ fn a_contour_of_linuxcnc_is_the_one_of_fanuc() {
     let bench = Bench::new();
     let linuxcnc = bench.profile(&[("\"fanuc-lathe\"", "\"linuxcnc-lathe\"")]);
     let linuxcnc = bench.file("linuxcnc.toml", &std::fs::read_to_string(linuxcnc).expect("written"));
-    let finished = [PROFILE, linuxcnc.as_str()].iter().zip(CONTOURS).map(|(profile, program)| {
+    let profiles = [PROFILE, linuxcnc.as_str()];
+    let finished = profiles.iter().zip(CONTOURS).map(|(profile, program)| {
         let corrected = bench.corrected(program, profile);
         assert!(!corrected.lines().any(|line| line.starts_with("G7") && line != "G7"), "{corrected}");
         bench.turned(&corrected, profile)

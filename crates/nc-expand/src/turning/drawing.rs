@@ -14,16 +14,16 @@ use units::math;
 
 use super::contour::Point;
 use super::state::{Motion, State};
-use super::{AXES, Fault, MILLION, Spot, cycle_of};
+use super::{AXES, Fault, MILLION, Spot, Written, cycle_of};
 use crate::codes;
-use crate::output::{Output, Segment, Style, word};
+use crate::output::{Output, Style, word};
 use crate::shorthand::{Shape, Words, from, shown};
 
 /// Two lines whose directions differ by less have no certain crossing, rad.
 const PARALLEL_RAD: f64 = 1e-3;
 
 /// The program with its drawing words written out; `None` where it has none.
-pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<(Vec<u8>, Vec<Segment>)>, Fault> {
+pub(super) fn write_out(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
     let Some(turning) = &dialect.turning else { return Ok(None) };
     let (mut reader, mut block, mut blocks) = (Reader::new(text, dialect), Block::default(), Vec::new());
     while reader.next(&mut block) {

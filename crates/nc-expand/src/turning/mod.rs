@@ -10,7 +10,7 @@
 //! * [`contour`]: the blocks between P and Q as a way in the plane.
 //! * [`rough`]: passes down to a contour, and the contour itself.
 //! * [`pecks`]: grooves and holes; [`drill`]: a hole on the axis.
-//! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry.
+//! * [`routine`]: LinuxCNC's contours, which are subroutines; [`profile`]: their geometry; [`levels`]: passes down to them.
 //! * [`threads`]: a thread in several passes; [`compound`]: that of LinuxCNC.
 //!
 //! Places are whole millionths of the program's unit, X as its words have it: sums of them are exact. Where a pass ends
@@ -21,6 +21,7 @@ mod contour;
 mod drawing;
 mod drill;
 mod emit;
+mod levels;
 mod pass;
 mod pecks;
 mod profile;
@@ -42,6 +43,9 @@ use pass::Pass;
 use state::{Motion, State};
 
 type Fault = Box<Diagnostic>;
+
+/// A text, and where each stretch of it comes from.
+type Written = (Vec<u8>, Vec<Segment>);
 
 /// X word and Z, in millionths of the unit.
 type Spot = [i64; 2];
@@ -66,18 +70,14 @@ fn cycle_of(words: &Words<'_, '_>) -> Option<(TurningCycle, Span)> {
 }
 
 /// The program with its corners and angles written out, where it has some.
-pub(crate) fn draw(text: &[u8], dialect: &Dialect) -> Result<Option<(Vec<u8>, Vec<Segment>)>, Fault> {
+pub(crate) fn draw(text: &[u8], dialect: &Dialect) -> Result<Option<Written>, Fault> {
     drawing::write_out(text, dialect)
 }
 
 /// The program with its cycles written out, and where each stretch of it comes from.
 ///
 /// `routines`: bytes that hold the contours of cycles, each behind the block of its cycle.
-pub(crate) fn write_out(
-    text: &[u8],
-    dialect: &Dialect,
-    routines: &[Range<u64>],
-) -> Result<(Vec<u8>, Vec<Segment>), Fault> {
+pub(crate) fn write_out(text: &[u8], dialect: &Dialect, routines: &[Range<u64>]) -> Result<Written, Fault> {
     let Some(turning) = &dialect.turning else { return Ok((text.to_vec(), Vec::new())) };
     let mut blocks = Vec::new();
     let (mut reader, mut block) = (Reader::new(text, dialect), Block::default());
