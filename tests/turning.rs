@@ -277,7 +277,7 @@ fn a_contour_of_linuxcnc_is_the_one_of_fanuc() {
         bench.turned(&corrected, profile)
     });
     let finished: Vec<_> = finished.collect();
-    assert!(finished[0].len() > 5, "{finished:?}");
+    assert!(finished[0].len() > 4, "{finished:?}");
     assert_eq!(finished[0].len(), finished[1].len(), "{finished:?}");
     for (one, other) in finished[0].iter().zip(&finished[1]) {
         // Each is right to 1 um and its rounding.
