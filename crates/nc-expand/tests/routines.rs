@@ -36,7 +36,7 @@ fn play(text: &str) -> Played {
     std::fs::write(&program, text).expect("writable");
     std::fs::write(&variables, "").expect("writable");
     let ran = Command::new("timeout")
-        .args(["2", "rs274", "-v"])
+        .args(["10", "rs274", "-v"])
         .args([variables.as_os_str(), "-g".as_ref(), program.as_os_str(), out.as_os_str()])
         .env("HOME", work.path())
         .stdin(Stdio::null())
@@ -208,7 +208,7 @@ fn cycles_with_a_subroutine_move_as_the_interpreter_moves() {
         std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(usual)
     };
     // More with `ROUTINES=1000 SEED=7`.
-    let (count, mut dice) = (asked("ROUTINES", 80), Dice(asked("SEED", 1)));
+    let (count, mut dice) = (asked("ROUTINES", 60), Dice(asked("SEED", 1)));
     let (mut compared, mut moved, mut largest) = (0, 0, 0.0_f64);
     let (mut refused, mut endless, mut other, mut stricter) = (0, 0, Vec::new(), Vec::new());
     for _ in 0..count {
